@@ -1,0 +1,101 @@
+// The cost of a fit on one full-size MERL material (1,096,216 bins above the surface, 822 numbers).
+//
+//   build/release/benchmarks/fit_benchmark
+//
+// `threads` is the argument of each benchmark. The material is synth:plastic with 2 % noise, or the
+// MERL file that the environment variable TRILOBE_BENCHMARK_SOURCE names.
+
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "trilobe/io/merl_file.h"
+#include "trilobe/io/source.h"
+#include "trilobe/model/objective.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+const BrdfTable& Measurement() {
+  static const BrdfTable table = [] {
+    const char* const source = std::getenv("TRILOBE_BENCHMARK_SOURCE");
+    return LoadSource(source != nullptr ? source : "synth:plastic", {.noise = 0.02});
+  }();
+  return table;
+}
+
+Objective MakeObjective(int threads) {
+  return Objective(ValidSamples(Measurement()), ModelSpec::SharedFactors(3),
+                   FindWeighting("compressive"), threads);
+}
+
+// From a 35 MB file in the page cache to an objective.
+void BM_ReadAndPrepare(benchmark::State& state) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "trilobe_benchmark.binary").string();
+  WriteMerl(Measurement(), path);
+  for (auto _ : state) {
+    const Objective objective(ValidSamples(ReadMerl(path)), ModelSpec::SharedFactors(3),
+                              FindWeighting("compressive"), static_cast<int>(state.range(0)));
+    benchmark::DoNotOptimize(objective.MeasuredEnergy());
+  }
+  std::filesystem::remove(path);
+}
+
+void BM_Value(benchmark::State& state) {
+  const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
+  const FactorModel model = FindInitialModel("analytic").make(objective, 1);
+  for (auto _ : state) benchmark::DoNotOptimize(objective.Value(model));
+}
+
+// The literal counterpart of BM_Value: every sample by its stencils.
+void BM_ValueLiteral(benchmark::State& state) {
+  const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
+  const FactorModel model = FindInitialModel("analytic").make(objective, 1);
+  const std::vector<WeightedSample>& samples = objective.weighted_samples();
+  for (auto _ : state) {
+    double sum = 0;
+    for (const WeightedSample& sample : samples) {
+      for (int c = 0; c < kChannels; ++c) {
+        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+        sum += sample.weight[c] * residual * residual;
+      }
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+}
+
+// One sweep over all 822 elements, E for the trace included; the solver's preparations are not.
+void Sweep(benchmark::State& state, const char* solver, int sweeps) {
+  const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
+  SolverOptions options;
+  options.max_iterations = sweeps;
+  options.relative_decrease_tolerance = 0;
+  for (auto _ : state) {
+    FactorModel model = FindInitialModel("analytic").make(objective, 1);
+    const SolverSummary summary = MakeSolver(solver)->Solve(objective, options, &model);
+    state.SetIterationTime((summary.trace.back().seconds - summary.trace.front().seconds) /
+                           summary.iterations);
+  }
+}
+void BM_AwlsSweep(benchmark::State& state) { Sweep(state, "awls", 20); }
+void BM_AwlsLiteralSweep(benchmark::State& state) { Sweep(state, "awls_literal", 1); }
+
+BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_ValueLiteral)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_AwlsSweep)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK(BM_AwlsLiteralSweep)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(1);
+
+}  // namespace
+}  // namespace trilobe
+
+BENCHMARK_MAIN();

@@ -1,0 +1,24 @@
+# What `cmake --install` puts where: the library with its headers, the program, the licence, and a
+# CMake package, so that find_package(trilobe) gives trilobe::trilobe.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS trilobe EXPORT trilobe-targets FILE_SET HEADERS)
+if(TRILOBE_BUILD_APP)
+  if(BUILD_SHARED_LIBS)
+    # The program finds the library beside it, wherever the prefix is moved.
+    file(RELATIVE_PATH library_dir ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+    set_target_properties(trilobe_app PROPERTIES INSTALL_RPATH "$ORIGIN/${library_dir}")
+  endif()
+  install(TARGETS trilobe_app)
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trilobe)
+configure_package_config_file(cmake/trilobe-config.cmake.in trilobe-config.cmake
+                              INSTALL_DESTINATION ${package_dir})
+# Below 1.0 a new minor version may change the interface.
+write_basic_package_version_file(trilobe-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/trilobe-config.cmake
+              ${PROJECT_BINARY_DIR}/trilobe-config-version.cmake
+        DESTINATION ${package_dir})
+install(EXPORT trilobe-targets NAMESPACE trilobe:: DESTINATION ${package_dir})

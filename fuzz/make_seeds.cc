@@ -1,0 +1,65 @@
+// Writes a few small inputs for each fuzzer: make_seeds FOLDER.
+
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "tests/io/tensor_bytes.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/trace_file.h"
+
+namespace trilobe {
+namespace {
+
+void WriteSeed(const std::string& folder, const std::string& name, const std::string& bytes) {
+  MakeDirectories(folder);
+  WriteFile(folder + "/" + name, [&](std::ostream& out) { out << bytes; });
+}
+
+std::string SmallModel(const ModelSpec& spec) {
+  ModelFile file{FactorModel(spec), std::vector<bool>(spec.num_parameters(), false), {}};
+  double value = 0.1;
+  for (double& x : file.model.parameters()) x = value *= 1.7;
+  file.dead.back() = true;
+  file.fit.source = "synth:plastic";
+  return FormatModel(file);
+}
+
+void WriteSeeds(const std::string& folder) {
+  // A MERL header, and the two modes of merl_fuzzer.
+  const std::string header("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12);
+  WriteSeed(folder + "/merl", "header", std::string("\0", 1) + header);
+  WriteSeed(folder + "/merl", "whole", std::string("\xff", 1) + std::string(16, '\x3f'));
+
+  TinyRgl rgl;
+  rgl.FillRandom(1);
+  WriteSeed(folder + "/rgl", "isotropic", rgl.Bytes());
+  rgl.phi_i = {-3.1415927F, 0, 3.1415927F};
+  rgl.FillRandom(2);
+  WriteSeed(folder + "/rgl", "anisotropic", rgl.Bytes());
+
+  const MerlGrid grid{.theta_h = 4, .theta_d = 4, .phi_d = 4};
+  WriteSeed(folder + "/model", "shared", SmallModel(ModelSpec::SharedFactors(2, grid)));
+  WriteSeed(folder + "/model", "independent", SmallModel(ModelSpec::IndependentG(grid)));
+
+  const IterationRecord records[] = {{0, 0, 1e6, false}, {1, 0.25, 1.0 / 3, true}};
+  WriteSeed(folder + "/trace", "two", FormatTrace(records));
+}
+
+}  // namespace
+}  // namespace trilobe
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: make_seeds FOLDER\n";
+    return 1;
+  }
+  try {
+    trilobe::WriteSeeds(argv[1]);
+  } catch (const std::exception& error) {
+    std::cerr << "make_seeds: " << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,92 @@
+# Shared by ./run, ./check and .ci/run: installs Debian packages and builds presets.
+# To be sourced by bash, with the repository's root as the current directory.
+# shellcheck shell=bash
+
+log_dir=build/log
+
+step() { printf '==> %s\n' "$*"; }
+
+die() {
+  printf 'error: %s\n' "$*" >&2
+  exit 1
+}
+
+# quietly NAME COMMAND...: runs COMMAND with its output in build/log/NAME.log, and shows the end of
+# that file only if COMMAND fails.
+quietly() {
+  local log=$log_dir/$1.log
+  shift
+  mkdir -p "$log_dir"
+  if ! "$@" >"$log" 2>&1 </dev/null; then
+    tail -n 60 "$log" >&2
+    die "'$*' failed; all of its output is in $log"
+  fi
+}
+
+# Packages of the groups given, one a line.
+packages_of() {
+  local group
+  for group in "$@"; do
+    awk -v group="$group" '$1 == group { print $2 }' dependencies.txt
+  done
+}
+
+is_installed() {
+  [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+# Package lists may be absent or too old to match what the mirror has: only then update them.
+apt_install() {
+  local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@")
+  "${as_root[@]}" "${install[@]}" ||
+    { "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"; }
+}
+
+# setup_packages GROUP...: installs what is missing of these groups.
+setup_packages() {
+  local package packages missing=()
+  mapfile -t packages < <(packages_of "$@")
+  if ! command -v apt-get dpkg-query >/dev/null; then
+    step "No apt-get here: assuming that you have installed what dependencies.txt lists"
+    return
+  fi
+  for package in "${packages[@]}"; do
+    is_installed "$package" || missing+=("$package")
+  done
+  ((${#missing[@]} == 0)) && return
+
+  as_root=(env DEBIAN_FRONTEND=noninteractive)
+  if ((EUID != 0)); then
+    if ! command -v sudo >/dev/null || { [[ ! -t 0 ]] && ! sudo -n true 2>/dev/null; }; then
+      die "packages are missing, and installing them needs root. As root, run:
+  apt-get update && apt-get install --no-install-recommends ${missing[*]}"
+    fi
+    sudo true # asks for the password here, where it can be seen
+    as_root=(sudo env DEBIAN_FRONTEND=noninteractive)
+  fi
+  step "Installing Debian packages: ${missing[*]}"
+  quietly apt apt_install "${missing[@]}"
+}
+
+# build PRESET [TARGET...]: builds a configured preset, with ninja's progress line on a terminal.
+build() {
+  local preset=$1 command=(cmake --build --preset "$1" --parallel "$(nproc)")
+  shift
+  (($# == 0)) || command+=(--target "$@")
+  if [[ -t 1 ]]; then
+    "${command[@]}" || die "the build failed"
+  else
+    quietly "build-$preset" "${command[@]}"
+  fi
+}
+
+# run_tests PRESET: runs its tests and shows how ctest closes; on failure, what failed and why.
+run_tests() {
+  local log=$log_dir/test-$1.log
+  mkdir -p "$log_dir"
+  if ! ctest --preset "$1" --parallel "$(nproc)" --no-tests=error >"$log" 2>&1 </dev/null; then
+    grep -vE '^ *[0-9]+/[0-9]+ Test .* Passed |^ *Start +[0-9]+:' "$log" >&2
+    die "tests failed; all of their output is in $log"
+  fi
+  sed -n '/tests passed/,$p' "$log"
+}

@@ -1,0 +1,37 @@
+#ifndef TRILOBE_APP_COMMAND_H_
+#define TRILOBE_APP_COMMAND_H_
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace trilobe {
+
+// A subcommand of the program. Flags are gflags, defined in the command's file (shared ones in
+// flags.h); `flags` names those that this command takes, and any other is an error.
+struct Command {
+  std::string name;
+  std::string summary;    // one line for `trilobe help`
+  std::string arguments;  // "SOURCE", "MODEL SOURCE", ...
+  int min_arguments = 0;
+  int max_arguments = 0;
+  std::string details;  // some lines for `trilobe help NAME`: what it reads, does and writes
+  std::vector<std::string> flags;
+  // Positional arguments only. Returns the exit status; throws Error for bad input.
+  int (*run)(std::span<const std::string> arguments) = nullptr;
+};
+
+// One function a command, each in its own file.
+Command ConvertCommand();
+Command FitCommand();
+Command InfoCommand();
+Command PlotCommand();
+Command ScoreCommand();
+Command SynthCommand();
+
+// All commands, in the order of `trilobe help`.
+const std::vector<Command>& Commands();
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_COMMAND_H_

@@ -1,0 +1,102 @@
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "trilobe/app/albedo_table.h"
+#include "trilobe/app/describe.h"
+#include "trilobe/app/flags.h"
+#include "trilobe/app/print.h"
+#include "trilobe/io/model_file.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string SharingText(const ModelSpec& spec, Factor factor) {
+  const TableSharing& sharing = spec.sharing(factor);
+  const std::string tables = std::to_string(spec.num_tables(factor)) + " x " +
+                             std::to_string(spec.table_size(factor)) + ", ";
+  if (sharing.per_lobe && sharing.per_channel) return tables + "one for each lobe and channel";
+  if (sharing.per_lobe) return tables + "one for each lobe, shared by the channels";
+  if (sharing.per_channel) return tables + "one for each channel, shared by the lobes";
+  return tables + "shared by all";
+}
+
+// Dead entries of all tables of one factor.
+int CountDead(const ModelFile& file, Factor factor) {
+  const ModelSpec& spec = file.model.spec();
+  int count = 0;
+  for (int i = 0; i < spec.num_tables(factor) * spec.table_size(factor); ++i) {
+    if (file.dead[file.model.TableOffset(factor, 0) + i]) ++count;
+  }
+  return count;
+}
+
+Rgb ToRgb(std::span<const double> values) { return {values[0], values[1], values[2]}; }
+
+}  // namespace
+
+void DescribeModel(const std::string& path) {
+  const ModelFile file = ReadModel(path);
+  const FactorModel& model = file.model;
+  const ModelSpec& spec = model.spec();
+  const FitInfo& fit = file.fit;
+  const AlbedoTable albedo = TabulateAlbedo(
+      [&](const DirectionPair& pair) { return Evaluate(model, pair); }, ThreadsFromFlags());
+
+  if (FLAGS_json) {
+    Json json = {{"file", path},          {"kind", "model"},
+                 {"lobes", spec.lobes},   {"parameters", spec.num_parameters()},
+                 {"d", ToRgb(model.d())}, {"s", Json::array()}};
+    for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(ToRgb(model.s(m)));
+    for (const Factor factor : kFactors) {
+      const TableSharing& sharing = spec.sharing(factor);
+      json["tables"][FactorName(factor)] = {{"count", spec.num_tables(factor)},
+                                            {"size", spec.table_size(factor)},
+                                            {"per_lobe", sharing.per_lobe},
+                                            {"per_channel", sharing.per_channel},
+                                            {"dead", CountDead(file, factor)}};
+    }
+    json["fit"] = {{"source", fit.source},
+                   {"solver", fit.solver},
+                   {"init", fit.init},
+                   {"weighting", fit.weighting},
+                   {"objective", fit.objective},
+                   {"initial_objective", fit.initial_objective},
+                   {"iterations", fit.iterations},
+                   {"seconds", fit.seconds},
+                   {"stop_reason", fit.stop_reason},
+                   {"valid_samples", fit.valid_samples},
+                   {"program", fit.program},
+                   {"date", fit.date}};
+    json["albedo"] = ToJson(albedo);
+    PrintJson(json);
+    return;
+  }
+  PrintLine("file", path);
+  PrintLine("kind", "model, " + std::to_string(spec.lobes) + " lobes, " +
+                        std::to_string(spec.num_parameters()) + " parameters");
+  for (const Factor factor : kFactors) {
+    const int dead = CountDead(file, factor);
+    PrintLine(std::string("  ") + FactorName(factor),
+              SharingText(spec, factor) +
+                  (dead > 0 ? "; " + std::to_string(dead) + " entries without data" : ""));
+  }
+  PrintLine("d, RGB", Text(ToRgb(model.d())) + " /sr");
+  for (int m = 0; m < spec.lobes; ++m) {
+    const Rgb s = ToRgb(model.s(m));
+    PrintLine("s of lobe " + std::to_string(m + 1) + ", RGB", s == Rgb{} ? "0: absent" : Text(s));
+  }
+  if (!fit.source.empty()) PrintLine("fitted to", fit.source);
+  if (!fit.solver.empty()) {
+    PrintLine("solver", fit.solver + ", init " + fit.init + ", " + std::to_string(fit.iterations) +
+                            " iterations, " + Text(fit.seconds, 3) +
+                            " s, stopped: " + fit.stop_reason);
+    PrintLine("objective E", Text(fit.objective, 10) + ", weighting " + fit.weighting + ", " +
+                                 std::to_string(fit.valid_samples) + " valid samples");
+  }
+  if (!fit.program.empty()) PrintLine("written by", fit.program + " " + fit.date);
+  Print(albedo);
+}
+
+}  // namespace trilobe

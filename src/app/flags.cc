@@ -1,0 +1,33 @@
+#include "trilobe/app/flags.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/source.h"
+
+DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
+DEFINE_int64(seed, 1, "seed of whatever is random: the noise of synth: sources, --init=random");
+DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
+DEFINE_string(weighting, "compressive",
+              "weights of the objective: compressive, log, percentage, cosine or uniform");
+DEFINE_string(out, "", "where to write: a file or, for fit and plot, a folder");
+
+namespace trilobe {
+
+int ThreadsFromFlags() {
+  if (FLAGS_threads < 0) throw Error("--threads is negative; give 0 for all cores");
+  if (FLAGS_threads > 0) return FLAGS_threads;
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+SourceOptions SourceOptionsFromFlags() {
+  return {.noise = FLAGS_noise,
+          .seed = static_cast<unsigned>(FLAGS_seed),
+          .num_threads = ThreadsFromFlags()};
+}
+
+}  // namespace trilobe

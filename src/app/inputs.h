@@ -1,0 +1,17 @@
+#ifndef TRILOBE_APP_INPUTS_H_
+#define TRILOBE_APP_INPUTS_H_
+
+#include <string>
+
+namespace trilobe {
+
+// True if the file can be read and begins like a JSON object, as model files do and no measurement
+// does.
+bool LooksLikeModel(const std::string& path);
+
+// --out, or an Error that says what it is for: "trilobe synth needs --out=FILE".
+std::string RequiredOut(const std::string& command, const std::string& what);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_INPUTS_H_

@@ -1,0 +1,54 @@
+#include <gflags/gflags.h>
+
+#include <iostream>
+#include <optional>
+#include <vector>
+
+#include "trilobe/app/command.h"
+#include "trilobe/app/flags.h"
+#include "trilobe/app/inputs.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/plots.h"
+#include "trilobe/io/source.h"
+#include "trilobe/io/trace_file.h"
+
+DEFINE_string(trace, "", "trace.csv of a fit, to draw its convergence");
+
+namespace trilobe {
+namespace {
+
+int RunPlot(std::span<const std::string> arguments) {
+  const std::string folder = RequiredOut("plot", "DIR");
+  const ModelFile file = ReadModel(arguments[0]);
+  std::optional<BrdfTable> measured;
+  if (arguments.size() > 1) measured = LoadSource(arguments[1], SourceOptionsFromFlags());
+  std::vector<IterationRecord> trace;
+  if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
+  MakeDirectories(folder);
+  for (const std::string& path :
+       DrawPictures(file, measured ? &*measured : nullptr, trace, folder, ThreadsFromFlags())) {
+    std::cout << "wrote " << path << "\n";
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command PlotCommand() {
+  return {.name = "plot",
+          .summary = "draw a model's factors, its fit to a measurement, and a trace",
+          .arguments = "MODEL [SOURCE]",
+          .min_arguments = 1,
+          .max_arguments = 2,
+          .details =
+              "Writes PNG pictures into the folder --out, by gnuplot:\n"
+              "  factors.png  D, F, G and the coefficients d, s\n"
+              "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
+              "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
+              "  trace.png    E over iterations and seconds (with --trace)",
+          .flags = {"out", "trace", "noise", "seed", "threads"},
+          .run = RunPlot};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,40 @@
+#include "trilobe/app/print.h"
+
+#include <gflags/gflags.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+DEFINE_bool(json, false, "print one JSON object instead of a table");
+
+namespace trilobe {
+
+std::string Text(double x, int digits) {
+  if (std::isinf(x)) return x > 0 ? "infinite" : "-infinite";
+  std::array<char, 64> buffer;
+  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, x);
+  return buffer.data();
+}
+
+std::string Text(const Rgb& rgb) {
+  return Text(rgb[0]) + ", " + Text(rgb[1]) + ", " + Text(rgb[2]);
+}
+
+std::string Right(const std::string& text, int width) {
+  const int length = static_cast<int>(text.size());
+  return std::string(length < width ? width - length : 2, ' ') + text;
+}
+
+void PrintLine(const std::string& label, const std::string& value) {
+  std::cout << label << std::string(label.size() < 26 ? 26 - label.size() : 1, ' ') << value
+            << "\n";
+}
+
+void PrintJson(const nlohmann::ordered_json& json) {
+  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+}
+
+}  // namespace trilobe

@@ -1,0 +1,36 @@
+#ifndef TRILOBE_APP_PRINT_H_
+#define TRILOBE_APP_PRINT_H_
+
+#include <gflags/gflags_declare.h>
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "trilobe/model/channels.h"
+
+// What `score` and `info` print: a table for people, or one JSON object.
+DECLARE_bool(json);
+
+namespace trilobe {
+
+inline constexpr const char* kChannelNames[] = {"red", "green", "blue"};
+
+// "0.01235", "1.235e+06", "infinite": four significant digits unless told otherwise.
+std::string Text(double x, int digits = 4);
+
+// "0.1, 0.2, 0.3".
+std::string Text(const Rgb& rgb);
+
+// Right-justified in `width` columns, or after two spaces where it is wider.
+std::string Right(const std::string& text, int width);
+
+// "label", spaces up to a fixed column, "value", on a line of standard output.
+void PrintLine(const std::string& label, const std::string& value);
+
+// One object and a newline on standard output. A number that is not finite becomes null, text that
+// is not UTF-8 is repaired.
+void PrintJson(const nlohmann::ordered_json& json);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_PRINT_H_

@@ -1,0 +1,41 @@
+#ifndef TRILOBE_APP_PROGRESS_H_
+#define TRILOBE_APP_PROGRESS_H_
+
+#include "trilobe/model/iteration_record.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// One line on a terminal that is redrawn as a fit goes on: iteration, E, its relative change, and
+// an upper bound on the time left. Draws nothing where standard error is not a terminal.
+class Progress {
+ public:
+  explicit Progress(const SolverOptions& options);
+  ~Progress();  // clears the line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Show(const IterationRecord& record);
+
+ private:
+  const int max_iterations_;
+  const double max_seconds_;
+  const bool on_terminal_;
+  IterationRecord last_;
+};
+
+// While one lives, Ctrl-C (SIGINT) and SIGTERM do not end the program but set requested(); a second
+// one does end it.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  static bool requested();
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_PROGRESS_H_

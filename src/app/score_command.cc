@@ -1,0 +1,119 @@
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "trilobe/app/command.h"
+#include "trilobe/app/flags.h"
+#include "trilobe/app/print.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/source.h"
+#include "trilobe/model/score.h"
+
+namespace trilobe {
+namespace {
+
+// Place of a sample's bin along each axis.
+struct BinPosition {
+  int h, d, p;
+};
+BinPosition PositionOf(const MerlGrid& grid, int bin) {
+  return {bin / (grid.theta_d * grid.phi_d), bin / grid.phi_d % grid.theta_d, bin % grid.phi_d};
+}
+
+nlohmann::ordered_json ToJson(const ScoreReport& report, const Objective& objective,
+                              const std::string& model_path) {
+  const BrdfSamples& samples = objective.samples();
+  nlohmann::ordered_json json = {{"model", model_path},
+                                 {"source", samples.source},
+                                 {"weighting", objective.weighting().name},
+                                 {"valid_samples", report.valid_samples},
+                                 {"objective", report.objective},
+                                 {"relative_objective", report.relative_objective},
+                                 {"psnr_db", report.psnr_db},
+                                 {"psnr_peak", report.psnr_peak},
+                                 {"rmse", report.rmse},
+                                 {"rmse_red", report.rmse_channel[0]},
+                                 {"rmse_green", report.rmse_channel[1]},
+                                 {"rmse_blue", report.rmse_channel[2]},
+                                 {"mean_relative_error", report.mean_relative_error},
+                                 {"mean_log_error", report.mean_log_error},
+                                 {"max_absolute_error", report.max_absolute_error},
+                                 {"worst_bins", nlohmann::ordered_json::array()}};
+  for (const WorstSample& worst : report.worst) {
+    const auto [h, d, p] = PositionOf(samples.grid, samples.bins[worst.sample]);
+    json["worst_bins"].push_back({{"h", h},
+                                  {"d", d},
+                                  {"p", p},
+                                  {"theta_h_deg", RadiansToDegrees(worst.angles.theta_h)},
+                                  {"theta_d_deg", RadiansToDegrees(worst.angles.theta_d)},
+                                  {"phi_d_deg", RadiansToDegrees(worst.angles.phi_d)},
+                                  {"channel", kChannelNames[worst.channel]},
+                                  {"measured", worst.measured},
+                                  {"fitted", worst.fitted},
+                                  {"weighted_squared_error", worst.error}});
+  }
+  return json;
+}
+
+void PrintTable(const ScoreReport& report, const Objective& objective,
+                const std::string& model_path) {
+  const BrdfSamples& samples = objective.samples();
+  PrintLine("model", model_path);
+  PrintLine("source", samples.source);
+  PrintLine("valid samples", std::to_string(report.valid_samples) + ", of 3 channels each");
+  PrintLine("weighting", objective.weighting().name);
+  PrintLine("objective E", Text(report.objective, 10));
+  PrintLine("E / E of a black model", Text(report.relative_objective));
+  PrintLine("PSNR", Text(report.psnr_db) + " dB, peak " + Text(report.psnr_peak) + " /sr");
+  PrintLine("RMSE", Text(report.rmse) + " /sr (red " + Text(report.rmse_channel[0]) + ", green " +
+                        Text(report.rmse_channel[1]) + ", blue " + Text(report.rmse_channel[2]) +
+                        ")");
+  PrintLine("mean relative error", Text(100 * report.mean_relative_error) + " %");
+  PrintLine("mean log error", Text(report.mean_log_error));
+  PrintLine("largest absolute error", Text(report.max_absolute_error) + " /sr");
+  std::cout << "\nworst bins by share of E\n"
+               "  theta_h  theta_d    phi_d  channel  measured    fitted  share of E\n"
+               "      deg      deg      deg               1/sr      1/sr           %\n";
+  for (const WorstSample& worst : report.worst) {
+    const double share = report.objective > 0 ? 100 * worst.error / report.objective : 0;
+    std::printf("%9.3f%9.1f%9.1f  %-7s%10s%10s%12s\n", RadiansToDegrees(worst.angles.theta_h),
+                RadiansToDegrees(worst.angles.theta_d), RadiansToDegrees(worst.angles.phi_d),
+                kChannelNames[worst.channel], Text(worst.measured).c_str(),
+                Text(worst.fitted).c_str(), Text(share, 3).c_str());
+  }
+}
+
+int RunScore(std::span<const std::string> arguments) {
+  const Weighting& weighting = FindWeighting(FLAGS_weighting);
+  const FactorModel model = ReadModel(arguments[0]).model;
+  const BrdfTable table = LoadSource(arguments[1], SourceOptionsFromFlags());
+  const Objective objective(ValidSamples(table), model.spec(), weighting, ThreadsFromFlags());
+  const ScoreReport report = ScoreModel(objective, model);
+  if (FLAGS_json) {
+    PrintJson(ToJson(report, objective, arguments[0]));
+  } else {
+    PrintTable(report, objective, arguments[0]);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command ScoreCommand() {
+  return {
+      .name = "score",
+      .summary = "compare a model with a measurement",
+      .arguments = "MODEL SOURCE",
+      .min_arguments = 2,
+      .max_arguments = 2,
+      .details =
+          "Prints the objective E under --weighting, and errors that know no weights: RMSE; PSNR "
+          "over the\nlargest measured value, which is printed with it; the mean of |rho - "
+          "rho*|/(rho* + 0.001); the\nmean of |log((1 + rho cos)/(1 + rho* cos))|; and the ten "
+          "bins with the largest share of E.\nWith --json, one JSON object; a PSNR that is not "
+          "finite (an exact fit) is null there.",
+      .flags = {"json", "weighting", "noise", "seed", "threads"},
+      .run = RunScore};
+}
+
+}  // namespace trilobe

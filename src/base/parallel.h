@@ -1,0 +1,16 @@
+#ifndef TRILOBE_BASE_PARALLEL_H_
+#define TRILOBE_BASE_PARALLEL_H_
+
+#include <functional>
+
+namespace trilobe {
+
+// Calls work(i) once for every i in [0, count), from at most num_threads threads. Items are handed
+// out one by one, so they may cost different amounts. Results are the same for any number of
+// threads as long as each item writes only what is its own: reduce afterwards, in item order.
+// The first exception thrown by an item is rethrown here, after all threads have stopped.
+void ParallelFor(int count, int num_threads, const std::function<void(int)>& work);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_BASE_PARALLEL_H_

@@ -1,0 +1,24 @@
+#ifndef TRILOBE_IO_FILE_H_
+#define TRILOBE_IO_FILE_H_
+
+#include <functional>
+#include <ostream>
+#include <string>
+
+namespace trilobe {
+
+// The bytes of a file. Throws Error: missing, a directory, unreadable, changed while read.
+std::string ReadFile(const std::string& path);
+
+// Writes a whole file or nothing: `write` fills a temporary file beside `path`, which is renamed
+// over it once every byte is on it. On any failure (also of `write` itself) the temporary file is
+// removed, an earlier file at `path` is left as it was, and Error says why ("No space left on
+// device").
+void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write);
+
+// Makes a directory and its parents where they are missing. Throws Error.
+void MakeDirectories(const std::string& path);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FILE_H_

@@ -1,0 +1,181 @@
+#include "trilobe/io/gnuplot.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <ostream>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/file.h"
+
+namespace trilobe {
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+// Nameless and gone when closed. Unlike pipes, files cannot block one side on the other.
+using TemporaryFile = std::unique_ptr<std::FILE, CloseFile>;
+
+TemporaryFile MakeTemporaryFile() {
+  TemporaryFile file(std::tmpfile());
+  if (!file) throw Error(std::string("cannot make a temporary file: ") + std::strerror(errno));
+  return file;
+}
+
+std::string ReadAll(std::FILE* file) {
+  std::rewind(file);
+  std::string bytes;
+  std::array<char, 1 << 16> buffer;
+  while (const size_t n = std::fread(buffer.data(), 1, buffer.size(), file)) {
+    bytes.append(buffer.data(), n);
+  }
+  return bytes;
+}
+
+// The line of gnuplot's complaint that says what is wrong.
+std::string ErrorLine(const std::string& message) {
+  std::string best;
+  for (size_t begin = 0; begin < message.size();) {
+    const size_t end = std::min(message.find('\n', begin), message.size());
+    const std::string line = message.substr(begin, end - begin);
+    if (line.find_first_not_of(" \t^") != std::string::npos) best = line;
+    begin = end + 1;
+  }
+  return best.empty() ? "no message" : best;
+}
+
+// gnuplot's standard output for a script on its standard input.
+std::string RunGnuplot(const std::string& script) {
+  const TemporaryFile in = MakeTemporaryFile(), out = MakeTemporaryFile(),
+                      err = MakeTemporaryFile();
+  if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
+      std::fflush(in.get()) != 0) {
+    throw Error(std::string("cannot write a temporary file: ") + std::strerror(errno));
+  }
+  std::rewind(in.get());
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, fileno(in.get()), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(out.get()), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(err.get()), STDERR_FILENO);
+  std::string program = "gnuplot", defaults = "--default-settings";
+  char* const arguments[] = {program.data(), defaults.data(), nullptr};
+  pid_t pid = 0;
+  const int failure = posix_spawnp(&pid, "gnuplot", &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure == ENOENT) {
+    throw Error("pictures need gnuplot, which is not on the PATH; install the package gnuplot-nox");
+  }
+  if (failure != 0) throw Error(std::string("cannot run gnuplot: ") + std::strerror(failure));
+
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    throw Error("gnuplot failed: " + ErrorLine(ReadAll(err.get())));
+  }
+  std::string png = ReadAll(out.get());
+  if (!png.starts_with("\x89PNG\r\n")) {
+    throw Error("gnuplot drew no picture: " + ErrorLine(ReadAll(err.get())));
+  }
+  return png;
+}
+
+std::string CommonStyle(int width, int height) {
+  return "set encoding utf8\n"
+         "set terminal pngcairo enhanced size " +
+         std::to_string(width) + "," + std::to_string(height) +
+         " background '#FFFFFF' font 'DejaVu Sans,18' linewidth 1\n"
+         "set border 3 linecolor '#555555' linewidth 1.5\n"
+         "set tics nomirror out textcolor '#333333'\n"
+         "set grid xtics ytics linecolor '#E4E4E4' linetype 1 linewidth 1\n"
+         "set key samplen 2 spacing 1.15 noenhanced textcolor '#222222'\n"
+         "set title textcolor '#111111'\n"
+         "set xlabel textcolor '#222222'\n"
+         "set ylabel textcolor '#222222'\n";
+}
+
+// Length of the UTF-8 sequence at the front of `text`, 0 if it is broken.
+size_t Utf8Length(std::string_view text) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+  const size_t length = byte(0) < 0x80                       ? 1
+                        : byte(0) >= 0xC2 && byte(0) <= 0xDF ? 2
+                        : byte(0) >= 0xE0 && byte(0) <= 0xEF ? 3
+                        : byte(0) >= 0xF0 && byte(0) <= 0xF4 ? 4
+                                                             : 0;
+  if (length > text.size()) return 0;
+  for (size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+}  // namespace
+
+std::string GnuplotQuote(std::string_view text) {
+  std::string quoted = "'";
+  while (!text.empty()) {
+    const size_t length = Utf8Length(text);
+    const auto byte = static_cast<unsigned char>(text[0]);
+    if (length == 0 || byte < 0x20 || byte == 0x7F) {
+      quoted += '?';
+    } else if (byte == '\'') {
+      quoted += "\u2019";
+    } else {
+      quoted += text.substr(0, length);
+    }
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return quoted + "'";
+}
+
+std::string GnuplotNumber(double x) {
+  if (!std::isfinite(x)) return "NaN";
+  std::array<char, 32> buffer;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), x, std::chars_format::general, 8);
+  return {buffer.data(), end.ptr};
+}
+
+std::string GnuplotData(std::string_view name, std::span<const std::vector<double>> rows) {
+  std::string block = "$" + std::string(name) + " << EOD\n";
+  for (const std::vector<double>& row : rows) {
+    for (const double x : row) block += GnuplotNumber(x) + ' ';
+    block += '\n';
+  }
+  return block + "EOD\n";
+}
+
+std::string GnuplotLogRange(std::span<const double> values, double decades) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const double x : values) {
+    if (!(x > 0 && std::isfinite(x))) continue;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  if (high == 0) low = high = 1;
+  low = std::max(low, high * std::pow(10, -decades));
+  const double margin = std::max(std::pow(high / low, 0.05), 1.25);
+  return "[" + GnuplotNumber(low / margin) + ":" + GnuplotNumber(high * margin) + "]";
+}
+
+void DrawPng(const std::string& path, int width, int height, const std::string& script) {
+  const std::string png = RunGnuplot(CommonStyle(width, height) + script);
+  WriteFile(path, [&](std::ostream& out) {
+    out.write(png.data(), static_cast<std::streamsize>(png.size()));
+  });
+}
+
+}  // namespace trilobe

@@ -1,0 +1,20 @@
+#ifndef TRILOBE_IO_MERL_FILE_H_
+#define TRILOBE_IO_MERL_FILE_H_
+
+#include <string>
+#include <string_view>
+
+#include "trilobe/model/brdf_table.h"
+
+namespace trilobe {
+
+// MERL `.binary` (METHOD 1): 3 little-endian int32 (90, 90, 180), then float64 planes R, G, B.
+// All throw Error on bad input: too short, other dimensions, trailing bytes, ...
+// Writing what was read gives the same bytes.
+BrdfTable ParseMerl(std::string_view bytes, const std::string& source);
+BrdfTable ReadMerl(const std::string& path);
+void WriteMerl(const BrdfTable& table, const std::string& path);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_MERL_FILE_H_

@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "trilobe/io/gnuplot.h"
+#include "trilobe/io/plots.h"
+#include "trilobe/model/catmull_rom.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kDash[] = {"solid", "'-'", "'.'", "'_.'", "'..-'", "'-_'", "'--.'", "'_'"};
+constexpr const char* kChannelNames[] = {"red", "green", "blue"};
+
+bool Absent(const FactorModel& model, int lobe) {
+  return std::ranges::all_of(model.s(lobe), [](double s) { return s == 0; });
+}
+
+// Which lobe, or channel, a table belongs to; 0 where it serves them all.
+struct Owner {
+  int lobe = 0, channel = 0;
+};
+Owner OwnerOf(const ModelSpec& spec, Factor factor, int index) {
+  const TableSharing& sharing = spec.sharing(factor);
+  const int channels = sharing.per_channel ? kChannels : 1;
+  return {sharing.per_lobe ? index / channels : 0, sharing.per_channel ? index % channels : 0};
+}
+
+std::string CurveName(const ModelSpec& spec, Factor factor, int index, bool absent) {
+  const TableSharing& sharing = spec.sharing(factor);
+  const auto [lobe, channel] = OwnerOf(spec, factor, index);
+  std::string name;
+  if (sharing.per_lobe && (spec.lobes > 1 || !sharing.per_channel)) {
+    name = "lobe " + std::to_string(lobe + 1);
+  }
+  if (sharing.per_channel) name += (name.empty() ? "" : ", ") + std::string(kChannelNames[channel]);
+  if (name.empty()) name = "all lobes";
+  return absent ? name + " (s = 0)" : name;
+}
+
+// Data blocks and the plot command of one panel. `position` gives the abscissa of entry i.
+template <typename Position>
+std::string Panel(const ModelFile& file, Factor factor, const Position& position,
+                  bool logarithmic) {
+  const FactorModel& model = file.model;
+  const ModelSpec& spec = model.spec();
+  std::string data, curves, hollow;
+  std::vector<double> values;
+  bool any_dead = false;
+  for (int t = 0; t < spec.num_tables(factor); ++t) {
+    const auto [lobe, channel] = OwnerOf(spec, factor, t);
+    const bool absent = spec.sharing(factor).per_lobe && Absent(model, lobe);
+    const std::span<const double> table = model.table(factor, t);
+    std::vector<std::vector<double>> rows;  // abscissa, value, value where dead
+    for (int i = 0; i < static_cast<int>(table.size()); ++i) {
+      const bool dead = file.dead[model.TableOffset(factor, t) + i];
+      const bool drawn = !absent;
+      any_dead = any_dead || (dead && drawn);
+      rows.push_back({position(i), drawn ? table[i] : kGap, drawn && dead ? table[i] : kGap});
+      if (!absent) values.push_back(table[i]);
+    }
+    const bool by_channel = spec.sharing(factor).per_channel;
+    const std::string block = std::string(FactorName(factor)) + std::to_string(t);
+    data += GnuplotData(block, rows);
+    const std::string style = std::string("linecolor '") +
+                              (by_channel ? kChannelColors[channel] : kLobeColors[lobe]) + "'";
+    curves += (t == 0 ? "plot $" : ", $") + block + " using 1:2 with ";
+    curves += absent ? "dots linecolor '#FFFFFF'"
+                     : "lines linewidth 2.5 " + style + " dashtype " +
+                           (by_channel ? kDash[lobe] : "solid");
+    curves += " title '" + CurveName(spec, factor, t, absent) + "'";
+    hollow +=
+        ", $" + block + " using 1:3 with points pointtype 6 pointsize 1.1 " + style + " notitle";
+  }
+  if (values.empty()) return "";
+  if (any_dead) {
+    curves +=
+        hollow + ", NaN with points pointtype 6 pointsize 1.1 linecolor '#555555' title 'no data'";
+  }
+  // Linear as in the paper, unless a peak would flatten all the rest.
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  const double top = sorted.back();
+  const double spread =
+      top / std::max(sorted[sorted.size() / 2], std::numeric_limits<double>::min());
+  if (logarithmic || spread > 10) {
+    return data + "set logscale y\nset format y '10^{%T}'\nset yrange " +
+           GnuplotLogRange(values, logarithmic ? 9 : 4) + "\n" + curves;
+  }
+  return data + "unset logscale y\nset format y '%g'\nset yrange [0:" +
+         GnuplotNumber(top > 0 ? top * 1.08 : 1) + "]\n" + curves;
+}
+
+// Bars of d and of each lobe's s, by channel, with their values written above.
+std::string CoefficientPanel(const FactorModel& model) {
+  const int groups = 1 + model.spec().lobes;
+  std::string data[kChannels], tics;
+  double top = 0;
+  for (int g = 0; g < groups; ++g) {
+    const auto values = g == 0 ? model.d() : model.s(g - 1);
+    for (int c = 0; c < kChannels; ++c) {
+      data[c] += GnuplotNumber(g + 0.28 * (c - 1)) + " " + GnuplotNumber(values[c]) + "\n";
+      top = std::max(top, values[c]);
+    }
+    const std::string name = g == 0 ? "d" : "s_{" + std::to_string(g) + "}";
+    tics += (g == 0 ? "'" : ", '") + name + "' " + std::to_string(g);
+  }
+  std::string script, plot;
+  const std::string font = groups <= 4 ? ",14" : ",11";
+  for (int c = 0; c < kChannels; ++c) {
+    const std::string block = "$coefficient" + std::to_string(c);
+    script += block + " << EOD\n" + data[c] + "EOD\n";
+    plot += (c == 0 ? "plot " : ", ") + block + " using 1:2 with boxes linecolor '" +
+            kChannelColors[c] + "' title '" + kChannelNames[c] + "', '' using 1:2:" +
+            "(sprintf('%.3g', $2)) with labels rotate by 90 left offset 0,0.4 font '" + font +
+            "' notitle";
+  }
+  return script + "unset logscale y\nset format y '%g'\nset yrange [0:" +
+         GnuplotNumber(top > 0 ? 1.35 * top : 1) +
+         "]\nset xrange [-0.6:" + GnuplotNumber(groups - 0.4) + "]\nset xtics (" + tics +
+         ")\nset boxwidth 0.26\nset style fill solid 0.85 noborder\n" + plot;
+}
+
+}  // namespace
+
+void DrawFactors(const ModelFile& file, const std::string& path) {
+  const ModelSpec& spec = file.model.spec();
+  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
+  const CatmullRom spline(spec.g_nodes);
+  const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
+  constexpr double kLeft = 0.085, kRight = 0.975, kBottom = 0.075, kTop = 0.865;  // of the canvas
+  constexpr double kColumnGap = 0.11, kRowGap = 0.19;
+  std::string script = "set multiplot layout 2,2 margins " + GnuplotNumber(kLeft) + "," +
+                       GnuplotNumber(kRight) + "," + GnuplotNumber(kBottom) + "," +
+                       GnuplotNumber(kTop) + " spacing " + GnuplotNumber(kColumnGap) + "," +
+                       GnuplotNumber(kRowGap) + " title " + GnuplotQuote("Factors: " + name) +
+                       " noenhanced font ',22'\n";
+  // Panels in reading order, each with its title and a legend above it, where no curve can be.
+  int index = 0;
+  const auto panel = [&](const char* title, const std::string& setup, const std::string& plot) {
+    const double width = (kRight - kLeft - kColumnGap) / 2;
+    const double x = kLeft + width / 2 + (index % 2) * (width + kColumnGap);
+    const double y = index / 2 == 0 ? kTop : (kTop + kBottom - kRowGap) / 2;
+    ++index;
+    const std::string center = " at screen " + GnuplotNumber(x) + ", screen ";
+    script += std::string("set label 1 '") + title + "'" + center + GnuplotNumber(y + 0.07) +
+              " center font ',19'\nset key" + center + GnuplotNumber(y + 0.058) +
+              " center top horizontal maxrows 2 font ',16'\n" + setup +
+              (plot.empty() ? "unset label\nset multiplot next\n" : plot + "\n");
+  };
+  panel("D, distribution of facets",
+        "set xlabel 'θ_h [°], spaced by its root'\nset ylabel 'D [1/sr]'\n"
+        "set xrange [0:sqrt(90)]\n"
+        "set xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), '60' sqrt(60), "
+        "'90' sqrt(90))\n",
+        Panel(
+            file, Factor::kD,
+            [&](int i) { return std::sqrt(RadiansToDegrees(grid.ThetaH(i + 0.5))); }, true));
+  panel(
+      "F, Fresnel factor",
+      "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
+      Panel(
+          file, Factor::kF, [&](int i) { return RadiansToDegrees(grid.ThetaD(i + 0.5)); }, false));
+  panel("G, shadowing and masking", "set xlabel 'θ_i, θ_o [°]'\nset ylabel 'G, mean 1'\n",
+        Panel(
+            file, Factor::kG, [&](int i) { return RadiansToDegrees(spline.NodeAngle(i)); }, false));
+  panel("d [1/sr] and s_m of lobe m", "set xlabel ''\nset ylabel ''\nunset grid\nset grid ytics\n",
+        CoefficientPanel(file.model));
+  DrawPng(path, 1800, 1300, script);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/gnuplot.h"
+#include "trilobe/io/plots.h"
+
+namespace trilobe {
+
+void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
+               const std::string& path) {
+  if (trace.empty()) throw Error("the trace has no record, so there is nothing to draw");
+  std::vector<std::vector<double>> rows;  // iteration, seconds, E, filtered
+  std::vector<double> objectives;
+  bool filtered = false;
+  for (const IterationRecord& record : trace) {
+    rows.push_back({static_cast<double>(record.iteration), record.seconds, record.objective,
+                    record.filtered ? 1.0 : 0.0});
+    objectives.push_back(record.objective);
+    filtered = filtered || record.filtered;
+  }
+  const auto [low, high] = std::ranges::minmax(objectives);
+  std::string script = GnuplotData("trace", rows);
+  script += "set multiplot layout 1,2 title " +
+            GnuplotQuote(title.empty() ? "Convergence" : "Convergence: " + title) +
+            " noenhanced font ',22'\nset lmargin 11\nset rmargin 3\n";
+  if (high > 10 * low) {
+    script += "set logscale y\nset format y '10^{%T}'\nset yrange " +
+              GnuplotLogRange(objectives, 30) + "\n";
+  } else {  // an axis of less than a decade has too few powers of ten to be read
+    script += "set format y '%.4g'\nset yrange [" + GnuplotNumber(0.98 * low) + ":" +
+              GnuplotNumber(high > 0 ? 1.02 * high : 1) + "]\n";
+  }
+  const auto panel = [&](const char* column, const char* label, double last) {
+    script += std::string("set xlabel '") + label +
+              "'\nset xrange [0:" + GnuplotNumber(last > 0 ? 1.02 * last : 1) +
+              "]\nplot $trace using " + column +
+              ":3 with linespoints pointtype 7 pointsize 0.9 linewidth 2.5 linecolor '" +
+              kOkabeIto[4] + "' notitle";
+    if (filtered) {
+      script += std::string(", '' using ") + column +
+                ":($4 > 0 ? $3 : NaN) with points pointtype 6 pointsize 1.8 linewidth 2 "
+                "linecolor '" +
+                kOkabeIto[5] + "' title 'after the filter on G'";
+    }
+    script += '\n';
+  };
+  script += "set ylabel 'objective E'\n";
+  if (trace.back().iteration < 8) script += "set xtics 1\n";
+  panel("1", "iteration", trace.back().iteration);
+  script += "set ylabel ''\n";
+  script += "set xtics autofreq\n";
+  panel("2", "seconds", trace.back().seconds);
+  DrawPng(path, 1600, 800, script);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,43 @@
+#ifndef TRILOBE_IO_PLOTS_H_
+#define TRILOBE_IO_PLOTS_H_
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trilobe/io/model_file.h"
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/iteration_record.h"
+
+namespace trilobe {
+
+// Pictures of a fit as PNG files, drawn by gnuplot. All throw Error when gnuplot is missing or
+// fails or the file cannot be written; the same input gives the same picture. Tables that are
+// compared must have the same grid.
+
+// The factors as in the paper's Fig. 5: D over theta_h, F over theta_d, G over theta, and the
+// coefficients d and s. Entries that no data touched are hollow; lobes with s = 0 are not drawn,
+// and the legend says so.
+void DrawFactors(const ModelFile& file, const std::string& path);
+
+// Measured BRDF (points) and fitted one (lines) over theta_h, at five theta_d and phi_d = 90
+// degrees, one panel a channel.
+void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path);
+
+// Measured and fitted material on a sphere under the same lights, and their relative difference.
+void DrawSpheres(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path,
+                 int num_threads);
+
+// E over iterations and over seconds. Throws Error when the trace is empty.
+void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
+               const std::string& path);
+
+// All pictures that the inputs allow, as factors.png, slices.png, spheres.png and trace.png in an
+// existing folder: slices and spheres need `measured`, trace needs records. Returns their paths.
+std::vector<std::string> DrawPictures(const ModelFile& file, const BrdfTable* measured,
+                                      std::span<const IterationRecord> trace,
+                                      const std::string& folder, int num_threads);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_PLOTS_H_

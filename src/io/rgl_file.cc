@@ -1,0 +1,178 @@
+#include "trilobe/io/rgl_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
+#include "trilobe/io/bilinear_warp.h"
+#include "trilobe/io/tensor_file.h"
+
+namespace trilobe {
+
+// Directions are mapped to the unit square by x = sqrt(2 theta / pi), y = phi / (2 pi) + 1/2.
+struct RglBrdf::Tables {
+  std::vector<double> phi_i;    // [p], ascending [rad]; one if isotropic
+  std::vector<double> theta_i;  // [t], ascending [rad]
+  BilinearStack ndf;            // [1]: density of microfacet normals
+  BilinearStack sigma;          // [1]: projected area of the microfacets
+  BilinearWarp vndf;            // [p t]: visible normals, to uniform coordinates
+  BilinearStack rgb;            // [p t 3]: values in those coordinates
+};
+
+namespace {
+
+std::vector<double> ReadAngles(const TensorFile& file, const char* name) {
+  std::vector<double> angles = file.Float32(name, 1).values;
+  if (std::ranges::adjacent_find(angles, std::greater_equal<>()) != angles.end()) {
+    file.Fail(name, "must be in ascending order");
+  }
+  return angles;
+}
+
+// The last two dimensions are rows (phi) and columns (theta), those before must be `leading`.
+BilinearStack ReadStack(const TensorFile& file, const char* name, const std::vector<int>& leading) {
+  const auto count = static_cast<int>(leading.size());
+  Tensor tensor = file.Float32(name, count + 2);
+  if (!std::equal(leading.begin(), leading.end(), tensor.shape.begin())) {
+    file.Fail(name, "has another shape than phi_i, theta_i and the three channels ask for");
+  }
+  const int rows = tensor.shape[count], columns = tensor.shape[count + 1];
+  if (rows < 2 || columns < 2) file.Fail(name, "must have at least 2 rows and 2 columns");
+  if (tensor.values.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
+    file.Fail(name, "has more entries than any measurement");
+  }
+  return {rows, columns, std::move(tensor.values)};
+}
+
+BilinearStack ReadNonNegative(const TensorFile& file, const char* name,
+                              const std::vector<int>& leading) {
+  BilinearStack stack = ReadStack(file, name, leading);
+  const auto negative = std::ranges::find_if(stack.values, [](double x) { return x < 0; });
+  if (negative != stack.values.end()) {
+    file.Fail(name,
+              "has a negative entry: number " + std::to_string(negative - stack.values.begin()));
+  }
+  return stack;
+}
+
+double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
+double Phi(const Direction& w) { return std::atan2(w[1], w[0]); }
+
+// phi is taken modulo 2 pi.
+SquarePoint ToSquare(double theta, double phi) {
+  const double turns = phi / (2 * kPi) + 0.5;
+  return {std::sqrt(theta * (2 / kPi)), turns - std::floor(turns)};
+}
+
+// The two neighbours of x among ascending nodes with their weights; the end one beyond the ends.
+SliceBlend Neighbours(const std::vector<double>& nodes, double x) {
+  const auto above = std::ranges::upper_bound(nodes, x);
+  const int k = static_cast<int>(above - nodes.begin());
+  SliceBlend blend;
+  if (k == 0 || above == nodes.end()) {
+    blend.Add(k == 0 ? 0 : k - 1, 1.0);
+  } else {
+    const double t = (x - nodes[k - 1]) / (nodes[k] - nodes[k - 1]);
+    blend.Add(k - 1, 1 - t);
+    blend.Add(k, t);
+  }
+  return blend;
+}
+
+}  // namespace
+
+RglBrdf::RglBrdf(std::unique_ptr<const Tables> tables) : tables_(std::move(tables)) {}
+RglBrdf::RglBrdf(RglBrdf&&) noexcept = default;
+RglBrdf& RglBrdf::operator=(RglBrdf&&) noexcept = default;
+RglBrdf::~RglBrdf() = default;
+
+RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
+  const TensorFile file(bytes, source);
+  const std::vector<double> phi_i = ReadAngles(file, "phi_i");
+  const std::vector<double> theta_i = ReadAngles(file, "theta_i");
+  // Files may leave out what a symmetry of the material repeats; that is not undone here.
+  if (phi_i.size() > 1 && std::abs(phi_i.back() - phi_i.front() - 2 * kPi) > 1e-3) {
+    file.Fail("phi_i", "must have one entry, or reach once around the circle");
+  }
+  if (file.Byte("jacobian") == 0) {
+    file.Fail("jacobian", "is 0: values without the microfacet Jacobian cannot be read");
+  }
+  const int p = static_cast<int>(phi_i.size()), t = static_cast<int>(theta_i.size());
+  BilinearStack vndf = ReadNonNegative(file, "vndf", {p, t});
+  if (const int slice = BilinearWarp::FirstVanishing(vndf); slice >= 0) {
+    file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i");
+  }
+  return RglBrdf(std::make_unique<const Tables>(
+      Tables{phi_i, theta_i, ReadNonNegative(file, "ndf", {}), ReadNonNegative(file, "sigma", {}),
+             BilinearWarp(std::move(vndf)), ReadStack(file, "rgb", {p, t, kChannels})}));
+}
+
+bool RglBrdf::isotropic() const { return tables_->phi_i.size() == 1; }
+
+Rgb RglBrdf::Evaluate(const DirectionPair& directions) const {
+  const auto& [wi, wo] = directions;
+  if (!(wi[2] > 0 && wo[2] > 0)) return {0, 0, 0};
+  const Direction half = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  const double theta_i = Theta(wi), phi_i = Phi(wi);
+  const SquarePoint u_i = ToSquare(theta_i, phi_i);
+  const SquarePoint u_m = ToSquare(Theta(half), isotropic() ? Phi(half) - phi_i : Phi(half));
+
+  SliceBlend blend;  // over (phi_i, theta_i)
+  const double around = std::floor((phi_i - tables_->phi_i.front()) / (2 * kPi));
+  const SliceBlend over_phi = Neighbours(tables_->phi_i, phi_i - 2 * kPi * around);
+  const SliceBlend over_theta = Neighbours(tables_->theta_i, theta_i);
+  for (int a = 0; a < over_phi.count; ++a) {
+    for (int b = 0; b < over_theta.count; ++b) {
+      blend.Add(over_phi.slice[a] * static_cast<int>(tables_->theta_i.size()) + over_theta.slice[b],
+                over_phi.weight[a] * over_theta.weight[b]);
+    }
+  }
+
+  // Where the projected area vanishes no microfacet is seen: nothing is reflected.
+  const double divisor = 4 * tables_->sigma.At(0, u_i) * wo[2];
+  if (!(divisor > 0)) return {0, 0, 0};
+  const SquarePoint x = tables_->vndf.Invert(blend, u_m);
+  const double factor = tables_->ndf.At(0, u_m) / divisor;
+  Rgb rho{};
+  for (int channel = 0; channel < kChannels; ++channel) {
+    double value = 0;
+    for (int k = 0; k < blend.count; ++k) {
+      value += blend.weight[k] * tables_->rgb.At(blend.slice[k] * kChannels + channel, x);
+    }
+    // Interpolated colours dip below 0 here and there. The upper limit is for absurd tables, whose
+    // product exceeds what a double holds.
+    rho[channel] = value > 0 ? std::min(value * factor, std::numeric_limits<double>::max()) : 0.0;
+  }
+  return rho;
+}
+
+bool LooksLikeRgl(std::string_view bytes) { return TensorFile::HasMagic(bytes); }
+
+BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid,
+                      int num_threads) {
+  if (!brdf.isotropic()) {
+    throw Error(source +
+                ": the material is anisotropic (field 'phi_i' has several entries); only isotropic "
+                "ones fit a MERL table");
+  }
+  BrdfTable table = MakeInvalidTable(source, grid);
+  const std::vector<bool> above = BinsAboveSurface(grid);
+  const int row_size = grid.theta_d * grid.phi_d;
+  ParallelFor(grid.theta_h, num_threads, [&](int h) {
+    for (int bin = h * row_size; bin < (h + 1) * row_size; ++bin) {
+      if (!above[bin]) continue;
+      const Rgb rho = brdf.Evaluate(ToDirections(grid.Center(bin)));
+      for (int channel = 0; channel < kChannels; ++channel) {
+        table.SetValue(channel, bin, rho[channel]);
+      }
+    }
+  });
+  return table;
+}
+
+}  // namespace trilobe

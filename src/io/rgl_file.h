@@ -1,0 +1,45 @@
+#ifndef TRILOBE_IO_RGL_FILE_H_
+#define TRILOBE_IO_RGL_FILE_H_
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/channels.h"
+#include "trilobe/model/directions.h"
+#include "trilobe/model/merl_grid.h"
+
+namespace trilobe {
+
+// A material measured at RGL/EPFL (`*_rgb.bsdf`, Dupuy and Jakob 2018), as a function.
+class RglBrdf {
+ public:
+  // Throws Error on anything that is not a whole, consistent RGB tensor file.
+  static RglBrdf Parse(std::string_view bytes, const std::string& source);
+  RglBrdf(RglBrdf&&) noexcept;
+  RglBrdf& operator=(RglBrdf&&) noexcept;
+  ~RglBrdf();
+
+  bool isotropic() const;  // one phi_i in the file
+
+  // BRDF [1/sr], >= 0 (METHOD 1); 0 where a direction is below the surface.
+  Rgb Evaluate(const DirectionPair& directions) const;
+
+ private:
+  struct Tables;
+  explicit RglBrdf(std::unique_ptr<const Tables> tables);
+  std::unique_ptr<const Tables> tables_;
+};
+
+// True if the bytes begin with the tensor file's magic.
+bool LooksLikeRgl(std::string_view bytes);
+
+// The BRDF at the centres of all bins above the surface, others invalid.
+// Throws Error for an anisotropic material.
+BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},
+                      int num_threads = 1);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_RGL_FILE_H_

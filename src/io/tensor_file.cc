@@ -1,0 +1,142 @@
+#include "trilobe/io/tensor_file.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/little_endian.h"
+
+namespace trilobe {
+namespace {
+
+constexpr std::string_view kMagic("tensor_file\0", 12);
+
+// Bytes of one entry, by type number: none, then (u)int8, 16, 32, 64 in pairs unsigned, signed,
+// then float16, float32, float64.
+constexpr std::array<size_t, 12> kItemSizes = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
+constexpr uint8_t kUint8 = 1;
+constexpr uint8_t kFloat32 = 10;
+
+// A name from a file as it may stand in a message: short and printable.
+std::string Quote(std::string_view name) {
+  std::string quoted = "'";
+  for (const char c : name.substr(0, 32)) quoted += c >= ' ' && c <= '~' ? c : '?';
+  return quoted + (name.size() > 32 ? "...'" : "'");
+}
+
+// Takes the header apart from front to back, never past its end.
+class Cursor {
+ public:
+  Cursor(std::string_view bytes, const std::string& source) : bytes_(bytes), source_(source) {}
+
+  std::string_view Bytes(size_t count) {
+    if (count > bytes_.size() - position_) {
+      throw Error(source_ + ": truncated: the header goes on beyond the file's " +
+                  std::to_string(bytes_.size()) + " bytes; get it once more");
+    }
+    const std::string_view taken = bytes_.substr(position_, count);
+    position_ += count;
+    return taken;
+  }
+
+  template <typename T>
+  T Number() {
+    return LoadLittleEndian<T>(Bytes(sizeof(T)).data());
+  }
+
+ private:
+  std::string_view bytes_;
+  size_t position_ = 0;
+  const std::string& source_;
+};
+
+}  // namespace
+
+bool TensorFile::HasMagic(std::string_view bytes) { return bytes.starts_with(kMagic); }
+
+void TensorFile::Fail(std::string_view field, const std::string& problem) const {
+  throw Error(source_ + ": field " + Quote(field) + " " + problem);
+}
+
+TensorFile::TensorFile(std::string_view bytes, const std::string& source) : source_(source) {
+  if (!HasMagic(bytes)) throw Error(source + ": not an RGL file: it must begin with tensor_file");
+  Cursor cursor(bytes, source);
+  cursor.Bytes(kMagic.size());
+  const int major = cursor.Number<uint8_t>();
+  const int minor = cursor.Number<uint8_t>();
+  if (major != 1 || minor != 0) {
+    throw Error(source + ": tensor file version " + std::to_string(major) + "." +
+                std::to_string(minor) + "; only version 1.0 can be read");
+  }
+  // Nothing is reserved by this count: each field must first show its bytes.
+  const auto field_count = cursor.Number<uint32_t>();
+  for (uint32_t i = 0; i < field_count; ++i) {
+    Field field;
+    field.name = cursor.Bytes(cursor.Number<uint16_t>());
+    const int ndim = cursor.Number<uint16_t>();
+    field.dtype = cursor.Number<uint8_t>();
+    const auto offset = cursor.Number<uint64_t>();
+    if (field.dtype == 0 || field.dtype >= kItemSizes.size()) {
+      Fail(field.name, "has the unknown type number " + std::to_string(field.dtype));
+    }
+    if (offset > bytes.size()) {
+      Fail(field.name, "starts at byte " + std::to_string(offset) + " of a file of " +
+                           std::to_string(bytes.size()) + " bytes");
+    }
+    const size_t available = bytes.size() - offset;
+    size_t size = kItemSizes[field.dtype];
+    for (int k = 0; k < ndim; ++k) {
+      const auto extent = cursor.Number<uint64_t>();
+      if (extent == 0) Fail(field.name, "is empty: dimension " + std::to_string(k) + " is 0");
+      if (extent > static_cast<uint64_t>(std::numeric_limits<int>::max()) ||
+          extent > available / size) {
+        Fail(field.name, "reaches past the end of the file: dimension " + std::to_string(k) +
+                             " is " + std::to_string(extent) + ", but only " +
+                             std::to_string(available) + " bytes follow byte " +
+                             std::to_string(offset));
+      }
+      size *= extent;
+      field.shape.push_back(static_cast<int>(extent));
+    }
+    if (size > available) Fail(field.name, "reaches past the end of the file");
+    field.data = bytes.substr(offset, size);
+    fields_.push_back(std::move(field));
+  }
+}
+
+const TensorFile::Field& TensorFile::Find(std::string_view name, uint8_t dtype, int ndim) const {
+  for (const Field& field : fields_) {
+    if (field.name != name) continue;
+    if (field.dtype != dtype) {
+      Fail(name, "has type number " + std::to_string(field.dtype) + "; it must be " +
+                     std::to_string(dtype) + (dtype == kFloat32 ? " (float32)" : " (uint8)"));
+    }
+    if (field.shape.size() != static_cast<size_t>(ndim)) {
+      Fail(name, "has " + std::to_string(field.shape.size()) + " dimensions; it must have " +
+                     std::to_string(ndim));
+    }
+    return field;
+  }
+  Fail(name, "is missing; only *_rgb.bsdf files, not the spectral ones, can be read");
+}
+
+Tensor TensorFile::Float32(std::string_view name, int ndim) const {
+  const Field& field = Find(name, kFloat32, ndim);
+  Tensor tensor{field.shape, std::vector<double>(field.data.size() / sizeof(float))};
+  for (size_t i = 0; i < tensor.values.size(); ++i) {
+    tensor.values[i] = LoadLittleEndian<float>(field.data.data() + i * sizeof(float));
+    if (!std::isfinite(tensor.values[i])) {
+      Fail(name, "has an entry that is not finite: number " + std::to_string(i));
+    }
+  }
+  return tensor;
+}
+
+uint8_t TensorFile::Byte(std::string_view name) const {
+  const Field& field = Find(name, kUint8, 1);
+  if (field.data.size() != 1) Fail(name, "must have one entry");
+  return LoadLittleEndian<uint8_t>(field.data.data());
+}
+
+}  // namespace trilobe

@@ -1,0 +1,105 @@
+#include "trilobe/io/trace_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/file.h"
+
+namespace trilobe {
+namespace {
+
+constexpr std::string_view kHeader = "iteration,seconds,objective,filtered";
+
+template <typename T>
+void Append(T value, std::string* text) {
+  std::array<char, 32> buffer;  // the longest double has 24 characters
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  text->append(buffer.data(), end);
+}
+
+// Cuts the text up to the next `separator` from its front, and the separator with it.
+std::string_view TakeUntil(char separator, std::string_view* text) {
+  const size_t end = text->find(separator);
+  const std::string_view head = text->substr(0, end);
+  text->remove_prefix(end == std::string_view::npos ? text->size() : end + 1);
+  return head;
+}
+
+// One row, taken apart from left to right.
+class Row {
+ public:
+  Row(std::string_view text, const std::string& where) : rest_(text), where_(where) {}
+
+  template <typename T>
+  T Take(const char* column) {
+    const std::string_view cell = TakeUntil(',', &rest_);
+    T value{};
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error != std::errc() || end != cell.data() + cell.size() || !(value >= T{0}) ||
+        !std::isfinite(static_cast<double>(value))) {
+      throw Error(where_ + ": " + column + " must be a finite number >= 0");
+    }
+    return value;
+  }
+
+  void End() const {
+    if (!rest_.empty()) throw Error(where_ + ": more than 4 columns");
+  }
+
+ private:
+  std::string_view rest_;
+  const std::string& where_;
+};
+
+}  // namespace
+
+std::string FormatTrace(std::span<const IterationRecord> records) {
+  std::string text(kHeader);
+  text += '\n';
+  for (const IterationRecord& record : records) {
+    Append(record.iteration, &text);
+    text += ',';
+    Append(record.seconds, &text);
+    text += ',';
+    Append(record.objective, &text);
+    text += record.filtered ? ",1\n" : ",0\n";
+  }
+  return text;
+}
+
+std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string& source) {
+  std::vector<IterationRecord> records;
+  for (int line = 1; line == 1 || !text.empty(); ++line) {
+    std::string_view content = TakeUntil('\n', &text);
+    if (content.ends_with('\r')) content.remove_suffix(1);  // saved by a spreadsheet
+    const std::string where = source + ": line " + std::to_string(line);
+    if (line == 1) {
+      if (content == kHeader) continue;
+      throw Error(where + ": not a trace; the first line must be " + std::string(kHeader));
+    }
+    Row row(content, where);
+    IterationRecord record;
+    record.iteration = row.Take<int>("iteration");
+    record.seconds = row.Take<double>("seconds");
+    record.objective = row.Take<double>("objective");
+    const int filtered = row.Take<int>("filtered");
+    row.End();
+    if (filtered > 1) throw Error(where + ": filtered must be 0 or 1");
+    record.filtered = filtered == 1;
+    records.push_back(record);
+  }
+  return records;
+}
+
+void WriteTrace(const std::string& path, std::span<const IterationRecord> records) {
+  WriteFile(path, [&](std::ostream& out) { out << FormatTrace(records); });
+}
+
+std::vector<IterationRecord> ReadTrace(const std::string& path) {
+  return ParseTrace(ReadFile(path), path);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,34 @@
+#ifndef TRILOBE_MODEL_BRDF_SAMPLES_H_
+#define TRILOBE_MODEL_BRDF_SAMPLES_H_
+
+#include <string>
+#include <vector>
+
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/channels.h"
+#include "trilobe/model/directions.h"
+#include "trilobe/model/merl_grid.h"
+
+namespace trilobe {
+
+// What a fit sees: measured directions and values, all valid, whatever the file was.
+// Either every sample stands at the centre of a bin of `grid` (`bins` says which, ascending), or
+// the samples are scattered (`angles` says where) and the grid only names the tables' bins.
+struct BrdfSamples {
+  std::string source;
+  MerlGrid grid;
+  std::vector<int> bins;               // [n], or empty when scattered
+  std::vector<HalfDiffAngles> angles;  // [n], or empty when on the grid
+  std::vector<Rgb> rho;                // [n], BRDF [1/sr], finite and >= 0
+
+  int size() const { return static_cast<int>(rho.size()); }
+  bool on_grid() const { return angles.empty(); }
+  HalfDiffAngles Angles(int j) const { return on_grid() ? grid.Center(bins[j]) : angles[j]; }
+};
+
+// The valid bins of a table. Throws Error when there is none.
+BrdfSamples ValidSamples(const BrdfTable& table);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_BRDF_SAMPLES_H_

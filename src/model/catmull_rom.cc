@@ -1,0 +1,85 @@
+#include "trilobe/model/catmull_rom.h"
+
+#include <algorithm>
+
+#include "trilobe/model/directions.h"
+
+namespace trilobe {
+
+double CatmullRom::NodeAngle(int k) const { return (k + 0.5) / nodes_ * (kPi / 2); }
+
+CatmullRom::Location CatmullRom::Locate(double theta) const {
+  const double x = std::clamp(theta / (kPi / 2) * nodes_ - 0.5, 0.0, nodes_ - 1.0);
+  const int interval = std::min(static_cast<int>(x), nodes_ - 2);
+  return {interval, x - interval};
+}
+
+std::array<double, 4> CatmullRom::Weights(const Location& at) const {
+  const double t = at.t, t2 = t * t, t3 = t2 * t;
+  // Hermite basis: values f0, f1 at the interval's ends, slopes m0, m1 there.
+  const double f0 = 2 * t3 - 3 * t2 + 1, f1 = 3 * t2 - 2 * t3;
+  const double m0 = t3 - 2 * t2 + t, m1 = t3 - t2;
+  std::array<double, 4> w = {0, f0, f1, 0};
+  if (at.interval > 0) {  // m0 = (f1 - f_-1) / 2
+    w[0] -= m0 / 2;
+    w[2] += m0 / 2;
+  } else {  // one-sided: m0 = f1 - f0
+    w[1] -= m0;
+    w[2] += m0;
+  }
+  if (at.interval < nodes_ - 2) {  // m1 = (f2 - f0) / 2
+    w[1] -= m1 / 2;
+    w[3] += m1 / 2;
+  } else {  // one-sided: m1 = f1 - f0
+    w[1] -= m1;
+    w[2] += m1;
+  }
+  return w;
+}
+
+Stencil CatmullRom::StencilAt(const Location& at) const {
+  const std::array<double, 4> weights = Weights(at);
+  Stencil stencil;
+  for (int a = 0; a < 4; ++a) {
+    const int node = at.interval - 1 + a;
+    if (node < 0 || node >= nodes_) continue;
+    stencil.index[stencil.size] = node;
+    stencil.weight[stencil.size] = weights[a];
+    ++stencil.size;
+  }
+  return stencil;
+}
+
+std::array<CatmullRom::Cubic, 4> CatmullRom::WeightPolynomials(int interval) const {
+  // Hermite basis in v = t - 1/2.
+  constexpr Cubic f0 = {0.5, -1.5, 0, 2}, f1 = {0.5, 1.5, 0, -2};
+  constexpr Cubic m0 = {0.125, -0.25, -0.5, 1}, m1 = {-0.125, -0.25, 0.5, 1};
+  std::array<Cubic, 4> w{};
+  const auto add = [&w](int a, double factor, const Cubic& basis) {
+    for (int k = 0; k < 4; ++k) w[a][k] += factor * basis[k];
+  };
+  add(1, 1, f0);
+  add(2, 1, f1);
+  const bool first = interval == 0, last = interval == nodes_ - 2;
+  add(first ? 1 : 0, first ? -1 : -0.5, m0);
+  add(2, first ? 1 : 0.5, m0);
+  add(1, last ? -1 : -0.5, m1);
+  add(last ? 2 : 3, last ? 1 : 0.5, m1);
+  return w;
+}
+
+std::vector<CatmullRom::Cubic> CatmullRom::Polynomials(std::span<const double> values) const {
+  std::vector<Cubic> polynomials(nodes_ - 1);
+  for (int interval = 0; interval < nodes_ - 1; ++interval) {
+    const auto weights = WeightPolynomials(interval);
+    Cubic& sum = polynomials[interval] = {0, 0, 0, 0};
+    for (int a = 0; a < 4; ++a) {
+      const int node = interval - 1 + a;
+      if (node < 0 || node >= nodes_) continue;
+      for (int k = 0; k < 4; ++k) sum[k] += weights[a][k] * values[node];
+    }
+  }
+  return polynomials;
+}
+
+}  // namespace trilobe

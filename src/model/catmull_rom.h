@@ -1,0 +1,51 @@
+#ifndef TRILOBE_MODEL_CATMULL_ROM_H_
+#define TRILOBE_MODEL_CATMULL_ROM_H_
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "trilobe/model/stencil.h"
+
+namespace trilobe {
+
+// Catmull-Rom spline through values at theta_k = (k + 1/2) * 90/nodes degrees, k = 0..nodes-1, with
+// one-sided slopes at the two ends and constant beyond the end nodes
+// (Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 8.6.1; METHOD 2).
+class CatmullRom {
+ public:
+  // A place on the spline: between node `interval` and the next, `t` in [0, 1] of the way.
+  struct Location {
+    int interval = 0;  // 0..nodes-2
+    double t = 0;
+  };
+
+  // Needs at least 4 nodes.
+  explicit CatmullRom(int nodes) : nodes_(nodes) {}
+
+  int nodes() const { return nodes_; }
+  double NodeAngle(int k) const;  // [rad]
+  Location Locate(double theta) const;
+
+  // Weights of the nodes interval-1 .. interval+2 at t; those of nodes that do not exist are 0.
+  std::array<double, 4> Weights(const Location& at) const;
+
+  // The same as a stencil over existing nodes.
+  Stencil StencilAt(const Location& at) const;
+  Stencil StencilAt(double theta) const { return StencilAt(Locate(theta)); }
+
+  // The four weights as polynomials: weight[a] = sum_k c[a][k] (t - 1/2)^k. Centred, so that
+  // powers stay small and products of polynomials stay well conditioned.
+  using Cubic = std::array<double, 4>;
+  std::array<Cubic, 4> WeightPolynomials(int interval) const;
+
+  // The spline through `values` as one cubic in (t - 1/2) for each interval. [nodes - 1]
+  std::vector<Cubic> Polynomials(std::span<const double> values) const;
+
+ private:
+  int nodes_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_CATMULL_ROM_H_

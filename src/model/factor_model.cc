@@ -1,0 +1,73 @@
+#include "trilobe/model/factor_model.h"
+
+#include <array>
+#include <cmath>
+
+#include "trilobe/model/catmull_rom.h"
+
+namespace trilobe {
+namespace {
+
+// The cosine goes through the same spline as G: over cos theta_k (METHOD 2).
+double SplinedCosine(const CatmullRom& spline, const Stencil& stencil) {
+  double sum = 0;
+  for (int k = 0; k < stencil.size; ++k) {
+    sum += stencil.weight[k] * std::cos(spline.NodeAngle(stencil.index[k]));
+  }
+  return sum;
+}
+
+void SetCosineStencils(const ModelSpec& spec, const Cosines& cosines, SampleStencils* stencils) {
+  const CatmullRom spline(spec.g_nodes);
+  stencils->G_i = spline.StencilAt(std::acos(cosines.i));
+  stencils->G_o = spline.StencilAt(std::acos(cosines.o));
+  stencils->inverse_cosines =
+      1 / (SplinedCosine(spline, stencils->G_i) * SplinedCosine(spline, stencils->G_o));
+}
+
+}  // namespace
+
+FactorModel::FactorModel(const ModelSpec& spec) : spec_(spec) {
+  CheckSpec(spec);
+  int offset = kChannels * (1 + spec.lobes);
+  for (const Factor factor : kFactors) {
+    offset_[static_cast<int>(factor)] = offset;
+    offset += spec.num_tables(factor) * spec.table_size(factor);
+  }
+  values_.assign(offset, 0.0);
+}
+
+SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin) {
+  SampleStencils stencils;
+  stencils.D = PointStencil(bin / (grid.theta_d * grid.phi_d));
+  stencils.F = PointStencil(bin / grid.phi_d % grid.theta_d);
+  SetCosineStencils(spec, ToCosines(grid.Center(bin)), &stencils);
+  return stencils;
+}
+
+SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles) {
+  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
+  SampleStencils stencils;
+  stencils.D = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), spec.d_bins);
+  stencils.F = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), spec.f_bins);
+  SetCosineStencils(spec, ToCosines(angles), &stencils);
+  return stencils;
+}
+
+double Evaluate(const FactorModel& model, const SampleStencils& stencils, int channel) {
+  double rho = model.d()[channel];
+  for (int m = 0; m < model.spec().lobes; ++m) {
+    const std::span<const double> G = model.G(m, channel);
+    rho += model.s(m)[channel] * stencils.D(model.D(m, channel)) * stencils.F(model.F(m, channel)) *
+           stencils.G_i(G) * stencils.G_o(G) * stencils.inverse_cosines;
+  }
+  return rho;
+}
+
+Rgb Evaluate(const FactorModel& model, const DirectionPair& directions) {
+  if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
+  const SampleStencils stencils = ScatteredStencils(model.spec(), ToHalfDiff(directions));
+  return {Evaluate(model, stencils, 0), Evaluate(model, stencils, 1), Evaluate(model, stencils, 2)};
+}
+
+}  // namespace trilobe

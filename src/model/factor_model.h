@@ -1,0 +1,92 @@
+#ifndef TRILOBE_MODEL_FACTOR_MODEL_H_
+#define TRILOBE_MODEL_FACTOR_MODEL_H_
+
+#include <span>
+#include <vector>
+
+#include "trilobe/model/channels.h"
+#include "trilobe/model/model_spec.h"
+#include "trilobe/model/stencil.h"
+
+namespace trilobe {
+
+// The numbers of a model, all >= 0, in one vector
+//   [ d (3) | s (lobes x 3) | D tables | F tables | G tables ]
+// whose parts the accessors view. A value type: copying it copies the numbers.
+class FactorModel {
+ public:
+  FactorModel() : FactorModel(ModelSpec{.lobes = 0}) {}
+  // All numbers zero. Throws Error if the spec is out of range.
+  explicit FactorModel(const ModelSpec& spec);
+
+  const ModelSpec& spec() const { return spec_; }
+
+  // All numbers. [spec().num_parameters()]
+  std::span<double> parameters() { return values_; }
+  std::span<const double> parameters() const { return values_; }
+
+  // Diffuse albedo / pi. [kChannels]
+  std::span<double> d() { return {values_.data(), kChannels}; }
+  std::span<const double> d() const { return {values_.data(), kChannels}; }
+
+  // Specular weights of one lobe. [kChannels]
+  std::span<double> s(int lobe) { return {values_.data() + kChannels * (1 + lobe), kChannels}; }
+  std::span<const double> s(int lobe) const {
+    return {values_.data() + kChannels * (1 + lobe), kChannels};
+  }
+
+  // One table by its number. [spec().table_size(factor)]
+  std::span<double> table(Factor factor, int index) {
+    return {values_.data() + TableOffset(factor, index),
+            static_cast<size_t>(spec_.table_size(factor))};
+  }
+  std::span<const double> table(Factor factor, int index) const {
+    return {values_.data() + TableOffset(factor, index),
+            static_cast<size_t>(spec_.table_size(factor))};
+  }
+
+  // The table that serves a lobe and channel. [spec().table_size(factor)]
+  std::span<const double> D(int lobe, int channel) const {
+    return table(Factor::kD, spec_.table(Factor::kD, lobe, channel));
+  }
+  std::span<const double> F(int lobe, int channel) const {
+    return table(Factor::kF, spec_.table(Factor::kF, lobe, channel));
+  }
+  std::span<const double> G(int lobe, int channel) const {
+    return table(Factor::kG, spec_.table(Factor::kG, lobe, channel));
+  }
+
+  // Where a table starts in parameters().
+  int TableOffset(Factor factor, int index) const {
+    return offset_[static_cast<int>(factor)] + index * spec_.table_size(factor);
+  }
+
+ private:
+  ModelSpec spec_;
+  int offset_[3] = {0, 0, 0};
+  std::vector<double> values_;
+};
+
+// How one direction pair reads the tables: the model's value is
+//   d + sum_m s (D . stencil) (F . stencil) (G . theta_i) (G . theta_o) * inverse_cosines.
+struct SampleStencils {
+  Stencil D, F, G_i, G_o;
+  double inverse_cosines = 0;  // 1 / (cos theta_i cos theta_o), splined as G is (METHOD 2)
+};
+
+// Stencils at the centre of bin (h, d, p): D and F at their own bins (METHOD 2). The grid's
+// theta_h, theta_d resolution is that of the spec's D and F.
+SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);
+
+// Stencils at any directions: D linear between bin centres in sqrt(theta_h), F linear in theta_d.
+SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles);
+
+// BRDF of one channel [1/sr].
+double Evaluate(const FactorModel& model, const SampleStencils& stencils, int channel);
+
+// BRDF [1/sr] for any pair of directions; 0 where either is below the surface.
+Rgb Evaluate(const FactorModel& model, const DirectionPair& directions);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_FACTOR_MODEL_H_

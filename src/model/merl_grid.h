@@ -1,0 +1,52 @@
+#ifndef TRILOBE_MODEL_MERL_GRID_H_
+#define TRILOBE_MODEL_MERL_GRID_H_
+
+#include <algorithm>
+#include <cmath>
+
+#include "trilobe/model/directions.h"
+
+namespace trilobe {
+
+// The half-angle grid of the MERL database (METHOD 1), of any resolution: theta_h bins are equal
+// steps of sqrt(theta_h), theta_d and phi_d bins equal steps of the angle. Angles in radians.
+struct MerlGrid {
+  int theta_h = 90;
+  int theta_d = 90;
+  int phi_d = 180;
+
+  int size() const { return theta_h * theta_d * phi_d; }
+
+  // Bins lie phi_d fastest, theta_h slowest, as in a MERL file.
+  int Index(int h, int d, int p) const { return p + phi_d * (d + theta_d * h); }
+
+  // Lower edge of theta_h bin `h`; h = theta_h gives pi/2. A fractional h is a point in the bin.
+  double ThetaH(double h) const { return h / theta_h * (h / theta_h) * (kPi / 2); }
+  double ThetaD(double d) const { return d / theta_d * (kPi / 2); }
+  double PhiD(double p) const { return p / phi_d * kPi; }
+
+  // The centre of a bin, in index space.
+  HalfDiffAngles Center(int h, int d, int p) const {
+    return {ThetaH(h + 0.5), ThetaD(d + 0.5), PhiD(p + 0.5)};
+  }
+  HalfDiffAngles Center(int bin) const {
+    return Center(bin / (theta_d * phi_d), bin / phi_d % theta_d, bin % phi_d);
+  }
+
+  // Where an angle lies in index space: bin `i` covers [i, i + 1).
+  double ThetaHCoordinate(double angle) const { return theta_h * std::sqrt(angle / (kPi / 2)); }
+  double ThetaDCoordinate(double angle) const { return theta_d * (angle / (kPi / 2)); }
+
+  // The bin that contains these angles.
+  int Bin(const HalfDiffAngles& a) const {
+    const auto clamp = [](double x, int n) { return std::clamp(static_cast<int>(x), 0, n - 1); };
+    return Index(clamp(ThetaHCoordinate(a.theta_h), theta_h),
+                 clamp(ThetaDCoordinate(a.theta_d), theta_d), clamp(a.phi_d / kPi * phi_d, phi_d));
+  }
+
+  bool operator==(const MerlGrid&) const = default;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_MERL_GRID_H_

@@ -1,0 +1,60 @@
+#include "trilobe/model/model_spec.h"
+
+#include <algorithm>
+
+#include "trilobe/base/error.h"
+
+namespace trilobe {
+
+const char* FactorName(Factor factor) {
+  switch (factor) {
+    case Factor::kD:
+      return "D";
+    case Factor::kF:
+      return "F";
+    case Factor::kG:
+      return "G";
+  }
+  return "";
+}
+
+ModelSpec ModelSpec::SharedFactors(int lobes, const MerlGrid& grid) {
+  ModelSpec spec;
+  spec.lobes = lobes;
+  spec.d_bins = grid.theta_h;
+  spec.f_bins = grid.theta_d;
+  spec.g_nodes = grid.theta_d;
+  return spec;
+}
+
+ModelSpec ModelSpec::IndependentG(const MerlGrid& grid) {
+  ModelSpec spec = SharedFactors(1, grid);
+  spec.D = spec.F = spec.G = {.per_lobe = true, .per_channel = true};
+  return spec;
+}
+
+int ModelSpec::num_tables(Factor factor) const {
+  const auto [per_lobe, per_channel] = sharing(factor);
+  return (per_lobe ? lobes : std::min(lobes, 1)) * (per_channel ? kChannels : 1);
+}
+
+int ModelSpec::num_parameters() const {
+  int count = kChannels + lobes * kChannels;
+  for (const Factor factor : kFactors) count += num_tables(factor) * table_size(factor);
+  return count;
+}
+
+void CheckSpec(const ModelSpec& spec) {
+  if (spec.lobes < 0 || spec.lobes > kMaxLobes) {
+    throw Error("lobes is " + std::to_string(spec.lobes) + "; it must be from 0 to " +
+                std::to_string(kMaxLobes));
+  }
+  for (const Factor factor : kFactors) {
+    if (spec.table_size(factor) < 4) {
+      throw Error(std::string(FactorName(factor)) + " tables have " +
+                  std::to_string(spec.table_size(factor)) + " entries; they need at least 4");
+    }
+  }
+}
+
+}  // namespace trilobe

@@ -1,0 +1,144 @@
+#include "trilobe/model/objective.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
+
+namespace trilobe {
+namespace {
+
+void CheckGrid(const ModelSpec& spec, const MerlGrid& grid) {
+  CheckSpec(spec);
+  if (spec.d_bins != grid.theta_h || spec.f_bins != grid.theta_d) {
+    throw Error("the model has " + std::to_string(spec.d_bins) + " D bins and " +
+                std::to_string(spec.f_bins) + " F bins, but the measurement's grid has " +
+                std::to_string(grid.theta_h) + " and " + std::to_string(grid.theta_d) +
+                "; fit this measurement with a model of its own grid");
+  }
+}
+
+// Products of factors and squares of residuals stay finite below this.
+void CheckRange(const BrdfSamples& samples) {
+  constexpr double kMaxBrdf = 1e50;
+  for (int j = 0; j < samples.size(); ++j) {
+    for (const double rho : samples.rho[j]) {
+      if (rho <= kMaxBrdf) continue;
+      std::ostringstream message;
+      message << samples.source << ": sample " << j << " is " << rho << "/sr; values above "
+              << kMaxBrdf << " are no reflectance: check the file, or rescale it";
+      throw Error(message.str());
+    }
+  }
+}
+
+double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model) {
+  double sum = 0;
+  for (const WeightedSample& sample : samples) {
+    for (int c = 0; c < kChannels; ++c) {
+      const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+      sum += sample.weight[c] * residual * residual;
+    }
+  }
+  return sum;
+}
+
+CoverageByChannel ScatteredCoverage(const std::vector<WeightedSample>& samples,
+                                    const ModelSpec& spec) {
+  CoverageByChannel coverage;
+  for (int c = 0; c < kChannels; ++c) {
+    FactorCoverage& of = coverage[c];
+    of.D.assign(spec.d_bins, 0.0);
+    of.F.assign(spec.f_bins, 0.0);
+    of.G.assign(spec.g_nodes, 0.0);
+    for (const WeightedSample& sample : samples) {
+      const auto add = [w = sample.weight[c]](const Stencil& stencil, std::vector<double>* table) {
+        for (int k = 0; k < stencil.size; ++k) {
+          (*table)[stencil.index[k]] += w * std::abs(stencil.weight[k]);
+        }
+      };
+      add(sample.stencils.D, &of.D);
+      add(sample.stencils.F, &of.F);
+      add(sample.stencils.G_i, &of.G);
+      add(sample.stencils.G_o, &of.G);
+    }
+  }
+  return coverage;
+}
+
+// Gives each parameter the weight of the samples of the channels that it serves.
+std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
+                                         const ModelSpec& spec) {
+  FactorModel coverage(spec);  // borrowed for its layout: a number a parameter
+  for (int c = 0; c < kChannels; ++c) {
+    double total = 0;
+    for (const double w : by_channel[c].D) total += w;
+    coverage.d()[c] = total;
+    for (int m = 0; m < spec.lobes; ++m) coverage.s(m)[c] = total;
+    for (const Factor factor : kFactors) {
+      const std::vector<double>& from = factor == Factor::kD   ? by_channel[c].D
+                                        : factor == Factor::kF ? by_channel[c].F
+                                                               : by_channel[c].G;
+      for (int t = 0; t < spec.num_tables(factor); ++t) {
+        if (spec.sharing(factor).per_channel && t % kChannels != c) continue;
+        const std::span<double> to = coverage.table(factor, t);
+        for (size_t k = 0; k < to.size(); ++k) to[k] += from[k];
+      }
+    }
+  }
+  return {coverage.parameters().begin(), coverage.parameters().end()};
+}
+
+}  // namespace
+
+Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
+                     int num_threads)
+    : samples_(std::move(samples)), spec_(spec), weighting_(weighting), num_threads_(num_threads) {
+  CheckGrid(spec_, samples_.grid);
+  CheckRange(samples_);
+  CoverageByChannel coverage;
+  if (samples_.on_grid()) {
+    folded_ = std::make_unique<FoldedGrid>(Fold(samples_, spec_.g_nodes, weighting_, num_threads_));
+    measured_energy_ = folded_->measured_energy;
+    coverage = FoldedCoverage(*folded_);
+  } else {
+    coverage = ScatteredCoverage(weighted_samples(), spec_);
+    for (const WeightedSample& sample : weighted_samples()) {
+      for (int c = 0; c < kChannels; ++c) {
+        measured_energy_ += sample.weight[c] * sample.rho[c] * sample.rho[c];
+      }
+    }
+  }
+  coverage_ = CoverageOfParameters(coverage, spec_);
+}
+
+double Objective::Value(const FactorModel& model) const {
+  return folded_ ? FoldedValue(*folded_, model, num_threads_)
+                 : ScatteredValue(weighted_samples(), model);
+}
+
+const std::vector<WeightedSample>& Objective::weighted_samples() const {
+  std::call_once(weighted_samples_once_, [this] {
+    weighted_samples_.resize(samples_.size());
+    constexpr int kChunk = 4096;
+    ParallelFor((samples_.size() + kChunk - 1) / kChunk, num_threads_, [&](int chunk) {
+      const int end = std::min((chunk + 1) * kChunk, samples_.size());
+      for (int j = chunk * kChunk; j < end; ++j) {
+        WeightedSample& sample = weighted_samples_[j];
+        const HalfDiffAngles angles = samples_.Angles(j);
+        sample.stencils = samples_.on_grid() ? GridStencils(spec_, samples_.grid, samples_.bins[j])
+                                             : ScatteredStencils(spec_, angles);
+        sample.rho = samples_.rho[j];
+        for (int c = 0; c < kChannels; ++c) {
+          sample.weight[c] = weighting_.weight(sample.rho[c], ToCosines(angles).i);
+        }
+      }
+    });
+  });
+  return weighted_samples_;
+}
+
+}  // namespace trilobe

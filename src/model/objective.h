@@ -1,0 +1,67 @@
+#ifndef TRILOBE_MODEL_OBJECTIVE_H_
+#define TRILOBE_MODEL_OBJECTIVE_H_
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "trilobe/model/brdf_samples.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/folded_grid.h"
+#include "trilobe/model/model_spec.h"
+#include "trilobe/model/weighting.h"
+
+namespace trilobe {
+
+// One measured direction pair as an element of the objective.
+struct WeightedSample {
+  SampleStencils stencils;
+  Rgb weight{};  // w, one a channel
+  Rgb rho{};     // measured BRDF [1/sr]
+};
+
+// E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
+// METHOD 3), prepared for a spec and a weighting. Immutable; safe to share between threads.
+class Objective {
+ public:
+  // Throws Error if the spec's tables do not fit the samples' grid, or a value is above 1e50/sr.
+  Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
+            int num_threads = 1);
+
+  const BrdfSamples& samples() const { return samples_; }
+  const ModelSpec& spec() const { return spec_; }
+  const Weighting& weighting() const { return weighting_; }
+  int num_threads() const { return num_threads_; }
+
+  // E of a model with this spec: the one scorer, that every trace and table quotes. The same bits
+  // for any number of threads.
+  double Value(const FactorModel& model) const;
+
+  // sum w rho*^2: E of the black model, the scale against which E is small or large.
+  double MeasuredEnergy() const { return measured_energy_; }
+
+  // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
+  // order of FactorModel::parameters(). 0 marks a dead bin: not a parameter at all (METHOD 5).
+  const std::vector<double>& coverage() const { return coverage_; }
+
+  // All samples, one by one, each with its stencils. Made at the first call (240 bytes a sample).
+  const std::vector<WeightedSample>& weighted_samples() const;
+
+  // The samples folded by symmetry, or null when they are not on a grid.
+  const FoldedGrid* folded() const { return folded_.get(); }
+
+ private:
+  BrdfSamples samples_;
+  ModelSpec spec_;
+  Weighting weighting_;
+  int num_threads_;
+  double measured_energy_ = 0;
+  std::vector<double> coverage_;
+  std::unique_ptr<FoldedGrid> folded_;
+  mutable std::once_flag weighted_samples_once_;
+  mutable std::vector<WeightedSample> weighted_samples_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_OBJECTIVE_H_

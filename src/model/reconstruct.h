@@ -1,0 +1,28 @@
+#ifndef TRILOBE_MODEL_RECONSTRUCT_H_
+#define TRILOBE_MODEL_RECONSTRUCT_H_
+
+#include <string>
+#include <vector>
+
+#include "trilobe/model/brdf_samples.h"
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// The model's BRDF [1/sr] at every sample, in their order; the numbers that the objective compares
+// with the measurement. On a grid whose theta_h and theta_d bins are those of the spec, D and F are
+// read at their own bins; elsewhere they are interpolated (METHOD 2). Since the spline through G
+// may undershoot, a value may be slightly negative; and nothing stops the product of huge factors
+// from overflowing to infinity or NaN.
+std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
+                                 int num_threads);
+
+// The model in MERL layout: EvaluateSamples at all bins above the surface, clamped at 0, the others
+// invalid. `source` names the table in messages. Throws Error if a value overflows.
+BrdfTable Reconstruct(const FactorModel& model, const std::string& source,
+                      const MerlGrid& grid = {}, int num_threads = 1);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_RECONSTRUCT_H_

@@ -1,0 +1,62 @@
+#ifndef TRILOBE_SOLVERS_CELL_SUMS_H_
+#define TRILOBE_SOLVERS_CELL_SUMS_H_
+
+#include <functional>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/folded_grid.h"
+
+namespace trilobe {
+
+// Element updates of d, s, D and F from sums over the cells (theta_h, theta_d), exact for fixed G
+// (METHOD 4).
+//
+// In one cell and channel the model is linear in a few basis functions of the sample,
+//   rho = sum_a x_a phi_a,  phi_0 = 1, phi_m = K_m = G^m(theta_i) G^m(theta_o) / (cos cos),
+//   x_0 = d, x_m = s^m D^m(theta_h) F(theta_d),
+// so that E depends on its samples only through
+//   b_a = sum w r phi_a  (r = rho* - rho, the current residual)  and  A_ab = sum w phi_a phi_b.
+// An element that moves x by delta v changes E by -2 delta v.b + delta^2 v.A.v, and b by -delta A
+// v. Sums of residuals, not of measured values: they keep their digits when the fit becomes good.
+class CellSums {
+ public:
+  CellSums(const FoldedGrid& folded, const ModelSpec& spec);
+
+  // Passes over the samples once, then puts every element of d, s, D, F, in this order, where E is
+  // lowest with the others held. `on_element`, if set, sees the model after each.
+  void UpdateAll(int num_threads, const std::function<void(const FactorModel&)>& on_element,
+                 FactorModel* model);
+
+ private:
+  struct Range {
+    int begin, end;
+  };
+  // The cells that one element moves.
+  struct Block {
+    Range h, d, channels;
+  };
+
+  // Sets b and A of every cell and channel.
+  void Accumulate(const FactorModel& model, int num_threads);
+
+  // Puts *element where E is lowest. moved(h, d, c) tells how it moves a cell's x.
+  template <typename Moved>
+  void UpdateElement(const Block& block, const Moved& moved, double* element);
+
+  int stride() const { return basis_ + basis_ * basis_; }
+  double* b(int h, int d, int c) {  // [basis]
+    return &numbers_[static_cast<size_t>((h * folded_.grid.theta_d + d) * kChannels + c) *
+                     stride()];
+  }
+  double* A(int h, int d, int c) { return b(h, d, c) + basis_; }  // [basis][basis], symmetric
+
+  const FoldedGrid& folded_;
+  const ModelSpec spec_;
+  const int basis_;  // 1 + lobes
+  std::vector<double> numbers_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_CELL_SUMS_H_

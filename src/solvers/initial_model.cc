@@ -1,0 +1,249 @@
+#include "trilobe/solvers/initial_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+
+#include "trilobe/base/named.h"
+#include "trilobe/model/gauge.h"
+
+namespace trilobe {
+namespace {
+
+// Starting points look at about this many samples: enough for magnitudes and profiles.
+constexpr int kSamplesLookedAt = 1 << 16;
+
+// A thin, even selection of the samples, with their stencils.
+std::vector<WeightedSample> Selection(const Objective& objective) {
+  const BrdfSamples& samples = objective.samples();
+  const int stride = std::max(1, samples.size() / kSamplesLookedAt);
+  std::vector<WeightedSample> selection;
+  // An odd stride visits all phi_d of a grid.
+  for (int j = 0; j < samples.size(); j += stride | 1) {
+    WeightedSample& sample = selection.emplace_back();
+    const HalfDiffAngles angles = samples.Angles(j);
+    sample.stencils = samples.on_grid()
+                          ? GridStencils(objective.spec(), samples.grid, samples.bins[j])
+                          : ScatteredStencils(objective.spec(), angles);
+    sample.rho = samples.rho[j];
+    for (int c = 0; c < kChannels; ++c) {
+      sample.weight[c] = objective.weighting().weight(sample.rho[c], ToCosines(angles).i);
+    }
+  }
+  return selection;
+}
+
+// The value that a share `fraction` of the samples stays below, a channel.
+Rgb Quantile(const std::vector<WeightedSample>& samples, double fraction) {
+  Rgb result{};
+  std::vector<double> values(samples.size());
+  for (int c = 0; c < kChannels; ++c) {
+    std::ranges::transform(samples, values.begin(),
+                           [c](const WeightedSample& sample) { return sample.rho[c]; });
+    const auto at =
+        values.begin() + static_cast<int>(fraction * (static_cast<double>(values.size()) - 1));
+    std::ranges::nth_element(values, at);
+    result[c] = *at;
+  }
+  return result;
+}
+
+using Table = std::vector<double>;
+
+void SetTable(Factor factor, int lobe, const Table& values, FactorModel* model) {
+  for (int c = 0; c < kChannels; ++c) {
+    std::ranges::copy(values, model->table(factor, model->spec().table(factor, lobe, c)).begin());
+  }
+}
+
+// Each lobe alone, and nothing but it, would fit the measurement best with the least-squares
+// weight s = sum w rho* p / sum w p^2, p its profile; it gets its 1/lobes share of that.
+void SetSpecularWeights(const std::vector<WeightedSample>& samples, FactorModel* model) {
+  const int lobes = model->spec().lobes;
+  FactorModel unit = *model;
+  std::ranges::fill(unit.d(), 0.0);
+  for (int m = 0; m < lobes; ++m) {
+    for (int other = 0; other < lobes; ++other) {
+      std::ranges::fill(unit.s(other), other == m ? 1.0 : 0.0);
+    }
+    for (int c = 0; c < kChannels; ++c) {
+      double numerator = 0, denominator = 0;
+      for (const WeightedSample& sample : samples) {
+        const double profile = Evaluate(unit, sample.stencils, c);
+        numerator += sample.weight[c] * std::max(0.0, sample.rho[c] - model->d()[c]) * profile;
+        denominator += sample.weight[c] * profile * profile;
+      }
+      model->s(m)[c] = denominator > 0 ? numerator / denominator / lobes : 0;
+    }
+  }
+}
+
+Table GgxDistribution(int bins, double alpha) {
+  const MerlGrid grid{.theta_h = bins};
+  Table D(bins);
+  for (int h = 0; h < bins; ++h) {
+    const double cos_h = std::cos(grid.ThetaH(h + 0.5));
+    const double t = (alpha * alpha - 1) * cos_h * cos_h + 1;
+    D[h] = alpha * alpha / (kPi * t * t);
+  }
+  return D;
+}
+
+// Smith's masking of a tabulated distribution (Ashikhmin et al. 2000; Heitz 2014):
+// G1(theta) = cos theta * integral D cos theta_h d omega_h / integral D max(0, w.h) d omega_h.
+Table SmithShadowing(const Table& D, int nodes) {
+  const int bins = static_cast<int>(D.size());
+  const MerlGrid grid{.theta_h = bins};
+  constexpr int kPhi = 64;
+  const double normalization = ProjectedIntegral(D);
+  Table G(nodes, 1.0);
+  if (!(normalization > 0)) return G;
+  for (int k = 0; k < nodes; ++k) {
+    const double theta = (k + 0.5) / nodes * (kPi / 2);
+    double area = 0;
+    for (int h = 0; h < bins; ++h) {
+      const double theta_h = grid.ThetaH(h + 0.5);
+      const double solid_angle =
+          std::sin(theta_h) * (grid.ThetaH(h + 1) - grid.ThetaH(h)) * (2 * kPi / kPhi);
+      double sum = 0;
+      for (int p = 0; p < kPhi; ++p) {
+        const double phi = (p + 0.5) * (2 * kPi / kPhi);
+        sum += std::max(0.0, std::sin(theta) * std::sin(theta_h) * std::cos(phi) +
+                                 std::cos(theta) * std::cos(theta_h));
+      }
+      area += D[h] * solid_angle * sum;
+    }
+    G[k] = std::min(1.0, std::cos(theta) * normalization / area);
+  }
+  return G;
+}
+
+// Schlick's curve of a half-reflective mirror: a mild start for both dielectrics and metals.
+Table SchlickFresnel(int bins) {
+  Table F(bins);
+  for (int d = 0; d < bins; ++d) {
+    const double theta_d = (d + 0.5) / bins * (kPi / 2);
+    F[d] = 0.5 + 0.5 * std::pow(1 - std::cos(theta_d), 5);
+  }
+  return F;
+}
+
+// A model whose lobes have these distributions, Smith's G and Schlick's F; d and s from the data.
+FactorModel FromDistributions(const Objective& objective, const std::vector<Table>& D) {
+  const ModelSpec& spec = objective.spec();
+  const std::vector<WeightedSample> samples = Selection(objective);
+  FactorModel model(spec);
+  std::ranges::copy(Quantile(samples, 0.1), model.d().begin());
+  for (int m = 0; m < spec.lobes; ++m) {
+    SetTable(Factor::kD, m, D[m], &model);
+    SetTable(Factor::kF, m, SchlickFresnel(spec.f_bins), &model);
+    SetTable(Factor::kG, m, SmithShadowing(D[m], spec.g_nodes), &model);
+  }
+  SetSpecularWeights(samples, &model);
+  return model;
+}
+
+// Roughnesses of `lobes` lobes, spread evenly in the logarithm from narrow to wide.
+double SpreadRoughness(int lobe, int lobes) {
+  constexpr double kNarrow = 0.04, kWide = 1.0;
+  const double t = lobes == 1 ? 0.5 : lobe / (lobes - 1.0);
+  return kNarrow * std::pow(kWide / kNarrow, t);
+}
+
+FactorModel ConstantModel(const Objective& objective, uint64_t /*seed*/) {
+  FactorModel model(objective.spec());
+  const std::vector<WeightedSample> samples = Selection(objective);
+  std::ranges::copy(Quantile(samples, 0.1), model.d().begin());
+  for (int m = 0; m < objective.spec().lobes; ++m) {
+    for (const Factor factor : kFactors) {
+      SetTable(factor, m, Table(objective.spec().table_size(factor), 1.0), &model);
+    }
+  }
+  SetSpecularWeights(samples, &model);
+  return model;
+}
+
+FactorModel AnalyticModel(const Objective& objective, uint64_t /*seed*/) {
+  const ModelSpec& spec = objective.spec();
+  std::vector<Table> D;
+  for (int m = 0; m < spec.lobes; ++m) {
+    D.push_back(GgxDistribution(spec.d_bins, SpreadRoughness(m, spec.lobes)));
+  }
+  return FromDistributions(objective, D);
+}
+
+// Mean over theta_d <= 45 degrees and the channels of (rho* - d) cos theta_i cos theta_o: what is
+// left of a lobe there is its D, up to a factor. [d_bins]
+Table HighlightProfile(const Objective& objective) {
+  const std::vector<WeightedSample> samples = Selection(objective);
+  const Rgb d = Quantile(samples, 0.1);
+  const int bins = objective.spec().d_bins, f_limit = objective.spec().f_bins / 2;
+  Table sum(bins, 0.0), count(bins, 0.0);
+  for (const WeightedSample& sample : samples) {
+    if (sample.stencils.F.index[0] >= f_limit) continue;
+    const int h = sample.stencils.D.index[0];
+    for (int c = 0; c < kChannels; ++c) {
+      sum[h] += std::max(0.0, sample.rho[c] - d[c]) / sample.stencils.inverse_cosines;
+      count[h] += 1;
+    }
+  }
+  double last = 0;
+  for (int h = bins - 1; h >= 0; --h) {  // an empty bin repeats its outer neighbour
+    if (count[h] > 0) last = sum[h] / count[h];
+    sum[h] = last;
+  }
+  return sum;
+}
+
+FactorModel HighlightModel(const Objective& objective, uint64_t seed) {
+  const int lobes = objective.spec().lobes;
+  Table profile = HighlightProfile(objective);
+  const double peak = std::ranges::max(profile);
+  if (!(peak > 0)) return AnalyticModel(objective, seed);
+  // Powers 2, 1, 1/2 of the profile: sharper than it, as it is, wider.
+  std::vector<Table> D(lobes, Table(profile.size()));
+  for (int m = 0; m < lobes; ++m) {
+    const double power = std::exp2((lobes - 1) / 2.0 - m);
+    for (size_t h = 0; h < profile.size(); ++h) {
+      D[m][h] = std::pow(std::max(profile[h] / peak, 1e-6), power);
+    }
+  }
+  return FromDistributions(objective, D);
+}
+
+// Log-uniform roughnesses, and every table entry times a log-uniform factor in [1/2, 2].
+FactorModel RandomModel(const Objective& objective, uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  // The standard leaves std::uniform_real_distribution's method open; this is the same everywhere.
+  const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+  const ModelSpec& spec = objective.spec();
+  std::vector<Table> D;
+  for (int m = 0; m < spec.lobes; ++m) {
+    D.push_back(GgxDistribution(spec.d_bins, 0.02 * std::pow(50.0, uniform())));
+  }
+  FactorModel model = FromDistributions(objective, D);
+  for (double& x : model.parameters()) x *= std::exp2(2 * uniform() - 1);
+  return model;
+}
+
+}  // namespace
+
+const std::vector<InitialModel>& InitialModels() {
+  static const std::vector<InitialModel> models = {
+      {"analytic", "GGX lobes, roughnesses spread from 0.04 to 1, Smith G, Schlick F",
+       AnalyticModel},
+      {"highlight", "D from the measured highlight, averaged over theta_d <= 45 degrees",
+       HighlightModel},
+      {"constant", "all tables 1", ConstantModel},
+      {"random", "GGX lobes of random roughness, every number times a random factor (--seed)",
+       RandomModel},
+  };
+  return models;
+}
+
+const InitialModel& FindInitialModel(std::string_view name) {
+  return FindNamed("init", name, InitialModels());
+}
+
+}  // namespace trilobe

@@ -1,0 +1,31 @@
+#ifndef TRILOBE_SOLVERS_INITIAL_MODEL_H_
+#define TRILOBE_SOLVERS_INITIAL_MODEL_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
+
+namespace trilobe {
+
+// A named, deterministic starting point.
+struct InitialModel {
+  std::string name;
+  std::string description;
+  // A model with the objective's spec, finite and > 0 where a lobe is to live. `seed` matters to
+  // the random start only.
+  FactorModel (*make)(const Objective& objective, uint64_t seed) = nullptr;
+};
+
+// All of them, the default one first.
+const std::vector<InitialModel>& InitialModels();
+
+// Throws Error that lists the known names.
+const InitialModel& FindInitialModel(std::string_view name);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_INITIAL_MODEL_H_

@@ -1,0 +1,238 @@
+// Runs the real program as a user would, on good and bad input.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.h"
+
+namespace trilobe {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr int kMerlFileSize = 12 + 3 * 8 * 90 * 90 * 180;
+
+// A model that a person can check by hand: albedo pi d, no lobe.
+const char kLambertianModel[] = R"({"format": "trilobe-model", "version": 1, "kind": "isotropic",
+  "lobes": 0, "d": [0.1, 0.2, 0.3], "s": [], "D": [], "F": [], "G": []})";
+
+void Write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+// Bad input ends in status 1 and exactly one line on standard error.
+void ExpectError(const ProgramResult& result, const std::string& part) {
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, AllOf(StartsWith("trilobe: error: "), HasSubstr(part)));
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+}
+
+void ExpectPng(const std::string& path) {
+  const std::string bytes = Contents(path);
+  EXPECT_THAT(bytes, StartsWith("\x89PNG\r\n")) << path;
+  EXPECT_GT(bytes.size(), 10000U) << path;
+}
+
+TEST(HelpTest, ListsCommandsAndTheFlagsOfEach) {
+  const ProgramResult all = RunProgram({"help"});
+  EXPECT_EQ(all.status, 0);
+  for (const char* name : {"fit", "score", "plot", "info", "convert", "synth"}) {
+    EXPECT_THAT(all.out, HasSubstr(std::string("\n  ") + name + " "));
+    const ProgramResult one = RunProgram({"help", name});
+    EXPECT_EQ(one.status, 0);
+    EXPECT_THAT(one.out, HasSubstr(std::string("usage: trilobe ") + name));
+    EXPECT_EQ(RunProgram({name, "--help"}).out, one.out);
+  }
+}
+
+TEST(ProgramTest, RejectsWhatItDoesNotKnow) {
+  ExpectError(RunProgram({"frobnicate"}), "known: fit, score");
+  ExpectError(RunProgram({"help", "frobnicate"}), "known: fit, score");
+  ExpectError(RunProgram({"info"}), "takes SOURCE|MODEL");
+  ExpectError(RunProgram({"info", "a", "b"}), "2 arguments");
+  ExpectError(RunProgram({"synth", "--weighting=log"}), "no flag --weighting");
+  ExpectError(RunProgram({"synth", "foam", "--out=x", "--threads=-1"}), "--threads is negative");
+}
+
+TEST(SynthTest, ListsMaterials) {
+  const ProgramResult result = RunProgram({"synth"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("plastic "), HasSubstr("chrome ")));
+}
+
+TEST(SynthTest, WritesTheSameFileForTheSameSeed) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) {
+    const ProgramResult result =
+        RunProgram({"synth", "foam", "--out=" + (folder / name), "--noise=0.05", "--seed=3"});
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+  const std::string bytes = Contents(folder / "a");
+  EXPECT_EQ(bytes.size(), kMerlFileSize);
+  EXPECT_TRUE(bytes == Contents(folder / "b"));
+}
+
+TEST(SynthTest, RejectsBadInput) {
+  ExpectError(RunProgram({"synth", "unobtainium", "--out=x"}), "known: plastic, ");
+  ExpectError(RunProgram({"synth", "plastic"}), "needs --out=FILE");
+  ExpectError(RunProgram({"synth", "plastic", "--out=x", "--noise=2"}), "must be from 0 to 1");
+  ExpectError(RunProgram({"synth", "plastic", "--out=/nonexistent/folder/x"}), "/nonexistent");
+}
+
+TEST(ConvertTest, CopiesAMerlFileBitForBit) {
+  const TemporaryFolder folder;
+  RunProgram({"synth", "felt", "--out=" + (folder / "felt"), "--noise=0.1"});
+  const ProgramResult result =
+      RunProgram({"convert", folder / "felt", "--out=" + (folder / "copy")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(Contents(folder / "felt") == Contents(folder / "copy"));
+}
+
+TEST(ConvertTest, WritesAModelsReconstruction) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  const ProgramResult result =
+      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "merl")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("1096216 of 1458000 bins valid"));
+  EXPECT_EQ(Contents(folder / "merl").size(), kMerlFileSize);
+  // The model's reconstruction is what the model itself says, to rounding.
+  const json score =
+      json::parse(RunProgram({"score", folder / "model.json", folder / "merl", "--json"}).out);
+  EXPECT_LT(score["relative_objective"], 1e-28);
+}
+
+TEST(ConvertTest, RejectsBadInput) {
+  ExpectError(RunProgram({"convert", "synth:foam"}), "needs --out=FILE");
+  ExpectError(RunProgram({"convert", "nothing.binary", "--out=x"}), "nothing.binary");
+  ExpectError(RunProgram({"convert", "synth:unobtainium", "--out=x"}), "known: plastic, ");
+}
+
+TEST(ScoreTest, PrintsATableOrOneJsonObject) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  const std::vector<std::string> arguments = {"score", folder / "model.json", "synth:foam"};
+  const ProgramResult table = RunProgram(arguments);
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, AllOf(HasSubstr("PSNR"), HasSubstr("peak"), HasSubstr("worst bins")));
+  EXPECT_THAT(table.out, Not(HasSubstr("nan")));
+
+  std::vector<std::string> with_json = arguments;
+  with_json.insert(with_json.end(), {"--json", "--weighting=uniform"});
+  const json score = json::parse(RunProgram(with_json).out);
+  EXPECT_EQ(score["weighting"], "uniform");
+  EXPECT_EQ(score["valid_samples"], 1096216);
+  EXPECT_EQ(score["worst_bins"].size(), 10U);
+  for (const char* key : {"objective", "relative_objective", "psnr_db", "psnr_peak", "rmse",
+                          "mean_relative_error", "mean_log_error"}) {
+    EXPECT_TRUE(score[key].is_number()) << key;
+  }
+  // Uniform weights: E is the sum of squares that RMSE is the root mean of.
+  const double mean = score["objective"].get<double>() / (3 * 1096216.0);
+  EXPECT_NEAR(score["rmse"].get<double>(), std::sqrt(mean), 1e-9 * std::sqrt(mean));
+}
+
+TEST(ScoreTest, RejectsBadInput) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  ExpectError(RunProgram({"score", "nothing.json", "synth:foam"}), "nothing.json");
+  ExpectError(RunProgram({"score", folder / "model.json", "nothing.binary"}), "nothing.binary");
+  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=heavy"}),
+              "known: compressive, log");
+  ExpectError(RunProgram({"score", folder / "model.json", folder / "model.json"}), "JSON");
+}
+
+TEST(InfoTest, DescribesAMeasurement) {
+  const ProgramResult text = RunProgram({"info", "synth:chrome", "--noise=0.02"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("exchange error"), HasSubstr("directional albedo")));
+  EXPECT_THAT(text.out, Not(HasSubstr("nan")));
+  const json info = json::parse(RunProgram({"info", "synth:foam", "--json"}).out);
+  EXPECT_EQ(info["bins"]["valid"], 1096216);
+  EXPECT_EQ(info["bins"]["below_surface"], 1458000 - 1096216);
+  EXPECT_LT(info["exchange_error"]["median"], 1e-12);
+  EXPECT_TRUE(info["albedo"]["passes_one_deg"]["red"].is_null());
+}
+
+TEST(InfoTest, DescribesAFileWithoutAnyValidBin) {
+  const TemporaryFolder folder;
+  const int dims[] = {90, 90, 180};
+  std::string bytes(kMerlFileSize, '\xff');  // NaN throughout
+  std::memcpy(bytes.data(), dims, sizeof dims);
+  Write(folder / "lost.binary", bytes);
+  const ProgramResult text = RunProgram({"info", folder / "lost.binary"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out,
+              AllOf(HasSubstr("NaN or infinite         1096216"), HasSubstr("no pair to compare")));
+  const json info = json::parse(RunProgram({"info", folder / "lost.binary", "--json"}).out);
+  EXPECT_EQ(info["bins"]["valid"], 0);
+  EXPECT_TRUE(info["albedo"].is_null());
+}
+
+TEST(InfoTest, DescribesAModel) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  EXPECT_THAT(RunProgram({"info", folder / "model.json"}).out, HasSubstr("0 lobes, 3 parameters"));
+  const json info = json::parse(RunProgram({"info", folder / "model.json", "--json"}).out);
+  EXPECT_NEAR(info["albedo"]["blue"][40].get<double>(), 0.3 * 3.14159265, 1e-4);
+}
+
+TEST(InfoTest, RejectsBadInput) {
+  const TemporaryFolder folder;
+  Write(folder / "broken.json", "{\"format\": ");
+  Write(folder / "empty", "");
+  ExpectError(RunProgram({"info", folder / "nothing"}), "nothing");
+  ExpectError(RunProgram({"info", folder / "broken.json"}), "broken.json");
+  ExpectError(RunProgram({"info", folder / "empty"}), "empty");
+  ExpectError(RunProgram({"info", folder / "."}), "directory");
+}
+
+TEST(PlotTest, DrawsWhatTheInputsAllow) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  Write(folder / "trace.csv", "iteration,seconds,objective,filtered\n0,0,10,0\n1,0.5,1,0\n");
+  const ProgramResult alone =
+      RunProgram({"plot", folder / "model.json", "--out=" + (folder / "alone")});
+  EXPECT_EQ(alone.status, 0) << alone.err;
+  ExpectPng(folder / "alone/factors.png");
+  EXPECT_FALSE(std::filesystem::exists(folder / "alone/slices.png"));
+  const ProgramResult all =
+      RunProgram({"plot", folder / "model.json", "synth:foam", "--trace=" + (folder / "trace.csv"),
+                  "--out=" + (folder / "all")});
+  EXPECT_EQ(all.status, 0) << all.err;
+  for (const char* name : {"factors.png", "slices.png", "spheres.png", "trace.png"}) {
+    ExpectPng(folder / ("all/" + std::string(name)));
+  }
+}
+
+TEST(PlotTest, SaysWhichPackageIsMissing) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  ExpectError(RunProgram({"plot", folder / "model.json", "--out=" + (folder / "pictures")},
+                         {"PATH=" + (folder / "no-programs")}),
+              "install the package gnuplot-nox");
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "pictures"));
+}
+
+TEST(PlotTest, RejectsBadInput) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  ExpectError(RunProgram({"plot", folder / "model.json"}), "needs --out=DIR");
+  ExpectError(RunProgram({"plot", "nothing.json", "--out=" + (folder / "p")}), "nothing.json");
+  ExpectError(
+      RunProgram({"plot", folder / "model.json", "--trace=nothing.csv", "--out=" + (folder / "p")}),
+      "nothing.csv");
+  EXPECT_FALSE(std::filesystem::exists(folder / "p"));
+}
+
+}  // namespace
+}  // namespace trilobe

@@ -1,0 +1,179 @@
+// `trilobe fit` as a script or a person sees it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_on_terminal.h"
+#include "tests/app/run_program.h"
+#include "trilobe/io/merl_file.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/trace_file.h"
+
+namespace trilobe {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
+
+std::vector<std::string> Fit(const std::string& out, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {"fit", "synth:plastic", "--noise=0.02",
+                                        "--max_iterations=3", "--out=" + out};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(Fit, WritesModelTraceAndReport) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "a/b";  // parents are made
+  const ProgramResult result = RunProgram(Fit(out, {"--reconstruction"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");  // no progress line in a pipe
+
+  const ModelFile file = ReadModel(out + "/model.json");
+  EXPECT_EQ(file.model.spec(), ModelSpec::SharedFactors(3));
+  EXPECT_EQ(file.fit.solver, "awls");
+  EXPECT_EQ(file.fit.iterations, 3);
+
+  EXPECT_THAT(Contents(out + "/trace.csv"), StartsWith("iteration,seconds,objective"));
+  const std::vector<IterationRecord> trace = ReadTrace(out + "/trace.csv");
+  ASSERT_EQ(trace.size(), 4U);
+  EXPECT_EQ(trace[0].iteration, 0);
+  EXPECT_LT(trace[3].objective, trace[0].objective);
+  EXPECT_NEAR(file.fit.objective, trace[3].objective, 1e-12 * trace[3].objective);
+
+  const nlohmann::json report = Json(out + "/report.json");
+  EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
+  EXPECT_EQ(report["stop_reason"], "max_iterations");
+
+  const BrdfTable fitted = ReadMerl(out + "/reconstruction.binary");
+  const int bin = fitted.grid.Index(10, 20, 90);
+  const double expected =
+      Evaluate(file.model, GridStencils(file.model.spec(), fitted.grid, bin), 1);
+  EXPECT_NEAR(fitted.Value(1, bin), expected, 1e-12 * expected);
+
+  // `score` finds the very objective that the fit reported.
+  const ProgramResult score =
+      RunProgram({"score", out + "/model.json", "synth:plastic", "--noise=0.02", "--json"});
+  ASSERT_EQ(score.status, 0) << score.err;
+  EXPECT_EQ(nlohmann::json::parse(score.out)["objective"].get<double>(), file.fit.objective);
+}
+
+TEST(Fit, RepeatsToTheBitAndThreadsAgree) {
+  const TemporaryFolder folder;
+  std::vector<FactorModel> models;
+  for (const char* threads : {"1", "1", "2"}) {
+    const std::string out = folder / std::to_string(models.size());
+    ASSERT_EQ(RunProgram(Fit(out, {std::string("--threads=") + threads})).status, 0);
+    models.push_back(ReadModel(out + "/model.json").model);
+  }
+  for (size_t k = 1; k < models.size(); ++k) {
+    EXPECT_THAT(models[k].parameters(), ::testing::ElementsAreArray(models[0].parameters()));
+  }
+}
+
+TEST(Fit, GoesOnFromAModelFile) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(RunProgram(Fit(folder / "first", {"--lobes=2"})).status, 0);
+  const std::string model = folder / "first/model.json";
+  ASSERT_EQ(RunProgram(Fit(folder / "second", {"--init=" + model})).status, 0);
+  const auto first = ReadTrace(folder / "first/trace.csv");
+  const auto second = ReadTrace(folder / "second/trace.csv");
+  EXPECT_NEAR(second[0].objective, first.back().objective, 1e-10 * first.back().objective);
+  EXPECT_LT(second.back().objective, first.back().objective);
+
+  const ProgramResult other = RunProgram(Fit(folder / "third", {"--init=" + model, "--lobes=3"}));
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.err, HasSubstr("--lobes"));
+}
+
+TEST(Fit, FitsTheOneLobeModelThatSharesNothing) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(RunProgram(Fit(folder / "out", {"--model=independent"})).status, 0);
+  EXPECT_EQ(ReadModel(folder / "out/model.json").model.spec().num_parameters(), 816);
+}
+
+TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const TerminalResult result =
+      RunOnTerminal(Fit(out, {"--max_iterations=1000000", "--tolerance=0"}), "iteration 2", SIGINT);
+  EXPECT_EQ(result.status, 130);
+  EXPECT_THAT(result.text, HasSubstr("interrupted"));
+  EXPECT_THAT(result.text, HasSubstr("s left"));  // the progress line of a terminal
+  const auto trace = ReadTrace(out + "/trace.csv");
+  ASSERT_GE(trace.size(), 3U);
+  const ModelFile file = ReadModel(out + "/model.json");
+  EXPECT_EQ(file.fit.stop_reason, "interrupted");
+  EXPECT_NEAR(file.fit.objective, trace.back().objective, 1e-12 * trace.back().objective);
+}
+
+TEST(Fit, HonoursItsTimeLimit) {
+  const TemporaryFolder folder;
+  const ProgramResult result = RunProgram(
+      Fit(folder / "out", {"--max_iterations=1000000", "--tolerance=0", "--max_seconds=0.5"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto trace = ReadTrace(folder / "out/trace.csv");
+  EXPECT_GE(trace.back().seconds, 0.5);
+  EXPECT_LT(trace[trace.size() - 2].seconds, 0.5);
+}
+
+struct BadInput {
+  std::vector<std::string> flags;
+  std::string message;  // part of it
+};
+
+TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const std::vector<BadInput> cases = {
+      {{"--solver=x"}, "known: awls, awls_literal"},
+      {{"--weighting=x"}, "known: compressive, log, percentage, cosine, uniform"},
+      {{"--init=x"}, "known: "},
+      {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},
+      {{"--model=x"}, "known: shared, independent"},
+      {{"--model=independent", "--lobes=2"}, "--lobes"},
+      {{"--lobes=-1"}, "lobes is -1"},
+      {{"--lobes=9"}, "lobes is 9"},
+      {{"--max_iterations=-1"}, "--max_iterations"},
+      {{"--max_seconds=-1"}, "--max_seconds"},
+      {{"--max_seconds=nan"}, "--max_seconds"},
+      {{"--tolerance=1"}, "--tolerance"},
+      {{"--g_filter=-1"}, "--g_filter"},
+      {{"--threads=-1"}, "--threads"},
+      {{"--noise=2"}, "noise"},
+      {{"--json"}, "no flag --json"},
+      {{"two", "arguments"}, "takes SOURCE"},
+  };
+  for (const BadInput& bad : cases) {
+    SCOPED_TRACE(bad.flags[0]);
+    const ProgramResult result = RunProgram(Fit(out, bad.flags));
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, StartsWith("trilobe: error: "));
+    EXPECT_THAT(result.err, HasSubstr(bad.message));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+}
+
+TEST(Fit, KeepsEarlierResultsWhenTheFolderIsAFile) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(RunProgram(Fit(folder / "out")).status, 0);
+  const std::string before = Contents(folder / "out/model.json");
+  const ProgramResult result = RunProgram(Fit(folder / "out/model.json"));
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("model.json"));
+  EXPECT_EQ(Contents(folder / "out/model.json"), before);
+}
+
+}  // namespace
+}  // namespace trilobe

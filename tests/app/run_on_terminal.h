@@ -1,0 +1,55 @@
+#ifndef TRILOBE_TESTS_APP_RUN_ON_TERMINAL_H_
+#define TRILOBE_TESTS_APP_RUN_ON_TERMINAL_H_
+
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+namespace trilobe {
+
+struct TerminalResult {
+  int status = -1;   // exit status; -1 if it was killed by a signal
+  std::string text;  // what the terminal got, control characters included
+};
+
+// Runs the real program on a terminal of its own. As soon as it has written `cue`, sends it
+// `signal` (none if 0).
+inline TerminalResult RunOnTerminal(const std::vector<std::string>& arguments,
+                                    const std::string& cue, int signal) {
+  std::vector<std::string> words = {TRILOBE_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  int terminal = -1;
+  const pid_t pid = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (pid == 0) {
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  TerminalResult result;
+  bool sent = signal == 0;
+  char buffer[4096];
+  // A read from a terminal whose program has ended fails.
+  for (ssize_t size; (size = read(terminal, buffer, sizeof(buffer))) > 0;) {
+    result.text.append(buffer, static_cast<size_t>(size));
+    if (!sent && result.text.find(cue) != std::string::npos) {
+      kill(pid, signal);
+      sent = true;
+    }
+  }
+  close(terminal);
+  int wait_status = 0;
+  waitpid(pid, &wait_status, 0);
+  if (WIFEXITED(wait_status)) result.status = WEXITSTATUS(wait_status);
+  return result;
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_TESTS_APP_RUN_ON_TERMINAL_H_

@@ -1,0 +1,135 @@
+#include "trilobe/io/gnuplot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/plots.h"
+#include "trilobe/io/synth.h"
+
+namespace trilobe {
+namespace {
+
+class GnuplotTest : public testing::Test {
+ protected:
+  GnuplotTest() {
+    std::string name = testing::TempDir() + "trilobe_plot_XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~GnuplotTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+  // Width and height, as the PNG header says.
+  static std::pair<int, int> PngSize(const std::string& path) {
+    const std::string bytes = ReadFile(path);
+    EXPECT_THAT(bytes, testing::StartsWith("\x89PNG\r\n\x1a\n"));
+    const auto number = [&](size_t at) {
+      int value = 0;
+      for (size_t i = at; i < at + 4; ++i) {
+        value = value * 256 + static_cast<unsigned char>(bytes.at(i));
+      }
+      return value;
+    };
+    return {number(16), number(20)};
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST(GnuplotQuoteTest, EscapesWhatGnuplotWouldRead) {
+  EXPECT_EQ(GnuplotQuote("plain µ"), "'plain µ'");
+  EXPECT_EQ(GnuplotQuote("it's"), "'it’s'");
+  EXPECT_EQ(GnuplotQuote("a\nb\tc\x7f"), "'a?b?c?'");
+  EXPECT_EQ(GnuplotQuote("\xff_\xc3"), "'?_?'");
+}
+
+TEST(GnuplotNumberTest, IsPlainOrAGap) {
+  EXPECT_EQ(GnuplotNumber(0.125), "0.125");
+  EXPECT_EQ(GnuplotNumber(std::nan("")), "NaN");
+  EXPECT_EQ(GnuplotNumber(std::numeric_limits<double>::infinity()), "NaN");
+}
+
+TEST(GnuplotLogRangeTest, HoldsPositiveValuesWithinTheDecades) {
+  const double values[] = {0, -1, std::nan(""), 1e-9, 1, 100};
+  EXPECT_EQ(GnuplotLogRange(values, 4), "[0.0063095734:158.48932]");
+  EXPECT_EQ(GnuplotLogRange({}, 4), "[0.8:1.25]");
+}
+
+TEST_F(GnuplotTest, DrawsAPictureOfTheAskedSize) {
+  const std::string nasty = "'; `touch " + Path("run") + "` @x %s {_^ \\";
+  DrawPng(Path("a.png"), 400, 300, "plot sin(x) title " + GnuplotQuote(nasty) + " noenhanced\n");
+  EXPECT_FALSE(std::filesystem::exists(Path("run")));
+  EXPECT_EQ(PngSize(Path("a.png")), std::pair(400, 300));
+}
+
+TEST_F(GnuplotTest, ReportsABadScriptAndLeavesNoFile) {
+  try {
+    DrawPng(Path("a.png"), 400, 300, "set nonsense\n");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("gnuplot failed: "));
+    EXPECT_THAT(error.what(), testing::HasSubstr("unrecognized option"));
+  }
+  EXPECT_THROW(DrawPng(Path("a.png"), 400, 300, ""), Error);  // draws nothing
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(GnuplotTest, SaysWhichPackageIsMissing) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", Path("empty").c_str(), 1);
+  try {
+    DrawPng(Path("a.png"), 400, 300, "plot x\n");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("gnuplot-nox"));
+  }
+  setenv("PATH", path.c_str(), 1);
+}
+
+TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {
+  const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
+  const BrdfTable measured = Synthesize(FindSynthMaterial("plastic"), 0.1, 1, grid);
+  ModelFile file;
+  file.model = FactorModel(ModelSpec::SharedFactors(3, grid));
+  for (double& x : file.model.parameters()) x = 0.5;
+  for (double& x : file.model.s(1)) x = 0;  // absent
+  file.dead.assign(file.model.parameters().size(), false);
+  file.dead.back() = true;
+  file.fit.source = "a 'strange_name' {$x}\n";
+  const IterationRecord trace[] = {{0, 0, 10, false}, {1, 0.5, 0, true}};  // E = 0 has no logarithm
+  const std::vector<std::string> paths = DrawPictures(file, &measured, trace, folder_.string(), 2);
+  ASSERT_EQ(paths.size(), 4U);
+  std::vector<std::string> bytes;
+  for (const std::string& path : paths) {
+    EXPECT_GE(PngSize(path).first, 1600);
+    bytes.push_back(ReadFile(path));
+  }
+  DrawPictures(file, &measured, trace, folder_.string(), 1);
+  for (size_t i = 0; i < paths.size(); ++i) EXPECT_TRUE(ReadFile(paths[i]) == bytes[i]) << paths[i];
+}
+
+// Nothing to scale an axis by: no lobe, a black material, a single record.
+TEST_F(GnuplotTest, DrawsDegenerateInput) {
+  const MerlGrid grid = {.theta_h = 8, .theta_d = 8, .phi_d = 8};
+  BrdfTable black = MakeInvalidTable("black", grid);
+  for (auto& plane : black.stored) plane.assign(plane.size(), 0);
+  ModelFile file;
+  file.dead.assign(file.model.parameters().size(), false);
+  const IterationRecord trace[] = {{0, 0, 1, false}};
+  EXPECT_EQ(DrawPictures(file, &black, trace, folder_.string(), 1).size(), 4U);
+  file.model = FactorModel(ModelSpec::IndependentG(grid));
+  file.dead.assign(file.model.parameters().size(), true);
+  EXPECT_EQ(DrawPictures(file, nullptr, {}, folder_.string(), 1).size(), 1U);
+  EXPECT_THROW(DrawTrace({}, "", Path("none.png")), Error);
+}
+
+}  // namespace
+}  // namespace trilobe

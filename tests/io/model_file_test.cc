@@ -1,0 +1,294 @@
+#include "trilobe/io/model_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <locale>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/io/test_directory.h"
+
+namespace trilobe {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Numbers over the whole range of a double, uneven to the last bit.
+ModelFile RandomModel(const ModelSpec& spec) {
+  ModelFile file{FactorModel(spec), std::vector<bool>(spec.num_parameters(), false), {}};
+  uint64_t state = 1;
+  for (double& value : file.model.parameters()) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    const uint64_t bits = (state >> 1U) % 0x7ff0000000000000U;  // any finite number >= 0
+    std::memcpy(&value, &bits, sizeof(value));
+  }
+  const double extremes[] = {0.0, -0.0, 5e-324, 2.2250738585072011e-308, 1e308, 0.1, 1.0 / 3};
+  std::copy_n(extremes, std::min<size_t>(7, file.model.parameters().size()),
+              file.model.parameters().begin());
+  return file;
+}
+
+bool SameBits(const FactorModel& a, const FactorModel& b) {
+  return a.spec() == b.spec() && std::memcmp(a.parameters().data(), b.parameters().data(),
+                                             a.parameters().size_bytes()) == 0;
+}
+
+TEST(ModelFile, HasTheShapeOfThePapersModel) {
+  const ModelFile file = RandomModel(ModelSpec::SharedFactors(3));
+  const json document = json::parse(FormatModel(file));
+  EXPECT_EQ(document["format"], "trilobe-model");
+  EXPECT_EQ(document["version"], 1);
+  EXPECT_EQ(document["kind"], "isotropic");
+  EXPECT_EQ(document["lobes"], 3);
+  EXPECT_EQ(document["d"].size(), 3);
+  EXPECT_EQ(document["s"].size(), 3);
+  for (const auto& [key, count] : {std::pair{"D", 3}, {"F", 3}, {"G", 3}}) {
+    ASSERT_EQ(document[key].size(), count);
+    for (const json& row : document[key]) EXPECT_EQ(row.size(), 90);
+  }
+  EXPECT_EQ(document["s"][1][2], file.model.s(1)[2]);
+  EXPECT_EQ(document["D"][2][17], file.model.D(2, 0)[17]);
+  EXPECT_EQ(document["F"][1][89], file.model.F(0, 1)[89]);
+  EXPECT_EQ(document["G"][0][3], file.model.G(0, 2)[3]);
+}
+
+TEST(ModelFile, ReadsBackTheSameBits) {
+  const MerlGrid small{.theta_h = 5, .theta_d = 7, .phi_d = 4};
+  std::vector<ModelSpec> specs = {ModelSpec::SharedFactors(3), ModelSpec::IndependentG(),
+                                  ModelSpec::SharedFactors(0), ModelSpec::SharedFactors(8, small),
+                                  ModelSpec::IndependentG(small)};
+  for (const bool per_lobe : {false, true}) {
+    for (const bool per_channel : {false, true}) {
+      ModelSpec spec = ModelSpec::SharedFactors(2, small);
+      spec.D = {per_lobe, per_channel};
+      spec.F = {per_channel, !per_lobe};
+      spec.G = {!per_lobe, per_channel};
+      specs.push_back(spec);
+      spec = ModelSpec::SharedFactors(0);
+      spec.D = spec.F = spec.G = {per_lobe, per_channel};
+      specs.push_back(spec);
+    }
+  }
+  ASSERT_EQ(specs[0].num_parameters(), 822);
+  ASSERT_EQ(specs[1].num_parameters(), 816);
+  const TestDirectory directory;
+  for (const ModelSpec& spec : specs) {
+    const ModelFile file = RandomModel(spec);
+    WriteModel(file, directory.Path("model.json"));
+    EXPECT_TRUE(SameBits(ReadModel(directory.Path("model.json")).model, file.model))
+        << FormatModel(file);
+  }
+}
+
+TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
+  ModelFile file = RandomModel(ModelSpec::IndependentG());
+  for (const Factor factor : kFactors) {
+    const int offset = file.model.TableOffset(factor, 2);
+    file.dead[offset] = file.dead[offset + 89] = true;
+  }
+  file.fit = {.solver = "awls",
+              .init = "random",
+              .weighting = "log",
+              .objective = 0.1 + 0.2,
+              .initial_objective = 1e300,
+              .stop_reason = "converged",
+              .iterations = 17,
+              .seconds = 1.0 / 3,
+              .threads = 2,
+              .source = "a \"quoted\"\npath/\xc3\xa9.binary",
+              .valid_samples = 1096216,
+              .program = "trilobe 0.1.0",
+              .date = "2024-01-31T12:00:00Z"};
+  const ModelFile read = ParseModel(FormatModel(file), "model.json");
+  EXPECT_EQ(read.dead, file.dead);
+  EXPECT_EQ(FormatModel(read), FormatModel(file));
+  EXPECT_EQ(read.fit.solver, "awls");
+  EXPECT_EQ(read.fit.objective, 0.1 + 0.2);
+  EXPECT_EQ(read.fit.iterations, 17);
+  EXPECT_EQ(read.fit.source, file.fit.source);
+  EXPECT_EQ(read.fit.valid_samples, 1096216);
+  EXPECT_EQ(read.fit.date, file.fit.date);
+}
+
+TEST(ModelFile, ASourceNameNeedNotBeUtf8) {
+  ModelFile file = RandomModel(ModelSpec::SharedFactors(1));
+  file.fit.source = "caf\xe9.binary";
+  EXPECT_THAT(ParseModel(FormatModel(file), "").fit.source, HasSubstr(".binary"));
+}
+
+TEST(ModelFile, DoesNotDependOnTheLocale) {
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const ModelFile file = RandomModel(ModelSpec::SharedFactors(3));
+  const std::string text = FormatModel(file);
+  const std::locale before = std::locale::global({std::locale::classic(), new Comma});
+  const std::string text_in_locale = FormatModel(file);
+  const ModelFile read = ParseModel(text, "");
+  std::locale::global(before);
+  EXPECT_EQ(text_in_locale, text);
+  EXPECT_TRUE(SameBits(read.model, file.model));
+}
+
+// The document of a good file, after `change`, as ParseModel takes it.
+std::string ErrorAfter(const std::function<void(json*)>& change) {
+  json document = json::parse(FormatModel(RandomModel(ModelSpec::SharedFactors(3))));
+  change(&document);
+  return ErrorOf([&] { ParseModel(document.dump(), "model.json"); });
+}
+
+std::string ErrorOfText(const std::string& text) {
+  return ErrorOf([&] { ParseModel(text, "model.json"); });
+}
+
+TEST(ModelFile, IgnoresUnknownKeysAndTakesDefaultsForOptionalOnes) {
+  const ModelFile file = RandomModel(ModelSpec::SharedFactors(3));
+  json document = json::parse(FormatModel(file));
+  document["comment"] = {{"D", "mine"}};
+  document["fit"]["machine"] = nullptr;
+  for (const char* key : {"sharing", "dead", "fit"}) {
+    ParseModel(document.dump(), "model.json");
+    document.erase(key);
+  }
+  const ModelFile read = ParseModel(document.dump(), "model.json");
+  EXPECT_TRUE(SameBits(read.model, file.model));
+  EXPECT_EQ(read.dead, file.dead);
+  EXPECT_EQ(read.fit.solver, "");
+  EXPECT_EQ(read.fit.iterations, 0);
+}
+
+TEST(ModelFile, NamesEachMissingKey) {
+  for (const char* key : {"format", "version", "kind", "lobes", "d", "s", "D", "F", "G"}) {
+    EXPECT_THAT(ErrorAfter([&](json* document) { document->erase(key); }),
+                AllOf(HasSubstr("model.json"), HasSubstr("key '" + std::string(key) + "'"),
+                      HasSubstr("missing")));
+  }
+  EXPECT_THAT(ErrorAfter([](json* document) { (*document)["sharing"].erase("F"); }),
+              HasSubstr("key 'sharing.F' is missing"));
+  EXPECT_THAT(ErrorAfter([](json* document) { (*document)["sharing"]["G"].erase("per_lobe"); }),
+              HasSubstr("key 'sharing.G.per_lobe' is missing"));
+  EXPECT_THAT(ErrorAfter([](json* document) { (*document)["dead"].erase("D"); }),
+              HasSubstr("key 'dead.D' is missing"));
+}
+
+TEST(ModelFile, NamesEachKeyOfTheWrongType) {
+  for (const char* key :
+       {"format", "version", "kind", "lobes", "d", "s", "D", "F", "G", "sharing", "dead", "fit"}) {
+    for (const json& value : {json(nullptr), json(true), json(-1.5)}) {
+      EXPECT_THAT(ErrorAfter([&](json* document) { (*document)[key] = value; }),
+                  AllOf(HasSubstr("model.json"), HasSubstr("key '" + std::string(key))))
+          << value;
+    }
+  }
+}
+
+TEST(ModelFile, NamesTheKeyOfAWrongShape) {
+  const auto error_of = [](const char* pointer, const json& value) {
+    return ErrorAfter([&](json* document) { (*document)[json::json_pointer(pointer)] = value; });
+  };
+  const std::vector<double> short_row(89, 1.0);
+  EXPECT_THAT(error_of("/d", {1, 2}), HasSubstr("key 'd' must have 3 entries, not 2"));
+  EXPECT_THAT(error_of("/s/1", {1, 2, 3, 4}), HasSubstr("key 's[1]' must have 3 entries, not 4"));
+  EXPECT_THAT(error_of("/D/2", short_row), HasSubstr("key 'D[2]' must have 90 entries, not 89"));
+  EXPECT_THAT(error_of("/F/0", {1, 2, 3}), HasSubstr("key 'F[0]' must have at least 4"));
+  EXPECT_THAT(error_of("/G", json::array()), HasSubstr("key 'G' must have 3 entries, not 0"));
+  EXPECT_THAT(error_of("/G", short_row), HasSubstr("key 'G' must have 3 entries, not 89"));
+  EXPECT_THAT(error_of("/D/0/5", {1}), HasSubstr("key 'D[0][5]' must be a number, not array"));
+  EXPECT_THAT(error_of("/lobes", 2), HasSubstr("key 'D' must have 2 entries, not 3"));
+  EXPECT_THAT(error_of("/sharing/D/per_channel", true), HasSubstr("key 'D[0]' must have 3"));
+  EXPECT_THAT(error_of("/dead/F/2", {90}), HasSubstr("key 'dead.F[2][0]'"));
+  EXPECT_THAT(error_of("/dead/F", {{1}}), HasSubstr("key 'dead.F' must have 3 entries, not 1"));
+  EXPECT_THAT(error_of("/fit/iterations", 1e10), HasSubstr("key 'fit.iterations'"));
+  EXPECT_THAT(error_of("/fit/solver", 1), HasSubstr("key 'fit.solver' must be a string"));
+}
+
+TEST(ModelFile, BoundsTheLobesBeforeAnythingElse) {
+  for (const json& lobes : {json(9), json(-1), json(2.5), json(4000000000U), json(1e300)}) {
+    EXPECT_THAT(ErrorAfter([&](json* document) { (*document)["lobes"] = lobes; }),
+                HasSubstr("key 'lobes'"))
+        << lobes;
+  }
+}
+
+TEST(ModelFile, RefusesNumbersThatAreNoneOrNegative) {
+  for (const char* key : {"d", "s", "D", "F", "G"}) {
+    for (const json& value : {json(nullptr), json(-1e-300), json(-1), json("1"), json(true)}) {
+      EXPECT_THAT(ErrorAfter([&](json* document) {
+                    json* entry = &(*document)[key];
+                    while ((*entry)[0].is_array()) entry = &(*entry)[0];
+                    (*entry)[2] = value;
+                  }),
+                  AllOf(HasSubstr("key '" + std::string(key)), HasSubstr("[2]'")))
+          << value;
+    }
+  }
+  // What JSON cannot say, or a double cannot hold.
+  const std::string text = FormatModel(RandomModel(ModelSpec::SharedFactors(3)));
+  const size_t number = text.find("\"d\": [") + 6;
+  for (const char* literal :
+       {"NaN", "nan", "Infinity", "-Infinity", "1e999", "-1e999", "0x1", ""}) {
+    std::string spoilt = text;
+    spoilt.replace(number, spoilt.find(',', number) - number, literal);
+    EXPECT_THAT(ErrorOfText(spoilt), AllOf(HasSubstr("model.json"), HasSubstr("not a model file")))
+        << literal;
+  }
+}
+
+TEST(ModelFile, RefusesOtherFormatsKindsAndVersions) {
+  const auto error_of = [](const char* key, const json& value) {
+    return ErrorAfter([&](json* document) { (*document)[key] = value; });
+  };
+  EXPECT_THAT(error_of("format", "other"), HasSubstr("key 'format' must be \"trilobe-model\""));
+  EXPECT_THAT(error_of("kind", "anisotropic"), HasSubstr("key 'kind' must be \"isotropic\""));
+  EXPECT_THAT(error_of("version", 2), AllOf(HasSubstr("key 'version' is 2"), HasSubstr("update")));
+  EXPECT_THAT(error_of("version", 0), HasSubstr("key 'version' is 0"));
+}
+
+TEST(ModelFile, RefusesWhatIsNoJsonObject) {
+  const std::string text = FormatModel(RandomModel(ModelSpec::SharedFactors(3)));
+  for (const std::string& bad :
+       {std::string(), std::string("\0", 1), std::string("[1, 2]"), std::string("17"),
+        std::string("null"), std::string("Z\0\0\0", 4), text + "x", text + text,
+        text + std::string(1, '\0'), text.substr(0, text.size() / 2),
+        std::string("{\"format\": \"\xff\"}"), std::string(100000, '[')}) {
+    EXPECT_THAT(ErrorOfText(bad), HasSubstr("model.json: not a model file"));
+  }
+}
+
+TEST(ModelFile, EveryTruncationIsAnError) {
+  const MerlGrid small{.theta_h = 4, .theta_d = 4, .phi_d = 4};
+  const std::string text = FormatModel(RandomModel(ModelSpec::SharedFactors(1, small)));
+  for (size_t length = 0; length + 2 < text.size(); ++length) {  // the last two: "}\n"
+    EXPECT_THAT(ErrorOfText(text.substr(0, length)), HasSubstr("model.json"));
+  }
+}
+
+TEST(ModelFile, WritesNothingThatItCouldNotRead) {
+  const TestDirectory directory;
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.0}) {
+    ModelFile file = RandomModel(ModelSpec::SharedFactors(1));
+    file.model.parameters()[50] = bad;
+    EXPECT_THAT(ErrorOf([&] { WriteModel(file, directory.Path("model.json")); }),
+                HasSubstr("'D' has the entry"));
+  }
+  EXPECT_THAT(directory.Names(), testing::IsEmpty());
+  ModelFile file = RandomModel(ModelSpec::SharedFactors(1));
+  file.fit.objective = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(ParseModel(FormatModel(file), "").fit.objective, 0);
+}
+
+}  // namespace
+}  // namespace trilobe

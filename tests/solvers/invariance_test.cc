@@ -1,0 +1,115 @@
+// What must not matter to a fit, to the last bit: the unit of the measurement, the number of
+// threads, and whether it has been done before. And what must stay as it is: dead bins.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/test_util.h"
+#include "trilobe/io/synth.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+constexpr MerlGrid kGrid{.theta_h = 10, .theta_d = 9, .phi_d = 15};
+
+SolverOptions Sweeps(int count) {
+  SolverOptions options;
+  options.max_iterations = count;
+  options.relative_decrease_tolerance = 0;
+  return options;
+}
+
+TEST(Invariance, PowersOfTwoScaleDAndSExactly) {
+  const BrdfTable table = RandomTable(kGrid, 1);
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    for (const Weighting& weighting : Weightings()) {
+      if (!weighting.scale_free) continue;
+      const Objective objective = MakeObjective(table, spec, weighting.name);
+      for (const double scale : {0x1p10, 0x1p-20}) {
+        BrdfTable scaled_table = table;
+        for (auto& plane : scaled_table.stored) {
+          for (double& x : plane) x = x < 0 ? x : x * scale;
+        }
+        const Objective scaled_objective = MakeObjective(scaled_table, spec, weighting.name);
+        for (const InitialModel& init : InitialModels()) {
+          for (const SolverEntry& solver : Solvers()) {
+            const std::string what = name + ", " + weighting.name + ", " + init.name + ", " +
+                                     solver.name + ", x " + std::to_string(scale);
+            FactorModel model = init.make(objective, 1);
+            FactorModel scaled = init.make(scaled_objective, 1);
+            const SolverSummary run = solver.make()->Solve(objective, Sweeps(3), &model);
+            const SolverSummary scaled_run =
+                solver.make()->Solve(scaled_objective, Sweeps(3), &scaled);
+            for (double& d : model.d()) d *= scale;
+            for (int m = 0; m < spec.lobes; ++m) {
+              for (double& s : model.s(m)) s *= scale;
+            }
+            EXPECT_TRUE(std::ranges::equal(model.parameters(), scaled.parameters())) << what;
+            EXPECT_EQ(scaled_run.final_objective, scale * scale * run.final_objective) << what;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Invariance, ThreadsAndRepetition) {
+  constexpr MerlGrid kMiddle{.theta_h = 30, .theta_d = 30, .phi_d = 60};
+  const BrdfTable table = Synthesize(FindSynthMaterial("aluminium"), 0.1, 1, kMiddle);
+  for (const auto& [name, spec] : TestSpecs(kMiddle)) {
+    for (const SolverEntry& solver : Solvers()) {
+      if (solver.name == "awls_literal" && spec.lobes > 1) continue;  // slow
+      const Objective objective = MakeObjective(table, spec, "compressive", 1);
+      FactorModel model = InitialModels().front().make(objective, 1);
+      const double E = solver.make()->Solve(objective, Sweeps(3), &model).final_objective;
+      for (const int threads : {1, 2, 3}) {
+        const std::string what =
+            name + ", " + solver.name + ", " + std::to_string(threads) + " threads";
+        const Objective other = MakeObjective(table, spec, "compressive", threads);
+        FactorModel again = InitialModels().front().make(other, 1);
+        const double other_E = solver.make()->Solve(other, Sweeps(3), &again).final_objective;
+        EXPECT_NEAR(other_E, E, 1e-10 * E) << what;  // what is promised
+        EXPECT_EQ(other_E, E) << what;               // what is so
+        EXPECT_TRUE(std::ranges::equal(again.parameters(), model.parameters())) << what;
+      }
+    }
+  }
+}
+
+TEST(Invariance, DeadBinsStayAsTheyWere) {
+  BrdfTable table = RandomTable(kGrid, 2);
+  for (int bin = 0; bin < kGrid.size(); ++bin) {
+    const int h = bin / (kGrid.theta_d * kGrid.phi_d), d = bin / kGrid.phi_d % kGrid.theta_d;
+    const Cosines cosines = ToCosines(kGrid.Center(bin));
+    const bool gap = h == 0 || h == 4 || d == 3 ||
+                     std::min(cosines.i, cosines.o) < std::cos(DegreesToRadians(65));
+    if (gap) table.stored[2][bin] = -1;
+  }
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    const Objective objective = MakeObjective(table, spec);
+    const std::vector<bool> dead = DeadParameters(objective.coverage());
+    EXPECT_EQ(std::ranges::count(dead, true) > 0, spec.lobes > 0);
+    const FactorModel start = RandomModel(spec, 3);
+    for (const SolverEntry& solver : Solvers()) {
+      for (const double sigma : {0.0, 1.0}) {
+        FactorModel model = start;
+        SolverOptions options = Sweeps(3);
+        options.g_filter_sigma = sigma;
+        solver.make()->Solve(objective, options, &model);
+        for (int k = 0; k < spec.num_parameters(); ++k) {
+          if (!dead[k]) continue;
+          EXPECT_EQ(model.parameters()[k], start.parameters()[k])
+              << name << ", " << solver.name << ", parameter " << k;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trilobe

@@ -1,0 +1,46 @@
+#include "trilobe/solvers/spline_moments.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/test_util.h"
+
+namespace trilobe {
+namespace {
+
+TEST(SplineMoments, AreTheSumsOfPowers) {
+  for (const int count : {0, 1, 7, 256}) {
+    Random random(count);
+    std::vector<double> w1(count), w2(count), t_i(count), t_o(count);
+    for (int n = 0; n < count; ++n) {
+      w1[n] = random.Normal();
+      w2[n] = random.Uniform();
+      t_i[n] = random.Uniform(-0.5, 0.5);
+      t_o[n] = random.Uniform(-0.5, 0.5);
+    }
+    SplineMoments moments;
+    moments.first[1][2] = 100;  // sums go on from what is there
+    AddSplineMoments(count, w1.data(), w2.data(), t_i.data(), t_o.data(), &moments);
+    const auto expected = [&](const std::vector<double>& w, int l, int k) {
+      long double sum = 0;
+      for (int n = 0; n < count; ++n) sum += w[n] * std::pow(t_o[n], l) * std::pow(t_i[n], k);
+      return static_cast<double>(sum);
+    };
+    for (int l = 0; l < SplineMoments::kFirst; ++l) {
+      for (int k = 0; k < SplineMoments::kFirst; ++k) {
+        const double before = l == 1 && k == 2 ? 100 : 0;
+        EXPECT_NEAR(moments.first[l][k], before + expected(w1, l, k), 1e-13 * (1 + before));
+      }
+    }
+    for (int l = 0; l < SplineMoments::kSecond; ++l) {
+      for (int k = 0; k < SplineMoments::kSecond; ++k) {
+        EXPECT_NEAR(moments.second[l][k], expected(w2, l, k), 1e-13);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trilobe
