@@ -51,9 +51,9 @@ Stencil CatmullRom::StencilAt(const Location& at) const {
 }
 
 std::array<CatmullRom::Cubic, 4> CatmullRom::WeightPolynomials(int interval) const {
-  // Hermite basis in v = t - 1/2.
-  constexpr Cubic f0 = {0.5, -1.5, 0, 2}, f1 = {0.5, 1.5, 0, -2};
-  constexpr Cubic m0 = {0.125, -0.25, -0.5, 1}, m1 = {-0.125, -0.25, 0.5, 1};
+  // Hermite basis in t^k (1 - t)^(3 - k).
+  constexpr Cubic f0 = {1, 3, 0, 0}, f1 = {0, 0, 3, 1};
+  constexpr Cubic m0 = {0, 1, 0, 0}, m1 = {0, 0, -1, 0};
   std::array<Cubic, 4> w{};
   const auto add = [&w](int a, double factor, const Cubic& basis) {
     for (int k = 0; k < 4; ++k) w[a][k] += factor * basis[k];
@@ -68,18 +68,17 @@ std::array<CatmullRom::Cubic, 4> CatmullRom::WeightPolynomials(int interval) con
   return w;
 }
 
-std::vector<CatmullRom::Cubic> CatmullRom::Polynomials(std::span<const double> values) const {
-  std::vector<Cubic> polynomials(nodes_ - 1);
-  for (int interval = 0; interval < nodes_ - 1; ++interval) {
-    const auto weights = WeightPolynomials(interval);
-    Cubic& sum = polynomials[interval] = {0, 0, 0, 0};
-    for (int a = 0; a < 4; ++a) {
-      const int node = interval - 1 + a;
-      if (node < 0 || node >= nodes_) continue;
-      for (int k = 0; k < 4; ++k) sum[k] += weights[a][k] * values[node];
-    }
+std::vector<CatmullRom::Piece> CatmullRom::Pieces(std::span<const double> values) const {
+  // The Hermite form less its chord: a0 = m0 - (f1 - f0), a1 = (f1 - f0) - m1.
+  const auto bend = [&](int k) {
+    const bool end = k == 0 || k == nodes_ - 1;
+    return end ? 0.0 : values[k] - (values[k - 1] + values[k + 1]) / 2;
+  };
+  std::vector<Piece> pieces(nodes_ - 1);
+  for (int k = 0; k < nodes_ - 1; ++k) {
+    pieces[k] = {values[k], values[k + 1], bend(k), bend(k + 1)};
   }
-  return polynomials;
+  return pieces;
 }
 
 }  // namespace trilobe

@@ -34,13 +34,28 @@ class CatmullRom {
   Stencil StencilAt(const Location& at) const;
   Stencil StencilAt(double theta) const { return StencilAt(Locate(theta)); }
 
-  // The four weights as polynomials: weight[a] = sum_k c[a][k] (t - 1/2)^k. Centred, so that
-  // powers stay small and products of polynomials stay well conditioned.
+  // The four weights as polynomials: weight[a] = sum_k c[a][k] t^k (1 - t)^(3 - k), the Bernstein
+  // basis but for its binomials. A weight that vanishes at an end of the interval has no terms
+  // that do not, so near there it keeps its digits, as powers of t alone would not.
   using Cubic = std::array<double, 4>;
   std::array<Cubic, 4> WeightPolynomials(int interval) const;
 
-  // The spline through `values` as one cubic in (t - 1/2) for each interval. [nodes - 1]
-  std::vector<Cubic> Polynomials(std::span<const double> values) const;
+  // One interval of a spline: a straight line and what bends it,
+  //   (1 - t) f0 + t f1 + t (1 - t) ((1 - t) a0 + t a1),
+  // which is as exact near a small value at one end as at that end itself.
+  struct Piece {
+    double f0 = 0, f1 = 0;  // values at the ends
+    double a0 = 0, a1 = 0;  // minus half the second difference there, 0 at the spline's own ends
+
+    // `v` is t - 1/2.
+    double operator()(double v) const {
+      const double t = 0.5 + v, u = 0.5 - v;
+      return u * f0 + t * f1 + t * u * (u * a0 + t * a1);
+    }
+  };
+
+  // The spline through `values`, interval by interval. [nodes - 1]
+  std::vector<Piece> Pieces(std::span<const double> values) const;
 
  private:
   int nodes_;

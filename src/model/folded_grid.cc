@@ -35,11 +35,11 @@ class PairLookup {
   std::vector<int> sample_of_bin_;
 };
 
-// Cosines of the spline's nodes as cubics: the cosine goes through the same spline (METHOD 2).
-std::vector<CatmullRom::Cubic> CosinePolynomials(const CatmullRom& spline) {
+// Cosines of the spline's nodes in pieces: the cosine goes through the same spline (METHOD 2).
+std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline) {
   std::vector<double> cosines(spline.nodes());
   for (int k = 0; k < spline.nodes(); ++k) cosines[k] = std::cos(spline.NodeAngle(k));
-  return spline.Polynomials(cosines);
+  return spline.Pieces(cosines);
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   }
 
   const CatmullRom spline(g_nodes);
-  const std::vector<CatmullRom::Cubic> cosine = CosinePolynomials(spline);
+  const std::vector<CatmullRom::Piece> cosine = CosinePieces(spline);
   std::vector<double> constant(grid.theta_h, 0.0), energy(grid.theta_h, 0.0);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     int n = folded.row_begin[h * grid.theta_d];
@@ -88,8 +88,8 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
         folded.interval_o[n] = static_cast<int16_t>(o.interval);
         folded.t_i[n] = i.t - 0.5;
         folded.t_o[n] = o.t - 0.5;
-        folded.inverse_cosines[n] = 1 / (EvaluateCubic(cosine[i.interval], i.t - 0.5) *
-                                         EvaluateCubic(cosine[o.interval], o.t - 0.5));
+        folded.inverse_cosines[n] =
+            1 / (cosine[i.interval](i.t - 0.5) * cosine[o.interval](o.t - 0.5));
         for (int c = 0; c < kChannels; ++c) {
           // The mirror bin has theta_i and theta_o exchanged, and its own weight.
           const double rho1 = pair.first < 0 ? 0 : samples.rho[pair.first][c];
@@ -114,28 +114,27 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   return folded;
 }
 
-std::vector<std::vector<CatmullRom::Cubic>> ShadowingPolynomials(const FactorModel& model) {
+std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model) {
   const ModelSpec& spec = model.spec();
   const CatmullRom spline(spec.g_nodes);
-  std::vector<std::vector<CatmullRom::Cubic>> polynomials;
+  std::vector<std::vector<CatmullRom::Piece>> pieces;
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    polynomials.push_back(spline.Polynomials(model.table(Factor::kG, t)));
+    pieces.push_back(spline.Pieces(model.table(Factor::kG, t)));
   }
-  return polynomials;
+  return pieces;
 }
 
-void EvaluateShadowing(const FoldedGrid& folded, const std::vector<CatmullRom::Cubic>& G, int begin,
+void EvaluateShadowing(const FoldedGrid& folded, const std::vector<CatmullRom::Piece>& G, int begin,
                        int end, double* K) {
   for (int n = begin; n < end; ++n) {
-    K[n - begin] = EvaluateCubic(G[folded.interval_i[n]], folded.t_i[n]) *
-                   EvaluateCubic(G[folded.interval_o[n]], folded.t_o[n]) *
+    K[n - begin] = G[folded.interval_i[n]](folded.t_i[n]) * G[folded.interval_o[n]](folded.t_o[n]) *
                    folded.inverse_cosines[n];
   }
 }
 
 double FoldedValue(const FoldedGrid& folded, const FactorModel& model, int num_threads) {
   const ModelSpec& spec = model.spec();
-  const auto G = ShadowingPolynomials(model);
+  const auto G = ShadowingPieces(model);
   const int max_row = folded.max_row_size();
   std::vector<double> partial(folded.grid.theta_h, 0.0);
   ParallelFor(folded.grid.theta_h, num_threads, [&](int h) {

@@ -44,16 +44,11 @@ struct FoldedGrid {
 FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weighting,
                 int num_threads);
 
-// The G tables of a model as cubics, [num_tables][interval], for evaluation on a FoldedGrid.
-std::vector<std::vector<CatmullRom::Cubic>> ShadowingPolynomials(const FactorModel& model);
-
-// sum_k c[k] x^k
-inline double EvaluateCubic(const CatmullRom::Cubic& c, double x) {
-  return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
-}
+// The G tables of a model in pieces, [num_tables][interval], for evaluation on a FoldedGrid.
+std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model);
 
 // K = G(theta_i) G(theta_o) / (cos theta_i cos theta_o) for the samples [begin, end).
-void EvaluateShadowing(const FoldedGrid& folded, const std::vector<CatmullRom::Cubic>& G, int begin,
+void EvaluateShadowing(const FoldedGrid& folded, const std::vector<CatmullRom::Piece>& G, int begin,
                        int end, double* K);
 
 // E of a model. The same bits for any number of threads.

@@ -13,10 +13,6 @@ namespace {
 // Samples that one item of work evaluates.
 constexpr int kChunk = 1 << 14;
 
-double Horner(const CatmullRom::Cubic& c, double x) {
-  return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
-}
-
 // Evaluate(model, GridStencils(...)) with what does not depend on the bin done once: every spline
 // is turned into cubics, so that a bin costs two arc cosines and two cubics a G table.
 class GridEvaluator {
@@ -25,9 +21,9 @@ class GridEvaluator {
       : model_(model), grid_(grid), spline_(model.spec().g_nodes) {
     std::vector<double> cosines(spline_.nodes());
     for (int k = 0; k < spline_.nodes(); ++k) cosines[k] = std::cos(spline_.NodeAngle(k));
-    cosine_ = spline_.Polynomials(cosines);
+    cosine_ = spline_.Pieces(cosines);
     for (int t = 0; t < model.spec().num_tables(Factor::kG); ++t) {
-      g_.push_back(spline_.Polynomials(model.table(Factor::kG, t)));
+      g_.push_back(spline_.Pieces(model.table(Factor::kG, t)));
     }
   }
 
@@ -36,8 +32,8 @@ class GridEvaluator {
     const Cosines cosines = ToCosines(grid_.Center(bin));
     const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));
     const CatmullRom::Location o = spline_.Locate(std::acos(cosines.o));
-    const auto product = [&](const std::vector<CatmullRom::Cubic>& spline) {
-      return Horner(spline[i.interval], i.t - 0.5) * Horner(spline[o.interval], o.t - 0.5);
+    const auto product = [&](const std::vector<CatmullRom::Piece>& spline) {
+      return spline[i.interval](i.t - 0.5) * spline[o.interval](o.t - 0.5);
     };
     const double inverse_cosines = 1 / product(cosine_);
     const ModelSpec& spec = model_.spec();
@@ -58,8 +54,8 @@ class GridEvaluator {
   const FactorModel& model_;
   MerlGrid grid_;
   CatmullRom spline_;
-  std::vector<CatmullRom::Cubic> cosine_;          // [interval]
-  std::vector<std::vector<CatmullRom::Cubic>> g_;  // [G table][interval]
+  std::vector<CatmullRom::Piece> cosine_;          // [interval]
+  std::vector<std::vector<CatmullRom::Piece>> g_;  // [G table][interval]
 };
 
 }  // namespace

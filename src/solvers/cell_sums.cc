@@ -65,7 +65,7 @@ CellSums::CellSums(const FoldedGrid& folded, const ModelSpec& spec)
       numbers_(static_cast<size_t>(folded.num_rows()) * kChannels * stride()) {}
 
 void CellSums::Accumulate(const FactorModel& model, int num_threads) {
-  const auto G = ShadowingPolynomials(model);
+  const auto G = ShadowingPieces(model);
   const int max_row = folded_.max_row_size();
   ParallelFor(folded_.grid.theta_h, num_threads, [&](int h) {
     const std::vector<double> ones(max_row, 1.0);

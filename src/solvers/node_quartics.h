@@ -54,7 +54,8 @@ class NodeQuartics {
   int nodes_;
   int padded_;  // nodes + 2
   int pairs_;   // padded * kBand
-  // Monomials to node weights and to products of two, for the first, an inner, the last interval.
+  // Bernstein terms to node weights and to products of two, for the first, an inner, the last
+  // interval.
   struct Basis {
     double first[4][SplineMoments::kFirst];
     double second[kPairs][SplineMoments::kSecond];

@@ -14,11 +14,11 @@ constexpr int kChunk = 256;
 
 // K = G(theta_i) G(theta_o) / (cos cos) of samples in one cell.
 TRILOBE_MULTIVERSION
-void CellShadowing(int size, const CatmullRom::Cubic& G_i, const CatmullRom::Cubic& G_o,
+void CellShadowing(int size, const CatmullRom::Piece& G_i, const CatmullRom::Piece& G_o,
                    const double* __restrict t_i, const double* __restrict t_o,
                    const double* __restrict inverse_cosines, double* __restrict K) {
   for (int n = 0; n < size; ++n) {
-    K[n] = EvaluateCubic(G_i, t_i[n]) * EvaluateCubic(G_o, t_o[n]) * inverse_cosines[n];
+    K[n] = G_i(t_i[n]) * G_o(t_o[n]) * inverse_cosines[n];
   }
 }
 
@@ -98,7 +98,7 @@ void ShadowingSums::ComputeAmplitudes(const FactorModel& model) {
 }
 
 SplineMoments ShadowingSums::CellMoments(const Cell& cell, const FactorModel& model, int table,
-                                         const Polynomials& G) const {
+                                         const Pieces& G) const {
   SplineMoments moments;
   double K[kMaxLobes * kChannels][kChunk];
   double residual[kChunk], y[kChunk], w_y_r[kChunk], w_y_y[kChunk];
@@ -132,7 +132,7 @@ SplineMoments ShadowingSums::CellMoments(const Cell& cell, const FactorModel& mo
 }
 
 void ShadowingSums::Accumulate(const FactorModel& model, int table, int num_threads) {
-  const Polynomials G = ShadowingPolynomials(model);
+  const Pieces G = ShadowingPieces(model);
   constexpr int kCellsPerItem = 32;
   const int num_cells = static_cast<int>(cells_.size());
   ParallelFor((num_cells + kCellsPerItem - 1) / kCellsPerItem, num_threads, [&](int item) {

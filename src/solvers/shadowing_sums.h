@@ -38,12 +38,12 @@ class ShadowingSums {
     int begin = 0, end = 0;
   };
 
-  using Polynomials = std::vector<std::vector<CatmullRom::Cubic>>;
+  using Pieces = std::vector<std::vector<CatmullRom::Piece>>;
 
   void ComputeAmplitudes(const FactorModel& model);
   void Accumulate(const FactorModel& model, int table, int num_threads);
   SplineMoments CellMoments(const Cell& cell, const FactorModel& model, int table,
-                            const Polynomials& G) const;
+                            const Pieces& G) const;
 
   ModelSpec spec_;
   int theta_d_;

@@ -107,7 +107,7 @@ class FullResolution : public testing::TestWithParam<const char*> {};
 
 TEST_P(FullResolution, EqualOver20Sweeps) {
   const BrdfTable table =
-      Thinned(Synthesize(FindSynthMaterial(GetParam()), 0.1, 1), kSanitized ? 1000 : 40);
+      Thinned(Synthesize(FindSynthMaterial(GetParam()), 0.1, 1), kSanitized ? 300 : 40);
   const Objective objective = MakeObjective(table, ModelSpec::SharedFactors(3));
   const FactorModel start = InitialModels().front().make(objective, 1);
   for (const double sigma : {0.0, 1.0}) {
