@@ -33,7 +33,7 @@ DEFINE_string(model, "shared",
               "shared: D and G shared by the channels, F by the lobes (Peng et al.); independent: "
               "one lobe, nothing shared (Bagher et al.)");
 DEFINE_int32(lobes, 3, "specular lobes of --model=shared, 0 to 8");
-DEFINE_int32(max_iterations, 100, "stop after this many iterations (for AWLS, sweeps)");
+DEFINE_int32(max_iterations, 60, "stop after this many iterations (for AWLS, sweeps)");
 DEFINE_double(max_seconds, 0, "stop after the iteration in which this time is up; 0 for no limit");
 DEFINE_double(tolerance, 1e-3, "stop when an iteration lowers E by less than this fraction of it");
 DEFINE_double(

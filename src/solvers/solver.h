@@ -24,11 +24,11 @@ enum class StopReason {
 const char* StopReasonName(StopReason reason);  // "converged", "exact_fit", ...
 
 struct SolverOptions {
-  int max_iterations = 100;
+  int max_iterations = 60;
   double max_seconds = std::numeric_limits<double>::infinity();
 
   // Stop when an iteration lowers E by less than this fraction of it.
-  double relative_decrease_tolerance = 1e-4;
+  double relative_decrease_tolerance = 1e-3;
 
   // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no
   // filter. With the filter E may rise.
