@@ -15,7 +15,7 @@ namespace {
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
   const std::string out = RequiredOut("convert", "FILE");
-  const BrdfTable table = LooksLikeModel(source)
+  const BrdfTable table = IsModelFile(source)
                               ? Reconstruct(ReadModel(source).model, source, {}, ThreadsFromFlags())
                               : LoadSource(source, SourceOptionsFromFlags());
   WriteMerl(table, out);

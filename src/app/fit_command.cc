@@ -1,7 +1,7 @@
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -25,17 +25,18 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-DEFINE_string(solver, "awls", "awls or awls_literal");
-DEFINE_string(init, "analytic",
-              "starting point: analytic, highlight, constant, random, or the path of a model file, "
-              "whose spec the fit then takes");
+DEFINE_string(solver, "awls", "one of the solvers below");
+DEFINE_string(
+    init, "analytic",
+    "one of the starting points below, or the path of a model file, whose spec the fit then "
+    "takes");
 DEFINE_string(model, "shared",
               "shared: D and G shared by the channels, F by the lobes (Peng et al.); independent: "
               "one lobe, nothing shared (Bagher et al.)");
 DEFINE_int32(lobes, 3, "specular lobes of --model=shared, 0 to 8");
 DEFINE_int32(max_iterations, 60, "stop after this many iterations (for AWLS, sweeps)");
 DEFINE_double(max_seconds, 0, "stop after the iteration in which this time is up; 0 for no limit");
-DEFINE_double(tolerance, 1e-3, "stop when an iteration lowers E by less than this fraction of it");
+DEFINE_double(tolerance, 1e-3, "stop when an iteration changes E by less than this fraction of it");
 DEFINE_double(
     g_filter, 0,
     "standard deviation, in degrees, of a Gaussian filter on G after each sweep, which may "
@@ -101,8 +102,12 @@ ModelSpec SpecFromFlags(const MerlGrid& grid) {
 
 // The starting point is a file where --init is not a name but something like a path.
 bool InitIsFile() {
+  for (const InitialModel& init : InitialModels()) {
+    if (init.name == FLAGS_init) return false;
+  }
+  std::error_code ignored;
   return FLAGS_init.find('/') != std::string::npos || FLAGS_init.ends_with(".json") ||
-         std::filesystem::exists(FLAGS_init);
+         std::filesystem::exists(FLAGS_init, ignored);
 }
 
 FactorModel StartFromFile(const MerlGrid& grid) {
@@ -130,9 +135,17 @@ SolverSummary Solve(const Objective& objective, SolverOptions options, FactorMod
   Progress progress(options);
   options.on_iteration = [&progress](const IterationRecord& record, const FactorModel&) {
     progress.Show(record);
-    return !InterruptGuard::requested();
+    return InterruptGuard::signal() == 0;
   };
   return MakeSolver(FLAGS_solver)->Solve(objective, options, model);
+}
+
+// The value of --model that stands for a spec, which a model file may have brought.
+std::string ModelName(const ModelSpec& spec) {
+  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
+  if (spec == ModelSpec::SharedFactors(spec.lobes, grid)) return "shared";
+  if (spec == ModelSpec::IndependentG(grid)) return "independent";
+  return "other";
 }
 
 nlohmann::ordered_json ReportJson(const FitInfo& fit, const ScoreReport& score,
@@ -142,7 +155,7 @@ nlohmann::ordered_json ReportJson(const FitInfo& fit, const ScoreReport& score,
           {"solver", fit.solver},
           {"init", fit.init},
           {"weighting", fit.weighting},
-          {"model", FLAGS_model},
+          {"model", ModelName(spec)},
           {"lobes", spec.lobes},
           {"parameters", spec.num_parameters()},
           {"options",
@@ -223,17 +236,14 @@ int RunFit(std::span<const std::string> arguments) {
   const bool init_is_file = InitIsFile();
   const InitialModel* const init = init_is_file ? nullptr : &FindInitialModel(FLAGS_init);
   SolverOptionsFromFlags(SpecFromFlags({}));
+  FactorModel model;
+  if (init_is_file) model = StartFromFile({});
 
   Phases phases;
   Stopwatch stopwatch;
   const BrdfTable measured = LoadSource(arguments[0], SourceOptionsFromFlags());
   phases.read = stopwatch.Lap();
-  FactorModel model;
-  ModelSpec spec = SpecFromFlags(measured.grid);
-  if (init_is_file) {
-    model = StartFromFile(measured.grid);
-    spec = model.spec();
-  }
+  const ModelSpec spec = init_is_file ? model.spec() : SpecFromFlags(measured.grid);
   const Objective objective(ValidSamples(measured), spec, weighting, threads);
   phases.prepare = stopwatch.Lap();
   if (init != nullptr) model = init->make(objective, static_cast<uint64_t>(FLAGS_seed));
@@ -268,7 +278,18 @@ int RunFit(std::span<const std::string> arguments) {
     WriteOutputs({model, DeadParameters(objective.coverage()), fit}, summary,
                  ReportJson(fit, score, spec, phases), measured, threads);
   }
-  return interrupted ? 130 : 0;  // as a shell reports a program that Ctrl-C ended
+  return interrupted ? 128 + InterruptGuard::signal() : 0;  // as a shell reports such an end
+}
+
+// "  name  description" a line, from a registry.
+template <typename T>
+std::string List(const std::vector<T>& entries) {
+  std::string text;
+  for (const T& entry : entries) {
+    text += "  " + entry.name + std::string(14 - std::min<size_t>(12, entry.name.size()), ' ') +
+            entry.description + "\n";
+  }
+  return text;
 }
 
 }  // namespace
@@ -283,7 +304,9 @@ Command FitCommand() {
               "Writes DIR/model.json (the model, in canonical form), DIR/trace.csv (iteration, "
               "seconds,\nobjective; row 0 is the starting point) and DIR/report.json (settings, "
               "errors, times).\nCtrl-C stops after the iteration and keeps the best model so far; "
-              "go on from it with\n--init=DIR/model.json.",
+              "go on from it with\n--init=DIR/model.json.\n\nsolvers:\n" +
+              List(Solvers()) + "\nstarting points (--init):\n" + List(InitialModels()) +
+              "\nweightings:\n" + List(Weightings()),
           .flags = {"solver", "init", "weighting", "model", "lobes", "max_iterations",
                     "max_seconds", "tolerance", "g_filter", "threads", "noise", "seed", "out",
                     "reconstruction", "plots"},

@@ -26,7 +26,7 @@ int ThreadsFromFlags() {
 
 SourceOptions SourceOptionsFromFlags() {
   return {.noise = FLAGS_noise,
-          .seed = static_cast<unsigned>(FLAGS_seed),
+          .seed = static_cast<uint64_t>(FLAGS_seed),
           .num_threads = ThreadsFromFlags()};
 }
 

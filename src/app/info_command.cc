@@ -6,7 +6,7 @@ namespace trilobe {
 namespace {
 
 int RunInfo(std::span<const std::string> arguments) {
-  if (LooksLikeModel(arguments[0])) {
+  if (IsModelFile(arguments[0])) {
     DescribeModel(arguments[0]);
   } else {
     DescribeMeasurement(arguments[0]);

@@ -4,13 +4,16 @@
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/io/model_file.h"
 
 namespace trilobe {
 
-bool LooksLikeModel(const std::string& path) {
+bool IsModelFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  char first = 0;
-  return (file >> std::ws >> first) && first == '{';
+  std::string begin(256, ' ');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<size_t>(file.gcount()));
+  return LooksLikeModel(begin);
 }
 
 std::string RequiredOut(const std::string& command, const std::string& what) {

@@ -7,7 +7,7 @@ namespace trilobe {
 
 // True if the file can be read and begins like a JSON object, as model files do and no measurement
 // does.
-bool LooksLikeModel(const std::string& path);
+bool IsModelFile(const std::string& path);
 
 // --out, or an Error that says what it is for: "trilobe synth needs --out=FILE".
 std::string RequiredOut(const std::string& command, const std::string& what);

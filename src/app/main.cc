@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <iomanip>
 #include <iostream>
@@ -101,6 +102,12 @@ int Run(const std::vector<std::string>& words) {
   return command->run(arguments);
 }
 
+// What was printed may still be in a buffer, and its disk full.
+void FlushOutput() {
+  if (!std::cout.flush() || std::fflush(stdout) != 0)
+    throw Error("cannot write to standard output");
+}
+
 int Main(int argc, char** argv) {
   // `trilobe fit --help` and `trilobe help fit` are the same; gflags' own --help lists everything.
   std::vector<std::string> words;
@@ -128,7 +135,9 @@ int main(int argc, char** argv) {
   google::InitGoogleLogging(argv[0]);
   gflags::SetVersionString(TRILOBE_VERSION);
   try {
-    return trilobe::Main(argc, argv);
+    const int status = trilobe::Main(argc, argv);
+    trilobe::FlushOutput();
+    return status;
   } catch (const trilobe::Error& error) {
     std::cerr << "trilobe: error: " << error.what() << "\n";
   } catch (const std::bad_alloc&) {

@@ -13,8 +13,6 @@ DECLARE_bool(json);
 
 namespace trilobe {
 
-inline constexpr const char* kChannelNames[] = {"red", "green", "blue"};
-
 // "0.01235", "1.235e+06", "infinite": four significant digits unless told otherwise.
 std::string Text(double x, int digits = 4);
 

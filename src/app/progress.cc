@@ -10,11 +10,16 @@
 namespace trilobe {
 namespace {
 
-volatile std::sig_atomic_t interrupt_requested = 0;
+volatile std::sig_atomic_t caught_signal = 0;
 
-void OnSignal(int signal) {
-  interrupt_requested = 1;
-  std::signal(signal, SIG_DFL);  // the second one ends the program
+extern "C" void OnSignal(int signal) { caught_signal = signal; }
+
+void Catch(int signal, struct sigaction* old) {
+  struct sigaction action {};
+  action.sa_handler = OnSignal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second one ends the program
+  sigaction(signal, nullptr, old);
+  if (old->sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
@@ -45,16 +50,16 @@ void Progress::Show(const IterationRecord& record) {
 }
 
 InterruptGuard::InterruptGuard() {
-  interrupt_requested = 0;
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
+  caught_signal = 0;
+  Catch(SIGINT, &old_int_);
+  Catch(SIGTERM, &old_term_);
 }
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  sigaction(SIGINT, &old_int_, nullptr);
+  sigaction(SIGTERM, &old_term_, nullptr);
 }
 
-bool InterruptGuard::requested() { return interrupt_requested != 0; }
+int InterruptGuard::signal() { return caught_signal; }
 
 }  // namespace trilobe

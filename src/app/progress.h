@@ -1,6 +1,8 @@
 #ifndef TRILOBE_APP_PROGRESS_H_
 #define TRILOBE_APP_PROGRESS_H_
 
+#include <csignal>
+
 #include "trilobe/model/iteration_record.h"
 #include "trilobe/solvers/solver.h"
 
@@ -24,8 +26,9 @@ class Progress {
   IterationRecord last_;
 };
 
-// While one lives, Ctrl-C (SIGINT) and SIGTERM do not end the program but set requested(); a second
-// one does end it.
+// While one lives, the first SIGINT (Ctrl-C) or SIGTERM does not end the program but is kept in
+// signal(); a second one does end it. A signal that the program was started to ignore stays
+// ignored.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -33,7 +36,11 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  static bool requested();
+  static int signal();  // 0 while none has come
+
+ private:
+  struct sigaction old_int_ {
+  }, old_term_{};
 };
 
 }  // namespace trilobe

@@ -100,6 +100,9 @@ std::string ResolveTarget(const std::string& path) {
   if (path.empty() || error) {
     FailToWrite(path, path.empty() ? std::strerror(ENOENT) : error.message());
   }
+  if (std::filesystem::is_symlink(target)) {
+    FailToWrite(path, "it is a symbolic link to nothing; remove it or make what it names");
+  }
   struct stat status {};
   if (stat(target.c_str(), &status) != 0) return target;
   if (S_ISDIR(status.st_mode)) FailToWrite(path, "it is a directory; give the name of a file");

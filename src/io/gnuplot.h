@@ -16,8 +16,8 @@ inline constexpr const char* kChannelColors[] = {"#D55E00", "#009E73", "#0072B2"
 inline constexpr const char* kLobeColors[] = {"#000000", "#E69F00", "#56B4E9", "#CC79A7",
                                               "#009E73", "#D55E00", "#0072B2", "#F0E442"};
 
-// Any text as a gnuplot string literal: quotes doubled, control characters and broken UTF-8
-// replaced. Use it with `noenhanced` for text that a user chose.
+// Any text as a gnuplot string literal: quotes replaced by typographic ones, control characters and
+// broken UTF-8 replaced. Use it with `noenhanced` for text that a user chose.
 std::string GnuplotQuote(std::string_view text);
 
 // A number as gnuplot reads it, independent of the locale; one that is not finite makes a gap.

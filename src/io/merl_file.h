@@ -8,9 +8,9 @@
 
 namespace trilobe {
 
-// MERL `.binary` (METHOD 1): 3 little-endian int32 (90, 90, 180), then float64 planes R, G, B.
-// All throw Error on bad input: too short, other dimensions, trailing bytes, ...
-// Writing what was read gives the same bytes.
+// MERL `.binary` (docs/method.md): 3 little-endian int32 (90, 90, 180), then float64 planes R, G,
+// B. All throw Error on bad input: too short, other dimensions, trailing bytes, ... Writing what
+// was read gives the same bytes.
 BrdfTable ParseMerl(std::string_view bytes, const std::string& source);
 BrdfTable ReadMerl(const std::string& path);
 void WriteMerl(const BrdfTable& table, const std::string& path);

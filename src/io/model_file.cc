@@ -98,8 +98,6 @@ class Node {
   const std::string& source_;
 };
 
-const char* Name(Factor factor) { return FactorName(factor); }
-
 TableSharing& Sharing(Factor factor, ModelSpec* spec) {
   return factor == Factor::kD ? spec->D : factor == Factor::kF ? spec->F : spec->G;
 }
@@ -141,7 +139,7 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
   if (!root.has("sharing")) return;
   const Node node = root["sharing"].CheckObject();
   for (const Factor factor : kFactors) {
-    const Node entry = node[Name(factor)].CheckObject();
+    const Node entry = node[FactorName(factor)].CheckObject();
     Sharing(factor, spec) = {.per_lobe = entry["per_lobe"].Bool(),
                              .per_channel = entry["per_channel"].Bool()};
   }
@@ -152,10 +150,9 @@ ModelSpec ReadSpec(const Node& root) {
   ModelSpec spec;
   spec.lobes = root["lobes"].Integer(kMaxLobes);
   ReadSharing(root, &spec);
-  constexpr int kMaxTableSize = 1 << 20;
   for (const Factor factor : kFactors) {
     const std::vector<Node> tables =
-        TableNodes(root[Name(factor)], spec.sharing(factor), spec.lobes);
+        TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes);
     if (tables.empty()) continue;
     const size_t size = tables[0].ArraySize();
     if (size < 4 || size > kMaxTableSize) {
@@ -176,7 +173,7 @@ FactorModel ReadNumbers(const Node& root) {
   for (int m = 0; m < lobes; ++m) root["s"][m].Numbers(model.s(m));
   for (const Factor factor : kFactors) {
     const std::vector<Node> tables =
-        TableNodes(root[Name(factor)], model.spec().sharing(factor), lobes);
+        TableNodes(root[FactorName(factor)], model.spec().sharing(factor), lobes);
     for (size_t k = 0; k < tables.size(); ++k) {
       tables[k].Numbers(model.table(factor, static_cast<int>(k)));
     }
@@ -190,7 +187,7 @@ std::vector<bool> ReadDead(const Node& root, const FactorModel& model) {
   if (!root.has("dead")) return dead;
   const Node node = root["dead"].CheckObject();
   for (const Factor factor : kFactors) {
-    const Node lists = node[Name(factor)];
+    const Node lists = node[FactorName(factor)];
     lists.CheckArraySize(spec.num_tables(factor));
     for (int table = 0; table < spec.num_tables(factor); ++table) {
       const Node list = lists[table];
@@ -266,7 +263,7 @@ OrderedJson TablesToJson(const FactorModel& model, Factor factor) {
   const ModelSpec& spec = model.spec();
   std::vector<OrderedJson> tables;
   for (int k = 0; k < spec.num_tables(factor); ++k) {
-    tables.push_back(FiniteNumbers(model.table(factor, k), Name(factor)));
+    tables.push_back(FiniteNumbers(model.table(factor, k), FactorName(factor)));
   }
   return Nest(tables, spec.sharing(factor), spec.lobes);
 }
@@ -305,6 +302,12 @@ void Print(const OrderedJson& json, const std::string& indent, std::string* text
 
 }  // namespace
 
+bool LooksLikeModel(std::string_view bytes) {
+  const size_t first = bytes.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && bytes[first] == '{' &&
+         bytes.substr(0, 64).find('\0') == std::string_view::npos;
+}
+
 ModelFile ParseModel(std::string_view text, const std::string& source) {
   const Json json = ParseJson(text, source);
   if (!json.is_object()) {
@@ -341,14 +344,15 @@ std::string FormatModel(const ModelFile& file) {
   json["lobes"] = spec.lobes;
   for (const Factor factor : kFactors) {
     const auto [per_lobe, per_channel] = spec.sharing(factor);
-    json["sharing"][Name(factor)] = {{"per_lobe", per_lobe}, {"per_channel", per_channel}};
+    json["sharing"][FactorName(factor)] = {{"per_lobe", per_lobe}, {"per_channel", per_channel}};
   }
   json["d"] = FiniteNumbers(model.d(), "d");
   json["s"] = OrderedJson::array();
   for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(FiniteNumbers(model.s(m), "s"));
-  for (const Factor factor : kFactors) json[Name(factor)] = TablesToJson(model, factor);
+  for (const Factor factor : kFactors) json[FactorName(factor)] = TablesToJson(model, factor);
   if (!file.dead.empty()) {
-    for (const Factor factor : kFactors) json["dead"][Name(factor)] = DeadToJson(file, factor);
+    for (const Factor factor : kFactors)
+      json["dead"][FactorName(factor)] = DeadToJson(file, factor);
   }
   json["fit"] = OrderedJson::object();
   VisitFitInfo(&file.fit, [&](const char* key, const auto* value) {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kDash[] = {"solid", "'-'", "'.'", "'_.'", "'..-'", "'-_'", "'--.'", "'_'"};
-constexpr const char* kChannelNames[] = {"red", "green", "blue"};
 
 bool Absent(const FactorModel& model, int lobe) {
   return std::ranges::all_of(model.s(lobe), [](double s) { return s == 0; });

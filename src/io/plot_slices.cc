@@ -54,11 +54,10 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
             "'60' sqrt(60), '90' sqrt(90))\n"
             "set xlabel 'θ_h [°], spaced by its root'\n"
             "set tmargin at screen 0.865\nset bmargin at screen 0.125\n";
-  const char* const names[] = {"red", "green", "blue"};
   for (int c = 0; c < kChannels; ++c) {
     const double left = 0.07 + 0.275 * c;
     script += "set lmargin at screen " + GnuplotNumber(left) + "\nset rmargin at screen " +
-              GnuplotNumber(left + 0.25) + "\nset title '" + names[c] + "' offset 0,-0.4\n";
+              GnuplotNumber(left + 0.25) + "\nset title '" + kChannelNames[c] + "' offset 0,-0.4\n";
     script +=
         c == 0 ? "set ylabel 'BRDF [1/sr] at φ_d ≈ 90°'\n" : "unset ylabel\nset format y ''\n";
     script +=

@@ -23,7 +23,7 @@ class RglBrdf {
 
   bool isotropic() const;  // one phi_i in the file
 
-  // BRDF [1/sr], >= 0 (METHOD 1); 0 where a direction is below the surface.
+  // BRDF [1/sr], >= 0 (docs/method.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const;
 
  private:

@@ -5,20 +5,11 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
+#include "trilobe/io/model_file.h"
 #include "trilobe/io/rgl_file.h"
 #include "trilobe/io/synth.h"
 
 namespace trilobe {
-namespace {
-
-bool LooksLikeJson(std::string_view bytes) {
-  const size_t first = bytes.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && bytes[first] == '{' &&
-         bytes.substr(0, 64).find('\0') == std::string_view::npos;
-}
-
-}  // namespace
-
 BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
   constexpr std::string_view kSynth = "synth:";
   if (source.starts_with(kSynth)) {
@@ -31,7 +22,7 @@ BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
   if (LooksLikeRgl(bytes)) {
     return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, options.num_threads);
   }
-  if (LooksLikeJson(bytes)) {
+  if (LooksLikeModel(bytes)) {
     throw Error(source +
                 ": this is a JSON file, as a fitted model is, and not a measurement; give a MERL "
                 ".binary file, an RGL *_rgb.bsdf file, or synth:NAME");

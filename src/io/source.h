@@ -1,6 +1,7 @@
 #ifndef TRILOBE_IO_SOURCE_H_
 #define TRILOBE_IO_SOURCE_H_
 
+#include <cstdint>
 #include <string>
 
 #include "trilobe/model/brdf_table.h"
@@ -12,7 +13,7 @@ namespace trilobe {
 // Throws Error.
 struct SourceOptions {
   double noise = 0.0;  // relative standard deviation of the multiplicative noise
-  unsigned seed = 1;
+  uint64_t seed = 1;
   int num_threads = 1;
 };
 BrdfTable LoadSource(const std::string& source, const SourceOptions& options = {});

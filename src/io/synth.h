@@ -27,7 +27,7 @@ const std::vector<SynthMaterial>& SynthMaterials();
 const SynthMaterial& FindSynthMaterial(std::string_view name);
 
 // A measurement of it as a gonioreflectometer would give it: each value multiplied by log-normal
-// noise of relative standard deviation `noise`, the same for the same seed on every machine; with
+// noise of relative standard deviation `noise`, the same for the same seed; with
 // noise, also a few grazing bins are lost (invalid), as in the MERL files.
 // Throws Error unless noise is in [0, 1].
 BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,

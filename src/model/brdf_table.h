@@ -36,7 +36,7 @@ BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid);
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid);
 
 // True where the bin is above the surface and all three stored values are finite and >= 0
-// (METHOD 1). [grid.size()]
+// (docs/method.md). [grid.size()]
 std::vector<bool> ValidBins(const BrdfTable& table);
 
 }  // namespace trilobe

@@ -1,10 +1,14 @@
 #include "trilobe/model/catmull_rom.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 
 #include "trilobe/model/directions.h"
 
 namespace trilobe {
+
+CatmullRom::CatmullRom(int nodes) : nodes_(nodes) { CHECK_GE(nodes, 4); }
 
 double CatmullRom::NodeAngle(int k) const { return (k + 0.5) / nodes_ * (kPi / 2); }
 

@@ -8,6 +8,8 @@ namespace trilobe {
 // Red, green, blue, in this order everywhere.
 inline constexpr int kChannels = 3;
 
+inline constexpr const char* kChannelNames[kChannels] = {"red", "green", "blue"};
+
 using Rgb = std::array<double, kChannels>;
 
 }  // namespace trilobe

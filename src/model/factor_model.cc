@@ -8,7 +8,7 @@
 namespace trilobe {
 namespace {
 
-// The cosine goes through the same spline as G: over cos theta_k (METHOD 2).
+// The cosine goes through the same spline as G: over cos theta_k (docs/method.md).
 double SplinedCosine(const CatmullRom& spline, const Stencil& stencil) {
   double sum = 0;
   for (int k = 0; k < stencil.size; ++k) {

@@ -71,10 +71,10 @@ class FactorModel {
 //   d + sum_m s (D . stencil) (F . stencil) (G . theta_i) (G . theta_o) * inverse_cosines.
 struct SampleStencils {
   Stencil D, F, G_i, G_o;
-  double inverse_cosines = 0;  // 1 / (cos theta_i cos theta_o), splined as G is (METHOD 2)
+  double inverse_cosines = 0;  // 1 / (cos theta_i cos theta_o), splined as G is (docs/method.md)
 };
 
-// Stencils at the centre of bin (h, d, p): D and F at their own bins (METHOD 2). The grid's
+// Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/method.md). The grid's
 // theta_h, theta_d resolution is that of the spec's D and F.
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);
 

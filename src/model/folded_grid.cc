@@ -35,13 +35,6 @@ class PairLookup {
   std::vector<int> sample_of_bin_;
 };
 
-// Cosines of the spline's nodes in pieces: the cosine goes through the same spline (METHOD 2).
-std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline) {
-  std::vector<double> cosines(spline.nodes());
-  for (int k = 0; k < spline.nodes(); ++k) cosines[k] = std::cos(spline.NodeAngle(k));
-  return spline.Pieces(cosines);
-}
-
 }  // namespace
 
 FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weighting,
@@ -112,6 +105,12 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   folded.constant = std::accumulate(constant.begin(), constant.end(), 0.0);
   folded.measured_energy = std::accumulate(energy.begin(), energy.end(), 0.0);
   return folded;
+}
+
+std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline) {
+  std::vector<double> cosines(spline.nodes());
+  for (int k = 0; k < spline.nodes(); ++k) cosines[k] = std::cos(spline.NodeAngle(k));
+  return spline.Pieces(cosines);
 }
 
 std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "trilobe/model/brdf_samples.h"
@@ -13,8 +12,9 @@
 
 namespace trilobe {
 
-// Samples on a MERL grid, folded by symmetry (METHOD 4). Exchanging theta_i and theta_o maps phi_d
-// to 180 degrees - phi_d and leaves the model's value unchanged, so the two bins become one with
+// Samples on a MERL grid, folded by symmetry (docs/method.md). Exchanging theta_i and theta_o maps
+// phi_d to 180 degrees - phi_d and leaves the model's value unchanged, so the two bins become one
+// with
 //   w = w1 + w2,  rho* = (w1 rho1 + w2 rho2) / w,
 // and E = sum w (rho - rho*)^2 + constant, constant = sum w1 w2 / w (rho1 - rho2)^2.
 // Half the samples, and theta_i >= theta_o in all of them.
@@ -43,6 +43,9 @@ struct FoldedGrid {
 
 FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weighting,
                 int num_threads);
+
+// The cosines of the nodes in pieces: they go through the same spline as G.
+std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline);
 
 // The G tables of a model in pieces, [num_tables][interval], for evaluation on a FoldedGrid.
 std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model);

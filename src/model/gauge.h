@@ -9,7 +9,7 @@
 namespace trilobe {
 
 // Scale can move between s, D, F and G without changing any BRDF value. The canonical form fixes it
-// (METHOD 5), which makes models storable and lobes comparable:
+// (docs/method.md), which makes models storable and lobes comparable:
 // - each D integrates to 1 over the projected hemisphere: sum_i D_i pi (sin^2 b_{i+1} - sin^2 b_i)
 //   = 1 with the true edges b_i of the theta_h bins;
 // - each F and each G has mean 1, weighted by `coverage`, over the bins that data touch;

@@ -8,8 +8,8 @@
 
 namespace trilobe {
 
-// The half-angle grid of the MERL database (METHOD 1), of any resolution: theta_h bins are equal
-// steps of sqrt(theta_h), theta_d and phi_d bins equal steps of the angle. Angles in radians.
+// The half-angle grid of the MERL database (docs/method.md), of any resolution: theta_h bins are
+// equal steps of sqrt(theta_h), theta_d and phi_d bins equal steps of the angle. Angles in radians.
 struct MerlGrid {
   int theta_h = 90;
   int theta_d = 90;

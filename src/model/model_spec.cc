@@ -50,9 +50,10 @@ void CheckSpec(const ModelSpec& spec) {
                 std::to_string(kMaxLobes));
   }
   for (const Factor factor : kFactors) {
-    if (spec.table_size(factor) < 4) {
+    if (spec.table_size(factor) < 4 || spec.table_size(factor) > kMaxTableSize) {
       throw Error(std::string(FactorName(factor)) + " tables have " +
-                  std::to_string(spec.table_size(factor)) + " entries; they need at least 4");
+                  std::to_string(spec.table_size(factor)) + " entries; they need 4 to " +
+                  std::to_string(kMaxTableSize));
     }
   }
 }

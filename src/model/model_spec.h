@@ -9,6 +9,7 @@
 namespace trilobe {
 
 inline constexpr int kMaxLobes = 8;
+inline constexpr int kMaxTableSize = 1024;
 
 // Whether a factor has a table of its own for each lobe, and for each colour channel.
 struct TableSharing {
@@ -47,6 +48,14 @@ struct ModelSpec {
     return factor == Factor::kD ? d_bins : factor == Factor::kF ? f_bins : g_nodes;
   }
   int num_tables(Factor factor) const;
+  // The channels that a table serves: [begin, end).
+  struct ChannelRange {
+    int begin, end;
+  };
+  ChannelRange channels(Factor factor, int table_index) const {
+    const int c = table_index % kChannels;
+    return sharing(factor).per_channel ? ChannelRange{c, c + 1} : ChannelRange{0, kChannels};
+  }
   // Which table of `factor` serves this lobe and channel, in [0, num_tables).
   int table(Factor factor, int lobe, int channel) const {
     const auto [per_lobe, per_channel] = sharing(factor);
@@ -61,7 +70,8 @@ struct ModelSpec {
   bool operator==(const ModelSpec&) const = default;
 };
 
-// Throws Error unless the lobes are in [0, kMaxLobes] and every table has at least 4 entries.
+// Throws Error unless the lobes are in [0, kMaxLobes] and every table has 4 to kMaxTableSize
+// entries.
 void CheckSpec(const ModelSpec& spec);
 
 }  // namespace trilobe

@@ -1,5 +1,7 @@
 #include "trilobe/model/objective.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -83,7 +85,8 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
                                         : factor == Factor::kF ? by_channel[c].F
                                                                : by_channel[c].G;
       for (int t = 0; t < spec.num_tables(factor); ++t) {
-        if (spec.sharing(factor).per_channel && t % kChannels != c) continue;
+        const auto [begin, end] = spec.channels(factor, t);
+        if (c < begin || c >= end) continue;
         const std::span<double> to = coverage.table(factor, t);
         for (size_t k = 0; k < to.size(); ++k) to[k] += from[k];
       }
@@ -116,8 +119,21 @@ Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting
 }
 
 double Objective::Value(const FactorModel& model) const {
+  CHECK(model.spec() == spec_) << "a model of another spec";
   return folded_ ? FoldedValue(*folded_, model, num_threads_)
                  : ScatteredValue(weighted_samples(), model);
+}
+
+WeightedSample Objective::Sample(int j) const {
+  const HalfDiffAngles angles = samples_.Angles(j);
+  WeightedSample sample;
+  sample.stencils = samples_.on_grid() ? GridStencils(spec_, samples_.grid, samples_.bins[j])
+                                       : ScatteredStencils(spec_, angles);
+  sample.rho = samples_.rho[j];
+  for (int c = 0; c < kChannels; ++c) {
+    sample.weight[c] = weighting_.weight(sample.rho[c], ToCosines(angles).i);
+  }
+  return sample;
 }
 
 const std::vector<WeightedSample>& Objective::weighted_samples() const {
@@ -127,14 +143,7 @@ const std::vector<WeightedSample>& Objective::weighted_samples() const {
     ParallelFor((samples_.size() + kChunk - 1) / kChunk, num_threads_, [&](int chunk) {
       const int end = std::min((chunk + 1) * kChunk, samples_.size());
       for (int j = chunk * kChunk; j < end; ++j) {
-        WeightedSample& sample = weighted_samples_[j];
-        const HalfDiffAngles angles = samples_.Angles(j);
-        sample.stencils = samples_.on_grid() ? GridStencils(spec_, samples_.grid, samples_.bins[j])
-                                             : ScatteredStencils(spec_, angles);
-        sample.rho = samples_.rho[j];
-        for (int c = 0; c < kChannels; ++c) {
-          sample.weight[c] = weighting_.weight(sample.rho[c], ToCosines(angles).i);
-        }
+        weighted_samples_[j] = Sample(j);
       }
     });
   });

@@ -21,7 +21,7 @@ struct WeightedSample {
 };
 
 // E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
-// METHOD 3), prepared for a spec and a weighting. Immutable; safe to share between threads.
+// docs/method.md), prepared for a spec and a weighting. Immutable; safe to share between threads.
 class Objective {
  public:
   // Throws Error if the spec's tables do not fit the samples' grid, or a value is above 1e50/sr.
@@ -41,10 +41,14 @@ class Objective {
   double MeasuredEnergy() const { return measured_energy_; }
 
   // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
-  // order of FactorModel::parameters(). 0 marks a dead bin: not a parameter at all (METHOD 5).
+  // order of FactorModel::parameters(). 0 marks a dead bin: not a parameter at all
+  // (docs/method.md).
   const std::vector<double>& coverage() const { return coverage_; }
 
-  // All samples, one by one, each with its stencils. Made at the first call (240 bytes a sample).
+  // One sample with its stencils.
+  WeightedSample Sample(int j) const;
+
+  // All of them. Made at the first call (280 bytes a sample).
   const std::vector<WeightedSample>& weighted_samples() const;
 
   // The samples folded by symmetry, or null when they are not on a grid.

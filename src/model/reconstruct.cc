@@ -6,6 +6,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/model/catmull_rom.h"
+#include "trilobe/model/folded_grid.h"
 
 namespace trilobe {
 namespace {
@@ -18,14 +19,11 @@ constexpr int kChunk = 1 << 14;
 class GridEvaluator {
  public:
   GridEvaluator(const FactorModel& model, const MerlGrid& grid)
-      : model_(model), grid_(grid), spline_(model.spec().g_nodes) {
-    std::vector<double> cosines(spline_.nodes());
-    for (int k = 0; k < spline_.nodes(); ++k) cosines[k] = std::cos(spline_.NodeAngle(k));
-    cosine_ = spline_.Pieces(cosines);
-    for (int t = 0; t < model.spec().num_tables(Factor::kG); ++t) {
-      g_.push_back(spline_.Pieces(model.table(Factor::kG, t)));
-    }
-  }
+      : model_(model),
+        grid_(grid),
+        spline_(model.spec().g_nodes),
+        cosine_(CosinePieces(spline_)),
+        g_(ShadowingPieces(model)) {}
 
   Rgb operator()(int bin) const {
     const int h = bin / (grid_.theta_d * grid_.phi_d), d = bin / grid_.phi_d % grid_.theta_d;

@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// A named choice of the weights w of E = sum w (rho - rho*)^2 (METHOD 3). Pure: a weight depends on
-// one measurement alone.
+// A named choice of the weights w of E = sum w (rho - rho*)^2 (docs/method.md). Pure: a weight
+// depends on one measurement alone.
 struct Weighting {
   std::string name;
   std::string description;  // one line: formula and source

@@ -1,6 +1,5 @@
 #include "trilobe/solvers/awls_literal.h"
 
-#include <array>
 #include <numeric>
 #include <vector>
 
@@ -92,12 +91,12 @@ class LiteralSweep {
     std::iota(all_.begin(), all_.end(), 0);
   }
 
-  // d, s, D, F, then G, one element at a time (METHOD 6).
+  // d, s, D, F, then G, one element at a time (docs/method.md).
   void operator()(FactorModel* model) const {
     const ModelSpec& spec = objective_.spec();
     for (int c = 0; c < kChannels; ++c) {
       Update(
-          all_, {c, 1},
+          all_, {c, c + 1},
           [](const SampleStencils&, int) {
             return Response{1, 0};
           },
@@ -106,15 +105,14 @@ class LiteralSweep {
     for (int m = 0; m < spec.lobes; ++m) {
       for (int c = 0; c < kChannels; ++c) {
         Update(
-            all_, {c, 1},
+            all_, {c, c + 1},
             [&](const SampleStencils& at, int) { return SpecularWeightResponse(*model, at, m, c); },
             &model->s(m)[c], *model);
       }
     }
     for (const Factor factor : kFactors) {
       for (int t = 0; t < spec.num_tables(factor); ++t) {
-        const Channels channels =
-            spec.sharing(factor).per_channel ? Channels{t % kChannels, 1} : Channels{0, kChannels};
+        const ModelSpec::ChannelRange channels = spec.channels(factor, t);
         for (int k = 0; k < spec.table_size(factor); ++k) {
           Update(
               by_entry_[static_cast<int>(factor)][k], channels,
@@ -128,18 +126,14 @@ class LiteralSweep {
   }
 
  private:
-  struct Channels {
-    int first, count;
-  };
-
   // Puts *element, a number of `model`, where E is lowest.
   template <typename ResponseOf>
-  void Update(const std::vector<int>& samples, Channels channels, const ResponseOf& response_of,
-              double* element, const FactorModel& model) const {
+  void Update(const std::vector<int>& samples, ModelSpec::ChannelRange channels,
+              const ResponseOf& response_of, double* element, const FactorModel& model) const {
     ElementQuartic change;
     for (const int j : samples) {
       const WeightedSample& sample = samples_[j];
-      for (int c = channels.first; c < channels.first + channels.count; ++c) {
+      for (int c = channels.begin; c < channels.end; ++c) {
         const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
         const Response response = response_of(sample.stencils, c);
         change.AddSample(sample.weight[c], residual, response.p1, response.p2);

@@ -169,9 +169,8 @@ void CellSums::UpdateAll(int num_threads, const std::function<void(const FactorM
         }
         return v;
       };
-      const Range channels = spec_.sharing(factor).per_channel
-                                 ? Range{t % kChannels, t % kChannels + 1}
-                                 : Range{0, kChannels};
+      const auto [begin, end] = spec_.channels(factor, t);
+      const Range channels{begin, end};
       for (int k = 0; k < spec_.table_size(factor); ++k) {
         const Range only{k, k + 1};
         update({is_D ? only : all_h, is_D ? all_d : only, channels}, moved,

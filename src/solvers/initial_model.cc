@@ -21,15 +21,7 @@ std::vector<WeightedSample> Selection(const Objective& objective) {
   std::vector<WeightedSample> selection;
   // An odd stride visits all phi_d of a grid.
   for (int j = 0; j < samples.size(); j += stride | 1) {
-    WeightedSample& sample = selection.emplace_back();
-    const HalfDiffAngles angles = samples.Angles(j);
-    sample.stencils = samples.on_grid()
-                          ? GridStencils(objective.spec(), samples.grid, samples.bins[j])
-                          : ScatteredStencils(objective.spec(), angles);
-    sample.rho = samples.rho[j];
-    for (int c = 0; c < kChannels; ++c) {
-      sample.weight[c] = objective.weighting().weight(sample.rho[c], ToCosines(angles).i);
-    }
+    selection.push_back(objective.Sample(j));
   }
   return selection;
 }
@@ -146,7 +138,7 @@ FactorModel FromDistributions(const Objective& objective, const std::vector<Tabl
 
 // Roughnesses of `lobes` lobes, spread evenly in the logarithm from narrow to wide.
 double SpreadRoughness(int lobe, int lobes) {
-  constexpr double kNarrow = 0.04, kWide = 1.0;
+  constexpr double kNarrow = 0.04, kWide = 0.5;
   const double t = lobes == 1 ? 0.5 : lobe / (lobes - 1.0);
   return kNarrow * std::pow(kWide / kNarrow, t);
 }
@@ -231,7 +223,7 @@ FactorModel RandomModel(const Objective& objective, uint64_t seed) {
 
 const std::vector<InitialModel>& InitialModels() {
   static const std::vector<InitialModel> models = {
-      {"analytic", "GGX lobes, roughnesses spread from 0.04 to 1, Smith G, Schlick F",
+      {"analytic", "GGX lobes, roughnesses spread from 0.04 to 0.5, Smith G, Schlick F",
        AnalyticModel},
       {"highlight", "D from the measured highlight, averaged over theta_d <= 45 degrees",
        HighlightModel},

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// Element updates of G from moments of spline weights, exact for fixed d, s, D, F (METHOD 4).
+// Element updates of G from moments of spline weights, exact for fixed d, s, D, F (docs/method.md).
 //
 // With y = s D F / (cos cos), summed over the lobes that a table serves, and B_a the spline's
 // weight of node a, a change of the table from G0 to G changes a sample's value by

@@ -27,7 +27,7 @@ struct SolverOptions {
   int max_iterations = 60;
   double max_seconds = std::numeric_limits<double>::infinity();
 
-  // Stop when an iteration lowers E by less than this fraction of it.
+  // Stop when an iteration changes E by less than this fraction of it.
   double relative_decrease_tolerance = 1e-3;
 
   // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no

@@ -1,5 +1,6 @@
 #include "trilobe/solvers/sweeps.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -20,7 +21,8 @@ std::optional<StopReason> ReasonToStop(const SolverOptions& options, double floo
   if (last.objective <= floor) return StopReason::kExactFit;
   if (trace.size() > 1) {
     const double before = trace[trace.size() - 2].objective;
-    if (before - last.objective < options.relative_decrease_tolerance * before) {
+    // Absolute: a rise by the filter is no sign of convergence.
+    if (std::abs(before - last.objective) < options.relative_decrease_tolerance * before) {
       return StopReason::kConverged;
     }
   }

@@ -153,7 +153,7 @@ TEST(CatmullRom, PiecesAreExactAtTheNodes) {
   }
 }
 
-// METHOD 2: the splined cosine divides; it never falls below that of the last node.
+// docs/method.md: the splined cosine divides; it never falls below that of the last node.
 TEST(CatmullRom, SplinedCosineStaysAboveThatOfTheLastNode) {
   const CatmullRom spline(90);
   std::vector<double> cosines(90);

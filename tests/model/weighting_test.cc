@@ -17,7 +17,7 @@ const std::vector<double> kValues = {0,     5e-324, 2.2e-308, 1e-200, 1e-100, 1e
                                      1,     3.14,   1e3,      1e6,    1e12,   1e50};
 const std::vector<double> kCosines = {1, 0.999, 0.5, 0.1, 0.01, 1e-6, 1e-17};
 
-// The table of METHOD 3, as it stands there.
+// The table of docs/method.md, as it stands there.
 const std::map<std::string, long double (*)(long double, long double)> kFormulas = {
     {"compressive",
      [](long double rho, long double cos_i) {
@@ -68,7 +68,7 @@ TEST(Weighting, NeverRisesWithTheMeasuredValue) {
   }
 }
 
-// The limit towards black, METHOD 3: cos^2, across the switch to the series.
+// The limit towards black, docs/method.md: cos^2, across the switch to the series.
 TEST(Weighting, CompressiveTendsToTheCosine) {
   const auto weight = FindWeighting("compressive").weight;
   for (const double cos_i : {1.0, 0.3, 0.01}) {
