@@ -6,12 +6,18 @@
 // MERL file that the environment variable TRILOBE_BENCHMARK_SOURCE names.
 
 #include <benchmark/benchmark.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "trilobe/io/merl_file.h"
+#include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/solvers/initial_model.h"
@@ -85,6 +91,40 @@ void Sweep(benchmark::State& state, const char* solver, int sweeps) {
 void BM_AwlsSweep(benchmark::State& state) { Sweep(state, "awls", 20); }
 void BM_AwlsLiteralSweep(benchmark::State& state) { Sweep(state, "awls_literal", 1); }
 
+// The whole program, file to files, with its defaults and a reconstruction: `trilobe fit`. E must
+// not depend on the number of threads.
+void BM_Fit(benchmark::State& state) {
+  const auto folder = std::filesystem::temp_directory_path() / "trilobe_benchmark_fit";
+  std::filesystem::create_directories(folder);
+  const std::string source = folder / "source.binary";
+  WriteMerl(Measurement(), source);
+  std::vector<std::string> words = {TRILOBE_PROGRAM,
+                                    "fit",
+                                    source,
+                                    "--reconstruction",
+                                    "--threads=" + std::to_string(state.range(0)),
+                                    "--out=" + folder.string()};
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  rusage usage{};
+  for (auto _ : state) {
+    const pid_t pid = fork();
+    if (pid == 0) {
+      const int null = open("/dev/null", O_WRONLY);
+      dup2(null, STDOUT_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
+    int status = 0;
+    wait4(pid, &status, 0, &usage);
+    if (status != 0) state.SkipWithError("trilobe fit failed");
+  }
+  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
+  state.counters["E"] = ReadModel(folder / "model.json").fit.objective;
+  std::filesystem::remove_all(folder);
+}
+
 BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_ValueLiteral)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -94,6 +134,7 @@ BENCHMARK(BM_AwlsLiteralSweep)
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime()
     ->Iterations(1);
+BENCHMARK(BM_Fit)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(3);
 
 }  // namespace
 }  // namespace trilobe

@@ -4,26 +4,25 @@
 Usage: experiments/materials/run.py [--program build/release/bin/trilobe] [--out out/materials]
                                     [--table docs/materials.md] SOURCE [SOURCE ...] [-- FLAG ...]
 
-Sources are MERL .binary or RGL *_rgb.bsdf files, or synth:NAME. A material whose report is already
-in the out folder is not fitted again. Flags after -- are handed to `trilobe fit`. Needs nothing but
+Sources are MERL .binary or RGL *_rgb.bsdf files, or synth:NAME. A material that the same command
+has fitted into the out folder is not fitted again. Flags after -- are handed to `trilobe fit`. Needs nothing but
 Python.
 """
 import argparse
 import json
 import pathlib
-import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from fits import fit_once  # noqa: E402
 
 COLUMNS = "material | valid bins | E at the start | E | % of black | PSNR dB | peak /sr | mean rel. error % | sweeps | stopped by | solve s | all s"
 
 
 def fit(program, source, folder, flags):
-    """Runs one fit unless its report is there; returns the report."""
-    report = folder / "report.json"
-    if not report.exists():
-        command = [program, "fit", source, f"--out={folder}", *flags]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return json.loads(report.read_text())
+    """The report of one fit."""
+    command = [program, "fit", source, f"--out={folder}", *flags]
+    return json.loads(fit_once(command, folder, "report.json").read_text())
 
 
 def row(name, report):

@@ -6,13 +6,16 @@ Usage: experiments/starts/run.py [--program build/release/bin/trilobe] [--out ou
 
 Prints a table: for each start, after 5, 10, 20, 40 and 80 sweeps, E over the lowest E that any start
 has on that material by then: geometric mean, worst case, and on how many materials it is the lowest.
-A run whose trace is already in the out folder is not repeated. Needs nothing but Python.
+A run that the same command has made is not repeated. Needs nothing but Python.
 """
 import argparse
 import csv
 import math
 import pathlib
-import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from fits import fit_once  # noqa: E402
 
 STARTS = ["analytic", "highlight", "constant", "random"]
 CHECKPOINTS = [5, 10, 20, 40, 80]
@@ -20,12 +23,9 @@ CHECKPOINTS = [5, 10, 20, 40, 80]
 
 def objectives(program, source, start, sweeps, folder):
     """E after each sweep of one fit."""
-    trace = folder / "trace.csv"
-    if not trace.exists():
-        subprocess.run([program, "fit", source, f"--init={start}", f"--max_iterations={sweeps}",
-                        "--tolerance=0", f"--out={folder}"],
-                       check=True, stdout=subprocess.DEVNULL)
-    with open(trace, newline="") as file:
+    command = [program, "fit", source, f"--init={start}", f"--max_iterations={sweeps}",
+               "--tolerance=0", f"--out={folder}"]
+    with open(fit_once(command, folder, "trace.csv"), newline="") as file:
         return {int(row["iteration"]): float(row["objective"]) for row in csv.DictReader(file)}
 
 
