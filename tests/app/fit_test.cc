@@ -165,6 +165,40 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
   }
 }
 
+TEST(Fit, SaysSoWhenItsReportIsLost) {
+  const TerminalResult result = RunOnTerminal({"synth"}, "", 0);
+  EXPECT_EQ(result.status, 0);
+  // The same with standard output on a full disk.
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const int full = open("/dev/full", O_WRONLY);
+    if (dup2(full, STDOUT_FILENO) < 0 || dup2(full, STDERR_FILENO) < 0) _exit(126);
+    execl(TRILOBE_PROGRAM, TRILOBE_PROGRAM, "synth", nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(pid, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+TEST(Fit, ReportsTheModelThatAStartBroughtAlong) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(RunProgram(Fit(folder / "first", {"--model=independent"})).status, 0);
+  const std::string init = "--init=" + (folder / "first/model.json");
+  ASSERT_EQ(RunProgram(Fit(folder / "second", {init})).status, 0);
+  EXPECT_EQ(Json(folder / "second/report.json")["model"], "independent");
+}
+
+TEST(Fit, PrefersANameToAFolderOfThatName) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "constant");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(std::filesystem::path(folder / "constant").parent_path());
+  const ProgramResult result = RunProgram(Fit(folder / "out", {"--init=constant"}));
+  std::filesystem::current_path(before);
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
 TEST(Fit, KeepsEarlierResultsWhenTheFolderIsAFile) {
   const TemporaryFolder folder;
   ASSERT_EQ(RunProgram(Fit(folder / "out")).status, 0);

@@ -90,6 +90,9 @@ TEST(ModelSpec, RefusesWhatIsOutOfRange) {
   EXPECT_NO_THROW(CheckSpec(ModelSpec::SharedFactors(1, {4, 4, 1})));
   EXPECT_THROW(CheckSpec(ModelSpec::SharedFactors(-1)), Error);
   EXPECT_THROW(CheckSpec(ModelSpec::SharedFactors(kMaxLobes + 1)), Error);
+  // Longer tables would overflow the indices of the folded grid.
+  EXPECT_NO_THROW(CheckSpec(ModelSpec{.g_nodes = kMaxTableSize}));
+  EXPECT_THROW(CheckSpec(ModelSpec{.g_nodes = kMaxTableSize + 1}), Error);
   for (int ModelSpec::*size : {&ModelSpec::d_bins, &ModelSpec::f_bins, &ModelSpec::g_nodes}) {
     for (const int bad : {3, 0, -90}) {
       ModelSpec spec;
