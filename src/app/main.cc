@@ -104,8 +104,8 @@ int Run(const std::vector<std::string>& words) {
 
 // What was printed may still be in a buffer, and its disk full.
 void FlushOutput() {
-  if (!std::cout.flush() || std::fflush(stdout) != 0)
-    throw Error("cannot write to standard output");
+  const bool written = std::cout.flush() && std::fflush(stdout) == 0;
+  if (!written) throw Error("cannot write to standard output");
 }
 
 int Main(int argc, char** argv) {

@@ -351,8 +351,9 @@ std::string FormatModel(const ModelFile& file) {
   for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(FiniteNumbers(model.s(m), "s"));
   for (const Factor factor : kFactors) json[FactorName(factor)] = TablesToJson(model, factor);
   if (!file.dead.empty()) {
-    for (const Factor factor : kFactors)
+    for (const Factor factor : kFactors) {
       json["dead"][FactorName(factor)] = DeadToJson(file, factor);
+    }
   }
   json["fit"] = OrderedJson::object();
   VisitFitInfo(&file.fit, [&](const char* key, const auto* value) {
