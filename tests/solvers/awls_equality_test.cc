@@ -37,8 +37,9 @@ void ExpectSameSweeps(const Objective& objective, const FactorModel& start,
   }
   // The fit has moved, or agreement would mean nothing.
   if (start.spec().lobes > 0) {
-    EXPECT_LT(literal_run.trace.back().objective, 0.99 * literal_run.trace.front().objective)
-        << what;
+    const double first = literal_run.trace.front().objective;
+    const double moved = std::abs(literal_run.trace.back().objective - first);
+    EXPECT_GT(moved, 0.01 * first) << what;  // with the filter also upwards, on thin data
   }
   // Numbers too, to a share of their table's largest: small ones may be poorly determined.
   const auto expect_same = [&](std::span<const double> a, std::span<const double> b,
