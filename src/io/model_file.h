@@ -33,16 +33,16 @@ struct ModelFile {
   FitInfo fit;
 };
 
+// True if the bytes begin like a JSON object, as model files do and no measurement does.
+bool LooksLikeModel(std::string_view bytes);
+
 // JSON with "format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes", "d" [3],
 // "s" [M][3], "D" [M][90], "F" [3][90], "G" [M][90] as docs/file-formats.md has it for the paper's
 // model. Tables with other sharing nest as the spec says: [lobe][channel][entry], a level left out
 // where it is shared; "sharing" {"D": {"per_lobe": true, "per_channel": false}, ...} says so, and
 // may be missing for the paper's model. "dead" {"D": [[indices], ...] a table, ...} lists dead
 // bins. Unknown keys are ignored. Errors name the file and the key. All numbers must be finite and
-// >= 0. Doubles read back bit for bit. True if the bytes begin like a JSON object, as model files
-// do and no measurement does.
-bool LooksLikeModel(std::string_view bytes);
-
+// >= 0. Doubles read back bit for bit.
 ModelFile ParseModel(std::string_view text, const std::string& source);
 ModelFile ReadModel(const std::string& path);
 std::string FormatModel(const ModelFile& file);

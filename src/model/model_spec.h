@@ -48,6 +48,7 @@ struct ModelSpec {
     return factor == Factor::kD ? d_bins : factor == Factor::kF ? f_bins : g_nodes;
   }
   int num_tables(Factor factor) const;
+
   // The channels that a table serves: [begin, end).
   struct ChannelRange {
     int begin, end;
@@ -56,6 +57,7 @@ struct ModelSpec {
     const int c = table_index % kChannels;
     return sharing(factor).per_channel ? ChannelRange{c, c + 1} : ChannelRange{0, kChannels};
   }
+
   // Which table of `factor` serves this lobe and channel, in [0, num_tables).
   int table(Factor factor, int lobe, int channel) const {
     const auto [per_lobe, per_channel] = sharing(factor);

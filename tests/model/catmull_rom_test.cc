@@ -116,6 +116,14 @@ TEST(CatmullRom, IsContinuouslyDifferentiable) {
   }
   EXPECT_NEAR(slope(0, -0.5), 1, 1e-9);  // the one-sided slopes
   EXPECT_NEAR(slope(3, 0.5), 4, 1e-9);
+  // The same to rounding, from the derivative of a piece at its ends.
+  const auto first_slope = [](const CatmullRom::Piece& p) { return p.f1 - p.f0 + p.a0; };
+  const auto last_slope = [](const CatmullRom::Piece& p) { return p.f1 - p.f0 - p.a1; };
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(last_slope(pieces[k]), first_slope(pieces[k + 1]), 1e-14);
+  }
+  EXPECT_NEAR(first_slope(pieces[0]), 1, 1e-14);
+  EXPECT_NEAR(last_slope(pieces[3]), 4, 1e-14);
 }
 
 TEST(CatmullRom, PolynomialsAndPiecesAgreeWithWeights) {
