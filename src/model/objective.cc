@@ -124,6 +124,12 @@ double Objective::Value(const FactorModel& model) const {
                  : ScatteredValue(weighted_samples(), model);
 }
 
+const SplineCells& Objective::spline_cells() const {
+  std::call_once(spline_cells_once_,
+                 [this] { spline_cells_ = std::make_unique<SplineCells>(*folded_); });
+  return *spline_cells_;
+}
+
 WeightedSample Objective::Sample(int j) const {
   const HalfDiffAngles angles = samples_.Angles(j);
   WeightedSample sample;

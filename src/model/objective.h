@@ -9,6 +9,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/folded_grid.h"
 #include "trilobe/model/model_spec.h"
+#include "trilobe/model/spline_cells.h"
 #include "trilobe/model/weighting.h"
 
 namespace trilobe {
@@ -54,6 +55,10 @@ class Objective {
   // The samples folded by symmetry, or null when they are not on a grid.
   const FoldedGrid* folded() const { return folded_.get(); }
 
+  // The folded samples by knot intervals of G, which must exist. Made at the first call (64 bytes a
+  // sample).
+  const SplineCells& spline_cells() const;
+
  private:
   BrdfSamples samples_;
   ModelSpec spec_;
@@ -62,6 +67,8 @@ class Objective {
   double measured_energy_ = 0;
   std::vector<double> coverage_;
   std::unique_ptr<FoldedGrid> folded_;
+  mutable std::once_flag spline_cells_once_;
+  mutable std::unique_ptr<SplineCells> spline_cells_;
   mutable std::once_flag weighted_samples_once_;
   mutable std::vector<WeightedSample> weighted_samples_;
 };

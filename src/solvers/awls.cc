@@ -1,28 +1,33 @@
-#include "trilobe/solvers/awls.h"
+#include <optional>
 
-#include "trilobe/base/error.h"
-#include "trilobe/solvers/cell_sums.h"
-#include "trilobe/solvers/shadowing_sums.h"
-#include "trilobe/solvers/sweeps.h"
+#include "trilobe/solvers/grid_sweep.h"
+#include "trilobe/solvers/run.h"
+#include "trilobe/solvers/solver.h"
 
 namespace trilobe {
+namespace {
 
-SolverSummary Awls::Solve(const Objective& objective, const SolverOptions& options,
-                          FactorModel* model) const {
-  const auto start = std::chrono::steady_clock::now();
-  const FoldedGrid* const folded = objective.folded();
-  if (folded == nullptr) {
-    throw Error(objective.samples().source +
-                ": solver awls needs samples on a MERL grid; use --solver=awls_literal");
+// Alternating weighted least squares (paper 2.3) from exact sums.
+class Awls : public Solver {
+ public:
+  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
+                      FactorModel* model) const override {
+    Run run("awls", objective, options, model);
+    GridSweep sweep("awls", objective, &run);
+    RepeatSweeps([&](FactorModel* current) { sweep(options.on_element, current); }, objective,
+                 *model, &run);
+    return run.Finish();
   }
-  const int threads = objective.num_threads();
-  CellSums cells(*folded, objective.spec());
-  ShadowingSums shadowing(*folded, objective.spec());
-  const auto sweep = [&](FactorModel* current) {
-    cells.UpdateAll(threads, options.on_element, current);
-    shadowing.UpdateAll(threads, options.on_element, current);
-  };
-  return RunSweeps("awls", objective, options, sweep, start, model);
+};
+
+}  // namespace
+
+SolverEntry AwlsEntry() {
+  return {.name = "awls",
+          .description = "alternating weighted least squares, one number at a time",
+          .reference = "Peng, Zheng, Lv, section 2.3; exact sums: docs/method.md",
+          .options = {"g_filter_sigma"},
+          .make = [] { return std::make_unique<Awls>(); }};
 }
 
 }  // namespace trilobe

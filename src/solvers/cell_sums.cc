@@ -87,7 +87,7 @@ void CellSums::Accumulate(const FactorModel& model, int num_threads) {
           SubtractScaled(size, x, Km, residual.data());
         }
         RowSums(size, folded_.weight[c].data() + begin, residual.data(), phi.data(), basis_,
-                b(h, d, c), A(h, d, c));
+                mutable_b(h, d, c), mutable_b(h, d, c) + basis_);
       }
     }
   });
@@ -120,7 +120,7 @@ void CellSums::UpdateElement(const Block& block, const Moved& moved, double* ele
   if (delta == 0) return;
   for_each_cell([&](int h, int d, int c) {
     const MovedLobes v = moved(h, d, c);
-    double* const b_hdc = b(h, d, c);
+    double* const b_hdc = mutable_b(h, d, c);
     const double* const A_hdc = A(h, d, c);
     for (int k = 0; k < v.count; ++k) {
       const double step = delta * v.v[k];
@@ -129,9 +129,8 @@ void CellSums::UpdateElement(const Block& block, const Moved& moved, double* ele
   });
 }
 
-void CellSums::UpdateAll(int num_threads, const std::function<void(const FactorModel&)>& on_element,
+void CellSums::UpdateAll(const std::function<void(const FactorModel&)>& on_element,
                          FactorModel* model) {
-  Accumulate(*model, num_threads);
   const Range all_h{0, folded_.grid.theta_h}, all_d{0, folded_.grid.theta_d};
   const auto update = [&](const Block& block, const auto& moved, double* element) {
     UpdateElement(block, moved, element);

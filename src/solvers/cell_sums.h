@@ -23,10 +23,21 @@ class CellSums {
  public:
   CellSums(const FoldedGrid& folded, const ModelSpec& spec);
 
-  // Passes over the samples once, then puts every element of d, s, D, F, in this order, where E is
-  // lowest with the others held. `on_element`, if set, sees the model after each.
-  void UpdateAll(int num_threads, const std::function<void(const FactorModel&)>& on_element,
-                 FactorModel* model);
+  // Passes over the samples once: sets b and A of every cell and channel.
+  void Accumulate(const FactorModel& model, int num_threads);
+
+  // Puts every element of d, s, D, F, in this order, where E is lowest with the others held, by the
+  // sums of this model. `on_element`, if set, sees the model after each.
+  void UpdateAll(const std::function<void(const FactorModel&)>& on_element, FactorModel* model);
+
+  int basis() const { return basis_; }          // 1 + lobes
+  const double* b(int h, int d, int c) const {  // [basis]
+    return &numbers_[static_cast<size_t>((h * folded_.grid.theta_d + d) * kChannels + c) *
+                     stride()];
+  }
+  const double* A(int h, int d, int c) const {  // [basis][basis], symmetric
+    return b(h, d, c) + basis_;
+  }
 
  private:
   struct Range {
@@ -37,23 +48,16 @@ class CellSums {
     Range h, d, channels;
   };
 
-  // Sets b and A of every cell and channel.
-  void Accumulate(const FactorModel& model, int num_threads);
-
   // Puts *element where E is lowest. moved(h, d, c) tells how it moves a cell's x.
   template <typename Moved>
   void UpdateElement(const Block& block, const Moved& moved, double* element);
 
   int stride() const { return basis_ + basis_ * basis_; }
-  double* b(int h, int d, int c) {  // [basis]
-    return &numbers_[static_cast<size_t>((h * folded_.grid.theta_d + d) * kChannels + c) *
-                     stride()];
-  }
-  double* A(int h, int d, int c) { return b(h, d, c) + basis_; }  // [basis][basis], symmetric
+  double* mutable_b(int h, int d, int c) { return const_cast<double*>(b(h, d, c)); }
 
   const FoldedGrid& folded_;
   const ModelSpec spec_;
-  const int basis_;  // 1 + lobes
+  const int basis_;
   std::vector<double> numbers_;
 };
 

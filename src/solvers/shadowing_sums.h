@@ -1,12 +1,11 @@
 #ifndef TRILOBE_SOLVERS_SHADOWING_SUMS_H_
 #define TRILOBE_SOLVERS_SHADOWING_SUMS_H_
 
-#include <array>
 #include <functional>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/folded_grid.h"
+#include "trilobe/model/spline_cells.h"
 #include "trilobe/solvers/node_quartics.h"
 
 namespace trilobe {
@@ -23,39 +22,25 @@ namespace trilobe {
 // which is all that the pass over the samples adds up (SplineMoments); NodeQuartics does the rest.
 class ShadowingSums {
  public:
-  // Keeps a copy of the samples, sorted by cell.
-  ShadowingSums(const FoldedGrid& folded, const ModelSpec& spec);
+  ShadowingSums(const SplineCells& samples, const ModelSpec& spec);
 
-  // For each table of G in turn: passes over the samples once, then puts every node, in order,
-  // where E is lowest with all else held. `on_element`, if set, sees the model after each.
-  void UpdateAll(int num_threads, const std::function<void(const FactorModel&)>& on_element,
-                 FactorModel* model);
+  // Passes over the samples once: sets the sums of one table of G.
+  void Accumulate(const FactorModel& model, int table, int num_threads);
+
+  // Puts every node of that table, in order, where E is lowest with all else held, by the sums of
+  // this model and table. `on_element`, if set, sees the model after each.
+  void UpdateTable(int table, const std::function<void(const FactorModel&)>& on_element,
+                   FactorModel* model);
 
  private:
-  // The samples of one pair of knot intervals.
-  struct Cell {
-    int interval_i = 0, interval_o = 0;
-    int begin = 0, end = 0;
-  };
-
   using Pieces = std::vector<std::vector<CatmullRom::Piece>>;
 
-  void ComputeAmplitudes(const FactorModel& model);
-  void Accumulate(const FactorModel& model, int table, int num_threads);
-  SplineMoments CellMoments(const Cell& cell, const FactorModel& model, int table,
-                            const Pieces& G) const;
+  SplineMoments CellMoments(const SplineCells::Cell& cell, const FactorModel& model, int table,
+                            const Pieces& G, const std::vector<double>& amplitudes) const;
 
   ModelSpec spec_;
-  int theta_d_;
-  int num_rows_;
-  std::vector<Cell> cells_;
-  // By cell. [size]
-  std::vector<int> row_;
-  std::vector<double> t_i_, t_o_, inverse_cosines_;
-  std::array<std::vector<double>, kChannels> weight_, rho_;
-
-  std::vector<double> amplitudes_;  // s D F. [kChannels][lobes][rows]
-  std::vector<NodeQuartics::CellTerms> terms_;
+  const SplineCells& samples_;
+  std::vector<NodeQuartics::CellTerms> terms_;  // by cell
   NodeQuartics quartics_;
 };
 

@@ -1,19 +1,46 @@
 #include "trilobe/solvers/solver.h"
 
 #include <sstream>
+#include <utility>
 
+#include "trilobe/base/error.h"
 #include "trilobe/base/named.h"
-#include "trilobe/solvers/awls.h"
-#include "trilobe/solvers/awls_literal.h"
+
+// The solvers of the library, the default one first. NAME stands for the function NAMEEntry(),
+// which the solver's own file defines: to add a solver is one file, and one line here.
+#define TRILOBE_FOR_EACH_SOLVER(X) \
+  X(Awls)                          \
+  X(AwlsLiteral)
 
 namespace trilobe {
+
+#define TRILOBE_DECLARE(NAME) SolverEntry NAME##Entry();
+TRILOBE_FOR_EACH_SOLVER(TRILOBE_DECLARE)
+#undef TRILOBE_DECLARE
+
+namespace {
+
+std::vector<SolverEntry>& MutableSolvers() {
+  static std::vector<SolverEntry> solvers = {
+#define TRILOBE_LIST(NAME) NAME##Entry(),
+      TRILOBE_FOR_EACH_SOLVER(TRILOBE_LIST)
+#undef TRILOBE_LIST
+  };
+  return solvers;
+}
+
+}  // namespace
 
 const char* StopReasonName(StopReason reason) {
   switch (reason) {
     case StopReason::kConverged:
       return "converged";
+    case StopReason::kOptimal:
+      return "optimal";
     case StopReason::kExactFit:
       return "exact_fit";
+    case StopReason::kNoDecrease:
+      return "no_decrease";
     case StopReason::kMaxIterations:
       return "max_iterations";
     case StopReason::kMaxSeconds:
@@ -24,6 +51,22 @@ const char* StopReasonName(StopReason reason) {
   return "";
 }
 
+const char* PositivityName(Positivity positivity) {
+  switch (positivity) {
+    case Positivity::kActiveSet:
+      return "active_set";
+    case Positivity::kBounds:
+      return "bounds";
+    case Positivity::kSquares:
+      return "squares";
+  }
+  return "";
+}
+
+const char* TrustRegionName(TrustRegion trust_region) {
+  return trust_region == TrustRegion::kDogleg ? "dogleg" : "levenberg_marquardt";
+}
+
 std::string SolverSummary::BriefReport() const {
   std::ostringstream out;
   out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
@@ -32,18 +75,20 @@ std::string SolverSummary::BriefReport() const {
   return out.str();
 }
 
-const std::vector<SolverEntry>& Solvers() {
-  static const std::vector<SolverEntry> solvers = {
-      {"awls", "alternating weighted least squares from exact sums (docs/method.md)",
-       [] { return std::make_unique<Awls>(); }},
-      {"awls_literal", "the same, element by element over the samples (Peng et al. 2.3): slow",
-       [] { return std::make_unique<AwlsLiteral>(); }},
-  };
-  return solvers;
+const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
+
+void RegisterSolver(SolverEntry entry) {
+  for (const SolverEntry& known : Solvers()) {
+    if (known.name == entry.name)
+      throw Error("there is a solver named '" + entry.name + "' already");
+  }
+  MutableSolvers().push_back(std::move(entry));
 }
 
-std::unique_ptr<Solver> MakeSolver(std::string_view name) {
-  return FindNamed("solver", name, Solvers()).make();
+const SolverEntry& FindSolver(std::string_view name) {
+  return FindNamed("solver", name, Solvers());
 }
+
+std::unique_ptr<Solver> MakeSolver(std::string_view name) { return FindSolver(name).make(); }
 
 }  // namespace trilobe

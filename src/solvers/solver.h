@@ -1,9 +1,11 @@
 #ifndef TRILOBE_SOLVERS_SOLVER_H_
 #define TRILOBE_SOLVERS_SOLVER_H_
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,42 +16,108 @@
 
 namespace trilobe {
 
+// Why a run ended: one list for all solvers.
 enum class StopReason {
-  kConverged,  // relative decrease of E in one iteration below the tolerance
-  kExactFit,   // E is at the rounding error of the data: nothing left to fit
+  kConverged,   // relative decrease of E in one iteration below the tolerance
+  kOptimal,     // scaled projected gradient below the tolerance
+  kExactFit,    // E is at the rounding error of the data: nothing left to fit
+  kNoDecrease,  // the solver finds no step that lowers E
   kMaxIterations,
   kMaxSeconds,
   kInterrupted,  // a callback asked to stop
 };
 const char* StopReasonName(StopReason reason);  // "converged", "exact_fit", ...
 
+// How the joint solvers keep parameters >= 0 (docs/solvers.md compares them).
+enum class Positivity {
+  kActiveSet,  // step in the parameters that are free to move, projected on x >= 0
+  kBounds,     // Ceres' lower bounds: projected steps with a line search
+  kSquares,    // x = p^2, no bounds
+};
+const char* PositivityName(Positivity positivity);  // "active_set", "bounds", "squares"
+
+enum class TrustRegion { kLevenbergMarquardt, kDogleg };
+const char* TrustRegionName(TrustRegion trust_region);  // "levenberg_marquardt", "dogleg"
+
+// What a run is asked to do. The first part is common to all solvers; each option of the second
+// part is one that only some solvers read, and SolverEntry::options says which.
 struct SolverOptions {
   int max_iterations = 60;
   double max_seconds = std::numeric_limits<double>::infinity();
 
-  // Stop when an iteration changes E by less than this fraction of it.
+  // Stop when an accepted iteration changes E by less than this fraction of it.
   double relative_decrease_tolerance = 1e-3;
+
+  // Stop when the scaled projected gradient (Diagnosis::optimality) is at most this, where the
+  // solver knows it.
+  double optimality_tolerance = 1e-10;
+
+  // Fill SolverSummary::diagnosis: one pass over the data and one eigenvalue decomposition.
+  bool diagnose = true;
+
+  // Sees every record and the model it belongs to, from the solving thread; returns false to stop.
+  std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration;
 
   // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no
   // filter. With the filter E may rise.
   double g_filter_sigma = 0;
 
-  // Sees every record and the model it belongs to, from the solving thread; returns false to stop.
-  std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration;
-
   // Sees the model after every single element update, where a solver makes such updates. Slow;
   // for checking that E never rises.
   std::function<void(const FactorModel&)> on_element;
+
+  Positivity positivity = Positivity::kActiveSet;
+  TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
+
+  // Earlier iterates that an accelerated solver combines.
+  int memory = 5;
+
+  // Starting points to try, the given one among them, and the seed of the random ones.
+  int starts = 6;
+  uint64_t seed = 1;
+};
+
+// Where the time of a run went [s]. What a solver does besides is in none of them.
+struct PhaseSeconds {
+  double reading = 0;         // not a solver's: for the caller to fill
+  double preparing = 0;       // sorting and copying before the first iteration
+  double evaluating = 0;      // passes over the samples: E, sums, normal equations
+  double linear_algebra = 0;  // factorisations and element updates
+  double diagnosing = 0;
+};
+
+// How good a point is, by measures that do not depend on the gauge (docs/solvers.md).
+struct Diagnosis {
+  // dE/dx / 2 = J'r, in the order of FactorModel::parameters(); 0 at dead bins.
+  std::vector<double> gradient;
+
+  // The largest projected component of the gradient in the scale in which every column of J has
+  // length 1, over |r|: the cosine between the residual and the direction that lowers E most.
+  // 0 at a stationary point, at most 1.
+  double optimality = 0;
+
+  int live_parameters = 0;  // those that data touch
+  // Of J with its columns scaled to length 1, columns of length 0 left out: singular values above
+  // `rank_tolerance` times the largest, and the largest over the smallest of those.
+  int rank = 0;
+  double rank_tolerance = 0;
+  double condition = 0;
 };
 
 struct SolverSummary {
   std::string solver;
   StopReason stop_reason = StopReason::kMaxIterations;
   double initial_objective = 0;
-  double final_objective = 0;  // of the returned model: the lowest E that was recorded
-  int iterations = 0;          // made, which may be more than the returned model's number
-  double seconds = 0;
+  double final_objective = 0;          // of the returned model: the lowest E that was recorded
+  int iterations = 0;                  // made, which may be more than the returned model's number
+  double seconds = 0;                  // of the last record: without the diagnosis
   std::vector<IterationRecord> trace;  // trace[0] is the starting point
+
+  SolverOptions given;  // as they came, without the callbacks
+  SolverOptions used;   // as the solver replaced what it could not honour or was free to choose
+  std::vector<std::string> notes;  // one sentence for each such choice, and for each warning
+  PhaseSeconds phases;
+  std::optional<Diagnosis> diagnosis;  // of the returned model
 
   // One line: solver, iterations, E from and to, why it stopped.
   std::string BriefReport() const;
@@ -73,14 +141,21 @@ class Solver {
 // A solver by name, for flags and lists.
 struct SolverEntry {
   std::string name;
-  std::string description;  // one line, with its reference
+  std::string description;           // one line
+  std::string reference;             // where the method is from
+  std::vector<std::string> options;  // members of SolverOptions that only some solvers read
   std::function<std::unique_ptr<Solver>()> make;
 };
 
 // All solvers, the default one first.
 const std::vector<SolverEntry>& Solvers();
 
+// Adds a solver that is not part of the library (docs/adding-a-solver.md). Not thread-safe: call it
+// before any other use of the list. Throws Error if the name is taken.
+void RegisterSolver(SolverEntry entry);
+
 // Throws Error that lists the known names.
+const SolverEntry& FindSolver(std::string_view name);
 std::unique_ptr<Solver> MakeSolver(std::string_view name);
 
 }  // namespace trilobe

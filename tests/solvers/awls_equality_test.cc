@@ -9,9 +9,8 @@
 
 #include "tests/test_util.h"
 #include "trilobe/io/synth.h"
-#include "trilobe/solvers/awls.h"
-#include "trilobe/solvers/awls_literal.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
@@ -27,8 +26,8 @@ SolverOptions Sweeps(int count, double g_filter_sigma = 0) {
 void ExpectSameSweeps(const Objective& objective, const FactorModel& start,
                       const SolverOptions& options, const std::string& what) {
   FactorModel fast = start, literal = start;
-  const SolverSummary fast_run = Awls().Solve(objective, options, &fast);
-  const SolverSummary literal_run = AwlsLiteral().Solve(objective, options, &literal);
+  const SolverSummary fast_run = MakeSolver("awls")->Solve(objective, options, &fast);
+  const SolverSummary literal_run = MakeSolver("awls_literal")->Solve(objective, options, &literal);
   ASSERT_EQ(literal_run.iterations, options.max_iterations) << what;
   ASSERT_EQ(fast_run.trace.size(), literal_run.trace.size()) << what;
   for (size_t k = 0; k < fast_run.trace.size(); ++k) {

@@ -7,8 +7,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/solvers/awls.h"
-#include "trilobe/solvers/awls_literal.h"
+#include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
@@ -57,12 +56,12 @@ TEST(Recovery, Awls) {
                          Case{"3 lobes", ModelSpec::SharedFactors(3, kGrid), 3000},
                          Case{"independent G", ModelSpec::IndependentG(kGrid), 5000},
                          Case{"F a lobe", f_per_lobe, 5000}}) {
-    ExpectRecovery(Awls(), of);
+    ExpectRecovery(*MakeSolver("awls"), of);
   }
 }
 
 TEST(Recovery, AwlsLiteral) {
-  ExpectRecovery(AwlsLiteral(), {"1 lobe", ModelSpec::SharedFactors(1, kGrid), 1500});
+  ExpectRecovery(*MakeSolver("awls_literal"), {"1 lobe", ModelSpec::SharedFactors(1, kGrid), 1500});
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#ifndef TRILOBE_SOLVERS_NORMAL_EQUATIONS_H_
+#define TRILOBE_SOLVERS_NORMAL_EQUATIONS_H_
+
+#include <memory>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
+
+namespace trilobe {
+
+// The least-squares problem  E(x) = |r(x)|^2,  r_jC = sqrt(w_jC) (rho_C(j) - rho*_jC), J = dr/dx,
+// at one point x, in the order of FactorModel::parameters(): all that a Gauss-Newton method asks of
+// the data. Rows and columns of dead bins are 0.
+struct GaussNewtonModel {
+  double objective = 0;          // E = r'r
+  std::vector<double> gradient;  // J'r, half the gradient of E. [num_parameters]
+  std::vector<double> JtJ;       // symmetric, both triangles. [num_parameters][num_parameters]
+};
+
+// Accumulates it without ever storing J, in one pass over the samples (docs/method.md). Samples on
+// a grid are taken folded, by their cells; others one by one.
+class NormalEquations {
+ public:
+  explicit NormalEquations(const Objective& objective);
+  ~NormalEquations();
+
+  // The same bits for any number of threads.
+  void Evaluate(const FactorModel& model, GaussNewtonModel* result);
+
+ private:
+  class Condensed;
+  const Objective& objective_;
+  std::unique_ptr<Condensed> condensed_;  // null where samples are not on a grid
+};
+
+// The same from each sample's own derivatives, in a time that only small data forgive: the
+// reference for tests, and the way for samples that are not on a grid.
+void EvaluateLiterally(const Objective& objective, const FactorModel& model,
+                       GaussNewtonModel* result);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_NORMAL_EQUATIONS_H_

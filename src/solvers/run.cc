@@ -1,0 +1,141 @@
+#include "trilobe/solvers/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "trilobe/solvers/gaussian_filter.h"
+
+namespace trilobe {
+namespace {
+
+// E of a model whose every value is off by a few rounding errors of the measured one.
+double RoundingFloor(const Objective& objective) {
+  constexpr double kError = 4 * std::numeric_limits<double>::epsilon();
+  return kError * kError * objective.MeasuredEnergy();
+}
+
+// |a - b| / |b|, scaled against overflow.
+double RelativeDistance(std::span<const double> a, std::span<const double> b) {
+  double largest = 0;
+  for (const double x : b) largest = std::max(largest, std::abs(x));
+  if (largest == 0) return std::ranges::equal(a, b) ? 0 : 1;
+  double distance = 0, norm = 0;
+  for (size_t k = 0; k < a.size(); ++k) {
+    distance = std::hypot(distance, a[k] / largest - b[k] / largest);
+    norm = std::hypot(norm, b[k] / largest);
+  }
+  return distance / norm;
+}
+
+SolverOptions WithoutCallbacks(SolverOptions options) {
+  options.on_iteration = nullptr;
+  options.on_element = nullptr;
+  return options;
+}
+
+}  // namespace
+
+Run::Run(std::string solver, const Objective& objective, const SolverOptions& options,
+         FactorModel* model)
+    : objective_(objective),
+      exact_objective_(RoundingFloor(objective)),
+      model_(model),
+      previous_(*model) {
+  summary_.solver = std::move(solver);
+  summary_.given = WithoutCallbacks(options);
+  summary_.used = options;
+}
+
+double Run::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+std::optional<StopReason> Run::ReasonToStop() const {
+  const SolverOptions& options = summary_.used;
+  const IterationRecord& last = summary_.trace.back();
+  if (last.objective <= exact_objective_) return StopReason::kExactFit;
+  if (last.optimality && *last.optimality <= options.optimality_tolerance) {
+    return StopReason::kOptimal;
+  }
+  if (summary_.trace.size() > 1 && last.accepted) {
+    const double before = summary_.trace[summary_.trace.size() - 2].objective;
+    // Absolute: a rise by the filter is no sign of convergence.
+    if (std::abs(before - last.objective) < options.relative_decrease_tolerance * before) {
+      return StopReason::kConverged;
+    }
+  }
+  if (last.iteration >= options.max_iterations) return StopReason::kMaxIterations;
+  if (last.seconds >= options.max_seconds) return StopReason::kMaxSeconds;
+  return std::nullopt;
+}
+
+bool Run::Start(std::optional<double> optimality) {
+  return Record(previous_, {.optimality = optimality});
+}
+
+bool Run::Record(const FactorModel& current, const Step& step) {
+  IterationRecord record;
+  record.iteration = static_cast<int>(summary_.trace.size());
+  if (step.objective) {
+    record.objective = *step.objective;
+  } else {
+    const ScopedTimer timer = Time(&PhaseSeconds::evaluating);
+    record.objective = objective_.Value(current);
+  }
+  record.seconds = seconds();
+  record.filtered = step.filtered;
+  record.accepted = step.accepted;
+  record.step = RelativeDistance(current.parameters(), previous_.parameters());
+  record.optimality = step.optimality;
+  summary_.trace.push_back(record);
+  if (record.iteration == 0 || record.objective < summary_.final_objective) {
+    summary_.final_objective = record.objective;
+    *model_ = current;
+  }
+  previous_ = current;
+  if (!reason_) reason_ = ReasonToStop();
+  const auto& on_iteration = summary_.used.on_iteration;
+  if (on_iteration && !on_iteration(record, current)) Stop(StopReason::kInterrupted);
+  return !reason_;
+}
+
+void Run::Stop(StopReason reason) { reason_ = reason_.value_or(reason); }
+
+SolverOptions Run::Stage(int max_iterations) {
+  SolverOptions stage = summary_.used;
+  stage.diagnose = false;
+  stage.max_iterations =
+      std::min(max_iterations, stage.max_iterations - summary_.trace.back().iteration);
+  stage.max_seconds -= seconds();
+  stage.on_iteration = [this](const IterationRecord& record, const FactorModel& current) {
+    if (record.iteration == 0) return !stopped();
+    return Record(current, {.filtered = record.filtered,
+                            .accepted = record.accepted,
+                            .optimality = record.optimality,
+                            .objective = record.objective});
+  };
+  return stage;
+}
+
+SolverSummary Run::Finish() {
+  summary_.stop_reason = reason_.value_or(StopReason::kMaxIterations);
+  summary_.initial_objective = summary_.trace.front().objective;
+  summary_.iterations = summary_.trace.back().iteration;
+  summary_.seconds = summary_.trace.back().seconds;
+  summary_.used = WithoutCallbacks(summary_.used);
+  return std::move(summary_);
+}
+
+void RepeatSweeps(const std::function<void(FactorModel*)>& sweep, const Objective& objective,
+                  FactorModel current, Run* run) {
+  const double sigma = run->options().g_filter_sigma;
+  for (bool go_on = run->Start(); go_on;) {
+    sweep(&current);
+    if (sigma > 0) SmoothG(sigma, objective.coverage(), &current);
+    go_on = run->Record(current, {.filtered = sigma > 0});
+  }
+}
+
+}  // namespace trilobe
