@@ -21,6 +21,7 @@
 #include "trilobe/io/source.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -72,6 +73,30 @@ void BM_ValueLiteral(benchmark::State& state) {
       }
     }
     benchmark::DoNotOptimize(sum);
+  }
+}
+
+// J'J, J'r and E: what one iteration of a joint solver asks of the data.
+void BM_NormalEquations(benchmark::State& state) {
+  const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
+  const FactorModel model = FindInitialModel("analytic").make(objective, 1);
+  NormalEquations equations(objective);
+  GaussNewtonModel result;
+  for (auto _ : state) {
+    equations.Evaluate(model, &result);
+    benchmark::DoNotOptimize(result.objective);
+  }
+}
+
+// Its literal counterpart: each sample's derivatives, multiplied out.
+void BM_NormalEquationsLiteral(benchmark::State& state) {
+  const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
+  const FactorModel model = FindInitialModel("analytic").make(objective, 1);
+  objective.weighted_samples();
+  GaussNewtonModel result;
+  for (auto _ : state) {
+    EvaluateLiterally(objective, model, &result);
+    benchmark::DoNotOptimize(result.objective);
   }
 }
 
@@ -128,6 +153,12 @@ void BM_Fit(benchmark::State& state) {
 BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_ValueLiteral)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_NormalEquations)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_NormalEquationsLiteral)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(1);
 BENCHMARK(BM_AwlsSweep)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseManualTime();
 BENCHMARK(BM_AwlsLiteralSweep)
     ->Arg(1)

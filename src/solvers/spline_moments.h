@@ -19,10 +19,14 @@ struct SplineMoments {
   double second[kSecond][kSecondStride] = {};  // [l][k]
 };
 
-// Adds `count` samples; t_i and t_o are t - 1/2. Each lane of each sum adds in the order of the
-// samples, so the result does not depend on the width of the machine's vectors.
+// Adds `count` samples to both; t_i and t_o are t - 1/2. Each lane of each sum adds in the order of
+// the samples, so the result does not depend on the width of the machine's vectors.
 void AddSplineMoments(int count, const double* w1, const double* w2, const double* t_i,
                       const double* t_o, SplineMoments* moments);
+
+// The second moments alone.
+void AddSecondMoments(int count, const double* w2, const double* t_i, const double* t_o,
+                      SplineMoments* moments);
 
 }  // namespace trilobe
 

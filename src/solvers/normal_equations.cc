@@ -1,0 +1,148 @@
+#include "trilobe/solvers/normal_equations.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "trilobe/base/parallel.h"
+#include "trilobe/solvers/joint_rows.h"
+#include "trilobe/solvers/joint_shadowing.h"
+
+namespace trilobe {
+namespace {
+
+// d rho / dx of one sample and channel: which parameters, and by how much.
+class SampleDerivatives {
+ public:
+  explicit SampleDerivatives(int num_parameters) : values_(num_parameters, 0.0) {}
+
+  void Set(const FactorModel& model, const SampleStencils& at, int c) {
+    for (const int k : touched_) values_[k] = 0;
+    touched_.clear();
+    Add(c, 1);
+    const ModelSpec& spec = model.spec();
+    for (int m = 0; m < spec.lobes; ++m) {
+      const double s = model.s(m)[c], D = at.D(model.D(m, c)), F = at.F(model.F(m, c));
+      const double G_i = at.G_i(model.G(m, c)), G_o = at.G_o(model.G(m, c));
+      const double K = G_i * G_o * at.inverse_cosines;
+      Add(kChannels * (1 + m) + c, D * F * K);
+      const auto add_table = [&](Factor factor, const Stencil& stencil, double scale) {
+        const int offset = model.TableOffset(factor, spec.table(factor, m, c));
+        for (int k = 0; k < stencil.size; ++k) {
+          Add(offset + stencil.index[k], stencil.weight[k] * scale);
+        }
+      };
+      add_table(Factor::kD, at.D, s * F * K);
+      add_table(Factor::kF, at.F, s * D * K);
+      add_table(Factor::kG, at.G_i, s * D * F * G_o * at.inverse_cosines);
+      add_table(Factor::kG, at.G_o, s * D * F * G_i * at.inverse_cosines);
+    }
+  }
+
+  // Each once.
+  std::span<const int> touched() const { return touched_; }
+  double operator[](int k) const { return values_[k]; }
+
+ private:
+  void Add(int k, double value) {
+    if (std::ranges::find(touched_, k) == touched_.end()) touched_.push_back(k);
+    values_[k] += value;
+  }
+
+  std::vector<double> values_;
+  std::vector<int> touched_;
+};
+
+void Clear(int num_parameters, GaussNewtonModel* result) {
+  result->gradient.assign(num_parameters, 0.0);
+  result->JtJ.assign(static_cast<size_t>(num_parameters) * num_parameters, 0.0);
+}
+
+// A dead bin may have collected rounding errors.
+void ClearDeadParameters(std::span<const double> coverage, GaussNewtonModel* result) {
+  const size_t n = coverage.size();
+  for (size_t k = 0; k < n; ++k) {
+    if (coverage[k] > 0) continue;
+    result->gradient[k] = 0;
+    for (size_t l = 0; l < n; ++l) result->JtJ[k * n + l] = result->JtJ[l * n + k] = 0;
+  }
+}
+
+}  // namespace
+
+void EvaluateLiterally(const Objective& objective, const FactorModel& model,
+                       GaussNewtonModel* result) {
+  const int n = model.spec().num_parameters();
+  Clear(n, result);
+  result->objective = objective.Value(model);
+  SampleDerivatives derivatives(n);
+  for (const WeightedSample& sample : objective.weighted_samples()) {
+    for (int c = 0; c < kChannels; ++c) {
+      const double w = sample.weight[c];
+      const double residual = Evaluate(model, sample.stencils, c) - sample.rho[c];
+      derivatives.Set(model, sample.stencils, c);
+      for (const int k : derivatives.touched()) {
+        const double w_k = w * derivatives[k];
+        result->gradient[k] += w_k * residual;
+        double* const row = &result->JtJ[static_cast<size_t>(k) * n];
+        for (const int l : derivatives.touched()) row[l] += w_k * derivatives[l];
+      }
+    }
+  }
+  ClearDeadParameters(objective.coverage(), result);
+}
+
+// In a row (theta_h, theta_d) and channel rho = sum_a x_a phi_a as in CellSums, with x_m = s D F.
+// JointRows has all products with d, s, D and F, JointShadowing those of G with itself.
+class NormalEquations::Condensed {
+ public:
+  Condensed(const FoldedGrid& folded, const SplineCells& cells, const ModelSpec& spec)
+      : rows_(folded, spec), shadowing_(cells, spec) {}
+
+  void Evaluate(const FactorModel& model, int num_threads, GaussNewtonModel* result) {
+    const int n = model.spec().num_parameters(), num_G = n - model.TableOffset(Factor::kG, 0);
+    rows_.Accumulate(model, num_threads);
+    shadowing_.Accumulate(model, num_threads);
+    // Upper triangle, then its mirror image.
+    ParallelFor(n, num_threads, [&](int k) {
+      double* const row = &result->JtJ[static_cast<size_t>(k) * n];
+      result->gradient[k] = rows_.GradientOf(k);
+      if (k < n - num_G) {
+        rows_.AddRow(k, {row, static_cast<size_t>(n)});
+      } else {
+        shadowing_.AddRow(k - (n - num_G), {row + (n - num_G), static_cast<size_t>(num_G)});
+      }
+    });
+    for (int k = 0; k < n; ++k) {
+      for (int l = 0; l < k; ++l) {
+        result->JtJ[static_cast<size_t>(k) * n + l] = result->JtJ[static_cast<size_t>(l) * n + k];
+      }
+    }
+  }
+
+ private:
+  JointRows rows_;
+  JointShadowing shadowing_;
+};
+
+NormalEquations::NormalEquations(const Objective& objective) : objective_(objective) {
+  if (objective.folded() == nullptr) return;
+  condensed_ =
+      std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(), objective.spec());
+}
+
+NormalEquations::~NormalEquations() = default;
+
+void NormalEquations::Evaluate(const FactorModel& model, GaussNewtonModel* result) {
+  if (condensed_ == nullptr) {
+    EvaluateLiterally(objective_, model, result);
+    return;
+  }
+  Clear(model.spec().num_parameters(), result);
+  result->objective = objective_.Value(model);
+  condensed_->Evaluate(model, objective_.num_threads(), result);
+  ClearDeadParameters(objective_.coverage(), result);
+}
+
+}  // namespace trilobe
