@@ -77,25 +77,28 @@ void BM_ValueLiteral(benchmark::State& state) {
 }
 
 // J'J, J'r and E: what one iteration of a joint solver asks of the data.
-void BM_NormalEquations(benchmark::State& state) {
+void Equations(benchmark::State& state, Hessian hessian) {
   const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   NormalEquations equations(objective);
-  GaussNewtonModel result;
+  QuadraticModel result;
   for (auto _ : state) {
-    equations.Evaluate(model, &result);
+    equations.Evaluate(model, hessian, &result);
     benchmark::DoNotOptimize(result.objective);
   }
 }
 
-// Its literal counterpart: each sample's derivatives, multiplied out.
+void BM_NormalEquations(benchmark::State& state) { Equations(state, Hessian::kGaussNewton); }
+void BM_NewtonEquations(benchmark::State& state) { Equations(state, Hessian::kNewton); }
+
+// The literal counterpart of the former: each sample's derivatives, multiplied out.
 void BM_NormalEquationsLiteral(benchmark::State& state) {
   const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   objective.weighted_samples();
-  GaussNewtonModel result;
+  QuadraticModel result;
   for (auto _ : state) {
-    EvaluateLiterally(objective, model, &result);
+    EvaluateLiterally(objective, model, Hessian::kGaussNewton, &result);
     benchmark::DoNotOptimize(result.objective);
   }
 }
@@ -154,6 +157,7 @@ BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->Use
 BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_ValueLiteral)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_NormalEquations)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_NewtonEquations)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_NormalEquationsLiteral)
     ->Arg(1)
     ->Unit(benchmark::kMillisecond)

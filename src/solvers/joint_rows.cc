@@ -148,7 +148,8 @@ JointRows::JointRows(const FoldedGrid& folded, const ModelSpec& spec)
       cells_(folded, spec),
       shares_(kShares) {}
 
-void JointRows::AddRowParameters(const FactorModel& model, int h, int d, Share* share) const {
+void JointRows::AddRowParameters(const FactorModel& model, Hessian hessian, int h, int d,
+                                 Share* share) const {
   const int basis = cells_.basis();
   for (int c = 0; c < kChannels; ++c) {
     const RowParameters parameters(model, h, d, c);
@@ -161,7 +162,7 @@ void JointRows::AddRowParameters(const FactorModel& model, int h, int d, Share* 
         share->gradient[p.index] -= p.v[a] * b[a];  // b is of the residual rho* - rho
         for (int e = 0; e < basis; ++e) A_v[e] += A[a * basis + e] * p.v[a];
       }
-      double* const row = &share->JtJ[static_cast<size_t>(p.index) * num_parameters_];
+      double* const row = &share->H[static_cast<size_t>(p.index) * num_parameters_];
       for (const RowParameter& q : parameters) {
         if (q.index < p.index) continue;
         double sum = 0;
@@ -169,10 +170,24 @@ void JointRows::AddRowParameters(const FactorModel& model, int h, int d, Share* 
         row[q.index] += sum;
       }
     }
+    if (hessian == Hessian::kGaussNewton) continue;
+    for (int m = 0; m < spec_.lobes; ++m) {
+      const double r_K = -b[1 + m];
+      const double s = model.s(m)[c], D = model.D(m, c)[h], F = model.F(m, c)[d];
+      const int i_s = kChannels * (1 + m) + c;
+      const int i_D = model.TableOffset(Factor::kD, spec_.table(Factor::kD, m, c)) + h;
+      const int i_F = model.TableOffset(Factor::kF, spec_.table(Factor::kF, m, c)) + d;
+      const auto at = [&](int row, int column) -> double& {
+        return share->H[static_cast<size_t>(row) * num_parameters_ + column];
+      };
+      at(i_s, i_D) += r_K * F;
+      at(i_s, i_F) += r_K * D;
+      at(i_D, i_F) += r_K * s;
+    }
   }
 }
 
-void JointRows::AddCrossProducts(const FactorModel& model,
+void JointRows::AddCrossProducts(const FactorModel& model, Hessian hessian,
                                  const std::vector<std::vector<CatmullRom::Piece>>& G, int h, int d,
                                  Workspace* workspace, Share* share) const {
   Workspace& of = *workspace;
@@ -232,40 +247,49 @@ void JointRows::AddCrossProducts(const FactorModel& model,
       for (int m = 0; m < spec_.lobes; ++m) {
         if (spec_.serves(Factor::kG, static_cast<int>(t), m, c)) X += x[c][m];
       }
-      if (X == 0) continue;
+      const int count = hi - lo + 1;
       const auto column = [&](int a) {
         for (int k = lo; k <= hi; ++k) {
-          of.column[k] = X * C[static_cast<size_t>(k) * of.lanes + of.lane(c, a)];
+          of.column[k] = C[static_cast<size_t>(k) * of.lanes + of.lane(c, a)];
         }
         return &of.column[lo];
       };
-      const int count = hi - lo + 1;
-      Axpy(count, 1, column(of.basis), &share->gradient[G_begin]);
       const RowParameters parameters(model, h, d, c);
+      const auto add = [&](const RowParameter& p, double scale, const double* of_column) {
+        if (scale == 0) return;
+        Axpy(count, scale, of_column,
+             &share->H[static_cast<size_t>(p.index) * num_parameters_ + G_begin]);
+      };
       for (int a = 0; a < of.basis; ++a) {
         const double* const of_basis = column(a);
-        for (const RowParameter& p : parameters) {
-          if (p.v[a] == 0) continue;
-          Axpy(count, p.v[a], of_basis,
-               &share->JtJ[static_cast<size_t>(p.index) * num_parameters_ + G_begin]);
+        for (const RowParameter& p : parameters) add(p, X * p.v[a], of_basis);
+      }
+      const double* const of_residual = column(of.basis);
+      Axpy(count, X, of_residual, &share->gradient[G_begin]);
+      if (hessian == Hessian::kGaussNewton) continue;
+      for (const RowParameter& p : parameters) {
+        double dX = 0;  // d X / d p
+        for (int m = 0; m < spec_.lobes; ++m) {
+          if (spec_.serves(Factor::kG, static_cast<int>(t), m, c)) dX += p.v[1 + m];
         }
+        add(p, dX, of_residual);
       }
     }
   }
 }
 
-void JointRows::Accumulate(const FactorModel& model, int num_threads) {
+void JointRows::Accumulate(const FactorModel& model, Hessian hessian, int num_threads) {
   cells_.Accumulate(model, num_threads);
   const auto G = ShadowingPieces(model);
   ParallelFor(kShares, num_threads, [&](int s) {
     Share& share = shares_[s];
     share.gradient.assign(num_parameters_, 0.0);
-    share.JtJ.assign(static_cast<size_t>(num_row_parameters_) * num_parameters_, 0.0);
+    share.H.assign(static_cast<size_t>(num_row_parameters_) * num_parameters_, 0.0);
     Workspace workspace(spec_, folded_.max_row_size());
     for (int h = s; h < folded_.grid.theta_h; h += kShares) {
       for (int d = 0; d < folded_.grid.theta_d; ++d) {
-        AddRowParameters(model, h, d, &share);
-        AddCrossProducts(model, G, h, d, &workspace, &share);
+        AddRowParameters(model, hessian, h, d, &share);
+        AddCrossProducts(model, hessian, G, h, d, &workspace, &share);
       }
     }
   });
@@ -279,7 +303,7 @@ double JointRows::GradientOf(int k) const {
 
 void JointRows::AddRow(int k, std::span<double> row) const {
   for (const Share& share : shares_) {
-    const double* const of_share = &share.JtJ[static_cast<size_t>(k) * num_parameters_];
+    const double* const of_share = &share.H[static_cast<size_t>(k) * num_parameters_];
     for (int l = k; l < num_parameters_; ++l) row[l] += of_share[l];
   }
 }

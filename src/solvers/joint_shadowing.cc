@@ -24,6 +24,14 @@ void AddAmplitude(int size, const double* __restrict a, const int* __restrict ro
   for (int n = 0; n < size; ++n) y[n] += a[row[n]] * inverse_cosines[n];
 }
 
+// GG = G(theta_i) G(theta_o)
+TRILOBE_MULTIVERSION
+void MultiplyReadings(int size, const CatmullRom::Piece& G_i, const CatmullRom::Piece& G_o,
+                      const double* __restrict t_i, const double* __restrict t_o,
+                      double* __restrict GG) {
+  for (int n = 0; n < size; ++n) GG[n] = G_i(t_i[n]) * G_o(t_o[n]);
+}
+
 // sum += w y_t y_u
 TRILOBE_MULTIVERSION
 void AddProducts(int size, const double* __restrict w, const double* y_t, const double* y_u,
@@ -61,7 +69,8 @@ JointShadowing::JointShadowing(const SplineCells& samples, const ModelSpec& spec
       spec_(spec),
       spline_(spec.g_nodes),
       size_(spec.num_tables(Factor::kG) * spec.g_nodes),
-      shares_(kShares) {
+      shares_(kShares),
+      curvature_shares_(kShares) {
   const int tables = spec.num_tables(Factor::kG);
   for (int t = 0; t < tables; ++t) {
     for (int u = t; u < tables; ++u) {
@@ -183,17 +192,86 @@ void JointShadowing::AddCell(const SplineCells::Cell& cell, const std::vector<Si
   }
 }
 
-void JointShadowing::Accumulate(const FactorModel& model, int num_threads) {
+// The moments of sum_C w (rho - rho*) y_t in one cell, for each table.
+void JointShadowing::SetResidualMoments(const SplineCells::Cell& cell, const FactorModel& model,
+                                        const std::vector<std::vector<CatmullRom::Piece>>& G,
+                                        const std::vector<double>& amplitudes,
+                                        std::vector<SplineMoments>* moments) const {
+  const size_t num_rows = static_cast<size_t>(samples_.grid.theta_h) * samples_.grid.theta_d;
+  const size_t tables = G.size();
+  double y[kMaxLobes][kChunk], residual[kChunk], GG[kChunk];
+  double w_r_y[kMaxLobes * kChannels][kChunk];
+  std::ranges::fill(*moments, SplineMoments());
+  for (int begin = cell.begin; begin < cell.end; begin += kChunk) {
+    const int size = std::min(kChunk, cell.end - begin);
+    for (size_t t = 0; t < tables; ++t) std::fill_n(w_r_y[t], size, 0.0);
+    for (int c = 0; c < kChannels; ++c) {
+      for (int n = 0; n < size; ++n) residual[n] = model.d()[c] - samples_.rho[c][begin + n];
+      for (int m = 0; m < spec_.lobes; ++m) {
+        const auto& of_table = G[spec_.table(Factor::kG, m, c)];
+        std::fill_n(y[m], size, 0.0);
+        AddAmplitude(size, &amplitudes[(static_cast<size_t>(c) * spec_.lobes + m) * num_rows],
+                     &samples_.row[begin], &samples_.inverse_cosines[begin], y[m]);
+        MultiplyReadings(size, of_table[cell.interval_i], of_table[cell.interval_o],
+                         &samples_.t_i[begin], &samples_.t_o[begin], GG);
+        for (int n = 0; n < size; ++n) residual[n] += y[m][n] * GG[n];
+      }
+      for (int m = 0; m < spec_.lobes; ++m) {
+        AddProducts(size, &samples_.weight[c][begin], residual, y[m],
+                    w_r_y[spec_.table(Factor::kG, m, c)]);
+      }
+    }
+    for (size_t t = 0; t < tables; ++t) {
+      AddFirstMoments(size, w_r_y[t], &samples_.t_i[begin], &samples_.t_o[begin], &(*moments)[t]);
+    }
+  }
+}
+
+void JointShadowing::AddCurvatureCell(const SplineCells::Cell& cell,
+                                      const std::vector<SplineMoments>& moments,
+                                      std::vector<double>* sums) const {
+  const auto B_i = spline_.WeightPolynomials(cell.interval_i);
+  const auto B_o = spline_.WeightPolynomials(cell.interval_o);
+  for (size_t t = 0; t < moments.size(); ++t) {
+    for (int a = 0; a < 4; ++a) {
+      const int node_i = cell.interval_i - 1 + a;
+      if (node_i < 0 || node_i >= spec_.g_nodes) continue;
+      for (int b = 0; b < 4; ++b) {
+        const int node_o = cell.interval_o - 1 + b;
+        if (node_o < 0 || node_o >= spec_.g_nodes) continue;
+        double sum = 0;
+        for (int l = 0; l < 4; ++l) {
+          for (int k = 0; k < 4; ++k) sum += B_o[b][l] * moments[t].first[l][k] * B_i[a][k];
+        }
+        const auto add = [&](int row, int column) {
+          (*sums)[(t * spec_.g_nodes + row) * spec_.g_nodes + column] += sum;
+        };
+        add(node_i, node_o);
+        add(node_o, node_i);
+      }
+    }
+  }
+}
+
+void JointShadowing::Accumulate(const FactorModel& model, Hessian hessian, int num_threads) {
   const std::vector<Side> sides = MakeSides(model);
+  const auto G = ShadowingPieces(model);
   const std::vector<double> amplitudes = LobeAmplitudes(samples_.grid, model);
   const int num_cells = static_cast<int>(samples_.cells.size());
   ParallelFor(kShares, num_threads, [&](int share) {
     std::vector<double>& sums = shares_[share];
     sums.assign(static_cast<size_t>(size_) * size_, 0.0);
-    std::vector<SplineMoments> moments(pairs_.size());
+    std::vector<SplineMoments> moments(pairs_.size()), residual_moments(G.size());
     for (int k = share; k < num_cells; k += kShares) {
       SetMoments(samples_.cells[k], amplitudes, &moments);
       AddCell(samples_.cells[k], sides, moments, &sums);
+    }
+    if (hessian == Hessian::kGaussNewton) return;
+    std::vector<double>& curvature = curvature_shares_[share];
+    curvature.assign(static_cast<size_t>(size_) * spec_.g_nodes, 0.0);
+    for (int k = share; k < num_cells; k += kShares) {
+      SetResidualMoments(samples_.cells[k], model, G, amplitudes, &residual_moments);
+      AddCurvatureCell(samples_.cells[k], residual_moments, &curvature);
     }
   });
 }
@@ -202,6 +280,14 @@ void JointShadowing::AddRow(int k, std::span<double> row) const {
   for (const std::vector<double>& sums : shares_) {
     const double* const of_share = &sums[static_cast<size_t>(k) * size_];
     for (int l = k; l < size_; ++l) row[l] += of_share[l];
+  }
+}
+
+void JointShadowing::AddCurvatureRow(int k, std::span<double> row) const {
+  const int first = k - k % spec_.g_nodes;  // node of the same table
+  for (const std::vector<double>& sums : curvature_shares_) {
+    const double* const of_share = &sums[static_cast<size_t>(k) * spec_.g_nodes];
+    for (int l = k; l < first + spec_.g_nodes; ++l) row[l] += of_share[l - first];
   }
 }
 

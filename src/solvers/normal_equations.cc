@@ -54,25 +54,70 @@ class SampleDerivatives {
   std::vector<int> touched_;
 };
 
-void Clear(int num_parameters, GaussNewtonModel* result) {
+// H += scale d2 rho / dx2 for one sample and channel: rho is linear in each of s, D, F and in the
+// two readings of G, so only products of two different ones have any.
+void AddSecondDerivatives(const FactorModel& model, const SampleStencils& at, int c, double scale,
+                          std::vector<double>* H) {
+  const ModelSpec& spec = model.spec();
+  const size_t n = spec.num_parameters();
+  struct Reading {
+    int offset;
+    Stencil stencil;
+    double value;
+  };
+  for (int m = 0; m < spec.lobes; ++m) {
+    const auto reading = [&](Factor factor, const Stencil& stencil) {
+      const int t = spec.table(factor, m, c);
+      return Reading{model.TableOffset(factor, t), stencil, stencil(model.table(factor, t))};
+    };
+    Stencil one;
+    one.size = 1;
+    one.index[0] = 0;
+    one.weight[0] = 1;
+    const Reading readings[] = {{kChannels * (1 + m) + c, one, model.s(m)[c]},
+                                reading(Factor::kD, at.D),
+                                reading(Factor::kF, at.F),
+                                reading(Factor::kG, at.G_i),
+                                reading(Factor::kG, at.G_o)};
+    for (int a = 0; a < 5; ++a) {
+      for (int b = 0; b < 5; ++b) {
+        if (a == b) continue;
+        double others = scale * at.inverse_cosines;
+        for (int e = 0; e < 5; ++e) {
+          if (e != a && e != b) others *= readings[e].value;
+        }
+        const Reading &of_a = readings[a], &of_b = readings[b];
+        for (int k = 0; k < of_a.stencil.size; ++k) {
+          for (int l = 0; l < of_b.stencil.size; ++l) {
+            (*H)[(of_a.offset + of_a.stencil.index[k]) * n + of_b.offset + of_b.stencil.index[l]] +=
+                others * of_a.stencil.weight[k] * of_b.stencil.weight[l];
+          }
+        }
+      }
+    }
+  }
+}
+
+void Clear(int num_parameters, QuadraticModel* result) {
   result->gradient.assign(num_parameters, 0.0);
-  result->JtJ.assign(static_cast<size_t>(num_parameters) * num_parameters, 0.0);
+  result->squared_lengths.assign(num_parameters, 0.0);
+  result->H.assign(static_cast<size_t>(num_parameters) * num_parameters, 0.0);
 }
 
 // A dead bin may have collected rounding errors.
-void ClearDeadParameters(std::span<const double> coverage, GaussNewtonModel* result) {
+void ClearDeadParameters(std::span<const double> coverage, QuadraticModel* result) {
   const size_t n = coverage.size();
   for (size_t k = 0; k < n; ++k) {
     if (coverage[k] > 0) continue;
-    result->gradient[k] = 0;
-    for (size_t l = 0; l < n; ++l) result->JtJ[k * n + l] = result->JtJ[l * n + k] = 0;
+    result->gradient[k] = result->squared_lengths[k] = 0;
+    for (size_t l = 0; l < n; ++l) result->H[k * n + l] = result->H[l * n + k] = 0;
   }
 }
 
 }  // namespace
 
-void EvaluateLiterally(const Objective& objective, const FactorModel& model,
-                       GaussNewtonModel* result) {
+void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
+                       QuadraticModel* result) {
   const int n = model.spec().num_parameters();
   Clear(n, result);
   result->objective = objective.Value(model);
@@ -85,8 +130,12 @@ void EvaluateLiterally(const Objective& objective, const FactorModel& model,
       for (const int k : derivatives.touched()) {
         const double w_k = w * derivatives[k];
         result->gradient[k] += w_k * residual;
-        double* const row = &result->JtJ[static_cast<size_t>(k) * n];
+        double* const row = &result->H[static_cast<size_t>(k) * n];
         for (const int l : derivatives.touched()) row[l] += w_k * derivatives[l];
+        result->squared_lengths[k] += w_k * derivatives[k];
+      }
+      if (hessian == Hessian::kNewton) {
+        AddSecondDerivatives(model, sample.stencils, c, w * residual, &result->H);
       }
     }
   }
@@ -100,23 +149,28 @@ class NormalEquations::Condensed {
   Condensed(const FoldedGrid& folded, const SplineCells& cells, const ModelSpec& spec)
       : rows_(folded, spec), shadowing_(cells, spec) {}
 
-  void Evaluate(const FactorModel& model, int num_threads, GaussNewtonModel* result) {
+  void Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
+                QuadraticModel* result) {
     const int n = model.spec().num_parameters(), num_G = n - model.TableOffset(Factor::kG, 0);
-    rows_.Accumulate(model, num_threads);
-    shadowing_.Accumulate(model, num_threads);
+    rows_.Accumulate(model, hessian, num_threads);
+    shadowing_.Accumulate(model, hessian, num_threads);
     // Upper triangle, then its mirror image.
     ParallelFor(n, num_threads, [&](int k) {
-      double* const row = &result->JtJ[static_cast<size_t>(k) * n];
+      double* const row = &result->H[static_cast<size_t>(k) * n];
       result->gradient[k] = rows_.GradientOf(k);
       if (k < n - num_G) {
         rows_.AddRow(k, {row, static_cast<size_t>(n)});
+        result->squared_lengths[k] = row[k];  // no second derivative here
       } else {
-        shadowing_.AddRow(k - (n - num_G), {row + (n - num_G), static_cast<size_t>(num_G)});
+        const std::span<double> of_G(row + (n - num_G), num_G);
+        shadowing_.AddRow(k - (n - num_G), of_G);
+        result->squared_lengths[k] = row[k];
+        if (hessian == Hessian::kNewton) shadowing_.AddCurvatureRow(k - (n - num_G), of_G);
       }
     });
     for (int k = 0; k < n; ++k) {
       for (int l = 0; l < k; ++l) {
-        result->JtJ[static_cast<size_t>(k) * n + l] = result->JtJ[static_cast<size_t>(l) * n + k];
+        result->H[static_cast<size_t>(k) * n + l] = result->H[static_cast<size_t>(l) * n + k];
       }
     }
   }
@@ -134,14 +188,14 @@ NormalEquations::NormalEquations(const Objective& objective) : objective_(object
 
 NormalEquations::~NormalEquations() = default;
 
-void NormalEquations::Evaluate(const FactorModel& model, GaussNewtonModel* result) {
+void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   if (condensed_ == nullptr) {
-    EvaluateLiterally(objective_, model, result);
+    EvaluateLiterally(objective_, model, hessian, result);
     return;
   }
   Clear(model.spec().num_parameters(), result);
   result->objective = objective_.Value(model);
-  condensed_->Evaluate(model, objective_.num_threads(), result);
+  condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
   ClearDeadParameters(objective_.coverage(), result);
 }
 

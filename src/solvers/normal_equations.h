@@ -10,12 +10,19 @@
 namespace trilobe {
 
 // The least-squares problem  E(x) = |r(x)|^2,  r_jC = sqrt(w_jC) (rho_C(j) - rho*_jC), J = dr/dx,
-// at one point x, in the order of FactorModel::parameters(): all that a Gauss-Newton method asks of
-// the data. Rows and columns of dead bins are 0.
-struct GaussNewtonModel {
+// to second order around one point x, in the order of FactorModel::parameters():
+//   E(x + s) / 2 = E / 2 + g's + s'H s / 2.
+// Rows and columns of dead bins are 0.
+struct QuadraticModel {
   double objective = 0;          // E = r'r
-  std::vector<double> gradient;  // J'r, half the gradient of E. [num_parameters]
-  std::vector<double> JtJ;       // symmetric, both triangles. [num_parameters][num_parameters]
+  std::vector<double> gradient;  // g = J'r. [num_parameters]
+  std::vector<double> H;         // symmetric, both triangles. [num_parameters][num_parameters]
+  std::vector<double> squared_lengths;  // of the columns of J: the diagonal of J'J
+};
+
+enum class Hessian {
+  kGaussNewton,  // J'J
+  kNewton,       // J'J + sum w (rho - rho*) d2 rho / dx2: all of it, perhaps indefinite
 };
 
 // Accumulates it without ever storing J, in one pass over the samples (docs/method.md). Samples on
@@ -26,7 +33,7 @@ class NormalEquations {
   ~NormalEquations();
 
   // The same bits for any number of threads.
-  void Evaluate(const FactorModel& model, GaussNewtonModel* result);
+  void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:
   class Condensed;
@@ -36,8 +43,8 @@ class NormalEquations {
 
 // The same from each sample's own derivatives, in a time that only small data forgive: the
 // reference for tests, and the way for samples that are not on a grid.
-void EvaluateLiterally(const Objective& objective, const FactorModel& model,
-                       GaussNewtonModel* result);
+void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
+                       QuadraticModel* result);
 
 }  // namespace trilobe
 

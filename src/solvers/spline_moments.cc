@@ -19,6 +19,23 @@ struct Terms {
   }
 };
 
+// The 4 x 4 sums of products of two cubic terms, one a side.
+struct FirstSums {
+  Lanes4 sums[SplineMoments::kFirst];
+
+  explicit FirstSums(const SplineMoments& moments) {
+    std::memcpy(sums, moments.first, sizeof(sums));
+  }
+  void Add(double w, const Terms& i, const Terms& o) {
+    const Lanes4 w_low = w * Lanes4{i.e0, i.e1, i.e2, i.e3};
+    sums[0] += o.e0 * w_low;
+    sums[1] += o.e1 * w_low;
+    sums[2] += o.e2 * w_low;
+    sums[3] += o.e3 * w_low;
+  }
+  void Store(SplineMoments* moments) const { std::memcpy(moments->first, sums, sizeof(sums)); }
+};
+
 // The 7 x 7 sums of products of two cubic terms e_k = t^k (1 - t)^(3 - k): each is one of degree 6,
 // and all seven are e_0 e_k and e_k e_3: eight lanes without a shuffle, k = 3 twice.
 struct SecondSums {
@@ -51,20 +68,23 @@ struct SecondSums {
 TRILOBE_MULTIVERSION
 void AddSplineMoments(int count, const double* w1, const double* w2, const double* t_i,
                       const double* t_o, SplineMoments* moments) {
-  Lanes4 first[SplineMoments::kFirst];
+  FirstSums first(*moments);
   SecondSums second;
-  std::memcpy(first, moments->first, sizeof(first));
   for (int n = 0; n < count; ++n) {
     const Terms i(t_i[n]), o(t_o[n]);
-    const Lanes4 w_low = w1[n] * Lanes4{i.e0, i.e1, i.e2, i.e3};
-    first[0] += o.e0 * w_low;
-    first[1] += o.e1 * w_low;
-    first[2] += o.e2 * w_low;
-    first[3] += o.e3 * w_low;
+    first.Add(w1[n], i, o);
     second.Add(w2[n], i, o);
   }
-  std::memcpy(moments->first, first, sizeof(first));
+  first.Store(moments);
   second.AddTo(moments);
+}
+
+TRILOBE_MULTIVERSION
+void AddFirstMoments(int count, const double* w1, const double* t_i, const double* t_o,
+                     SplineMoments* moments) {
+  FirstSums first(*moments);
+  for (int n = 0; n < count; ++n) first.Add(w1[n], Terms(t_i[n]), Terms(t_o[n]));
+  first.Store(moments);
 }
 
 TRILOBE_MULTIVERSION

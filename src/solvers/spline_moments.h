@@ -24,7 +24,9 @@ struct SplineMoments {
 void AddSplineMoments(int count, const double* w1, const double* w2, const double* t_i,
                       const double* t_o, SplineMoments* moments);
 
-// The second moments alone.
+// The first, the second moments alone.
+void AddFirstMoments(int count, const double* w1, const double* t_i, const double* t_o,
+                     SplineMoments* moments);
 void AddSecondMoments(int count, const double* w2, const double* t_i, const double* t_o,
                       SplineMoments* moments);
 

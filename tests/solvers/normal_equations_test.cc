@@ -13,19 +13,20 @@ namespace {
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 7, .phi_d = 12};
 
 // Relative to the lengths of the two columns (and of the residual): what a Gauss-Newton step sees.
-void ExpectEqual(const GaussNewtonModel& actual, const GaussNewtonModel& expected,
+void ExpectEqual(const QuadraticModel& actual, const QuadraticModel& expected,
                  const std::string& what) {
   const size_t n = expected.gradient.size();
   ASSERT_EQ(actual.gradient.size(), n);
   EXPECT_NEAR(actual.objective, expected.objective, 1e-12 * expected.objective) << what;
-  const auto length = [&](size_t k) { return std::sqrt(expected.JtJ[k * n + k]); };
+  const auto length = [&](size_t k) { return std::sqrt(expected.squared_lengths[k]); };
   int wrong = 0;
   for (size_t k = 0; k < n; ++k) {
     const double scale = 1e-11 * length(k);
     wrong += !(std::abs(actual.gradient[k] - expected.gradient[k]) <=
                scale * std::sqrt(expected.objective));
     for (size_t l = 0; l < n; ++l) {
-      wrong += !(std::abs(actual.JtJ[k * n + l] - expected.JtJ[k * n + l]) <= scale * length(l));
+      const double H = expected.H[k * n + l];
+      wrong += !(std::abs(actual.H[k * n + l] - H) <= scale * length(l) + 1e-11 * std::abs(H));
     }
   }
   EXPECT_EQ(wrong, 0) << what;
@@ -47,10 +48,14 @@ TEST(NormalEquations, CondensedEqualsLiteral) {
       for (const bool zeros : {false, true}) {
         FactorModel model = RandomModel(spec, 4);
         if (zeros) PutSomeAtZero(&model);
-        GaussNewtonModel actual, expected;
-        equations.Evaluate(model, &actual);
-        EvaluateLiterally(objective, model, &expected);
-        ExpectEqual(actual, expected, name + ", " + weighting + (zeros ? ", with zeros" : ""));
+        QuadraticModel actual, expected;
+        for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
+          equations.Evaluate(model, hessian, &actual);
+          EvaluateLiterally(objective, model, hessian, &expected);
+          ExpectEqual(actual, expected,
+                      name + ", " + weighting + (zeros ? ", with zeros" : "") +
+                          (hessian == Hessian::kNewton ? ", Newton" : ""));
+        }
       }
     }
   }
@@ -60,8 +65,8 @@ TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
   const FactorModel model = RandomModel(spec, 6);
-  GaussNewtonModel at;
-  EvaluateLiterally(objective, model, &at);
+  QuadraticModel at;
+  EvaluateLiterally(objective, model, Hessian::kNewton, &at);
   for (int k = 0; k < spec.num_parameters(); ++k) {
     constexpr double kStep = 1e-5;
     FactorModel below = model, above = model;
@@ -69,22 +74,31 @@ TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
     above.parameters()[k] += kStep;
     const double slope = (objective.Value(above) - objective.Value(below)) / (2 * kStep);
     EXPECT_NEAR(2 * at.gradient[k], slope, 1e-6 * at.objective) << k;
+    QuadraticModel at_below, at_above;
+    EvaluateLiterally(objective, below, Hessian::kNewton, &at_below);
+    EvaluateLiterally(objective, above, Hessian::kNewton, &at_above);
+    for (int l = 0; l < spec.num_parameters(); ++l) {
+      const double curvature = (at_above.gradient[l] - at_below.gradient[l]) / (2 * kStep);
+      EXPECT_NEAR(at.H[static_cast<size_t>(k) * spec.num_parameters() + l], curvature,
+                  1e-6 * at.objective)
+          << k << ", " << l;
+    }
   }
 }
 
 TEST(NormalEquations, SameBitsForAnyNumberOfThreads) {
   const ModelSpec spec = ModelSpec::SharedFactors(3, kGrid);
   const FactorModel model = RandomModel(spec, 4);
-  GaussNewtonModel one;
+  QuadraticModel one;
   for (const int threads : {1, 2, 3, 7}) {
     const Objective objective(ValidSamples(RandomTable(kGrid, 3)), spec,
                               FindWeighting("compressive"), threads);
-    GaussNewtonModel many;
-    NormalEquations(objective).Evaluate(model, &many);
+    QuadraticModel many;
+    NormalEquations(objective).Evaluate(model, Hessian::kNewton, &many);
     if (threads == 1) one = many;
     EXPECT_EQ(many.objective, one.objective);
     EXPECT_EQ(many.gradient, one.gradient);
-    EXPECT_EQ(many.JtJ, one.JtJ);
+    EXPECT_EQ(many.H, one.H);
   }
 }
 
@@ -95,15 +109,15 @@ TEST(NormalEquations, DeadBinsAreZero) {
   }
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(table, spec);
-  GaussNewtonModel result;
-  NormalEquations(objective).Evaluate(RandomModel(spec, 4), &result);
+  QuadraticModel result;
+  NormalEquations(objective).Evaluate(RandomModel(spec, 4), Hessian::kNewton, &result);
   const size_t n = result.gradient.size();
   int dead = 0;
   for (size_t k = 0; k < n; ++k) {
     if (objective.coverage()[k] > 0) continue;
     ++dead;
     EXPECT_EQ(result.gradient[k], 0);
-    for (size_t l = 0; l < n; ++l) EXPECT_EQ(result.JtJ[k * n + l], 0);
+    for (size_t l = 0; l < n; ++l) EXPECT_EQ(result.H[k * n + l], 0);
   }
   EXPECT_GE(dead, 2);
 }

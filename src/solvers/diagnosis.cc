@@ -1,0 +1,58 @@
+#include "trilobe/solvers/diagnosis.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace trilobe {
+
+double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double> x) {
+  if (!(at.objective > 0)) return 0;
+  const size_t n = x.size();
+  double largest = 0;
+  for (size_t k = 0; k < n; ++k) {
+    const double length = std::sqrt(at.squared_lengths[k]);
+    if (length == 0) continue;
+    const double g = at.gradient[k] / length;
+    largest = std::max(largest, g > 0 ? std::min(g, x[k] * length) : -g);
+  }
+  return largest / std::sqrt(at.objective);
+}
+
+Diagnosis Diagnose(const Objective& objective, const FactorModel& model) {
+  QuadraticModel at;
+  NormalEquations(objective).Evaluate(model, Hessian::kGaussNewton, &at);
+  Diagnosis diagnosis;
+  diagnosis.gradient = at.gradient;
+  diagnosis.optimality = ScaledProjectedGradient(at, model.parameters());
+  diagnosis.live_parameters =
+      static_cast<int>(std::ranges::count_if(objective.coverage(), [](double w) { return w > 0; }));
+
+  const int n = static_cast<int>(at.gradient.size());
+  std::vector<int> moving;  // columns of J that are not 0
+  for (int k = 0; k < n; ++k) {
+    if (at.squared_lengths[k] > 0) moving.push_back(k);
+  }
+  const Eigen::Map<const Eigen::MatrixXd> JtJ(at.H.data(), n, n);
+  const Eigen::VectorXd scale = JtJ.diagonal()(moving).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled =
+      scale.asDiagonal() * JtJ(moving, moving).eval() * scale.asDiagonal();
+  // Eigenvalues are squared singular values, each off by some n eps times the largest: below the
+  // root of that no singular value can be told from 0.
+  diagnosis.rank_tolerance =
+      std::sqrt(std::numeric_limits<double>::epsilon() * static_cast<double>(moving.size() + 1));
+  if (moving.empty() || !scaled.allFinite()) return diagnosis;
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  const double largest = std::sqrt(values(values.size() - 1));
+  for (int k = 0; k < values.size(); ++k) {
+    const double singular = std::sqrt(std::max(0.0, values(k)));
+    if (singular <= diagnosis.rank_tolerance * largest) continue;
+    if (diagnosis.rank++ == 0) diagnosis.condition = largest / singular;
+  }
+  return diagnosis;
+}
+
+}  // namespace trilobe

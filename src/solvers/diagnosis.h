@@ -1,0 +1,21 @@
+#ifndef TRILOBE_SOLVERS_DIAGNOSIS_H_
+#define TRILOBE_SOLVERS_DIAGNOSIS_H_
+
+#include <span>
+
+#include "trilobe/solvers/normal_equations.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// Diagnosis::optimality: in the scale z_i = x_i |J_i|, g_i = (J'r)_i / |J_i|, the largest component
+// of the step z - max(0, z - g) of projected steepest descent, over |r|. It does not depend on the
+// gauge, since scaling a parameter scales its column of J inversely.
+double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double> x);
+
+// All of a Diagnosis: one pass over the data and one eigenvalue decomposition of J'J.
+Diagnosis Diagnose(const Objective& objective, const FactorModel& model);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_DIAGNOSIS_H_

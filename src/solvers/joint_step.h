@@ -1,0 +1,51 @@
+#ifndef TRILOBE_SOLVERS_JOINT_STEP_H_
+#define TRILOBE_SOLVERS_JOINT_STEP_H_
+
+#include <optional>
+#include <vector>
+
+#include "trilobe/solvers/nonnegative_step.h"
+#include "trilobe/solvers/normal_equations.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// Levenberg-Marquardt iterations on all parameters at once, under x >= 0, one trial step at a time.
+// The damping is Nielsen's (1999): lambda falls smoothly with the gain of an accepted step, and
+// rises ever faster while steps are rejected.
+class JointStepper {
+ public:
+  // Times go to *phases.
+  JointStepper(const Objective& objective, PhaseSeconds* phases);
+
+  Hessian hessian_ = Hessian::kGaussNewton;
+  // Goes on from another point, with the same damping.
+  void Restart(const FactorModel& model);
+
+  // Tries one step; false if it did not lower E, so that the point stayed where it was.
+  bool Step();
+  // No damping leads to a lower E.
+  bool exhausted() const;
+
+  const FactorModel& current() const { return current_; }
+  double E() const { return E_; }
+  // Diagnosis::optimality of the point. Passes over the data when the point is new.
+  double Optimality();
+
+ private:
+  void Linearize();
+
+  const Objective& objective_;
+  PhaseSeconds* const phases_;
+  NormalEquations equations_;
+  FactorModel current_;
+  double E_ = 0;
+  QuadraticModel at_;  // of the current point, if linearized_
+  std::optional<NonnegativeStep> step_;
+  std::vector<bool> binding_;
+  double lambda_, growth_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_JOINT_STEP_H_
