@@ -1,6 +1,5 @@
 #include "trilobe/solvers/solver.h"
 
-#include <sstream>
 #include <utility>
 
 #include "trilobe/base/error.h"
@@ -65,14 +64,6 @@ const char* PositivityName(Positivity positivity) {
 
 const char* TrustRegionName(TrustRegion trust_region) {
   return trust_region == TrustRegion::kDogleg ? "dogleg" : "levenberg_marquardt";
-}
-
-std::string SolverSummary::BriefReport() const {
-  std::ostringstream out;
-  out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
-      << initial_objective << " to " << final_objective << ", stopped by "
-      << StopReasonName(stop_reason);
-  return out.str();
 }
 
 const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
