@@ -70,8 +70,9 @@ const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
 
 void RegisterSolver(SolverEntry entry) {
   for (const SolverEntry& known : Solvers()) {
-    if (known.name == entry.name)
+    if (known.name == entry.name) {
       throw Error("there is a solver named '" + entry.name + "' already");
+    }
   }
   MutableSolvers().push_back(std::move(entry));
 }
