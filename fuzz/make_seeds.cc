@@ -43,8 +43,10 @@ void WriteSeeds(const std::string& folder) {
   WriteSeed(folder + "/model", "shared", SmallModel(ModelSpec::SharedFactors(2, grid)));
   WriteSeed(folder + "/model", "independent", SmallModel(ModelSpec::IndependentG(grid)));
 
-  const IterationRecord records[] = {{0, 0, 1e6, false}, {1, 0.25, 1.0 / 3, true}};
-  WriteSeed(folder + "/trace", "two", FormatTrace(records));
+  const IterationRecord records[] = {{0, 0, 1e6, false},
+                                     {1, 0.25, 1.0 / 3, true, true, 0.5, 1e-3},
+                                     {2, 0.5, 1.0 / 3, false, false, 0, 1e-3}};
+  WriteSeed(folder + "/trace", "three", FormatTrace(records));
 }
 
 }  // namespace

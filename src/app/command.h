@@ -8,7 +8,7 @@
 namespace trilobe {
 
 // A subcommand of the program. Flags are gflags, defined in the command's file (shared ones in
-// flags.h); `flags` names those that this command takes, and any other is an error.
+// flags.h); a command that is given one of another is an error.
 struct Command {
   std::string name;
   std::string summary;    // one line for `trilobe help`
@@ -16,7 +16,11 @@ struct Command {
   int min_arguments = 0;
   int max_arguments = 0;
   std::string details;  // some lines for `trilobe help NAME`: what it reads, does and writes
-  std::vector<std::string> flags;
+  std::vector<std::string> flags;  // those that it takes, listed in its help
+  // For a flag whose values bring flags of their own, as --solver does: those of all its values,
+  // and what the help is to say about the value given and its flags.
+  std::vector<std::string> particular_flags = {};
+  std::string (*particular_help)() = nullptr;
   // Positional arguments only. Returns the exit status; throws Error for bad input.
   int (*run)(std::span<const std::string> arguments) = nullptr;
 };
@@ -27,6 +31,7 @@ Command FitCommand();
 Command InfoCommand();
 Command PlotCommand();
 Command ScoreCommand();
+Command SolversCommand();
 Command SynthCommand();
 
 // All commands, in the order of `trilobe help`.

@@ -10,13 +10,26 @@
 #include "trilobe/io/source.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
-DEFINE_int64(seed, 1, "seed of whatever is random: the noise of synth: sources, --init=random");
+DEFINE_int64(
+    seed, 1,
+    "seed of whatever is random: the noise of synth: sources, --init=random, random starts of "
+    "a solver");
 DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
 DEFINE_string(weighting, "compressive",
               "weights of the objective: compressive, log, percentage, cosine or uniform");
 DEFINE_string(out, "", "where to write: a file or, for fit and plot, a folder");
 
 namespace trilobe {
+
+bool IsDefault(const std::string& flag) {
+  return gflags::GetCommandLineFlagInfoOrDie(flag.c_str()).is_default;
+}
+
+std::string FlagHelp(const std::string& flag) {
+  const auto info = gflags::GetCommandLineFlagInfoOrDie(flag.c_str());
+  return "  --" + flag + "=" + (info.default_value.empty() ? "..." : info.default_value) +
+         "\n      " + info.description + "\n";
+}
 
 int ThreadsFromFlags() {
   if (FLAGS_threads < 0) throw Error("--threads is negative; give 0 for all cores");

@@ -3,6 +3,8 @@
 
 #include <gflags/gflags_declare.h>
 
+#include <string>
+
 // Flags that several commands take.
 DECLARE_int32(threads);
 DECLARE_int64(seed);
@@ -13,6 +15,12 @@ DECLARE_string(out);
 namespace trilobe {
 
 struct SourceOptions;
+
+// True unless the flag was given a value other than its default.
+bool IsDefault(const std::string& flag);
+
+// A flag for `trilobe help COMMAND`: "  --lobes=3", and its description on the next line.
+std::string FlagHelp(const std::string& flag);
 
 // --threads, with 0 meaning all cores. Throws Error if negative.
 int ThreadsFromFlags();

@@ -12,29 +12,31 @@
 #include <vector>
 
 #include "trilobe/app/command.h"
+#include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {FitCommand(),  ScoreCommand(),   PlotCommand(),
-                                                InfoCommand(), ConvertCommand(), SynthCommand()};
+  static const std::vector<Command> commands = {FitCommand(),  SolversCommand(), ScoreCommand(),
+                                                PlotCommand(), InfoCommand(),    ConvertCommand(),
+                                                SynthCommand()};
   return commands;
 }
 
 namespace {
 
-const Command* FindCommand(const std::string& name) {
-  for (const Command& command : Commands()) {
-    if (command.name == name) return &command;
-  }
-  return nullptr;
-}
-
 std::string KnownCommands() {
   std::string names;
   for (const Command& command : Commands()) names += command.name + ", ";
   return names + "help";
+}
+
+const Command& FindCommand(const std::string& name) {
+  for (const Command& command : Commands()) {
+    if (command.name == name) return command;
+  }
+  throw Error("unknown command '" + name + "'; known: " + KnownCommands());
 }
 
 void PrintHelp() {
@@ -49,28 +51,16 @@ void PrintHelp() {
 }
 
 void PrintHelp(const Command& command) {
+  // Before anything is printed: it may throw.
+  const std::string particular =
+      command.particular_help != nullptr ? "\n" + command.particular_help() : "";
   std::cout << "usage: trilobe " << command.name << " " << command.arguments
             << " [--FLAG=VALUE ...]\n\n"
             << command.summary << "\n\n"
-            << command.details << "\n\nflags:\n";
-  for (const std::string& name : command.flags) {
-    const auto flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
-    std::cout << "  --" << name << "=" << (flag.default_value.empty() ? "..." : flag.default_value)
-              << "\n      " << flag.description << "\n";
-  }
-}
-
-int Help(const std::vector<std::string>& arguments) {
-  if (arguments.empty()) {
-    PrintHelp();
-    return 0;
-  }
-  const Command* command = FindCommand(arguments[0]);
-  if (command == nullptr) {
-    throw Error("unknown command '" + arguments[0] + "'; known: " + KnownCommands());
-  }
-  PrintHelp(*command);
-  return 0;
+            << command.details << "\n"
+            << particular;
+  if (!command.flags.empty()) std::cout << "\nflags:\n";
+  for (const std::string& flag : command.flags) std::cout << FlagHelp(flag);
 }
 
 // Flags of other commands must not be swallowed in silence.
@@ -79,7 +69,10 @@ void CheckFlags(const Command& command) {
   gflags::GetAllFlags(&flags);
   for (const auto& flag : flags) {
     const bool ours = flag.filename.find("src/app/") != std::string::npos;
-    const bool taken = std::ranges::find(command.flags, flag.name) != command.flags.end();
+    const auto is_in = [&flag](const std::vector<std::string>& names) {
+      return std::ranges::find(names, flag.name) != names.end();
+    };
+    const bool taken = is_in(command.flags) || is_in(command.particular_flags);
     if (!flag.is_default && ours && !taken) {
       throw Error("trilobe " + command.name + " has no flag --" + flag.name +
                   "; see `trilobe help " + command.name + "`");
@@ -87,19 +80,27 @@ void CheckFlags(const Command& command) {
   }
 }
 
-int Run(const std::vector<std::string>& words) {
-  const Command* command = FindCommand(words[0]);
-  if (command == nullptr) {
-    throw Error("unknown command '" + words[0] + "'; known: " + KnownCommands());
+int Help(const std::vector<std::string>& words) {
+  if (words.empty()) {
+    PrintHelp();
+    return 0;
   }
+  const Command& command = FindCommand(words[0]);
+  CheckFlags(command);
+  PrintHelp(command);
+  return 0;
+}
+
+int Run(const std::vector<std::string>& words) {
+  const Command& command = FindCommand(words[0]);
   const std::vector<std::string> arguments(words.begin() + 1, words.end());
   const int count = static_cast<int>(arguments.size());
-  if (count < command->min_arguments || count > command->max_arguments) {
-    throw Error("trilobe " + command->name + " takes " + command->arguments + ", but got " +
-                std::to_string(count) + " arguments; see `trilobe help " + command->name + "`");
+  if (count < command.min_arguments || count > command.max_arguments) {
+    throw Error("trilobe " + command.name + " takes " + command.arguments + ", but got " +
+                std::to_string(count) + " arguments; see `trilobe help " + command.name + "`");
   }
-  CheckFlags(*command);
-  return command->run(arguments);
+  CheckFlags(command);
+  return command.run(arguments);
 }
 
 // What was printed may still be in a buffer, and its disk full.
@@ -108,21 +109,28 @@ void FlushOutput() {
   if (!written) throw Error("cannot write to standard output");
 }
 
+// `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both. So
+// the words for help are taken out before gflags sees them: its own --help would list everything.
+bool TakeOutHelp(int* argc, char** argv) {
+  const auto is_help = [](const std::string& word) {
+    return word == "--help" || word == "-help" || word == "-h";
+  };
+  char** const end = std::remove_if(argv + 1, argv + *argc, is_help);
+  const bool found = end != argv + *argc;
+  *argc = static_cast<int>(end - argv);
+  argv[*argc] = nullptr;
+  return found;
+}
+
 int Main(int argc, char** argv) {
-  // `trilobe fit --help` and `trilobe help fit` are the same; gflags' own --help lists everything.
-  std::vector<std::string> words;
-  bool help = argc < 2;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--help" || word == "-help" || word == "-h" || (i == 1 && word == "help")) {
-      help = true;
-    } else if (!word.starts_with("-")) {
-      words.push_back(word);
-    }
+  const bool help = argc < 2 || TakeOutHelp(&argc, argv);
+  gflags::ParseCommandLineFlags(&argc, &argv, /*remove_flags=*/true);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words[0] == "help") {
+    words.erase(words.begin());
+    return Help(words);
   }
   if (help) return Help(words);
-  gflags::ParseCommandLineFlags(&argc, &argv, /*remove_flags=*/true);
-  words.assign(argv + 1, argv + argc);
   if (words.empty()) throw Error("no command; known: " + KnownCommands());
   return Run(words);
 }

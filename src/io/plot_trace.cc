@@ -10,14 +10,15 @@ namespace trilobe {
 void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path) {
   if (trace.empty()) throw Error("the trace has no record, so there is nothing to draw");
-  std::vector<std::vector<double>> rows;  // iteration, seconds, E, filtered
+  std::vector<std::vector<double>> rows;  // iteration, seconds, E, filtered, rejected
   std::vector<double> objectives;
-  bool filtered = false;
+  bool filtered = false, rejected = false;
   for (const IterationRecord& record : trace) {
     rows.push_back({static_cast<double>(record.iteration), record.seconds, record.objective,
-                    record.filtered ? 1.0 : 0.0});
+                    record.filtered ? 1.0 : 0.0, record.accepted ? 0.0 : 1.0});
     objectives.push_back(record.objective);
     filtered = filtered || record.filtered;
+    rejected = rejected || !record.accepted;
   }
   const auto [low, high] = std::ranges::minmax(objectives);
   std::string script = GnuplotData("trace", rows);
@@ -37,12 +38,14 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
               "]\nplot $trace using " + column +
               ":3 with linespoints pointtype 7 pointsize 0.9 linewidth 2.5 linecolor '" +
               kOkabeIto[4] + "' notitle";
-    if (filtered) {
-      script += std::string(", '' using ") + column +
-                ":($4 > 0 ? $3 : NaN) with points pointtype 6 pointsize 1.8 linewidth 2 "
-                "linecolor '" +
-                kOkabeIto[5] + "' title 'after the filter on G'";
-    }
+    const auto mark = [&](const char* flag, const char* symbol, const char* meaning) {
+      script += std::string(", '' using ") + column + ":(" + flag +
+                " > 0 ? $3 : NaN) with points pointtype " + symbol +
+                " pointsize 1.8 linewidth 2 linecolor '" + kOkabeIto[5] + "' title '" + meaning +
+                "'";
+    };
+    if (filtered) mark("$4", "6", "after the filter on G");
+    if (rejected) mark("$5", "2", "step taken back");
     script += '\n';
   };
   script += "set ylabel 'objective E'\n";

@@ -28,7 +28,8 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
 void DrawSpheres(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path,
                  int num_threads);
 
-// E over iterations and over seconds. Throws Error when the trace is empty.
+// E over iterations and over seconds; iterations after which the filter ran, and those whose step
+// was taken back, are marked. Throws Error when the trace is empty.
 void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path);
 

@@ -1,8 +1,10 @@
 #include "trilobe/io/trace_file.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <system_error>
 
 #include "trilobe/base/error.h"
@@ -11,7 +13,9 @@
 namespace trilobe {
 namespace {
 
-constexpr std::string_view kHeader = "iteration,seconds,objective,filtered";
+constexpr std::string_view kHeader =
+    "iteration,seconds,objective,filtered,accepted,step,optimality";
+constexpr size_t kColumns = 7;
 
 template <typename T>
 void Append(T value, std::string* text) {
@@ -28,10 +32,17 @@ std::string_view TakeUntil(char separator, std::string_view* text) {
   return head;
 }
 
-// One row, taken apart from left to right.
+// One row, read from left to right.
 class Row {
  public:
-  Row(std::string_view text, const std::string& where) : rest_(text), where_(where) {}
+  // Throws Error unless there are as many cells as columns.
+  Row(std::string_view text, const std::string& where) : rest_(text), where_(where) {
+    const auto cells = static_cast<size_t>(std::ranges::count(text, ',') + 1);
+    if (cells != kColumns) {
+      throw Error(where + ": " + std::to_string(cells) + " columns; a trace has " +
+                  std::to_string(kColumns));
+    }
+  }
 
   template <typename T>
   T Take(const char* column) {
@@ -45,8 +56,18 @@ class Row {
     return value;
   }
 
-  void End() const {
-    if (!rest_.empty()) throw Error(where_ + ": more than 4 columns");
+  bool TakeBool(const char* column) {
+    const std::string_view cell = TakeUntil(',', &rest_);
+    if (cell != "0" && cell != "1") throw Error(where_ + ": " + column + " must be 0 or 1");
+    return cell == "1";
+  }
+
+  std::optional<double> TakeOptional(const char* column) {
+    if (rest_.empty() || rest_.front() == ',') {
+      TakeUntil(',', &rest_);
+      return std::nullopt;
+    }
+    return Take<double>(column);
   }
 
  private:
@@ -65,7 +86,12 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
     Append(record.seconds, &text);
     text += ',';
     Append(record.objective, &text);
-    text += record.filtered ? ",1\n" : ",0\n";
+    text += record.filtered ? ",1" : ",0";
+    text += record.accepted ? ",1," : ",0,";
+    Append(record.step, &text);
+    text += ',';
+    if (record.optimality) Append(*record.optimality, &text);
+    text += '\n';
   }
   return text;
 }
@@ -85,10 +111,10 @@ std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string
     record.iteration = row.Take<int>("iteration");
     record.seconds = row.Take<double>("seconds");
     record.objective = row.Take<double>("objective");
-    const int filtered = row.Take<int>("filtered");
-    row.End();
-    if (filtered > 1) throw Error(where + ": filtered must be 0 or 1");
-    record.filtered = filtered == 1;
+    record.filtered = row.TakeBool("filtered");
+    record.accepted = row.TakeBool("accepted");
+    record.step = row.Take<double>("step");
+    record.optimality = row.TakeOptional("optimality");
     records.push_back(record);
   }
   return records;

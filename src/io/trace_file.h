@@ -10,10 +10,12 @@
 
 namespace trilobe {
 
-// The course of a fit as CSV: the header `iteration,seconds,objective,filtered`, then a row a
-// record; filtered is 0 or 1. Numbers read back to the same double, whatever the locale.
-// A row that is not of this form, or a number that is not finite and >= 0, is an Error that names
-// file, line and column.
+// The course of a fit as CSV: the header
+//   iteration,seconds,objective,filtered,accepted,step,optimality
+// then a row a record, with the members of IterationRecord: filtered and accepted are 0 or 1,
+// optimality is empty where it is unknown. Numbers read back to the same double, whatever the
+// locale. A row that is not of this form, or a number that is not finite and >= 0, is an Error that
+// names file, line and column.
 std::string FormatTrace(std::span<const IterationRecord> records);
 std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string& source);
 void WriteTrace(const std::string& path, std::span<const IterationRecord> records);

@@ -1,6 +1,5 @@
 #include "trilobe/solvers/solver.h"
 
-#include <sstream>
 #include <utility>
 
 #include "trilobe/base/error.h"
@@ -68,20 +67,13 @@ const char* TrustRegionName(TrustRegion trust_region) {
   return trust_region == TrustRegion::kDogleg ? "dogleg" : "levenberg_marquardt";
 }
 
-std::string SolverSummary::BriefReport() const {
-  std::ostringstream out;
-  out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
-      << initial_objective << " to " << final_objective << ", stopped by "
-      << StopReasonName(stop_reason);
-  return out.str();
-}
-
 const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
 
 void RegisterSolver(SolverEntry entry) {
   for (const SolverEntry& known : Solvers()) {
-    if (known.name == entry.name)
+    if (known.name == entry.name) {
       throw Error("there is a solver named '" + entry.name + "' already");
+    }
   }
   MutableSolvers().push_back(std::move(entry));
 }

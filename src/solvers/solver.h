@@ -56,7 +56,7 @@ struct SolverOptions {
   bool diagnose = true;
 
   // Sees every record and the model it belongs to, from the solving thread; returns false to stop.
-  std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration;
+  std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
 
   // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no
   // filter. With the filter E may rise.
@@ -64,7 +64,7 @@ struct SolverOptions {
 
   // Sees the model after every single element update, where a solver makes such updates. Slow;
   // for checking that E never rises.
-  std::function<void(const FactorModel&)> on_element;
+  std::function<void(const FactorModel&)> on_element = nullptr;
 
   Positivity positivity = Positivity::kActiveSet;
   TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
@@ -119,8 +119,13 @@ struct SolverSummary {
   PhaseSeconds phases;
   std::optional<Diagnosis> diagnosis;  // of the returned model
 
+  int BestIteration() const;  // the returned model's number in the trace
+  int RejectedSteps() const;  // iterations whose step was taken back
+
   // One line: solver, iterations, E from and to, why it stopped.
   std::string BriefReport() const;
+  // Several lines, each with its newline: that, and options, notes, diagnosis and phases.
+  std::string FullReport() const;
 };
 
 // Fits a model to an objective. Stateless: everything about a run is in its arguments.

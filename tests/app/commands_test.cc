@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/run_program.h"
+#include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
@@ -45,7 +46,7 @@ void ExpectPng(const std::string& path) {
 TEST(HelpTest, ListsCommandsAndTheFlagsOfEach) {
   const ProgramResult all = RunProgram({"help"});
   EXPECT_EQ(all.status, 0);
-  for (const char* name : {"fit", "score", "plot", "info", "convert", "synth"}) {
+  for (const char* name : {"fit", "solvers", "score", "plot", "info", "convert", "synth"}) {
     EXPECT_THAT(all.out, HasSubstr(std::string("\n  ") + name + " "));
     const ProgramResult one = RunProgram({"help", name});
     EXPECT_EQ(one.status, 0);
@@ -54,12 +55,73 @@ TEST(HelpTest, ListsCommandsAndTheFlagsOfEach) {
   }
 }
 
+TEST(HelpTest, IsTheSameInEveryPlaceAndNotThatOfGflags) {
+  const std::string all = RunProgram({"help"}).out;
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{}, {"--help"}, {"-help"}, {"-h"}}) {
+    const ProgramResult result = RunProgram(words);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out, all);
+  }
+  const std::string fit = RunProgram({"help", "fit", "--solver=awls_literal"}).out;
+  EXPECT_EQ(RunProgram({"fit", "--solver=awls_literal", "--help"}).out, fit);
+  EXPECT_EQ(RunProgram({"--help", "fit", "synth:plastic", "--solver=awls_literal"}).out, fit);
+}
+
+TEST(HelpTest, ShowsTheFlagsOfTheSolverGiven) {
+  const ProgramResult result = RunProgram({"fit", "--solver=awls_literal", "--help"});
+  EXPECT_EQ(result.status, 0);
+  // Its description, its own flags, then those of all solvers; none that only others take.
+  EXPECT_THAT(result.out, testing::ContainsRegex("solver awls_literal: .*\n  reference: .*\n"
+                                                 "flags of solver awls_literal:\n"
+                                                 "  --g_filter=0\n(.*\n)*"
+                                                 "flags:\n(.*\n)*"
+                                                 "  --max_iterations=60\n(.*\n)*"
+                                                 "  --optimality_tolerance=1e-10\n(.*\n)*"
+                                                 "  --diagnose=true\n"));
+  EXPECT_THAT(result.out, Not(HasSubstr("--memory")));
+  const ProgramResult unknown = RunProgram({"fit", "--solver=x", "--help"});
+  ExpectError(unknown, "known: awls");
+  EXPECT_EQ(unknown.out, "");
+}
+
+TEST(SolversTest, ListsTheDefaultFirst) {
+  const ProgramResult list = RunProgram({"solvers"});
+  EXPECT_EQ(list.status, 0);
+  EXPECT_THAT(list.out, StartsWith(Solvers().front().name + " (default)\n"));
+  size_t at = 0;
+  for (const SolverEntry& solver : Solvers()) {
+    const size_t found = list.out.find(solver.name, at);
+    ASSERT_NE(found, std::string::npos) << solver.name;
+    EXPECT_THAT(list.out.substr(found), HasSubstr(solver.reference));
+    at = found + solver.name.size();
+  }
+}
+
+// Also that every option that a solver reads has a flag.
+TEST(SolversTest, DescribesEach) {
+  for (const SolverEntry& solver : Solvers()) {
+    const ProgramResult one = RunProgram({"solvers", solver.name});
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_THAT(one.out, StartsWith("solver " + solver.name + ": " + solver.description));
+    size_t flags = 0;
+    for (size_t at = 0; (at = one.out.find("\n  --", at)) != std::string::npos; ++at) ++flags;
+    EXPECT_EQ(flags, solver.options.size()) << one.out;
+  }
+}
+
+TEST(SolversTest, RejectsBadInput) {
+  ExpectError(RunProgram({"solvers", "x"}), "known: awls");
+  ExpectError(RunProgram({"solvers", "--solver=awls_literal"}), "no flag --solver");
+}
+
 TEST(ProgramTest, RejectsWhatItDoesNotKnow) {
-  ExpectError(RunProgram({"frobnicate"}), "known: fit, score");
-  ExpectError(RunProgram({"help", "frobnicate"}), "known: fit, score");
+  ExpectError(RunProgram({"frobnicate"}), "known: fit, solvers, ");
+  ExpectError(RunProgram({"help", "frobnicate"}), "known: fit, solvers, ");
   ExpectError(RunProgram({"info"}), "takes SOURCE|MODEL");
   ExpectError(RunProgram({"info", "a", "b"}), "2 arguments");
   ExpectError(RunProgram({"synth", "--weighting=log"}), "no flag --weighting");
+  ExpectError(RunProgram({"help", "synth", "--weighting=log"}), "no flag --weighting");
   ExpectError(RunProgram({"synth", "foam", "--out=x", "--threads=-1"}), "--threads is negative");
 }
 
@@ -199,7 +261,9 @@ TEST(InfoTest, RejectsBadInput) {
 TEST(PlotTest, DrawsWhatTheInputsAllow) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
-  Write(folder / "trace.csv", "iteration,seconds,objective,filtered\n0,0,10,0\n1,0.5,1,0\n");
+  Write(folder / "trace.csv",
+        "iteration,seconds,objective,filtered,accepted,step,optimality\n"
+        "0,0,10,0,1,0,\n1,0.5,1,0,1,0.25,\n");
   const ProgramResult alone =
       RunProgram({"plot", folder / "model.json", "--out=" + (folder / "alone")});
   EXPECT_EQ(alone.status, 0) << alone.err;

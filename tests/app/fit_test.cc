@@ -53,6 +53,21 @@ TEST(Fit, WritesModelTraceAndReport) {
   const nlohmann::json report = Json(out + "/report.json");
   EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
   EXPECT_EQ(report["stop_reason"], "max_iterations");
+  EXPECT_EQ(report["best_iteration"], 3);
+  EXPECT_EQ(report["rejected_steps"], 0);
+  EXPECT_EQ(report["options"]["given"]["max_iterations"], 3);
+  EXPECT_TRUE(report["options"]["given"]["max_seconds"].is_null());  // no limit
+  EXPECT_EQ(report["options"]["used"]["g_filter_sigma"], 0);
+  EXPECT_FALSE(report["options"]["used"].contains("memory"));  // awls does not read it
+  EXPECT_TRUE(report["notes"].is_array());
+  EXPECT_EQ(report["phases"]["reading"], report["seconds"]["read"]);
+  EXPECT_GT(report["phases"]["evaluating"], 0);
+  ASSERT_TRUE(report.contains("diagnosis"));
+  EXPECT_FALSE(report["diagnosis"].contains("gradient"));
+  for (const char* const line : {"solver       awls: 3 iterations", "options      max_iterations 3",
+                                 "phases       ", "error        E is "}) {
+    EXPECT_THAT(result.out, HasSubstr(line));
+  }
 
   const BrdfTable fitted = ReadMerl(out + "/reconstruction.binary");
   const int bin = fitted.grid.Index(10, 20, 90);
@@ -126,6 +141,25 @@ TEST(Fit, HonoursItsTimeLimit) {
   EXPECT_LT(trace[trace.size() - 2].seconds, 0.5);
 }
 
+// Every common flag arrives where it should; in nodes of 1 degree, --g_filter is its own number.
+TEST(Fit, HandsItsFlagsToTheSolver) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(
+      RunProgram(Fit(folder / "out",
+                     {"--solver=awls", "--max_iterations=0", "--max_seconds=7", "--tolerance=0.5",
+                      "--optimality_tolerance=1e-3", "--nodiagnose", "--g_filter=2"}))
+          .status,
+      0);
+  const nlohmann::json report = Json(folder / "out/report.json");
+  EXPECT_EQ(report["options"]["given"], nlohmann::json({{"max_iterations", 0},
+                                                        {"max_seconds", 7.0},
+                                                        {"relative_decrease_tolerance", 0.5},
+                                                        {"optimality_tolerance", 1e-3},
+                                                        {"diagnose", false},
+                                                        {"g_filter_sigma", 2.0}}));
+  EXPECT_TRUE(report["diagnosis"].is_null());
+}
+
 struct BadInput {
   std::vector<std::string> flags;
   std::string message;  // part of it
@@ -135,7 +169,7 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   const std::vector<BadInput> cases = {
-      {{"--solver=x"}, "known: awls, awls_literal"},
+      {{"--solver=x"}, "known: awls, "},
       {{"--weighting=x"}, "known: compressive, log, percentage, cosine, uniform"},
       {{"--init=x"}, "known: "},
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},
@@ -147,7 +181,12 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--max_seconds=-1"}, "--max_seconds"},
       {{"--max_seconds=nan"}, "--max_seconds"},
       {{"--tolerance=1"}, "--tolerance"},
+      {{"--optimality_tolerance=nan"}, "--optimality_tolerance"},
       {{"--g_filter=-1"}, "--g_filter"},
+      {{"--solver=awls", "--starts=2"}, "awls does not take --starts; it takes --g_filter"},
+      {{"--solver=awls", "--memory=3"}, "does not take --memory"},
+      {{"--solver=awls", "--positivity=squares"}, "does not take --positivity"},
+      {{"--solver=awls", "--trust_region=dogleg"}, "does not take --trust_region"},
       {{"--threads=-1"}, "--threads"},
       {{"--noise=2"}, "noise"},
       {{"--json"}, "no flag --json"},

@@ -104,7 +104,8 @@ TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {
   file.dead.assign(file.model.parameters().size(), false);
   file.dead.back() = true;
   file.fit.source = "a 'strange_name' {$x}\n";
-  const IterationRecord trace[] = {{0, 0, 10, false}, {1, 0.5, 0, true}};  // E = 0 has no logarithm
+  const IterationRecord trace[] = {
+      {0, 0, 10, false}, {1, 0.5, 10, false, false}, {2, 0.75, 0, true}};  // E = 0 has no logarithm
   const std::vector<std::string> paths = DrawPictures(file, &measured, trace, folder_.string(), 2);
   ASSERT_EQ(paths.size(), 4U);
   std::vector<std::string> bytes;

@@ -5,6 +5,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
@@ -51,6 +52,70 @@ TEST(Solver, ReportsInOneLine) {
     EXPECT_THAT(report, testing::HasSubstr(part));
   }
   EXPECT_THAT(report, testing::Not(testing::HasSubstr("\n")));
+}
+
+TEST(Solver, ReportsInFull) {
+  SolverSummary summary;
+  summary.solver = "awls";
+  summary.stop_reason = StopReason::kNoDecrease;
+  summary.initial_objective = 34.5;
+  summary.final_objective = 6.25;
+  summary.iterations = 2;
+  summary.seconds = 1.5;
+  summary.trace = {{0, 0, 34.5}, {1, 1, 6.25, false, true, 0.5}, {2, 1.5, 6.25, false, false, 0}};
+  summary.given.g_filter_sigma = 2;
+  summary.given.memory = 77;  // awls does not read it
+  summary.notes = {"The filter was switched off."};
+  const std::string plain = summary.FullReport();
+  for (const char* const part :
+       {"solver       awls: 2 iterations, stopped by no_decrease\n",
+        "E 34.5 -> 6.25, lowest after iteration 1, 1 steps taken back, last step 0 of |x|\n",
+        "max_iterations 60, max_seconds inf, ", "g_filter_sigma 0 (given 2)\n",
+        "note         The filter was switched off.\n", "phases       1.5 s solving"}) {
+    EXPECT_THAT(plain, testing::HasSubstr(part));
+  }
+  for (const char* const part : {"diagnosis ", "memory", "reading", "nan"}) {
+    EXPECT_THAT(plain, testing::Not(testing::HasSubstr(part)));
+  }
+  summary.diagnosis = {.gradient = {},
+                       .optimality = 0.125,
+                       .live_parameters = 9,
+                       .rank = 7,
+                       .rank_tolerance = 1e-9,
+                       .condition = 1e6};
+  summary.phases.reading = 0.25;
+  const std::string full = summary.FullReport();
+  EXPECT_THAT(full, testing::HasSubstr("optimality 0.125, rank 7 of 9 live parameters"));
+  EXPECT_THAT(full, testing::HasSubstr("phases       0.25 s reading, 1.5 s solving"));
+}
+
+// An empty summary, of a solver that is in no list.
+TEST(Solver, ReportsWhatIsThere) {
+  EXPECT_THAT(SolverSummary().FullReport(), testing::HasSubstr("options      max_iterations 60"));
+  EXPECT_EQ(SolverSummary().BestIteration(), 0);
+  EXPECT_EQ(SolverSummary().RejectedSteps(), 0);
+}
+
+TEST(Solver, NamesOptionsThatExist) {
+  for (const SolverEntry& entry : Solvers()) {
+    const size_t common = OptionValues({}, {}).size();
+    EXPECT_EQ(OptionValues({}, entry.options).size(), common + entry.options.size()) << entry.name;
+  }
+}
+
+TEST(OptionValues, AreThoseThatTheSolverReads) {
+  SolverOptions options;
+  options.positivity = Positivity::kSquares;
+  options.seed = 0xffffffffffffffff;
+  const std::vector<std::string> particular = {"seed", "positivity"};
+  const std::vector<OptionValue> values = OptionValues(options, particular);
+  ASSERT_EQ(values.size(), 7U);
+  std::vector<std::string> texts;
+  for (const OptionValue& value : values) texts.push_back(value.name + "=" + ToText(value));
+  EXPECT_THAT(texts, testing::ElementsAre("max_iterations=60", "max_seconds=inf",
+                                          "relative_decrease_tolerance=0.001",
+                                          "optimality_tolerance=1e-10", "diagnose=true",
+                                          "positivity=squares", "seed=18446744073709551615"));
 }
 
 TEST(Solver, AwlsNeedsAGrid) {

@@ -1,0 +1,110 @@
+#include "trilobe/app/fit_report.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "trilobe/app/print.h"
+#include "trilobe/solvers/option_values.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The value of --model that stands for a spec, which a model file may have brought.
+std::string ModelName(const ModelSpec& spec) {
+  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
+  if (spec == ModelSpec::SharedFactors(spec.lobes, grid)) return "shared";
+  if (spec == ModelSpec::IndependentG(grid)) return "independent";
+  return "other";
+}
+
+Json ToJson(const SolverOptions& options, const SolverEntry& solver) {
+  Json json;
+  for (const OptionValue& option : OptionValues(options, solver.options)) {
+    std::visit([&](const auto& value) { json[option.name] = value; }, option.value);
+  }
+  return json;
+}
+
+Json ToJson(const PhaseSeconds& phases) {
+  return {{"reading", phases.reading},
+          {"preparing", phases.preparing},
+          {"evaluating", phases.evaluating},
+          {"linear_algebra", phases.linear_algebra},
+          {"diagnosing", phases.diagnosing}};
+}
+
+Json ToJson(const Diagnosis& diagnosis) {
+  return {{"optimality", diagnosis.optimality},
+          {"live_parameters", diagnosis.live_parameters},
+          {"rank", diagnosis.rank},
+          {"rank_tolerance", diagnosis.rank_tolerance},
+          {"condition", diagnosis.condition}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const FitReport& report) {
+  const FitInfo& fit = report.fit;
+  const SolverSummary& summary = report.summary;
+  const ScoreReport& score = report.score;
+  const FitReport::Seconds& seconds = report.seconds;
+  const SolverEntry& solver = FindSolver(fit.solver);
+  return {{"source", fit.source},
+          {"noise", report.noise},
+          {"seed", report.seed},
+          {"valid_samples", fit.valid_samples},
+          {"solver", fit.solver},
+          {"init", fit.init},
+          {"weighting", fit.weighting},
+          {"model", ModelName(report.spec)},
+          {"lobes", report.spec.lobes},
+          {"parameters", report.spec.num_parameters()},
+          {"threads", fit.threads},
+          {"options",
+           {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
+          {"notes", summary.notes},
+          {"stop_reason", fit.stop_reason},
+          {"iterations", fit.iterations},
+          {"best_iteration", summary.BestIteration()},
+          {"rejected_steps", summary.RejectedSteps()},
+          {"initial_objective", fit.initial_objective},
+          {"objective", score.objective},
+          {"relative_objective", score.relative_objective},
+          {"psnr_db", score.psnr_db},
+          {"psnr_peak", score.psnr_peak},
+          {"rmse", score.rmse},
+          {"mean_relative_error", score.mean_relative_error},
+          {"mean_log_error", score.mean_log_error},
+          {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
+          {"seconds",
+           {{"read", seconds.read},
+            {"prepare", seconds.prepare},
+            {"init", seconds.init},
+            {"solve", seconds.solve},
+            {"score", seconds.score}}},
+          {"phases", ToJson(summary.phases)},
+          {"program", fit.program},
+          {"date", fit.date}};
+}
+
+void Print(const FitReport& report) {
+  const FitInfo& fit = report.fit;
+  const ScoreReport& score = report.score;
+  const FitReport::Seconds& seconds = report.seconds;
+  std::cout << "source       " << fit.source << ", " << fit.valid_samples << " valid samples\n"
+            << "model        " << report.spec.lobes << " lobes, " << report.spec.num_parameters()
+            << " parameters, weighting " << fit.weighting << ", from " << fit.init << "\n"
+            << report.summary.FullReport() << "error        E is "
+            << Text(100 * score.relative_objective) << " % of a black model's; PSNR "
+            << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
+            << Text(score.rmse) << " /sr, mean relative error "
+            << Text(100 * score.mean_relative_error) << " %\n"
+            << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
+            << " prepare, " << Text(seconds.init, 3) << " init, " << Text(seconds.solve, 3)
+            << " solve, " << Text(seconds.score, 3) << " score\n";
+}
+
+}  // namespace trilobe

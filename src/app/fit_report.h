@@ -1,0 +1,38 @@
+#ifndef TRILOBE_APP_FIT_REPORT_H_
+#define TRILOBE_APP_FIT_REPORT_H_
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+
+#include "trilobe/io/model_file.h"
+#include "trilobe/model/model_spec.h"
+#include "trilobe/model/score.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// All that `trilobe fit` has to say about a fit.
+struct FitReport {
+  // Where the time of the program went [s]; summary.phases tells more of `solve`.
+  struct Seconds {
+    double read = 0, prepare = 0, init = 0, solve = 0, score = 0;
+  };
+
+  FitInfo fit;
+  ModelSpec spec;
+  double noise = 0;  // of the source
+  int64_t seed = 0;
+  SolverSummary summary;
+  ScoreReport score;
+  Seconds seconds;
+};
+
+// A table on standard output.
+void Print(const FitReport& report);
+
+// report.json (docs/file-formats.md).
+nlohmann::ordered_json ToJson(const FitReport& report);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_FIT_REPORT_H_

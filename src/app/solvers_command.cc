@@ -1,0 +1,39 @@
+#include <iostream>
+
+#include "trilobe/app/command.h"
+#include "trilobe/app/solver_flags.h"
+
+namespace trilobe {
+namespace {
+
+int RunSolvers(std::span<const std::string> arguments) {
+  if (!arguments.empty()) {
+    std::cout << DescribeSolver(FindSolver(arguments[0]))
+              << "Flags of all solvers: `trilobe help fit`\n";
+    return 0;
+  }
+  const std::string& default_name = Solvers().front().name;
+  for (const SolverEntry& solver : Solvers()) {
+    std::cout << solver.name << (solver.name == default_name ? " (default)" : "") << "\n    "
+              << solver.description << "\n    " << solver.reference << "\n";
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command SolversCommand() {
+  return {.name = "solvers",
+          .summary = "list the solvers of `trilobe fit`, or describe one",
+          .arguments = "[NAME]",
+          .min_arguments = 0,
+          .max_arguments = 1,
+          .details =
+              "Without NAME, lists the solvers, the default one first, with the references of "
+              "their methods.\nWith NAME, describes that solver and the flags of `trilobe fit` "
+              "that only some solvers take.",
+          .flags = {},
+          .run = RunSolvers};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,80 @@
+// What a SolverSummary says to people.
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include "trilobe/solvers/option_values.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// The options that a solver has of its own; none where it is not in the list.
+std::vector<std::string> ParticularOptions(const std::string& solver) {
+  for (const SolverEntry& entry : Solvers()) {
+    if (entry.name == solver) return entry.options;
+  }
+  return {};
+}
+
+// "memory 3 (given 5), seed 1"
+std::string OptionsText(const SolverSummary& summary) {
+  const std::vector<std::string> particular = ParticularOptions(summary.solver);
+  const std::vector<OptionValue> given = OptionValues(summary.given, particular);
+  const std::vector<OptionValue> used = OptionValues(summary.used, particular);
+  std::string text;
+  for (size_t k = 0; k < used.size(); ++k) {
+    text += (k > 0 ? ", " : "") + used[k].name + " " + ToText(used[k]);
+    if (used[k] != given[k]) text += " (given " + ToText(given[k]) + ")";
+  }
+  return text;
+}
+
+}  // namespace
+
+int SolverSummary::BestIteration() const {
+  if (trace.empty()) return 0;
+  return std::ranges::min_element(trace, {}, &IterationRecord::objective)->iteration;
+}
+
+int SolverSummary::RejectedSteps() const {
+  return static_cast<int>(std::ranges::count(trace, false, &IterationRecord::accepted));
+}
+
+std::string SolverSummary::BriefReport() const {
+  std::ostringstream out;
+  out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
+      << initial_objective << " to " << final_objective << ", stopped by "
+      << StopReasonName(stop_reason);
+  return out.str();
+}
+
+std::string SolverSummary::FullReport() const {
+  std::ostringstream out;
+  out << std::setprecision(6) << "solver       " << solver << ": " << iterations
+      << " iterations, stopped by " << StopReasonName(stop_reason) << "\n"
+      << "objective    E " << initial_objective << " -> " << final_objective;
+  if (!trace.empty()) {
+    out << ", lowest after iteration " << BestIteration();
+    if (RejectedSteps() > 0) out << ", " << RejectedSteps() << " steps taken back";
+    out << std::setprecision(3) << ", last step " << trace.back().step << " of |x|";
+  }
+  out << "\noptions      " << OptionsText(*this) << "\n";
+  for (const std::string& note : notes) out << "note         " << note << "\n";
+  out << std::setprecision(3);
+  if (diagnosis) {
+    out << "diagnosis    optimality " << diagnosis->optimality << ", rank " << diagnosis->rank
+        << " of " << diagnosis->live_parameters << " live parameters (singular values above "
+        << diagnosis->rank_tolerance << " of the largest), condition " << diagnosis->condition
+        << "\n";
+  }
+  out << "phases       ";
+  if (phases.reading > 0) out << phases.reading << " s reading, ";
+  out << seconds << " s solving (" << phases.preparing << " preparing, " << phases.evaluating
+      << " evaluating, " << phases.linear_algebra << " linear algebra), " << phases.diagnosing
+      << " s diagnosing\n";
+  return out.str();
+}
+
+}  // namespace trilobe
