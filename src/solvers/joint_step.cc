@@ -1,6 +1,7 @@
 #include "trilobe/solvers/joint_step.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/run.h"
@@ -11,6 +12,9 @@ namespace {
 constexpr double kInitialLambda = 1e-3;  // against columns of J of length 1
 constexpr double kMinLambda = 1e-12, kMaxLambda = 1e16;
 constexpr double kMinGain = 1e-4;
+constexpr double kMaxFall = 1.0 / 8;  // of lambda after one step
+// Where H is indefinite, the least lambda that mends it is searched for by this factor.
+constexpr double kIndefiniteGrowth = 4, kMinIndefiniteLambda = 1e-4;
 
 }  // namespace
 
@@ -33,7 +37,7 @@ void JointStepper::Linearize() {
   if (step_) return;
   {
     const ScopedTimer timer(&phases_->evaluating);
-    equations_.Evaluate(current_, hessian_, &at_);
+    equations_.Evaluate(current_, Hessian::kNewton, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
   step_.emplace(at_, current_.parameters());
@@ -47,6 +51,10 @@ bool JointStepper::Step() {
   {
     const ScopedTimer timer(&phases_->linear_algebra);
     result = step_->Solve(lambda_);
+    while (!(result.predicted_decrease > 0) && !exhausted()) {  // H + lambda S^2 is not positive
+      indefinite_ = lambda_ = std::max(kIndefiniteGrowth * lambda_, kMinIndefiniteLambda);
+      result = step_->Solve(lambda_);
+    }
   }
   std::ranges::copy(result.x, trial.parameters().begin());
   double E = 0;
@@ -61,7 +69,10 @@ bool JointStepper::Step() {
     return false;
   }
   const double f = 2 * gain - 1;
-  lambda_ = std::max(kMinLambda, lambda_ * std::max(1.0 / 5, 1 - f * f * f));
+  // Not at once to where the last H was indefinite: the next one is much like it.
+  lambda_ = std::max(
+      {kMinLambda, indefinite_ / kIndefiniteGrowth, lambda_ * std::max(kMaxFall, 1 - f * f * f)});
+  indefinite_ = 0;
   growth_ = 2;
   current_ = std::move(trial);
   E_ = E;
@@ -75,6 +86,16 @@ bool JointStepper::exhausted() const { return !(lambda_ < kMaxLambda); }
 double JointStepper::Optimality() {
   Linearize();
   return ScaledProjectedGradient(at_, current_.parameters());
+}
+
+void RepeatNewtonSteps(JointStepper* stepper, Run* run) {
+  for (bool go_on = !run->stopped(); go_on;) {
+    Run::Step step{.accepted = stepper->Step()};
+    if (stepper->exhausted()) run->Stop(StopReason::kNoDecrease);
+    if (step.accepted) step.optimality = stepper->Optimality();
+    step.objective = stepper->E();
+    go_on = run->Record(stepper->current(), step);
+  }
 }
 
 }  // namespace trilobe

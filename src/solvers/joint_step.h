@@ -6,19 +6,21 @@
 
 #include "trilobe/solvers/nonnegative_step.h"
 #include "trilobe/solvers/normal_equations.h"
+#include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 
-// Levenberg-Marquardt iterations on all parameters at once, under x >= 0, one trial step at a time.
-// The damping is Nielsen's (1999): lambda falls smoothly with the gain of an accepted step, and
-// rises ever faster while steps are rejected.
+// Damped Newton iterations on all parameters at once, under x >= 0, one trial step at a time. The
+// Hessian is all of it: residuals are not small here, and where two factors of a lobe are both free
+// to grow, J'J alone predicts a step's gain badly. Damping as in Levenberg-Marquardt, by Nielsen's
+// rule (Damping parameter in Marquardt's method, 1999): lambda falls smoothly with the gain of an
+// accepted step, and rises ever faster while steps are rejected.
 class JointStepper {
  public:
   // Times go to *phases.
   JointStepper(const Objective& objective, PhaseSeconds* phases);
 
-  Hessian hessian_ = Hessian::kGaussNewton;
   // Goes on from another point, with the same damping.
   void Restart(const FactorModel& model);
 
@@ -44,7 +46,12 @@ class JointStepper {
   std::optional<NonnegativeStep> step_;
   std::vector<bool> binding_;
   double lambda_, growth_;
+  double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
+
+// Makes and records steps of the stepper, which stands at the run's last point, until the run
+// stops.
+void RepeatNewtonSteps(JointStepper* stepper, Run* run);
 
 }  // namespace trilobe
 

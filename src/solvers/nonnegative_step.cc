@@ -35,9 +35,7 @@ class NonnegativeStep::Impl {
     const int size = static_cast<int>(g_.size());
     Eigen::VectorXd p = Eigen::VectorXd::Zero(size);
     for (int round = 0; round < kMaxRounds; ++round) {
-      const bool changed = SolveFree(lambda, round < kExchangeRounds, &p);
-      ++result.factorizations;
-      if (!changed) break;
+      if (!SolveFree(lambda, round < kExchangeRounds, &p)) break;
     }
     p = p.cwiseMax(-z_);
     if (!p.allFinite()) p.setZero();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/gaussian_filter.h"
 
 namespace trilobe {
@@ -124,6 +125,10 @@ SolverSummary Run::Finish() {
   summary_.initial_objective = summary_.trace.front().objective;
   summary_.iterations = summary_.trace.back().iteration;
   summary_.seconds = summary_.trace.back().seconds;
+  if (summary_.used.diagnose) {
+    const ScopedTimer timer = Time(&PhaseSeconds::diagnosing);
+    summary_.diagnosis = Diagnose(objective_, *model_);
+  }
   summary_.used = WithoutCallbacks(summary_.used);
   return std::move(summary_);
 }

@@ -10,7 +10,8 @@
 #define TRILOBE_FOR_EACH_SOLVER(X) \
   X(Awls)                          \
   X(AwlsLiteral)                   \
-  X(Lm)
+  X(Newton)                        \
+  X(Hybrid)
 
 namespace trilobe {
 

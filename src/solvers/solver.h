@@ -146,9 +146,9 @@ class Solver {
 // A solver by name, for flags and lists.
 struct SolverEntry {
   std::string name;
-  std::string description;           // one line
-  std::string reference;             // where the method is from
-  std::vector<std::string> options;  // members of SolverOptions that only some solvers read
+  std::string description;                // one line
+  std::string reference;                  // where the method is from
+  std::vector<std::string> options = {};  // members of SolverOptions that only some solvers read
   std::function<std::unique_ptr<Solver>()> make;
 };
 
