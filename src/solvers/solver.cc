@@ -10,7 +10,8 @@
 // which the solver's own file defines: to add a solver is one file, and one line here.
 #define TRILOBE_FOR_EACH_SOLVER(X) \
   X(Awls)                          \
-  X(AwlsLiteral)
+  X(AwlsLiteral)                   \
+  X(LmPlain)
 
 namespace trilobe {
 
