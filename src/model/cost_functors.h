@@ -65,7 +65,7 @@ class SampleResidual {
         residuals[C] += s[C] * D * F * G;
       }
     }
-    for (int C = 0; C < kChannels; ++C) residuals[C] *= T(sqrt_weight_[C]);
+    for (int C = 0; C < kChannels; ++C) residuals[C] *= sqrt_weight_[C];
     return true;
   }
 

@@ -4,6 +4,9 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
+#include <thread>
+
 namespace trilobe {
 namespace {
 
@@ -32,13 +35,17 @@ ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver l
                               ? ceres::SPARSE_NORMAL_CHOLESKY
                               : ceres::DENSE_NORMAL_CHOLESKY;
   to.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  to.num_threads = num_threads;
+  // Ceres would take no more, and say so on stderr.
+  const int most_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  to.num_threads = std::min(num_threads, most_threads);
 
   // Scale can move between the factors, so J'J is singular, and only the damping makes its
   // factorisation succeed. It must stay above the rounding errors of J'J.
   to.max_trust_region_radius = 1e10;
-  // Only with bounds is there a line search. Without gradients a trial costs one evaluation of the
-  // residuals.
+  // Only with bounds is there a line search. By bisection a trial costs one evaluation of the
+  // residuals, not of the Jacobian. On synthetic plastic, aluminium and felt, 40 iterations with
+  // it, and with Ceres' default of 1e4 for the initial radius, end no higher than with any other
+  // choice.
   to.line_search_interpolation_type = ceres::BISECTION;
 
   // Run decides when to stop.

@@ -109,7 +109,8 @@ class LmPlain : public Solver {
     Run run("lm_plain", objective, options, model);
     if (options.positivity != Positivity::kBounds) {
       run.summary().used.positivity = Positivity::kBounds;
-      run.summary().notes.push_back("lm_plain keeps parameters >= 0 by bounds, whatever is asked");
+      run.summary().notes.emplace_back(
+          "lm_plain keeps parameters >= 0 by bounds, whatever is asked");
     }
     std::optional<PlainProblem> problem;
     {
