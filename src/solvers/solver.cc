@@ -10,8 +10,10 @@
 #define TRILOBE_FOR_EACH_SOLVER(X) \
   X(Awls)                          \
   X(AwlsLiteral)                   \
+  X(Hybrid)                        \
   X(Newton)                        \
-  X(Hybrid)
+  X(Lm)                            \
+  X(LmPlain)
 
 namespace trilobe {
 

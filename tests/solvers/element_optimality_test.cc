@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/solvers/solver.h"
 
@@ -17,6 +18,7 @@ TEST(ElementOptimality, NoOtherValueIsBetter) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     const Objective objective = MakeObjective(table, spec);
     for (const SolverEntry& solver : Solvers()) {
+      if (!UpdatesElements(solver)) continue;
       FactorModel model = RandomModel(spec, 2);
       int element = 0;  // updates come in the order of parameters()
       SolverOptions options;

@@ -1,11 +1,13 @@
-// What must not matter to a fit, to the last bit: the unit of the measurement, the number of
-// threads, and whether it has been done before. And what must stay as it is: dead bins.
+// What must not matter to a fit, to the last bit: the unit of the measurement and, but for Ceres'
+// sums, the number of threads and whether it has been done before. And what must stay as it is:
+// dead bins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/io/synth.h"
 #include "trilobe/model/gauge.h"
@@ -21,6 +23,7 @@ SolverOptions Sweeps(int count) {
   SolverOptions options;
   options.max_iterations = count;
   options.relative_decrease_tolerance = 0;
+  options.diagnose = false;  // it is slow, and not what is tested
   return options;
 }
 
@@ -38,6 +41,7 @@ TEST(Invariance, PowersOfTwoScaleDAndSExactly) {
         const Objective scaled_objective = MakeObjective(scaled_table, spec, weighting.name);
         for (const InitialModel& init : InitialModels()) {
           for (const SolverEntry& solver : Solvers()) {
+            if (solver.name == "lm_plain" && init.name != "random") continue;  // slow
             const std::string what = name + ", " + weighting.name + ", " + init.name + ", " +
                                      solver.name + ", x " + std::to_string(scale);
             FactorModel model = init.make(objective, 1);
@@ -64,6 +68,7 @@ TEST(Invariance, ThreadsAndRepetition) {
   for (const auto& [name, spec] : TestSpecs(kMiddle)) {
     for (const SolverEntry& solver : Solvers()) {
       if (solver.name == "awls_literal" && spec.lobes > 1) continue;  // slow
+      if (solver.name == "lm_plain" && name != "1 lobes") continue;   // slower
       const Objective objective = MakeObjective(table, spec, "compressive", 1);
       FactorModel model = InitialModels().front().make(objective, 1);
       const double E = solver.make()->Solve(objective, Sweeps(3), &model).final_objective;
@@ -74,7 +79,8 @@ TEST(Invariance, ThreadsAndRepetition) {
         FactorModel again = InitialModels().front().make(other, 1);
         const double other_E = solver.make()->Solve(other, Sweeps(3), &again).final_objective;
         EXPECT_NEAR(other_E, E, 1e-10 * E) << what;  // what is promised
-        EXPECT_EQ(other_E, E) << what;               // what is so
+        if (!SameBitsForAnyThreads(solver)) continue;
+        EXPECT_EQ(other_E, E) << what;  // what is so
         EXPECT_TRUE(std::ranges::equal(again.parameters(), model.parameters())) << what;
       }
     }

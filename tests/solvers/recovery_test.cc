@@ -60,6 +60,15 @@ TEST(Recovery, Awls) {
   }
 }
 
+TEST(Recovery, LmPlain) {
+  for (const Case& of : {Case{"no lobe", ModelSpec::SharedFactors(0, kGrid), 20},
+                         Case{"1 lobe", ModelSpec::SharedFactors(1, kGrid), 100},
+                         Case{"3 lobes", ModelSpec::SharedFactors(3, kGrid), 100},
+                         Case{"independent G", ModelSpec::IndependentG(kGrid), 100}}) {
+    ExpectRecovery(*MakeSolver("lm_plain"), of);
+  }
+}
+
 TEST(Recovery, AwlsLiteral) {
   ExpectRecovery(*MakeSolver("awls_literal"), {"1 lobe", ModelSpec::SharedFactors(1, kGrid), 1500});
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
@@ -38,7 +39,8 @@ class Stopping : public testing::TestWithParam<std::string> {
     for (size_t k = 0; k < summary.trace.size(); ++k) {
       const IterationRecord& record = summary.trace[k];
       EXPECT_EQ(record.iteration, static_cast<int>(k));
-      EXPECT_EQ(record.filtered, k > 0 && options.g_filter_sigma > 0);
+      EXPECT_EQ(record.filtered,
+                k > 0 && options.g_filter_sigma > 0 && UpdatesElements(FindSolver(GetParam())));
       if (k > 0) {
         EXPECT_GE(record.seconds, summary.trace[k - 1].seconds);
       }
@@ -70,17 +72,19 @@ TEST_P(Stopping, AfterMaxIterations) {
 }
 
 TEST_P(Stopping, AfterMaxSeconds) {
+  constexpr double kSeconds = 0.004;  // before a Newton step can have converged
   FactorModel model = Start();
   SolverOptions options;
   options.relative_decrease_tolerance = kNever;
   options.max_iterations = std::numeric_limits<int>::max();
   options.max_seconds = 0;
   EXPECT_EQ(Run(options, &model).iterations, 0);
-  options.max_seconds = 0.02;
+  options.max_seconds = kSeconds;
   const SolverSummary summary = Run(options, &model);
   EXPECT_EQ(summary.stop_reason, StopReason::kMaxSeconds);
-  EXPECT_GE(summary.seconds, 0.02);
-  for (size_t k = 0; k + 1 < summary.trace.size(); ++k) EXPECT_LT(summary.trace[k].seconds, 0.02);
+  EXPECT_GE(summary.seconds, kSeconds);
+  for (size_t k = 0; k + 1 < summary.trace.size(); ++k)
+    EXPECT_LT(summary.trace[k].seconds, kSeconds);
 }
 
 TEST_P(Stopping, AtTheFirstSmallDecrease) {
@@ -93,6 +97,7 @@ TEST_P(Stopping, AtTheFirstSmallDecrease) {
   for (size_t k = 1; k < summary.trace.size(); ++k) {
     const double before = summary.trace[k - 1].objective;
     const double decrease = (before - summary.trace[k].objective) / before;
+    if (!summary.trace[k].accepted) continue;  // a step taken back is no sign of convergence
     EXPECT_EQ(decrease < 0.01, k + 1 == summary.trace.size()) << k;
   }
 }
@@ -128,14 +133,22 @@ TEST_P(Stopping, AtAnExactFit) {
     options.relative_decrease_tolerance = kNever;
     const SolverSummary summary = MakeSolver(GetParam())->Solve(objective, options, &model);
     EXPECT_EQ(summary.stop_reason, StopReason::kExactFit);
-    EXPECT_EQ(summary.iterations, black ? 0 : 1);
+    if (black) {
+      EXPECT_EQ(summary.iterations, 0);
+    } else if (UpdatesElements(FindSolver(GetParam()))) {
+      EXPECT_EQ(summary.iterations, 1);
+    } else {  // damped steps close in on it
+      EXPECT_LE(summary.iterations, 10);
+    }
     EXPECT_LE(summary.final_objective, 1e-30 * objective.MeasuredEnergy());
   }
 }
 
 // With the filter E may rise; the best of the recorded models is returned all the same. Here G is
 // rough in truth, so that smoothing it does harm.
-TEST_P(Stopping, TheFilterMayRaiseEButNotTheResult) {
+class Filtering : public Stopping {};
+
+TEST_P(Filtering, TheFilterMayRaiseEButNotTheResult) {
   const FactorModel truth = RandomModel(objective_.spec(), 2);
   const Objective objective = MakeObjective(TableOf(truth, kGrid), truth.spec());
   FactorModel start = truth;
@@ -154,13 +167,18 @@ TEST_P(Stopping, TheFilterMayRaiseEButNotTheResult) {
   EXPECT_TRUE(std::ranges::equal(filtered.parameters(), start.parameters()));
 }
 
-std::vector<std::string> SolverNames() {
+std::vector<std::string> SolverNames(bool (*wanted)(const SolverEntry&)) {
   std::vector<std::string> names;
-  for (const SolverEntry& solver : Solvers()) names.push_back(solver.name);
+  for (const SolverEntry& solver : Solvers()) {
+    if (wanted(solver)) names.push_back(solver.name);
+  }
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Stopping, testing::ValuesIn(SolverNames()),
+INSTANTIATE_TEST_SUITE_P(Solvers, Stopping,
+                         testing::ValuesIn(SolverNames([](const SolverEntry&) { return true; })),
+                         [](const auto& param) { return param.param; });
+INSTANTIATE_TEST_SUITE_P(Solvers, Filtering, testing::ValuesIn(SolverNames(UpdatesElements)),
                          [](const auto& param) { return param.param; });
 
 }  // namespace
