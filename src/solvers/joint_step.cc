@@ -19,11 +19,7 @@ constexpr double kIndefiniteGrowth = 4, kMinIndefiniteLambda = 1e-4;
 }  // namespace
 
 JointStepper::JointStepper(const Objective& objective, PhaseSeconds* phases)
-    : objective_(objective),
-      phases_(phases),
-      equations_(objective),
-      lambda_(kInitialLambda),
-      growth_(2) {}
+    : objective_(objective), phases_(phases), equations_(objective), lambda_(kInitialLambda) {}
 
 void JointStepper::Restart(const FactorModel& model) {
   current_ = model;

@@ -45,7 +45,8 @@ class JointStepper {
   QuadraticModel at_;  // of the current point, if linearized_
   std::optional<NonnegativeStep> step_;
   std::vector<bool> binding_;
-  double lambda_, growth_;
+  double lambda_;
+  double growth_ = 2;      // of lambda when the next step is rejected
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
 
