@@ -83,8 +83,9 @@ TEST_P(Stopping, AfterMaxSeconds) {
   const SolverSummary summary = Run(options, &model);
   EXPECT_EQ(summary.stop_reason, StopReason::kMaxSeconds);
   EXPECT_GE(summary.seconds, kSeconds);
-  for (size_t k = 0; k + 1 < summary.trace.size(); ++k)
+  for (size_t k = 0; k + 1 < summary.trace.size(); ++k) {
     EXPECT_LT(summary.trace[k].seconds, kSeconds);
+  }
 }
 
 TEST_P(Stopping, AtTheFirstSmallDecrease) {
