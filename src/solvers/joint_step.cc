@@ -25,19 +25,20 @@ void JointStepper::Restart(const FactorModel& model) {
   current_ = model;
   const ScopedTimer timer(&phases_->evaluating);
   E_ = objective_.Value(current_);
-  step_.reset();
+  linearized_ = false;
   growth_ = 2;
 }
 
 void JointStepper::Linearize() {
-  if (step_) return;
+  if (linearized_) return;
   {
     const ScopedTimer timer(&phases_->evaluating);
     equations_.Evaluate(current_, Hessian::kNewton, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
-  step_.emplace(at_, current_.parameters());
-  if (!binding_.empty()) step_->SetBinding(binding_);
+  step_.MoveTo(at_, current_.parameters());
+  if (!binding_.empty()) step_.SetBinding(binding_);
+  linearized_ = true;
 }
 
 bool JointStepper::Step() {
@@ -46,10 +47,10 @@ bool JointStepper::Step() {
   NonnegativeStep::Result result;
   {
     const ScopedTimer timer(&phases_->linear_algebra);
-    result = step_->Solve(lambda_);
+    result = step_.Solve(lambda_);
     while (!(result.predicted_decrease > 0) && !exhausted()) {  // H + lambda S^2 is not positive
       indefinite_ = lambda_ = std::max(kIndefiniteGrowth * lambda_, kMinIndefiniteLambda);
-      result = step_->Solve(lambda_);
+      result = step_.Solve(lambda_);
     }
   }
   std::ranges::copy(result.x, trial.parameters().begin());
@@ -72,8 +73,8 @@ bool JointStepper::Step() {
   growth_ = 2;
   current_ = std::move(trial);
   E_ = E;
-  binding_ = step_->binding();
-  step_.reset();
+  binding_ = step_.binding();
+  linearized_ = false;
   return true;
 }
 

@@ -1,7 +1,6 @@
 #ifndef TRILOBE_SOLVERS_JOINT_STEP_H_
 #define TRILOBE_SOLVERS_JOINT_STEP_H_
 
-#include <optional>
 #include <vector>
 
 #include "trilobe/solvers/nonnegative_step.h"
@@ -42,8 +41,9 @@ class JointStepper {
   NormalEquations equations_;
   FactorModel current_;
   double E_ = 0;
+  bool linearized_ = false;
   QuadraticModel at_;  // of the current point, if linearized_
-  std::optional<NonnegativeStep> step_;
+  NonnegativeStep step_;
   std::vector<bool> binding_;
   double lambda_;
   double growth_ = 2;      // of lambda when the next step is rejected

@@ -1,114 +1,119 @@
 #include "trilobe/solvers/nonnegative_step.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
+#include "trilobe/solvers/cholesky.h"
 #include "trilobe/solvers/element_step.h"
 
 namespace trilobe {
+namespace {
 
-class NonnegativeStep::Impl {
- public:
-  Impl(const QuadraticModel& at, std::span<const double> x)
-      : x_(x.begin(), x.end()), binding_(x.size(), false) {
-    const int n = static_cast<int>(x.size());
-    const Eigen::Map<const Eigen::MatrixXd> H(at.H.data(), n, n);
-    const Eigen::Map<const Eigen::VectorXd> squared_lengths(at.squared_lengths.data(), n);
-    for (int k = 0; k < n; ++k) {
-      if (squared_lengths(k) > 0) moving_.push_back(k);
-    }
-    scale_ = squared_lengths(moving_).cwiseSqrt();
-    const Eigen::VectorXd inverse = scale_.cwiseInverse();
-    H_ = inverse.asDiagonal() * H(moving_, moving_).eval() * inverse.asDiagonal();
-    const Eigen::Map<const Eigen::VectorXd> gradient(at.gradient.data(), n);
-    g_ = inverse.cwiseProduct(gradient(moving_));
-    const Eigen::Map<const Eigen::VectorXd> values(x_.data(), n);
-    z_ = scale_.cwiseProduct(values(moving_));
-    for (int i = 0; i < g_.size(); ++i) binding_[moving_[i]] = z_(i) == 0 && g_(i) > 0;
+// Holding and freeing at once converges in few rounds, but may cycle; holding alone ends.
+constexpr int kExchangeRounds = 4;
+constexpr int kMaxRounds = 10;
+
+using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
+
+}  // namespace
+
+void NonnegativeStep::MoveTo(const QuadraticModel& at, std::span<const double> x) {
+  at_ = &at;
+  x_.assign(x.begin(), x.end());
+  const size_t n = x.size();
+  for (auto* of_all : {&scale_, &unit_, &g_, &z_, &p_, &u_}) of_all->assign(n, 0.0);
+  binding_.assign(n, false);
+  for (size_t k = 0; k < n; ++k) {
+    if (!(at.squared_lengths[k] > 0)) continue;
+    scale_[k] = std::sqrt(at.squared_lengths[k]);
+    unit_[k] = 1 / scale_[k];
+    g_[k] = unit_[k] * at.gradient[k];
+    z_[k] = scale_[k] * x[k];
+    binding_[k] = z_[k] == 0 && g_[k] > 0;
   }
+}
 
-  Result Solve(double lambda) {
-    Result result;
-    const int size = static_cast<int>(g_.size());
-    Eigen::VectorXd p = Eigen::VectorXd::Zero(size);
-    for (int round = 0; round < kMaxRounds; ++round) {
-      if (!SolveFree(lambda, round < kExchangeRounds, &p)) break;
-    }
-    p = p.cwiseMax(-z_);
-    if (!p.allFinite()) p.setZero();
-    result.predicted_decrease = -(g_.dot(p) + p.dot(H_ * p) / 2);
-    result.x = x_;
-    for (int i = 0; i < size; ++i) {
-      const double moved = z_(i) + p(i);
-      result.x[moving_[i]] = moved > 0 ? std::min(moved / scale_(i), kMaxParameter) : 0;
-    }
-    return result;
+NonnegativeStep::Result NonnegativeStep::Solve(double lambda) {
+  Outcome outcome = Outcome::kChanged;
+  for (int round = 0; outcome == Outcome::kChanged && round < kMaxRounds; ++round) {
+    outcome = SolveFree(lambda, round < kExchangeRounds);
   }
+  Result result{.x = x_};
+  if (outcome == Outcome::kIndefinite) return result;
+  const size_t n = x_.size();
+  for (size_t k = 0; k < n; ++k) {
+    if (unit_[k] == 0) continue;
+    p_[k] = std::max(p_[k], -z_[k]);
+    u_[k] = unit_[k] * p_[k];
+    const double moved = z_[k] + p_[k];
+    result.x[k] = moved > 0 ? std::min(moved / scale_[k], kMaxParameter) : 0;
+  }
+  const int size = static_cast<int>(n);
+  const ConstVectorMap g(g_.data(), size), p(p_.data(), size), u(u_.data(), size);
+  const Eigen::Map<const Eigen::MatrixXd> H(at_->H.data(), size, size);
+  const Eigen::VectorXd H_u = H.selfadjointView<Eigen::Lower>() * u;
+  result.predicted_decrease = -(g.dot(p) + u.dot(H_u) / 2);
+  return result;
+}
 
-  const std::vector<bool>& binding() const { return binding_; }
-  void SetBinding(std::vector<bool> binding) { binding_ = std::move(binding); }
+// Row k of the scaled H times p.
+double NonnegativeStep::H_p(size_t k) const {
+  const int n = static_cast<int>(u_.size());
+  return unit_[k] * ConstVectorMap(&at_->H[k * u_.size()], n).dot(ConstVectorMap(u_.data(), n));
+}
 
- private:
-  // Holding and freeing at once converges in few rounds, but may cycle; holding alone ends.
-  static constexpr int kExchangeRounds = 4;
-  static constexpr int kMaxRounds = 10;
-
-  // Sets p by the present active set, then changes that; false if it was right already.
-  bool SolveFree(double lambda, bool release, Eigen::VectorXd* p) {
-    std::vector<int> free, held;
-    for (int i = 0; i < g_.size(); ++i) (binding_[moving_[i]] ? held : free).push_back(i);
-    const int num_free = static_cast<int>(free.size());
-    // With the held parameters at 0, what they ask of the free ones: g + H p.
-    p->setZero();
-    for (const int i : held) (*p)(i) = -z_(i);
-    Eigen::VectorXd gradient = g_ + H_ * *p;
-    Eigen::MatrixXd A(num_free, num_free);
-    Eigen::VectorXd step(num_free);
-    for (int k = 0; k < num_free; ++k) {
-      for (int l = 0; l < num_free; ++l) A(l, k) = H_(free[l], free[k]);
-      A(k, k) += lambda;
-      step(k) = -gradient(free[k]);
+// Sets p by the present active set, then changes that.
+NonnegativeStep::Outcome NonnegativeStep::SolveFree(double lambda, bool release) {
+  const size_t n = x_.size();
+  free_.clear();
+  held_.clear();
+  units_.clear();
+  bool moved = false;
+  for (size_t k = 0; k < n; ++k) {
+    p_[k] = u_[k] = 0;
+    if (unit_[k] == 0) continue;
+    (binding_[k] ? held_ : free_).push_back(k);
+    if (!binding_[k]) {
+      units_.push_back(unit_[k]);
+    } else if (z_[k] != 0) {
+      p_[k] = -z_[k];
+      u_[k] = unit_[k] * p_[k];
+      moved = true;
     }
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(A);
-    if (llt.info() != Eigen::Success) {
-      p->setConstant(std::numeric_limits<double>::quiet_NaN());
-      return false;
-    }
-    llt.solveInPlace(step);
-    bool changed = false;
-    for (int k = 0; k < num_free; ++k) {
-      const int i = free[k];
-      (*p)(i) = step(k);
-      if (z_(i) + step(k) >= 0) continue;
-      binding_[moving_[i]] = changed = true;
-    }
-    if (!release || held.empty()) return changed;
-    gradient = g_ + H_ * *p + lambda * *p;
-    for (const int i : held) {
-      if (gradient(i) >= 0) continue;
-      binding_[moving_[i]] = false;
+  }
+  const size_t num_free = free_.size();
+  A_.resize(num_free * num_free);
+  step_.resize(num_free);
+  for (size_t j = 0; j < num_free; ++j) {
+    const size_t k = free_[j];
+    step_[j] = -(moved ? g_[k] + H_p(k) : g_[k]);  // with the held ones at 0
+    const double* const H_k = &at_->H[k * n];
+    double* const column = &A_[j * num_free];
+    for (size_t i = j; i < num_free; ++i) column[i] = units_[j] * H_k[free_[i]] * units_[i];
+    column[j] += lambda;
+  }
+  if (!FactorCholesky(static_cast<int>(num_free), A_.data())) return Outcome::kIndefinite;
+  SolveCholesky(static_cast<int>(num_free), A_.data(), step_.data());
+  if (!ConstVectorMap(step_.data(), static_cast<int>(num_free)).allFinite()) {
+    return Outcome::kIndefinite;
+  }
+  bool changed = false;
+  for (size_t j = 0; j < num_free; ++j) {
+    const size_t k = free_[j];
+    p_[k] = step_[j];
+    u_[k] = unit_[k] * p_[k];
+    if (z_[k] + p_[k] >= 0) continue;
+    binding_[k] = changed = true;
+  }
+  if (release) {
+    for (const size_t k : held_) {
+      if (g_[k] + H_p(k) + lambda * p_[k] >= 0) continue;
+      binding_[k] = false;
       changed = true;
     }
-    return changed;
   }
-
-  std::vector<double> x_;
-  std::vector<bool> binding_;      // [num_parameters]
-  std::vector<int> moving_;        // parameters whose column of J is not 0
-  Eigen::VectorXd scale_, g_, z_;  // of those, scaled
-  Eigen::MatrixXd H_;
-};
-
-NonnegativeStep::NonnegativeStep(const QuadraticModel& at, std::span<const double> x)
-    : impl_(std::make_unique<Impl>(at, x)) {}
-NonnegativeStep::~NonnegativeStep() = default;
-NonnegativeStep::Result NonnegativeStep::Solve(double lambda) { return impl_->Solve(lambda); }
-const std::vector<bool>& NonnegativeStep::binding() const { return impl_->binding(); }
-void NonnegativeStep::SetBinding(std::vector<bool> binding) {
-  impl_->SetBinding(std::move(binding));
+  return changed ? Outcome::kChanged : Outcome::kRight;
 }
 
 }  // namespace trilobe

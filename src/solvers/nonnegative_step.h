@@ -1,8 +1,9 @@
 #ifndef TRILOBE_SOLVERS_NONNEGATIVE_STEP_H_
 #define TRILOBE_SOLVERS_NONNEGATIVE_STEP_H_
 
-#include <memory>
+#include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "trilobe/solvers/normal_equations.h"
@@ -14,11 +15,11 @@ namespace trilobe {
 // S the lengths of the columns of J, by an active set: solve for the parameters that are free, hold
 // those that would go below 0 at 0, and again; then free those that want to come back
 // (Portugal, Judice, Vicente 1994: block principal pivoting). What is left of a change after the
-// last round is projected.
+// last round is projected. An object keeps its storage from one point to the next.
 class NonnegativeStep {
  public:
-  NonnegativeStep(const QuadraticModel& at, std::span<const double> x);
-  ~NonnegativeStep();
+  // From now on steps start from x. `at` must stay as it is while they are asked for.
+  void MoveTo(const QuadraticModel& at, std::span<const double> x);
 
   struct Result {
     std::vector<double> x;  // the new point, >= 0
@@ -29,12 +30,23 @@ class NonnegativeStep {
   Result Solve(double lambda);
 
   // Binding parameters, to start the next point's first call from.
-  const std::vector<bool>& binding() const;
-  void SetBinding(std::vector<bool> binding);
+  const std::vector<bool>& binding() const { return binding_; }
+  void SetBinding(std::vector<bool> binding) { binding_ = std::move(binding); }
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  // How the active set was, seen from its solution.
+  enum class Outcome { kRight, kChanged, kIndefinite };
+
+  Outcome SolveFree(double lambda, bool release);
+  double H_p(size_t k) const;
+
+  const QuadraticModel* at_ = nullptr;
+  // Of all parameters; scale, the length of its column of J, is 0 for one that cannot move, and so
+  // are unit = 1 / scale, and g, z = scale x, the step p and u = unit p.
+  std::vector<double> x_, scale_, unit_, g_, z_, p_, u_;
+  std::vector<bool> binding_;
+  std::vector<size_t> free_, held_;       // of those that can move
+  std::vector<double> units_, A_, step_;  // of the free ones; A: scaled H + lambda, then its factor
 };
 
 }  // namespace trilobe
