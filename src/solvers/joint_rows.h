@@ -1,7 +1,7 @@
 #ifndef TRILOBE_SOLVERS_JOINT_ROWS_H_
 #define TRILOBE_SOLVERS_JOINT_ROWS_H_
 
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
@@ -19,44 +19,40 @@ namespace trilobe {
 // A_ab = sum w phi_a phi_b. A node k of table t of G moves it by
 //   X_t z_tk,   X_t = sum of x_m over the lobes m that t serves,
 //   z_tk = (B_k(theta_i) G_t(theta_o) + G_t(theta_i) B_k(theta_o)) / (cos cos),
-// so its product with the former needs only  C_a,tk = sum w phi_a z_tk  of the row, which is
-// accumulated in the cache and spread over the matrix once a row. One more "phi", the residual r,
-// gives the gradient of G, and the second derivatives of E beyond J'J: rho = s D F K is linear in
-// each of s, D, F, so these are  b = sum w r K  times what is left of s D F when two are taken out,
-// and  C_r,tk  times what is left when one is.
+// so its product with the former is the sum of  q z_tk,  q = w X_t v.phi.  A sample reads four
+// nodes a side, and a row has one number each of d, s, D and F a channel and lobe: the sample's q
+// of all of them times its weights B go to their places in the cache, those of d, s and D from all
+// rows of a theta_h, those of F from all rows of a theta_d.
+//
+// One more q, w X_t r (r the residual), gives the gradient of G. The second derivatives of E beyond
+// J'J: rho = s D F K is linear in each of s, D, F, so these are  b = sum w r K  times what is left
+// of s D F when two are taken out, and, with a node of G,  w r dX_t  more in q.
 class JointRows {
  public:
   JointRows(const FoldedGrid& folded, const ModelSpec& spec);
+  ~JointRows();
 
-  void Accumulate(const FactorModel& model, Hessian hessian, int num_threads);
-
-  // The component of J'r of any parameter k.
-  double GradientOf(int k) const;
-
-  // For a parameter k of d, s, D, F: adds its products with the parameters k.. to row.
-  // [num_parameters]
-  void AddRow(int k, std::span<double> row) const;
+  // Adds the upper triangle's rows of d, s, D and F to H, and the whole gradient; sets the squared
+  // lengths of those columns. The same bits for any number of threads.
+  void AddTo(const FactorModel& model, Hessian hessian, int num_threads, QuadraticModel* result);
 
  private:
-  // Sums of one share of the rows.
-  struct Share {
-    std::vector<double> gradient;  // [num_parameters]
-    std::vector<double> H;         // [parameters of d, s, D, F][num_parameters], from the diagonal
-  };
-  struct Workspace;
+  class Layout;
+  struct Share;
 
   void AddRowParameters(const FactorModel& model, Hessian hessian, int h, int d,
                         Share* share) const;
   void AddCrossProducts(const FactorModel& model, Hessian hessian,
                         const std::vector<std::vector<CatmullRom::Piece>>& G, int h, int d,
-                        Workspace* workspace, Share* share) const;
+                        Share* share) const;
+  void MoveNear(const FactorModel& model, int h, Share* share, QuadraticModel* result) const;
+  void AddFar(const FactorModel& model, int d, Share* share, QuadraticModel* result) const;
+  void AddNear(const FactorModel& model, Share* share, QuadraticModel* result) const;
 
   const FoldedGrid& folded_;
-  const ModelSpec spec_;
-  const int num_parameters_;
-  const int num_row_parameters_;  // d, s, D, F
+  const std::unique_ptr<const Layout> layout_;
   CellSums cells_;
-  std::vector<Share> shares_;
+  std::vector<std::unique_ptr<Share>> shares_;
 };
 
 }  // namespace trilobe

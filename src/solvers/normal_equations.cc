@@ -114,6 +114,18 @@ void ClearDeadParameters(std::span<const double> coverage, QuadraticModel* resul
   }
 }
 
+// In blocks that fit into the cache.
+void MirrorUpperTriangle(size_t n, double* H) {
+  constexpr size_t kBlock = 16;
+  for (size_t k0 = 0; k0 < n; k0 += kBlock) {
+    for (size_t l0 = 0; l0 <= k0; l0 += kBlock) {
+      for (size_t k = k0; k < std::min(n, k0 + kBlock); ++k) {
+        for (size_t l = l0; l < std::min(k, l0 + kBlock); ++l) H[k * n + l] = H[l * n + k];
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
@@ -152,27 +164,16 @@ class NormalEquations::Condensed {
   void Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
                 QuadraticModel* result) {
     const int n = model.spec().num_parameters(), num_G = n - model.TableOffset(Factor::kG, 0);
-    rows_.Accumulate(model, hessian, num_threads);
+    rows_.AddTo(model, hessian, num_threads, result);
     shadowing_.Accumulate(model, hessian, num_threads);
-    // Upper triangle, then its mirror image.
-    ParallelFor(n, num_threads, [&](int k) {
-      double* const row = &result->H[static_cast<size_t>(k) * n];
-      result->gradient[k] = rows_.GradientOf(k);
-      if (k < n - num_G) {
-        rows_.AddRow(k, {row, static_cast<size_t>(n)});
-        result->squared_lengths[k] = row[k];  // no second derivative here
-      } else {
-        const std::span<double> of_G(row + (n - num_G), num_G);
-        shadowing_.AddRow(k - (n - num_G), of_G);
-        result->squared_lengths[k] = row[k];
-        if (hessian == Hessian::kNewton) shadowing_.AddCurvatureRow(k - (n - num_G), of_G);
-      }
+    ParallelFor(num_G, num_threads, [&](int i) {
+      const size_t k = n - num_G + i;
+      const std::span<double> row(&result->H[k * n + (n - num_G)], num_G);
+      shadowing_.AddRow(i, row);
+      result->squared_lengths[k] = row[i];
+      if (hessian == Hessian::kNewton) shadowing_.AddCurvatureRow(i, row);
     });
-    for (int k = 0; k < n; ++k) {
-      for (int l = 0; l < k; ++l) {
-        result->H[static_cast<size_t>(k) * n + l] = result->H[static_cast<size_t>(l) * n + k];
-      }
-    }
+    MirrorUpperTriangle(n, result->H.data());
   }
 
  private:
