@@ -87,38 +87,64 @@ void AddChannel(int size, double X, const double* __restrict w, const double* __
   }
 }
 
-// Some lines: their q for each sample, and the sums that these go to.
-struct Lines {
-  int count = 0;
-  const double* q = nullptr;  // [count][line_size]
-  double* sums = nullptr;     // [count][padded_nodes]
-};
+// to[sample][line] = from[line][sample], in tiles of four by four.
+TRILOBE_MULTIVERSION
+void Transpose(int lines, int size, int line_size, const double* __restrict from,
+               double* __restrict to) {
+  for (int line = 0; line < lines; line += 4) {
+    for (int n = 0; n < size; n += 4) {
+      const double* const tile = from + static_cast<size_t>(line) * line_size + n;
+      Lanes4 a, b, c, d;
+      std::memcpy(&a, tile, sizeof(a));
+      std::memcpy(&b, tile + line_size, sizeof(b));
+      std::memcpy(&c, tile + 2 * line_size, sizeof(c));
+      std::memcpy(&d, tile + 3 * line_size, sizeof(d));
+      const Lanes4 ab_02 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+      const Lanes4 ab_13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+      const Lanes4 cd_02 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+      const Lanes4 cd_13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+      const Lanes4 columns[] = {__builtin_shufflevector(ab_02, cd_02, 0, 1, 4, 5),
+                                __builtin_shufflevector(ab_13, cd_13, 0, 1, 4, 5),
+                                __builtin_shufflevector(ab_02, cd_02, 2, 3, 6, 7),
+                                __builtin_shufflevector(ab_13, cd_13, 2, 3, 6, 7)};
+      for (int k = 0; k < 4; ++k) {
+        std::memcpy(to + static_cast<size_t>(n + k) * lines + line, &columns[k], sizeof(Lanes4));
+      }
+    }
+  }
+}
 
-// sums += q z for the four nodes of both sides of each sample, where z = B H.
+// sum += z q
+template <typename Lanes>
+[[gnu::always_inline]] inline void AddProduct(double z, const double* q, double* sum) {
+  Lanes q_lanes, sums;
+  std::memcpy(&q_lanes, q, sizeof(Lanes));
+  std::memcpy(&sums, sum, sizeof(Lanes));
+  sums += z * q_lanes;
+  std::memcpy(sum, &sums, sizeof(Lanes));
+}
+
+// near, far [node][line] += z q for the four nodes of both sides of each sample, where z = B H.
+// q: [size][near lines, then far lines]
 TRILOBE_MULTIVERSION
 void AddCrossSums(int size, const int16_t* interval_i, const int16_t* interval_o, const double* B_i,
-                  const double* B_o, const double* H_i, const double* H_o, int line_size,
-                  int padded_nodes, const std::array<Lines, 2>& blocks) {
-  for (int n = 0; n < size; ++n) {
-    Lanes4 z_i, z_o;
-    std::memcpy(&z_i, B_i + 4 * n, sizeof(z_i));
-    std::memcpy(&z_o, B_o + 4 * n, sizeof(z_o));
-    z_i *= H_i[n];
-    z_o *= H_o[n];
-    for (const Lines& block : blocks) {
-      double *at_i = block.sums + interval_i[n], *at_o = block.sums + interval_o[n];
-      const double* q = block.q + n;
-      for (int line = 0; line < block.count; ++line) {
-        Lanes4 sum;
-        std::memcpy(&sum, at_i, sizeof(sum));
-        sum += *q * z_i;
-        std::memcpy(at_i, &sum, sizeof(sum));
-        std::memcpy(&sum, at_o, sizeof(sum));
-        sum += *q * z_o;
-        std::memcpy(at_o, &sum, sizeof(sum));
-        at_i += padded_nodes;
-        at_o += padded_nodes;
-        q += line_size;
+                  const double* B_o, const double* H_i, const double* H_o, int near_lines,
+                  int far_lines, const double* q, double* near, double* far) {
+  for (int n = 0; n < size; ++n, q += near_lines + far_lines) {
+    for (const bool i : {true, false}) {
+      const int interval = i ? interval_i[n] : interval_o[n];
+      const double* const B = (i ? B_i : B_o) + 4 * n;
+      const double H = i ? H_i[n] : H_o[n];
+      double* near_node = near + static_cast<size_t>(interval) * near_lines;
+      double* far_node = far + static_cast<size_t>(interval) * far_lines;
+      for (int a = 0; a < 4; ++a, near_node += near_lines, far_node += far_lines) {
+        const double z = B[a] * H;
+        for (int line = 0; line < near_lines; line += 8) {
+          AddProduct<Lanes8>(z, q + line, near_node + line);
+        }
+        for (int line = 0; line < far_lines; line += 4) {
+          AddProduct<Lanes4>(z, q + near_lines + line, far_node + line);
+        }
       }
     }
   }
@@ -129,20 +155,35 @@ void Add(int size, const double* __restrict x, double* __restrict y) {
   for (int k = 0; k < size; ++k) y[k] += x[k];
 }
 
+// Doubles from the start of a cache line, which no vector of them straddles then.
+class AlignedSums {
+ public:
+  explicit AlignedSums(size_t size) : lines_((size + 7) / 8) {}
+  void Clear() { std::ranges::fill(lines_, CacheLine()); }
+  double* data() { return lines_.empty() ? nullptr : lines_[0].values; }
+  size_t size() const { return 8 * lines_.size(); }
+
+ private:
+  struct alignas(64) CacheLine {
+    double values[8] = {};
+  };
+  std::vector<CacheLine> lines_;
+};
+
 }  // namespace
 
 // What lies where in the sums of a share. A row has "near" parameters, those of all rows of its
 // theta_h, numbered d, s as in a model, then one of each table of D; and "far" ones, of all rows of
-// its theta_d: one of each table of F. Their sums with a table of G, of which they must serve some
-// channel in common, are one line each; a last near line has the gradient of G.
+// its theta_d: one of each table of F. Those that serve some channel in common with a table of G
+// have a line in its sums; one more near line has the gradient of G.
 class JointRows::Layout {
  public:
   struct OfTable {
-    std::vector<int> near, far;            // parameter of each line
-    std::vector<int> near_line, far_line;  // line of each parameter; none: -1
-    int near_begin = 0, far_begin = 0;     // first line, among those of all tables
-    int gradient_line() const { return static_cast<int>(near.size()); }
-    int num_near_lines() const { return gradient_line() + 1; }
+    std::vector<int> near_line, far_line;  // of each parameter; none: -1
+    int gradient_line = 0;
+    int near_lines = 0, far_lines = 0;     // padded to whole vectors
+    size_t near_begin = 0, far_begin = 0;  // where the sums start
+    int lines() const { return near_lines + far_lines; }
   };
 
   Layout(const ModelSpec& of_model, int max_row)
@@ -166,20 +207,22 @@ class JointRows::Layout {
           table.near_line[s(m, c)] = table.near_line[D(m, c)] = table.far_line[F(m, c)] = 0;
         }
       }
-      const auto number = [](std::vector<int>* line_of, std::vector<int>* lines) {
-        for (int k = 0; k < static_cast<int>(line_of->size()); ++k) {
-          if ((*line_of)[k] < 0) continue;
-          (*line_of)[k] = static_cast<int>(lines->size());
-          lines->push_back(k);
+      const auto number = [](std::vector<int>* line_of) {
+        int lines = 0;
+        for (int& line : *line_of) {
+          if (line == 0) line = lines++;
         }
+        return lines;
       };
-      number(&table.near_line, &table.near);
-      number(&table.far_line, &table.far);
-      table.near_begin = num_near_lines;
-      table.far_begin = num_far_lines;
-      num_near_lines += table.num_near_lines();
-      num_far_lines += static_cast<int>(table.far.size());
-      max_lines = std::max(max_lines, table.num_near_lines() + static_cast<int>(table.far.size()));
+      const auto padded = [](int size, int to) { return (size + to - 1) / to * to; };
+      table.gradient_line = number(&table.near_line);
+      table.near_lines = padded(table.gradient_line + 1, 8);
+      table.far_lines = padded(number(&table.far_line), 4);
+      table.near_begin = near_size;
+      table.far_begin = far_size;
+      near_size += static_cast<size_t>(table.near_lines) * padded_nodes;
+      far_size += static_cast<size_t>(table.far_lines) * padded_nodes;
+      max_lines = std::max(max_lines, table.lines());
     }
   }
 
@@ -190,7 +233,8 @@ class JointRows::Layout {
 
   const ModelSpec spec;
   const int first_D, num_near, num_far, padded_nodes, line_size;
-  int num_near_lines = 0, num_far_lines = 0, max_lines = 0;
+  int max_lines = 0;
+  size_t near_size = 0, far_size = 0;  // of the sums of all tables
   std::vector<OfTable> tables;
   std::array<WeightColumns, 3> columns;
 };
@@ -199,13 +243,14 @@ struct JointRows::Share {
   explicit Share(const Layout& layout, int theta_d)
       : near_H(static_cast<size_t>(layout.num_near) * layout.num_near),
         near_gradient(layout.num_near),
-        near_G(static_cast<size_t>(layout.num_near_lines) * layout.padded_nodes),
+        near_G(layout.near_size),
         far_H(static_cast<size_t>(theta_d) * (layout.num_near + layout.num_far) * layout.num_far),
         far_gradient(static_cast<size_t>(theta_d) * layout.num_far),
-        far_G(static_cast<size_t>(theta_d) * layout.num_far_lines * layout.padded_nodes),
+        far_G(theta_d * layout.far_size),
         B_i(4 * static_cast<size_t>(layout.line_size)),
         B_o(B_i.size()),
-        q(static_cast<size_t>(layout.max_lines) * layout.line_size) {
+        q(static_cast<size_t>(layout.max_lines) * layout.line_size),
+        q_by_sample(q.size()) {
     for (auto* of_channels : {&w, &w_residual}) {
       of_channels->fill(std::vector<double>(layout.line_size));
     }
@@ -215,9 +260,11 @@ struct JointRows::Share {
   }
 
   void Clear() {
-    for (auto* sums : {&near_H, &near_gradient, &near_G, &far_H, &far_gradient, &far_G}) {
+    for (auto* sums : {&near_H, &near_gradient, &far_H, &far_gradient}) {
       std::ranges::fill(*sums, 0.0);
     }
+    near_G.Clear();
+    far_G.Clear();
   }
 
   double* FarH(const Layout& layout, int d) {
@@ -225,27 +272,25 @@ struct JointRows::Share {
            static_cast<size_t>(d) * (layout.num_near + layout.num_far) * layout.num_far;
   }
 
-  double* NearG(const Layout& layout, int line) {
-    return near_G.data() + static_cast<size_t>(line) * layout.padded_nodes;
+  double* FarGradient(const Layout& layout, int d) {
+    return far_gradient.data() + static_cast<size_t>(d) * layout.num_far;
   }
-  double* FarG(const Layout& layout, int d, int line) {
-    return far_G.data() +
-           (static_cast<size_t>(d) * layout.num_far_lines + line) * layout.padded_nodes;
-  }
+  double* FarG(const Layout& layout, int d) { return far_G.data() + d * layout.far_size; }
 
   std::vector<double> near_H;         // [near][near], from the diagonal
   std::vector<double> near_gradient;  // [near]
-  std::vector<double> near_G;         // [near lines][padded_nodes]
+  AlignedSums near_G;                 // by table: [padded_nodes][near lines]
   std::vector<double> far_H;          // [theta_d][near, then far][far], from the diagonal
   std::vector<double> far_gradient;   // [theta_d][far]
-  std::vector<double> far_G;          // [theta_d][far lines][padded_nodes]
+  AlignedSums far_G;                  // [theta_d], by table: [padded_nodes][far lines]
 
   // Of one row. [..][line_size]
   std::vector<double> B_i, B_o;  // [line_size][4]
   // G(theta_i) G(theta_o) / (cos cos) and, for z, its other side: H_i goes with B(theta_i).
   std::vector<std::vector<double>> K, H_i, H_o;              // [tables]
   std::array<std::vector<double>, kChannels> w, w_residual;  // 0 beyond the row
-  std::vector<double> q;                                     // [max_lines]
+  std::vector<double> q;                                     // [lines]
+  AlignedSums q_by_sample;                                   // [line_size][lines]
 };
 
 JointRows::JointRows(const FoldedGrid& folded, const ModelSpec& spec)
@@ -308,9 +353,8 @@ void JointRows::AddCrossProducts(const FactorModel& model, Hessian hessian, cons
 
   for (int t = 0; t < static_cast<int>(G.size()); ++t) {
     const Layout::OfTable& table = layout.tables[t];
-    const int num_near = table.num_near_lines(), num_far = static_cast<int>(table.far.size());
     double* const q = of.q.data();
-    for (int line = 0; line < num_near + num_far; ++line) {
+    for (int line = 0; line < table.lines(); ++line) {
       std::fill_n(q + static_cast<size_t>(line) * layout.line_size, padded_size, 0.0);
     }
     const auto channels = spec.channels(Factor::kG, t);
@@ -322,17 +366,16 @@ void JointRows::AddCrossProducts(const FactorModel& model, Hessian hessian, cons
         if (lobe.served) X += lobe.x;
         lobe.s_line = table.near_line[Layout::s(m, c)];
         lobe.D_line = table.near_line[layout.D(m, c)];
-        lobe.F_line = num_near + table.far_line[layout.F(m, c)];
+        lobe.F_line = table.near_lines + table.far_line[layout.F(m, c)];
       }
       AddChannel(padded_size, X, of.w[c].data(), of.w_residual[c].data(), spec.lobes, lobes[c],
-                 hessian == Hessian::kNewton, table.near_line[c], table.gradient_line(),
+                 hessian == Hessian::kNewton, table.near_line[c], table.gradient_line,
                  layout.line_size, q);
     }
+    Transpose(table.lines(), padded_size, layout.line_size, q, of.q_by_sample.data());
     AddCrossSums(size, interval_i, interval_o, of.B_i.data(), of.B_o.data(), of.H_i[t].data(),
-                 of.H_o[t].data(), layout.line_size, layout.padded_nodes,
-                 {{{num_near, q, of.NearG(layout, table.near_begin)},
-                   {num_far, q + static_cast<size_t>(num_near) * layout.line_size,
-                    of.FarG(layout, d, table.far_begin)}}});
+                 of.H_o[t].data(), table.near_lines, table.far_lines, of.q_by_sample.data(),
+                 of.near_G.data() + table.near_begin, of.FarG(layout, d) + table.far_begin);
   }
 }
 
@@ -344,7 +387,7 @@ void JointRows::AddRowParameters(const FactorModel& model, Hessian hessian, int 
   const int num_near = layout.num_near, num_far = layout.num_far;
   double* const near_H = share->near_H.data();
   double* const far_H = share->FarH(layout, d);
-  double* const far_gradient = &share->far_gradient[static_cast<size_t>(d) * num_far];
+  double* const far_gradient = share->FarGradient(layout, d);
   // d rho = sum of value phi_a d parameter over the terms, which are in order of the parameter.
   struct Term {
     int parameter = 0, a = 0;
@@ -428,65 +471,84 @@ void JointRows::MoveNear(const FactorModel& model, int h, Share* share,
     for (size_t t = 0; t < layout.tables.size(); ++t) {
       const Layout::OfTable& table = layout.tables[t];
       if (table.near_line[near] < 0) continue;
-      double* const sums = share->NearG(layout, table.near_begin + table.near_line[near]);
-      std::copy_n(sums + 1, spec.g_nodes, &row[model.TableOffset(Factor::kG, static_cast<int>(t))]);
-      std::fill_n(sums, layout.padded_nodes, 0.0);
+      double* sum = share->near_G.data() + table.near_begin + table.near_line[near];
+      double* const to = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
+      for (int node = -1; node <= spec.g_nodes; ++node, sum += table.near_lines) {
+        const double value = std::exchange(*sum, 0.0);
+        if (node >= 0 && node < spec.g_nodes) to[node] = value;
+      }
     }
   }
 }
 
-// Adds what a share's rows of one theta_d added up for F.
-void JointRows::AddFar(const FactorModel& model, int d, Share* share,
-                       QuadraticModel* result) const {
+// Hands over what the rows of one theta_d added up for F.
+void JointRows::SetFar(const FactorModel& model, int d, QuadraticModel* result) const {
   const Layout& layout = *layout_;
+  Share& sum = *shares_[0];
+  const int size_H = (layout.num_near + layout.num_far) * layout.num_far;
+  for (int s = 1; s < kShares; ++s) {
+    Share& share = *shares_[s];
+    Add(size_H, share.FarH(layout, d), sum.FarH(layout, d));
+    Add(layout.num_far, share.FarGradient(layout, d), sum.FarGradient(layout, d));
+    Add(static_cast<int>(layout.far_size), share.FarG(layout, d), sum.FarG(layout, d));
+  }
   const size_t n = result->gradient.size();
-  const double* const far_H = share->FarH(layout, d);
+  const double* const far_H = sum.FarH(layout, d);
   for (int f = 0; f < layout.num_far; ++f) {
     const size_t k = model.TableOffset(Factor::kF, f) + d;
     double* const row = &result->H[k * n];
-    result->gradient[k] += share->far_gradient[static_cast<size_t>(d) * layout.num_far + f];
-    for (int i = 0; i < layout.first_D; ++i) {
-      result->H[i * n + k] += far_H[i * layout.num_far + f];
-    }
+    result->gradient[k] = sum.FarGradient(layout, d)[f];
+    for (int i = 0; i < layout.first_D; ++i) result->H[i * n + k] = far_H[i * layout.num_far + f];
     for (int i = f; i < layout.num_far; ++i) {
-      row[model.TableOffset(Factor::kF, i) + d] +=
-          far_H[(layout.num_near + f) * layout.num_far + i];
+      row[model.TableOffset(Factor::kF, i) + d] = far_H[(layout.num_near + f) * layout.num_far + i];
     }
     result->squared_lengths[k] = row[k];
     for (size_t t = 0; t < layout.tables.size(); ++t) {
       const Layout::OfTable& table = layout.tables[t];
       if (table.far_line[f] < 0) continue;
-      Add(layout.spec.g_nodes, share->FarG(layout, d, table.far_begin + table.far_line[f]) + 1,
-          &row[model.TableOffset(Factor::kG, static_cast<int>(t))]);
+      const double* const sums = sum.FarG(layout, d) + table.far_begin + table.far_line[f];
+      double* const to = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
+      for (int node = 0; node < layout.spec.g_nodes; ++node) {
+        to[node] = sums[(1 + node) * table.far_lines];
+      }
     }
   }
 }
 
-// Adds what all rows of a share added up for d and s, and the gradient of G.
-void JointRows::AddNear(const FactorModel& model, Share* share, QuadraticModel* result) const {
+// Hands over what all rows added up for d and s, and the gradient of G.
+void JointRows::SetNear(const FactorModel& model, QuadraticModel* result) const {
   const Layout& layout = *layout_;
+  Share& sum = *shares_[0];
+  for (int s = 1; s < kShares; ++s) {
+    Share& share = *shares_[s];
+    Add(layout.num_near * layout.num_near, share.near_H.data(), sum.near_H.data());
+    Add(layout.num_near, share.near_gradient.data(), sum.near_gradient.data());
+    Add(static_cast<int>(layout.near_size), share.near_G.data(), sum.near_G.data());
+  }
   const size_t n = result->gradient.size();
   for (int k = 0; k < layout.first_D; ++k) {
     double* const row = &result->H[k * n];
-    result->gradient[k] += share->near_gradient[k];
-    for (int i = k; i < layout.first_D; ++i) row[i] += share->near_H[k * layout.num_near + i];
+    result->gradient[k] = sum.near_gradient[k];
+    for (int i = k; i < layout.first_D; ++i) row[i] = sum.near_H[k * layout.num_near + i];
     result->squared_lengths[k] = row[k];
   }
   for (size_t t = 0; t < layout.tables.size(); ++t) {
     const Layout::OfTable& table = layout.tables[t];
     const int offset = model.TableOffset(Factor::kG, static_cast<int>(t));
-    for (int line = 0; line < table.num_near_lines(); ++line) {
-      const bool of_gradient = line == table.gradient_line();
-      if (!of_gradient && table.near[line] >= layout.first_D) continue;
-      double* const to =
-          of_gradient ? &result->gradient[offset] : &result->H[table.near[line] * n + offset];
-      Add(layout.spec.g_nodes, share->NearG(layout, table.near_begin + line) + 1, to);
+    const double* const sums = sum.near_G.data() + table.near_begin;
+    for (int node = 0; node < layout.spec.g_nodes; ++node) {
+      const double* const of_node = sums + (1 + node) * table.near_lines;
+      result->gradient[offset + node] = of_node[table.gradient_line];
+      for (int k = 0; k < layout.first_D; ++k) {
+        if (table.near_line[k] < 0) continue;
+        result->H[k * n + offset + node] = of_node[table.near_line[k]];
+      }
     }
   }
 }
 
-void JointRows::AddTo(const FactorModel& model, Hessian hessian, int num_threads,
-                      QuadraticModel* result) {
+void JointRows::Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
+                         QuadraticModel* result) {
   cells_.Accumulate(model, num_threads);
   const auto G = ShadowingPieces(model);
   ParallelFor(kShares, num_threads, [&](int s) {
@@ -502,10 +564,8 @@ void JointRows::AddTo(const FactorModel& model, Hessian hessian, int num_threads
       MoveNear(model, h, share, result);
     }
   });
-  ParallelFor(folded_.grid.theta_d, num_threads, [&](int d) {
-    for (const auto& share : shares_) AddFar(model, d, share.get(), result);
-  });
-  for (const auto& share : shares_) AddNear(model, share.get(), result);
+  ParallelFor(folded_.grid.theta_d, num_threads, [&](int d) { SetFar(model, d, result); });
+  SetNear(model, result);
 }
 
 }  // namespace trilobe

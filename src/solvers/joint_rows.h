@@ -32,9 +32,9 @@ class JointRows {
   JointRows(const FoldedGrid& folded, const ModelSpec& spec);
   ~JointRows();
 
-  // Adds the upper triangle's rows of d, s, D and F to H, and the whole gradient; sets the squared
-  // lengths of those columns. The same bits for any number of threads.
-  void AddTo(const FactorModel& model, Hessian hessian, int num_threads, QuadraticModel* result);
+  // Sets the upper triangle's rows of d, s, D and F, which were 0, the whole gradient, and the
+  // squared lengths of those columns. The same bits for any number of threads.
+  void Evaluate(const FactorModel& model, Hessian hessian, int num_threads, QuadraticModel* result);
 
  private:
   class Layout;
@@ -46,8 +46,8 @@ class JointRows {
                         const std::vector<std::vector<CatmullRom::Piece>>& G, int h, int d,
                         Share* share) const;
   void MoveNear(const FactorModel& model, int h, Share* share, QuadraticModel* result) const;
-  void AddFar(const FactorModel& model, int d, Share* share, QuadraticModel* result) const;
-  void AddNear(const FactorModel& model, Share* share, QuadraticModel* result) const;
+  void SetFar(const FactorModel& model, int d, QuadraticModel* result) const;
+  void SetNear(const FactorModel& model, QuadraticModel* result) const;
 
   const FoldedGrid& folded_;
   const std::unique_ptr<const Layout> layout_;

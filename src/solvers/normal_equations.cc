@@ -164,7 +164,7 @@ class NormalEquations::Condensed {
   void Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
                 QuadraticModel* result) {
     const int n = model.spec().num_parameters(), num_G = n - model.TableOffset(Factor::kG, 0);
-    rows_.AddTo(model, hessian, num_threads, result);
+    rows_.Evaluate(model, hessian, num_threads, result);
     shadowing_.Accumulate(model, hessian, num_threads);
     ParallelFor(num_G, num_threads, [&](int i) {
       const size_t k = n - num_G + i;
