@@ -20,14 +20,17 @@ constexpr int kBatch = 8;  // samples; rows are padded to whole batches, with we
 
 using Pieces = std::vector<std::vector<CatmullRom::Piece>>;
 
-// The spline weights of four nodes as polynomials in Bernstein terms, term by term.
-using WeightColumns = std::array<Lanes4, 4>;
+// The spline weights of four nodes as polynomials in Bernstein terms, term by term. Aligned, as the
+// vectors alone are only where the machine has them.
+struct alignas(sizeof(Lanes4)) WeightColumns {
+  Lanes4 term[4] = {};
+};
 
 WeightColumns Columns(const CatmullRom& spline, int interval) {
   const auto weights = spline.WeightPolynomials(interval);
-  WeightColumns columns{};
+  WeightColumns columns;
   for (int k = 0; k < 4; ++k) {
-    for (int a = 0; a < 4; ++a) columns[k][a] = weights[a][k];
+    for (int a = 0; a < 4; ++a) columns.term[k][a] = weights[a][k];
   }
   return columns;
 }
@@ -39,8 +42,8 @@ void SplineWeights(int size, const std::array<WeightColumns, 3>& columns, int la
   for (int n = 0; n < size; ++n) {
     const WeightColumns& of = columns[interval[n] == 0 ? 0 : interval[n] == last_interval ? 2 : 1];
     const double t = 0.5 + v[n], u = 0.5 - v[n];
-    const Lanes4 weights =
-        u * u * u * of[0] + u * u * t * of[1] + u * t * t * of[2] + t * t * t * of[3];
+    const Lanes4 weights = u * u * u * of.term[0] + u * u * t * of.term[1] +
+                           u * t * t * of.term[2] + t * t * t * of.term[3];
     std::memcpy(B + 4 * n, &weights, sizeof(weights));
   }
 }

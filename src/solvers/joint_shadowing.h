@@ -2,14 +2,13 @@
 #define TRILOBE_SOLVERS_JOINT_SHADOWING_H_
 
 #include <array>
-#include <span>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/spline_cells.h"
 #include "trilobe/solvers/normal_equations.h"
-#include "trilobe/solvers/spline_moments.h"
 
 namespace trilobe {
 
@@ -26,40 +25,30 @@ namespace trilobe {
 class JointShadowing {
  public:
   JointShadowing(const SplineCells& samples, const ModelSpec& spec);
+  ~JointShadowing();
 
-  void Accumulate(const FactorModel& model, Hessian hessian, int num_threads);
-
-  // Adds the products of node k of all tables, table by table, with the nodes k.. to row.
-  // [num_tables * g_nodes]
-  void AddRow(int k, std::span<double> row) const;
-  // The same for the second derivatives of rho, if Accumulate() was asked for them.
-  void AddCurvatureRow(int k, std::span<double> row) const;
+  // Sets the upper triangle's rows of G, which were 0, and the squared lengths of their columns.
+  // The same bits for any number of threads.
+  void Evaluate(const FactorModel& model, Hessian hessian, int num_threads, QuadraticModel* result);
 
  private:
-  using Degree6 = std::array<double, SplineMoments::kSecond>;
   struct Side;
+  struct Share;
+  struct Pass;
 
-  std::vector<Side> MakeSides(const FactorModel& model) const;  // [interval]
-  void SetMoments(const SplineCells::Cell& cell, const std::vector<double>& amplitudes,
-                  std::vector<SplineMoments>* moments) const;
-  void SetResidualMoments(const SplineCells::Cell& cell, const FactorModel& model,
-                          const std::vector<std::vector<CatmullRom::Piece>>& G,
-                          const std::vector<double>& amplitudes,
-                          std::vector<SplineMoments>* moments) const;
-  void AddCell(const SplineCells::Cell& cell, const std::vector<Side>& sides,
-               const std::vector<SplineMoments>& moments, std::vector<double>* sums) const;
-  void AddCurvatureCell(const SplineCells::Cell& cell, const std::vector<SplineMoments>& moments,
-                        std::vector<double>* sums) const;
+  std::vector<Side> MakeSides(const FactorModel& model) const;
+  void SetMoments(const SplineCells::Cell& cell, const Pass& pass, Share* share) const;
+  void AddCell(const SplineCells::Cell& cell, const Pass& pass, Share* share) const;
+  void SetPair(size_t pair, const Pass& pass, QuadraticModel* result) const;
 
   const SplineCells& samples_;
   const ModelSpec spec_;
   const CatmullRom spline_;
-  const int size_;  // num_tables * g_nodes
+  const int padded_nodes_;
   // Pairs of tables t <= u that serve some channel in common.
   std::vector<std::pair<int, int>> pairs_;
   std::vector<std::array<int, kChannels>> first_lobe_;  // that a table serves in a channel, or -1
-  std::vector<std::vector<double>> shares_;             // [size_][size_], from the diagonal
-  std::vector<std::vector<double>> curvature_shares_;   // [size_][g_nodes]: with the same table
+  std::vector<std::unique_ptr<Share>> shares_;
 };
 
 }  // namespace trilobe

@@ -163,17 +163,9 @@ class NormalEquations::Condensed {
 
   void Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
                 QuadraticModel* result) {
-    const int n = model.spec().num_parameters(), num_G = n - model.TableOffset(Factor::kG, 0);
     rows_.Evaluate(model, hessian, num_threads, result);
-    shadowing_.Accumulate(model, hessian, num_threads);
-    ParallelFor(num_G, num_threads, [&](int i) {
-      const size_t k = n - num_G + i;
-      const std::span<double> row(&result->H[k * n + (n - num_G)], num_G);
-      shadowing_.AddRow(i, row);
-      result->squared_lengths[k] = row[i];
-      if (hessian == Hessian::kNewton) shadowing_.AddCurvatureRow(i, row);
-    });
-    MirrorUpperTriangle(n, result->H.data());
+    shadowing_.Evaluate(model, hessian, num_threads, result);
+    MirrorUpperTriangle(model.spec().num_parameters(), result->H.data());
   }
 
  private:

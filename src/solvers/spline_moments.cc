@@ -1,5 +1,7 @@
 #include "trilobe/solvers/spline_moments.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "trilobe/base/multiversion.h"
@@ -87,12 +89,27 @@ void AddFirstMoments(int count, const double* w1, const double* t_i, const doubl
   first.Store(moments);
 }
 
+// The products of the terms are made once for all weights, a group of which has its sums in the
+// cache.
 TRILOBE_MULTIVERSION
-void AddSecondMoments(int count, const double* w2, const double* t_i, const double* t_o,
-                      SplineMoments* moments) {
-  SecondSums second;
-  for (int n = 0; n < count; ++n) second.Add(w2[n], Terms(t_i[n]), Terms(t_o[n]));
-  second.AddTo(moments);
+void AddSecondMoments(int count, int num_weights, int stride, const double* w2, const double* t_i,
+                      const double* t_o, SplineMoments* moments) {
+  constexpr int kGroup = 6;
+  for (int first = 0; first < num_weights; first += kGroup) {
+    const int group = std::min(kGroup, num_weights - first);
+    SecondSums second[kGroup];
+    for (int n = 0; n < count; ++n) {
+      SecondSums products;
+      products.Add(1, Terms(t_i[n]), Terms(t_o[n]));
+      for (int k = 0; k < group; ++k) {
+        const double w = w2[static_cast<size_t>(first + k) * stride + n];
+        for (int l = 0; l < SplineMoments::kSecond; ++l) {
+          second[k].sums[l] += w * products.sums[l];
+        }
+      }
+    }
+    for (int k = 0; k < group; ++k) second[k].AddTo(&moments[first + k]);
+  }
 }
 
 }  // namespace trilobe

@@ -24,11 +24,14 @@ struct SplineMoments {
 void AddSplineMoments(int count, const double* w1, const double* w2, const double* t_i,
                       const double* t_o, SplineMoments* moments);
 
-// The first, the second moments alone.
+// The first moments alone.
 void AddFirstMoments(int count, const double* w1, const double* t_i, const double* t_o,
                      SplineMoments* moments);
-void AddSecondMoments(int count, const double* w2, const double* t_i, const double* t_o,
-                      SplineMoments* moments);
+
+// The second moments alone, of the same samples with several weights, each `stride` behind the one
+// before. moments: [num_weights]
+void AddSecondMoments(int count, int num_weights, int stride, const double* w2, const double* t_i,
+                      const double* t_o, SplineMoments* moments);
 
 }  // namespace trilobe
 
