@@ -190,7 +190,12 @@ JointShadowing::JointShadowing(const SplineCells& samples, const ModelSpec& spec
   for (int m = spec.lobes - 1; m >= 0; --m) {
     for (int c = 0; c < kChannels; ++c) first_lobe_[spec.table(Factor::kG, m, c)][c] = m;
   }
+  // As many samples in each share as in any other, in one piece.
+  first_cell_.assign(1, 0);
   for (int share = 0; share < kShares; ++share) {
+    const size_t end = samples.row.size() * (share + 1) / kShares;
+    first_cell_.push_back(static_cast<int>(std::ranges::count_if(
+        samples.cells, [end](const auto& cell) { return static_cast<size_t>(cell.begin) < end; })));
     shares_.push_back(std::make_unique<Share>(pairs_.size(), tables, padded_nodes_));
   }
 }
@@ -346,11 +351,10 @@ void JointShadowing::Evaluate(const FactorModel& model, Hessian hessian, int num
                               QuadraticModel* result) {
   const Pass pass{model, hessian, ShadowingPieces(model), LobeAmplitudes(samples_.grid, model),
                   MakeSides(model)};
-  const int num_cells = static_cast<int>(samples_.cells.size());
   ParallelFor(kShares, num_threads, [&](int s) {
     Share* const share = shares_[s].get();
     share->Clear();
-    for (int k = s; k < num_cells; k += kShares) {
+    for (int k = first_cell_[s]; k < first_cell_[s + 1]; ++k) {
       SetMoments(samples_.cells[k], pass, share);
       AddCell(samples_.cells[k], pass, share);
     }

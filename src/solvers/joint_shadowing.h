@@ -48,6 +48,7 @@ class JointShadowing {
   // Pairs of tables t <= u that serve some channel in common.
   std::vector<std::pair<int, int>> pairs_;
   std::vector<std::array<int, kChannels>> first_lobe_;  // that a table serves in a channel, or -1
+  std::vector<int> first_cell_;                         // of each share, and the end
   std::vector<std::unique_ptr<Share>> shares_;
 };
 
