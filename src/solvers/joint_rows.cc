@@ -18,6 +18,8 @@ namespace {
 constexpr int kShares = 8;
 constexpr int kBatch = 8;  // samples; rows are padded to whole batches, with weight 0
 
+constexpr int kMaxPaddedBasis = (1 + kMaxLobes + 3) / 4 * 4;
+
 using Pieces = std::vector<std::vector<CatmullRom::Piece>>;
 
 // The spline weights of four nodes as polynomials in Bernstein terms, term by term. Aligned, as the
@@ -48,6 +50,20 @@ void SplineWeights(int size, const std::array<WeightColumns, 3>& columns, int la
   }
 }
 
+// G(theta_i) G(theta_o) / (cos cos) and, for z, its other side: H_i goes with B(theta_i).
+TRILOBE_MULTIVERSION
+void ReadTable(int size, const CatmullRom::Piece* G, const int16_t* interval_i,
+               const int16_t* interval_o, const double* t_i, const double* t_o,
+               const double* inverse_cosines, double* __restrict K, double* __restrict H_i,
+               double* __restrict H_o) {
+  for (int n = 0; n < size; ++n) {
+    const double G_i = G[interval_i[n]](t_i[n]), G_o = G[interval_o[n]](t_o[n]);
+    K[n] = G_i * G_o * inverse_cosines[n];
+    H_i[n] = G_o * inverse_cosines[n];
+    H_o[n] = G_i * inverse_cosines[n];
+  }
+}
+
 // One lobe of a row and channel, and the lines (see Layout) of its s, D and F.
 struct LobeOfRow {
   double x = 0, DF = 0, sF = 0, sD = 0;  // x = s D F and what it is multiplied with, of each
@@ -56,6 +72,67 @@ struct LobeOfRow {
   int s_line = 0, D_line = 0, F_line = 0;
 };
 using LobesOfRow = std::array<LobeOfRow, kMaxLobes>;
+
+// w (rho - rho*) of one channel; returns sum w (rho - rho*)^2.
+TRILOBE_MULTIVERSION
+double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe,
+                      const double* __restrict w, const double* __restrict rho,
+                      double* __restrict w_residual) {
+  for (int n = 0; n < size; ++n) w_residual[n] = d - rho[n];
+  for (int m = 0; m < lobes; ++m) {
+    const double x = lobe[m].x;
+    const double* __restrict const K = lobe[m].K;
+    for (int n = 0; n < size; ++n) w_residual[n] += x * K[n];
+  }
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (int n = 0; n < size; ++n) {
+    const double residual = w_residual[n];
+    w_residual[n] *= w[n];
+    sum += w_residual[n] * residual;
+  }
+  return sum;
+}
+
+// Sums over the samples of a row and channel, by rows of a square matrix of whole vectors:
+//   A_ae = sum w phi_a phi_e  and, in one more row,  b_e = sum w r phi_e.
+// Adds f_a f_e A_ae and f_e b_e to near, g_a g_e A_ae and g_e b_e to far.
+// phi: [size][basis]; sums, near, far: [basis + 1][basis]; f, g: [basis]. `basis` is padded with
+// phi = 0.
+TRILOBE_MULTIVERSION
+void AddRowSums(int size, int basis, const double* w, const double* w_residual, const double* phi,
+                const double* f, const double* g, double* sums, double* near, double* far) {
+  constexpr int kRows = 4;  // of A at a time
+  const auto add = [&](int a, int e, const Lanes4& sum) {
+    const double f_a = a < basis ? f[a] : 1, g_a = a < basis ? g[a] : 1;
+    const int at = a * basis + e;
+    Lanes4 f_e, g_e, old;
+    std::memcpy(&f_e, f + e, sizeof(f_e));
+    std::memcpy(&g_e, g + e, sizeof(g_e));
+    std::memcpy(sums + at, &sum, sizeof(sum));
+    std::memcpy(&old, near + at, sizeof(old));
+    old += f_a * f_e * sum;
+    std::memcpy(near + at, &old, sizeof(old));
+    std::memcpy(&old, far + at, sizeof(old));
+    old += g_a * g_e * sum;
+    std::memcpy(far + at, &old, sizeof(old));
+  };
+  for (int e = 0; e < basis; e += 4) {
+    for (int a = 0; a < basis; a += kRows) {
+      Lanes4 A[kRows] = {}, b = {};
+      for (int n = 0; n < size; ++n) {
+        Lanes4 phi_e;
+        std::memcpy(&phi_e, phi + n * basis + e, sizeof(phi_e));
+        const double* const phi_a = phi + n * basis + a;
+        const Lanes4 w_phi_e = w[n] * phi_e;
+        for (int k = 0; k < kRows; ++k) A[k] += phi_a[k] * w_phi_e;
+        b += w_residual[n] * phi_e;
+      }
+      for (int k = 0; k < kRows; ++k) add(a + k, e, A[k]);
+      if (a == 0) add(basis, e, b);
+    }
+  }
+}
 
 // Adds one channel's q to those of each sample. [lines][line_size]
 TRILOBE_MULTIVERSION
@@ -173,6 +250,12 @@ class AlignedSums {
   std::vector<CacheLine> lines_;
 };
 
+// d rho = sum of value phi_a d parameter over the terms of all parameters.
+struct Term {
+  int parameter = 0, a = 0;
+  double value = 0;
+};
+
 }  // namespace
 
 // What lies where in the sums of a share. A row has "near" parameters, those of all rows of its
@@ -196,6 +279,8 @@ class JointRows::Layout {
         num_far(spec.num_tables(Factor::kF)),
         padded_nodes(spec.g_nodes + 2),
         line_size((max_row + kBatch - 1) / kBatch * kBatch),
+        basis((1 + spec.lobes + 3) / 4 * 4),
+        sums_size((basis + 1) * basis),
         tables(spec.num_tables(Factor::kG)) {
     const CatmullRom spline(spec.g_nodes);
     columns = {Columns(spline, 0), Columns(spline, 1), Columns(spline, spec.g_nodes - 2)};
@@ -236,6 +321,7 @@ class JointRows::Layout {
 
   const ModelSpec spec;
   const int first_D, num_near, num_far, padded_nodes, line_size;
+  const int basis, sums_size;  // of AddRowSums
   int max_lines = 0;
   size_t near_size = 0, far_size = 0;  // of the sums of all tables
   std::vector<OfTable> tables;
@@ -243,63 +329,69 @@ class JointRows::Layout {
 };
 
 struct JointRows::Share {
-  explicit Share(const Layout& layout, int theta_d)
+  Share(const Layout& layout, int theta_d)
       : near_H(static_cast<size_t>(layout.num_near) * layout.num_near),
         near_gradient(layout.num_near),
+        near_sums(static_cast<size_t>(kChannels) * layout.sums_size),
+        D_F(static_cast<size_t>(theta_d) * layout.num_near * layout.num_far),
+        far_sums(theta_d * near_sums.size()),
         near_G(layout.near_size),
-        far_H(static_cast<size_t>(theta_d) * (layout.num_near + layout.num_far) * layout.num_far),
-        far_gradient(static_cast<size_t>(theta_d) * layout.num_far),
         far_G(theta_d * layout.far_size),
         B_i(4 * static_cast<size_t>(layout.line_size)),
         B_o(B_i.size()),
-        q(static_cast<size_t>(layout.max_lines) * layout.line_size),
-        q_by_sample(q.size()) {
-    for (auto* of_channels : {&w, &w_residual}) {
-      of_channels->fill(std::vector<double>(layout.line_size));
-    }
+        phi_lines(static_cast<size_t>(layout.basis) * layout.line_size),
+        phi(phi_lines.size()),
+        q_lines(static_cast<size_t>(layout.max_lines) * layout.line_size),
+        q(q_lines.size()) {
+    std::fill_n(phi_lines.begin(), layout.line_size, 1.0);
+    w_residual.fill(std::vector<double>(layout.line_size));
+    w = w_residual;
     for (auto* of_tables : {&K, &H_i, &H_o}) {
       of_tables->assign(layout.tables.size(), std::vector<double>(layout.line_size));
     }
   }
 
   void Clear() {
-    for (auto* sums : {&near_H, &near_gradient, &far_H, &far_gradient}) {
+    objective = 0;
+    for (auto* sums : {&near_H, &near_gradient, &near_sums, &D_F, &far_sums}) {
       std::ranges::fill(*sums, 0.0);
     }
     near_G.Clear();
     far_G.Clear();
   }
 
-  double* FarH(const Layout& layout, int d) {
-    return far_H.data() +
-           static_cast<size_t>(d) * (layout.num_near + layout.num_far) * layout.num_far;
-  }
-
-  double* FarGradient(const Layout& layout, int d) {
-    return far_gradient.data() + static_cast<size_t>(d) * layout.num_far;
+  double* FarSums(const Layout& layout, int d) {
+    return far_sums.data() + static_cast<size_t>(d) * kChannels * layout.sums_size;
   }
   double* FarG(const Layout& layout, int d) { return far_G.data() + d * layout.far_size; }
 
+  double objective = 0;
+  // Of all rows for d and s, of those of the present theta_h for D.
   std::vector<double> near_H;         // [near][near], from the diagonal
   std::vector<double> near_gradient;  // [near]
-  AlignedSums near_G;                 // by table: [padded_nodes][near lines]
-  std::vector<double> far_H;          // [theta_d][near, then far][far], from the diagonal
-  std::vector<double> far_gradient;   // [theta_d][far]
-  AlignedSums far_G;                  // [theta_d], by table: [padded_nodes][far lines]
+  // AddRowSums of the rows of the present theta_h, with f the factors F; of those of each theta_d,
+  // with g the factors D.
+  std::vector<double> near_sums;  // [kChannels][sums_size]
+  std::vector<double> D_F;        // H of the present theta_h. [theta_d][near][far]
+  std::vector<double> far_sums;   // [theta_d][kChannels][sums_size]
+  AlignedSums near_G;             // by table: [padded_nodes][near lines]
+  AlignedSums far_G;              // [theta_d], by table: [padded_nodes][far lines]
 
-  // Of one row. [..][line_size]
-  std::vector<double> B_i, B_o;  // [line_size][4]
-  // G(theta_i) G(theta_o) / (cos cos) and, for z, its other side: H_i goes with B(theta_i).
-  std::vector<std::vector<double>> K, H_i, H_o;              // [tables]
+  // Of one row, padded to whole batches.
+  int size = 0, padded_size = 0;
+  const int16_t *interval_i = nullptr, *interval_o = nullptr;
+  std::array<LobesOfRow, kChannels> lobes;
+  std::vector<double> B_i, B_o;                              // [line_size][4]
+  std::vector<std::vector<double>> K, H_i, H_o;              // [tables][line_size]
   std::array<std::vector<double>, kChannels> w, w_residual;  // 0 beyond the row
-  std::vector<double> q;                                     // [lines]
-  AlignedSums q_by_sample;                                   // [line_size][lines]
+  std::vector<double> phi_lines;                             // [basis][line_size]
+  AlignedSums phi;                                           // [line_size][basis]
+  std::vector<double> q_lines;                               // [lines][line_size]
+  AlignedSums q;                                             // [line_size][lines]
 };
 
 JointRows::JointRows(const FoldedGrid& folded, const ModelSpec& spec)
-    : folded_(folded),
-      layout_(std::make_unique<Layout>(spec, folded.max_row_size())),
-      cells_(folded, spec) {
+    : folded_(folded), layout_(std::make_unique<Layout>(spec, folded.max_row_size())) {
   for (int share = 0; share < kShares; ++share) {
     shares_.push_back(std::make_unique<Share>(*layout_, folded.grid.theta_d));
   }
@@ -307,142 +399,146 @@ JointRows::JointRows(const FoldedGrid& folded, const ModelSpec& spec)
 
 JointRows::~JointRows() = default;
 
-// The row's products with the nodes of G.
-void JointRows::AddCrossProducts(const FactorModel& model, Hessian hessian, const Pieces& G, int h,
-                                 int d, Share* share) const {
+// What the sums of a row need.
+void JointRows::ReadRow(const FactorModel& model, const Pieces& G, int h, int d,
+                        Share* share) const {
   const Layout& layout = *layout_;
   const ModelSpec& spec = layout.spec;
   Share& of = *share;
   const int row = h * folded_.grid.theta_d + d;
   const int begin = folded_.row_begin[row], size = folded_.row_begin[row + 1] - begin;
   const int padded_size = (size + kBatch - 1) / kBatch * kBatch;
-  const int16_t* const interval_i = &folded_.interval_i[begin];
-  const int16_t* const interval_o = &folded_.interval_o[begin];
+  of.size = size;
+  of.padded_size = padded_size;
+  of.interval_i = &folded_.interval_i[begin];
+  of.interval_o = &folded_.interval_o[begin];
   const double *const t_i = &folded_.t_i[begin], *const t_o = &folded_.t_o[begin];
 
-  SplineWeights(size, layout.columns, spec.g_nodes - 2, interval_i, t_i, of.B_i.data());
-  SplineWeights(size, layout.columns, spec.g_nodes - 2, interval_o, t_o, of.B_o.data());
+  SplineWeights(size, layout.columns, spec.g_nodes - 2, of.interval_i, t_i, of.B_i.data());
+  SplineWeights(size, layout.columns, spec.g_nodes - 2, of.interval_o, t_o, of.B_o.data());
   for (size_t t = 0; t < G.size(); ++t) {
-    for (int n = 0; n < size; ++n) {
-      const double inverse_cosines = folded_.inverse_cosines[begin + n];
-      const double G_i = G[t][interval_i[n]](t_i[n]), G_o = G[t][interval_o[n]](t_o[n]);
-      of.K[t][n] = G_i * G_o * inverse_cosines;
-      of.H_i[t][n] = G_o * inverse_cosines;
-      of.H_o[t][n] = G_i * inverse_cosines;
-    }
+    ReadTable(size, G[t].data(), of.interval_i, of.interval_o, t_i, t_o,
+              &folded_.inverse_cosines[begin], of.K[t].data(), of.H_i[t].data(), of.H_o[t].data());
   }
-  std::array<LobesOfRow, kChannels> lobes;
   for (int c = 0; c < kChannels; ++c) {
-    double *const w = of.w[c].data(), *const w_residual = of.w_residual[c].data();
-    const double* const rho = &folded_.rho[c][begin];
-    for (int n = 0; n < size; ++n) w_residual[n] = model.d()[c] - rho[n];
     for (int m = 0; m < spec.lobes; ++m) {
-      LobeOfRow& lobe = lobes[c][m];
+      LobeOfRow& lobe = of.lobes[c][m];
       const double s = model.s(m)[c], D = model.D(m, c)[h], F = model.F(m, c)[d];
       lobe.x = s * D * F;
       lobe.DF = D * F;
       lobe.sF = s * F;
       lobe.sD = s * D;
       lobe.K = of.K[spec.table(Factor::kG, m, c)].data();
-      for (int n = 0; n < size; ++n) w_residual[n] += lobe.x * lobe.K[n];
     }
-    for (int n = 0; n < size; ++n) {
-      w[n] = folded_.weight[c][begin + n];
-      w_residual[n] *= w[n];
-    }
+    double *const w = of.w[c].data(), *const w_residual = of.w_residual[c].data();
+    std::copy_n(&folded_.weight[c][begin], size, w);
+    of.objective += WeighResiduals(size, model.d()[c], spec.lobes, of.lobes[c], w,
+                                   &folded_.rho[c][begin], w_residual);
     std::fill(w + size, w + padded_size, 0.0);
     std::fill(w_residual + size, w_residual + padded_size, 0.0);
   }
+}
 
-  for (int t = 0; t < static_cast<int>(G.size()); ++t) {
+// The row's products with the nodes of G.
+void JointRows::AddCrossProducts(Hessian hessian, int d, Share* share) const {
+  const Layout& layout = *layout_;
+  const ModelSpec& spec = layout.spec;
+  Share& of = *share;
+  for (int t = 0; t < static_cast<int>(layout.tables.size()); ++t) {
     const Layout::OfTable& table = layout.tables[t];
-    double* const q = of.q.data();
+    double* const q = of.q_lines.data();
     for (int line = 0; line < table.lines(); ++line) {
-      std::fill_n(q + static_cast<size_t>(line) * layout.line_size, padded_size, 0.0);
+      std::fill_n(q + static_cast<size_t>(line) * layout.line_size, of.padded_size, 0.0);
     }
     const auto channels = spec.channels(Factor::kG, t);
     for (int c = channels.begin; c < channels.end; ++c) {
       double X = 0;
       for (int m = 0; m < spec.lobes; ++m) {
-        LobeOfRow& lobe = lobes[c][m];
+        LobeOfRow& lobe = of.lobes[c][m];
         lobe.served = spec.serves(Factor::kG, t, m, c);
         if (lobe.served) X += lobe.x;
         lobe.s_line = table.near_line[Layout::s(m, c)];
         lobe.D_line = table.near_line[layout.D(m, c)];
         lobe.F_line = table.near_lines + table.far_line[layout.F(m, c)];
       }
-      AddChannel(padded_size, X, of.w[c].data(), of.w_residual[c].data(), spec.lobes, lobes[c],
-                 hessian == Hessian::kNewton, table.near_line[c], table.gradient_line,
+      AddChannel(of.padded_size, X, of.w[c].data(), of.w_residual[c].data(), spec.lobes,
+                 of.lobes[c], hessian == Hessian::kNewton, table.near_line[c], table.gradient_line,
                  layout.line_size, q);
     }
-    Transpose(table.lines(), padded_size, layout.line_size, q, of.q_by_sample.data());
-    AddCrossSums(size, interval_i, interval_o, of.B_i.data(), of.B_o.data(), of.H_i[t].data(),
-                 of.H_o[t].data(), table.near_lines, table.far_lines, of.q_by_sample.data(),
+    Transpose(table.lines(), of.padded_size, layout.line_size, q, of.q.data());
+    AddCrossSums(of.size, of.interval_i, of.interval_o, of.B_i.data(), of.B_o.data(),
+                 of.H_i[t].data(), of.H_o[t].data(), table.near_lines, table.far_lines, of.q.data(),
                  of.near_G.data() + table.near_begin, of.FarG(layout, d) + table.far_begin);
   }
 }
 
-// The row's products of d, s, D and F with each other, and their gradient.
-void JointRows::AddRowParameters(const FactorModel& model, Hessian hessian, int h, int d,
-                                 Share* share) const {
+// The row's products of d, s, D and F with each other.
+void JointRows::AddProducts(const FactorModel& model, Hessian hessian, int h, int d,
+                            Share* share) const {
   const Layout& layout = *layout_;
-  const int lobes = layout.spec.lobes, basis = cells_.basis();
-  const int num_near = layout.num_near, num_far = layout.num_far;
-  double* const near_H = share->near_H.data();
-  double* const far_H = share->FarH(layout, d);
-  double* const far_gradient = share->FarGradient(layout, d);
-  // d rho = sum of value phi_a d parameter over the terms, which are in order of the parameter.
-  struct Term {
-    int parameter = 0, a = 0;
-    double value = 0;
-  };
-  std::array<Term, 1 + 2 * kMaxLobes> near;
-  std::array<Term, kMaxLobes> far;
+  const int basis = layout.basis;
+  std::array<double, kMaxPaddedBasis> f{1}, g{1};
+  std::array<double, (kMaxPaddedBasis + 1) * kMaxPaddedBasis> sums;
+  double* const D_F = share->D_F.data() + static_cast<size_t>(d) * layout.num_near * layout.num_far;
   for (int c = 0; c < kChannels; ++c) {
-    near[0] = {c, 0, 1};
-    for (int m = 0; m < lobes; ++m) {
-      const double s = model.s(m)[c], D = model.D(m, c)[h], F = model.F(m, c)[d];
-      near[1 + m] = {Layout::s(m, c), 1 + m, D * F};
-      near[1 + lobes + m] = {layout.D(m, c), 1 + m, s * F};
-      far[m] = {layout.F(m, c), 1 + m, s * D};
+    const LobesOfRow& lobes = share->lobes[c];
+    for (int m = 0; m < layout.spec.lobes; ++m) {
+      f[1 + m] = model.F(m, c)[d];
+      g[1 + m] = model.D(m, c)[h];
     }
-    const double* const b = cells_.b(h, d, c);  // of the residual rho* - rho
-    const double* const A = cells_.A(h, d, c);
-    const auto product = [&](const Term& p, const Term& q) {
-      return p.value * q.value * A[p.a * basis + q.a];
-    };
-    for (int i = 0; i < 1 + 2 * lobes; ++i) {
-      const Term& p = near[i];
-      share->near_gradient[p.parameter] -= p.value * b[p.a];
-      double* const row = near_H + static_cast<size_t>(p.parameter) * num_near;
-      row[p.parameter] += product(p, p);
-      for (int j = i + 1; j < 1 + 2 * lobes; ++j) {
-        const Term& q = near[j];
-        row[q.parameter] += (q.parameter == p.parameter ? 2 : 1) * product(p, q);
+    if (c == 0 || layout.spec.G.per_channel) {
+      for (int m = 0; m < layout.spec.lobes; ++m) {
+        std::copy_n(lobes[m].K, share->padded_size,
+                    &share->phi_lines[static_cast<size_t>(1 + m) * layout.line_size]);
       }
-      for (int m = 0; m < lobes; ++m) {
-        far_H[p.parameter * num_far + far[m].parameter] += product(p, far[m]);
-      }
+      Transpose(basis, share->padded_size, layout.line_size, share->phi_lines.data(),
+                share->phi.data());
     }
-    for (int m = 0; m < lobes; ++m) {
-      const Term& p = far[m];
-      far_gradient[p.parameter] -= p.value * b[p.a];
-      double* const row = far_H + (num_near + p.parameter) * num_far;
-      row[p.parameter] += product(p, p);
-      for (int l = m + 1; l < lobes; ++l) {
-        const Term& q = far[l];
-        row[q.parameter] += (q.parameter == p.parameter ? 2 : 1) * product(p, q);
+    AddRowSums(share->size, basis, share->w[c].data(), share->w_residual[c].data(),
+               share->phi.data(), f.data(), g.data(), sums.data(),
+               &share->near_sums[c * layout.sums_size],
+               share->FarSums(layout, d) + c * layout.sums_size);
+    for (int m = 0; m < layout.spec.lobes; ++m) {
+      double* const of_D = D_F + layout.D(m, c) * layout.num_far;
+      const double* const A = &sums[(1 + m) * basis + 1];
+      for (int l = 0; l < layout.spec.lobes; ++l) {
+        of_D[layout.F(l, c)] += lobes[m].sF * lobes[l].sD * A[l];
       }
-    }
-    if (hessian == Hessian::kGaussNewton) continue;
-    for (int m = 0; m < lobes; ++m) {
-      const double r_K = -b[1 + m];
-      const int s = Layout::s(m, c), D = layout.D(m, c), F = layout.F(m, c);
-      near_H[static_cast<size_t>(s) * num_near + D] += r_K * model.F(m, c)[d];
-      far_H[s * num_far + F] += r_K * model.D(m, c)[h];
-      far_H[D * num_far + F] += r_K * model.s(m)[c];
+      if (hessian == Hessian::kGaussNewton) continue;
+      of_D[layout.F(m, c)] += model.s(m)[c] * sums[basis * basis + 1 + m];
     }
   }
+}
+
+// The part in which F takes no part of what the rows of one theta_h added up. Clears it.
+void JointRows::SpreadNear(const FactorModel& model, Hessian hessian, int h, Share* share) const {
+  const Layout& layout = *layout_;
+  const int lobes = layout.spec.lobes;
+  std::array<Term, 1 + 2 * kMaxLobes> terms;
+  for (int c = 0; c < kChannels; ++c) {
+    terms[0] = {c, 0, 1};
+    for (int m = 0; m < lobes; ++m) {
+      terms[1 + m] = {Layout::s(m, c), 1 + m, model.D(m, c)[h]};
+      terms[1 + lobes + m] = {layout.D(m, c), 1 + m, model.s(m)[c]};
+    }
+    const double* const A = &share->near_sums[c * layout.sums_size];
+    const double* const b = A + layout.basis * layout.basis;
+    for (int i = 0; i < 1 + 2 * lobes; ++i) {
+      const Term& p = terms[i];
+      share->near_gradient[p.parameter] += p.value * b[p.a];
+      for (int j = i; j < 1 + 2 * lobes; ++j) {
+        const Term& q = terms[j];
+        const double product = p.value * q.value * A[p.a * layout.basis + q.a];
+        share->near_H[static_cast<size_t>(p.parameter) * layout.num_near + q.parameter] +=
+            i != j && p.parameter == q.parameter ? 2 * product : product;
+      }
+    }
+    for (int m = 0; m < lobes && hessian == Hessian::kNewton; ++m) {
+      share->near_H[static_cast<size_t>(Layout::s(m, c)) * layout.num_near + layout.D(m, c)] +=
+          b[1 + m];
+    }
+  }
+  std::ranges::fill(share->near_sums, 0.0);
 }
 
 // Hands over what the rows of one theta_h added up for D, and clears that for the next.
@@ -466,9 +562,10 @@ void JointRows::MoveNear(const FactorModel& model, int h, Share* share,
     }
     result->squared_lengths[k] = row[k];
     for (int d = 0; d < spec.f_bins; ++d) {
-      double* const far_H = share->FarH(layout, d) + near * layout.num_far;
+      double* const D_F =
+          &share->D_F[(static_cast<size_t>(d) * layout.num_near + near) * layout.num_far];
       for (int f = 0; f < layout.num_far; ++f) {
-        move(&far_H[f], &row[model.TableOffset(Factor::kF, f) + d]);
+        move(&D_F[f], &row[model.TableOffset(Factor::kF, f) + d]);
       }
     }
     for (size_t t = 0; t < layout.tables.size(); ++t) {
@@ -485,26 +582,37 @@ void JointRows::MoveNear(const FactorModel& model, int h, Share* share,
 }
 
 // Hands over what the rows of one theta_d added up for F.
-void JointRows::SetFar(const FactorModel& model, int d, QuadraticModel* result) const {
+void JointRows::SetFar(const FactorModel& model, Hessian hessian, int d,
+                       QuadraticModel* result) const {
   const Layout& layout = *layout_;
+  const int lobes = layout.spec.lobes;
   Share& sum = *shares_[0];
-  const int size_H = (layout.num_near + layout.num_far) * layout.num_far;
   for (int s = 1; s < kShares; ++s) {
     Share& share = *shares_[s];
-    Add(size_H, share.FarH(layout, d), sum.FarH(layout, d));
-    Add(layout.num_far, share.FarGradient(layout, d), sum.FarGradient(layout, d));
+    Add(kChannels * layout.sums_size, share.FarSums(layout, d), sum.FarSums(layout, d));
     Add(static_cast<int>(layout.far_size), share.FarG(layout, d), sum.FarG(layout, d));
   }
   const size_t n = result->gradient.size();
-  const double* const far_H = sum.FarH(layout, d);
+  for (int c = 0; c < kChannels; ++c) {
+    const double* const A = sum.FarSums(layout, d) + c * layout.sums_size;
+    const double* const b = A + layout.basis * layout.basis;
+    for (int m = 0; m < lobes; ++m) {
+      const size_t k = model.TableOffset(Factor::kF, layout.F(m, c)) + d;
+      const double s_m = model.s(m)[c];
+      const double* const A_m = A + (1 + m) * layout.basis;
+      result->gradient[k] += s_m * b[1 + m];
+      result->H[c * n + k] += s_m * A_m[0];
+      for (int l = 0; l < lobes; ++l) {
+        const size_t k_l = model.TableOffset(Factor::kF, layout.F(l, c)) + d;
+        result->H[Layout::s(l, c) * n + k] += s_m * model.F(l, c)[d] * A_m[1 + l];
+        if (k <= k_l) result->H[k * n + k_l] += s_m * model.s(l)[c] * A_m[1 + l];
+      }
+      if (hessian == Hessian::kNewton) result->H[Layout::s(m, c) * n + k] += b[1 + m];
+    }
+  }
   for (int f = 0; f < layout.num_far; ++f) {
     const size_t k = model.TableOffset(Factor::kF, f) + d;
     double* const row = &result->H[k * n];
-    result->gradient[k] = sum.FarGradient(layout, d)[f];
-    for (int i = 0; i < layout.first_D; ++i) result->H[i * n + k] = far_H[i * layout.num_far + f];
-    for (int i = f; i < layout.num_far; ++i) {
-      row[model.TableOffset(Factor::kF, i) + d] = far_H[(layout.num_near + f) * layout.num_far + i];
-    }
     result->squared_lengths[k] = row[k];
     for (size_t t = 0; t < layout.tables.size(); ++t) {
       const Layout::OfTable& table = layout.tables[t];
@@ -524,10 +632,12 @@ void JointRows::SetNear(const FactorModel& model, QuadraticModel* result) const 
   Share& sum = *shares_[0];
   for (int s = 1; s < kShares; ++s) {
     Share& share = *shares_[s];
+    sum.objective += share.objective;
     Add(layout.num_near * layout.num_near, share.near_H.data(), sum.near_H.data());
     Add(layout.num_near, share.near_gradient.data(), sum.near_gradient.data());
     Add(static_cast<int>(layout.near_size), share.near_G.data(), sum.near_G.data());
   }
+  result->objective = folded_.constant + sum.objective;
   const size_t n = result->gradient.size();
   for (int k = 0; k < layout.first_D; ++k) {
     double* const row = &result->H[k * n];
@@ -552,7 +662,6 @@ void JointRows::SetNear(const FactorModel& model, QuadraticModel* result) const 
 
 void JointRows::Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
                          QuadraticModel* result) {
-  cells_.Accumulate(model, num_threads);
   const auto G = ShadowingPieces(model);
   ParallelFor(kShares, num_threads, [&](int s) {
     Share* const share = shares_[s].get();
@@ -561,13 +670,15 @@ void JointRows::Evaluate(const FactorModel& model, Hessian hessian, int num_thre
       for (int d = 0; d < folded_.grid.theta_d; ++d) {
         const int row = h * folded_.grid.theta_d + d;
         if (folded_.row_begin[row] == folded_.row_begin[row + 1]) continue;
-        AddRowParameters(model, hessian, h, d, share);
-        AddCrossProducts(model, hessian, G, h, d, share);
+        ReadRow(model, G, h, d, share);
+        AddProducts(model, hessian, h, d, share);
+        AddCrossProducts(hessian, d, share);
       }
+      SpreadNear(model, hessian, h, share);
       MoveNear(model, h, share, result);
     }
   });
-  ParallelFor(folded_.grid.theta_d, num_threads, [&](int d) { SetFar(model, d, result); });
+  ParallelFor(folded_.grid.theta_d, num_threads, [&](int d) { SetFar(model, hessian, d, result); });
   SetNear(model, result);
 }
 

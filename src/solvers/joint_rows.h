@@ -6,7 +6,6 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/folded_grid.h"
-#include "trilobe/solvers/cell_sums.h"
 #include "trilobe/solvers/normal_equations.h"
 
 namespace trilobe {
@@ -40,18 +39,17 @@ class JointRows {
   class Layout;
   struct Share;
 
-  void AddRowParameters(const FactorModel& model, Hessian hessian, int h, int d,
-                        Share* share) const;
-  void AddCrossProducts(const FactorModel& model, Hessian hessian,
-                        const std::vector<std::vector<CatmullRom::Piece>>& G, int h, int d,
-                        Share* share) const;
+  void ReadRow(const FactorModel& model, const std::vector<std::vector<CatmullRom::Piece>>& G,
+               int h, int d, Share* share) const;
+  void AddProducts(const FactorModel& model, Hessian hessian, int h, int d, Share* share) const;
+  void AddCrossProducts(Hessian hessian, int d, Share* share) const;
+  void SpreadNear(const FactorModel& model, Hessian hessian, int h, Share* share) const;
   void MoveNear(const FactorModel& model, int h, Share* share, QuadraticModel* result) const;
-  void SetFar(const FactorModel& model, int d, QuadraticModel* result) const;
+  void SetFar(const FactorModel& model, Hessian hessian, int d, QuadraticModel* result) const;
   void SetNear(const FactorModel& model, QuadraticModel* result) const;
 
   const FoldedGrid& folded_;
   const std::unique_ptr<const Layout> layout_;
-  CellSums cells_;
   std::vector<std::unique_ptr<Share>> shares_;
 };
 

@@ -187,7 +187,6 @@ void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
     return;
   }
   Clear(model.spec().num_parameters(), result);
-  result->objective = objective_.Value(model);
   condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
   ClearDeadParameters(objective_.coverage(), result);
 }
