@@ -5,11 +5,20 @@
 // LAPACK has no C header of its own.
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* A, const int* lda, int* info);
-void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* A, const int* lda,
-             double* B, const int* ldb, int* info);
+void dtrtrs_(const char* uplo, const char* trans, const char* diag, const int* n, const int* nrhs,
+             const double* A, const int* lda, double* B, const int* ldb, int* info);
 }
 
 namespace trilobe {
+namespace {
+
+void SolveTriangular(const char* trans, int n, const double* L, int columns, double* B) {
+  const int stride = std::max(1, n);
+  int info = 0;
+  dtrtrs_("L", trans, "N", &n, &columns, L, &stride, B, &stride, &info);
+}
+
+}  // namespace
 
 bool FactorCholesky(int n, double* A) {
   const int stride = std::max(1, n);
@@ -18,10 +27,10 @@ bool FactorCholesky(int n, double* A) {
   return info == 0;
 }
 
-void SolveCholesky(int n, const double* L, double* b) {
-  const int stride = std::max(1, n), one = 1;
-  int info = 0;
-  dpotrs_("L", &n, &one, L, &stride, b, &stride, &info);
+void SolveLower(int n, const double* L, int columns, double* B) {
+  SolveTriangular("N", n, L, columns, B);
 }
+
+void SolveLowerTransposed(int n, const double* L, double* b) { SolveTriangular("T", n, L, 1, b); }
 
 }  // namespace trilobe

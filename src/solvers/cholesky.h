@@ -3,13 +3,15 @@
 
 namespace trilobe {
 
-// Overwrites the lower triangle of a symmetric matrix [n][n], column by column, with its Cholesky
-// factor L (LAPACK's dpotrf); what lies above is neither read nor written. False, and no factor, if
-// the matrix is not positive definite.
+// LAPACK, for matrices of a few hundred rows. All are stored column by column.
+
+// Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; what lies
+// above is neither read nor written. False, and no factor, if it is not positive definite.
 bool FactorCholesky(int n, double* A);
 
-// Overwrites b [n] with the solution of L L' x = b.
-void SolveCholesky(int n, const double* L, double* b);
+// Overwrites B [n][columns] with L^-1 B, b [n] with L^-T b.
+void SolveLower(int n, const double* L, int columns, double* B);
+void SolveLowerTransposed(int n, const double* L, double* b);
 
 }  // namespace trilobe
 

@@ -38,6 +38,8 @@ class NonnegativeStep {
   enum class Outcome { kRight, kChanged, kIndefinite };
 
   Outcome SolveFree(double lambda, bool release);
+  bool SetStep(double lambda);
+  bool Factor(double lambda);
   double H_p(size_t k) const;
 
   const QuadraticModel* at_ = nullptr;
@@ -45,8 +47,14 @@ class NonnegativeStep {
   // are unit = 1 / scale, and g, z = scale x, the step p and u = unit p.
   std::vector<double> x_, scale_, unit_, g_, z_, p_, u_;
   std::vector<bool> binding_;
-  std::vector<size_t> free_, held_;       // of those that can move
-  std::vector<double> units_, A_, step_;  // of the free ones; A: scaled H + lambda, then its factor
+  // Of the parameters that were free at the last factorisation: which, and their scaled H + lambda.
+  bool factored_ = false;
+  std::vector<size_t> base_;
+  std::vector<bool> in_base_;
+  std::vector<double> units_, L_;
+  // Those that changed sides since, the former by number in base_; and what they ask of the factor.
+  std::vector<size_t> removed_, added_;
+  std::vector<double> W_;
 };
 
 }  // namespace trilobe
