@@ -13,9 +13,6 @@
 namespace trilobe {
 namespace {
 
-// Work is split into this many shares whatever the number of threads, so that sums always add up in
-// the same order.
-constexpr int kShares = 8;
 constexpr int kBatch = 8;  // samples; rows are padded to whole batches, with weight 0
 
 constexpr int kMaxPaddedBasis = (1 + kMaxLobes + 3) / 4 * 4;
@@ -194,39 +191,45 @@ void Transpose(int lines, int size, int line_size, const double* __restrict from
   }
 }
 
-// sum += z q
+// Where the samples of a row lie on the spline, and  z = B H  on both sides.
+struct RowOfNodes {
+  int size;
+  const int16_t *interval_i, *interval_o;
+  const double *B_i, *B_o;  // [size][4]
+  const double *H_i, *H_o;
+};
+
+// sums [node][lines] += z q for the four nodes of both sides of each sample: one vector of lines.
 template <typename Lanes>
-[[gnu::always_inline]] inline void AddProduct(double z, const double* q, double* sum) {
-  Lanes q_lanes, sums;
-  std::memcpy(&q_lanes, q, sizeof(Lanes));
-  std::memcpy(&sums, sum, sizeof(Lanes));
-  sums += z * q_lanes;
-  std::memcpy(sum, &sums, sizeof(Lanes));
+[[gnu::always_inline]] inline void AddLanes(const RowOfNodes& row, int q_lines, const double* q,
+                                            int lines, double* sums) {
+  const auto add = [lines](const double* B, const Lanes& H_q, double* at) {
+    for (int a = 0; a < 4; ++a, at += lines) {
+      Lanes sum;
+      std::memcpy(&sum, at, sizeof(Lanes));
+      sum += B[a] * H_q;
+      std::memcpy(at, &sum, sizeof(Lanes));
+    }
+  };
+  const RowOfNodes of = row;  // nothing below can change it
+  for (int n = 0; n < of.size; ++n, q += q_lines) {
+    Lanes q_n;
+    std::memcpy(&q_n, q, sizeof(Lanes));
+    add(of.B_i + 4 * n, of.H_i[n] * q_n, sums + static_cast<size_t>(of.interval_i[n]) * lines);
+    add(of.B_o + 4 * n, of.H_o[n] * q_n, sums + static_cast<size_t>(of.interval_o[n]) * lines);
+  }
 }
 
-// near, far [node][line] += z q for the four nodes of both sides of each sample, where z = B H.
 // q: [size][near lines, then far lines]
 TRILOBE_MULTIVERSION
-void AddCrossSums(int size, const int16_t* interval_i, const int16_t* interval_o, const double* B_i,
-                  const double* B_o, const double* H_i, const double* H_o, int near_lines,
-                  int far_lines, const double* q, double* near, double* far) {
-  for (int n = 0; n < size; ++n, q += near_lines + far_lines) {
-    for (const bool i : {true, false}) {
-      const int interval = i ? interval_i[n] : interval_o[n];
-      const double* const B = (i ? B_i : B_o) + 4 * n;
-      const double H = i ? H_i[n] : H_o[n];
-      double* near_node = near + static_cast<size_t>(interval) * near_lines;
-      double* far_node = far + static_cast<size_t>(interval) * far_lines;
-      for (int a = 0; a < 4; ++a, near_node += near_lines, far_node += far_lines) {
-        const double z = B[a] * H;
-        for (int line = 0; line < near_lines; line += 8) {
-          AddProduct<Lanes8>(z, q + line, near_node + line);
-        }
-        for (int line = 0; line < far_lines; line += 4) {
-          AddProduct<Lanes4>(z, q + near_lines + line, far_node + line);
-        }
-      }
-    }
+void AddCrossSums(const RowOfNodes& row, int near_lines, int far_lines, const double* q,
+                  double* near, double* far) {
+  const int lines = near_lines + far_lines;
+  for (int line = 0; line < near_lines; line += 8) {
+    AddLanes<Lanes8>(row, lines, q + line, near_lines, near + line);
+  }
+  for (int line = 0; line < far_lines; line += 4) {
+    AddLanes<Lanes4>(row, lines, q + near_lines + line, far_lines, far + line);
   }
 }
 
@@ -392,7 +395,7 @@ struct JointRows::Share {
 
 JointRows::JointRows(const FoldedGrid& folded, const ModelSpec& spec)
     : folded_(folded), layout_(std::make_unique<Layout>(spec, folded.max_row_size())) {
-  for (int share = 0; share < kShares; ++share) {
+  for (int share = 0; share < NumShares(folded.size()); ++share) {
     shares_.push_back(std::make_unique<Share>(*layout_, folded.grid.theta_d));
   }
 }
@@ -466,8 +469,9 @@ void JointRows::AddCrossProducts(Hessian hessian, int d, Share* share) const {
                  layout.line_size, q);
     }
     Transpose(table.lines(), of.padded_size, layout.line_size, q, of.q.data());
-    AddCrossSums(of.size, of.interval_i, of.interval_o, of.B_i.data(), of.B_o.data(),
-                 of.H_i[t].data(), of.H_o[t].data(), table.near_lines, table.far_lines, of.q.data(),
+    AddCrossSums({of.size, of.interval_i, of.interval_o, of.B_i.data(), of.B_o.data(),
+                  of.H_i[t].data(), of.H_o[t].data()},
+                 table.near_lines, table.far_lines, of.q.data(),
                  of.near_G.data() + table.near_begin, of.FarG(layout, d) + table.far_begin);
   }
 }
@@ -587,7 +591,7 @@ void JointRows::SetFar(const FactorModel& model, Hessian hessian, int d,
   const Layout& layout = *layout_;
   const int lobes = layout.spec.lobes;
   Share& sum = *shares_[0];
-  for (int s = 1; s < kShares; ++s) {
+  for (size_t s = 1; s < shares_.size(); ++s) {
     Share& share = *shares_[s];
     Add(kChannels * layout.sums_size, share.FarSums(layout, d), sum.FarSums(layout, d));
     Add(static_cast<int>(layout.far_size), share.FarG(layout, d), sum.FarG(layout, d));
@@ -630,7 +634,7 @@ void JointRows::SetFar(const FactorModel& model, Hessian hessian, int d,
 void JointRows::SetNear(const FactorModel& model, QuadraticModel* result) const {
   const Layout& layout = *layout_;
   Share& sum = *shares_[0];
-  for (int s = 1; s < kShares; ++s) {
+  for (size_t s = 1; s < shares_.size(); ++s) {
     Share& share = *shares_[s];
     sum.objective += share.objective;
     Add(layout.num_near * layout.num_near, share.near_H.data(), sum.near_H.data());
@@ -663,10 +667,11 @@ void JointRows::SetNear(const FactorModel& model, QuadraticModel* result) const 
 void JointRows::Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
                          QuadraticModel* result) {
   const auto G = ShadowingPieces(model);
-  ParallelFor(kShares, num_threads, [&](int s) {
+  const int num_shares = static_cast<int>(shares_.size());
+  ParallelFor(num_shares, num_threads, [&](int s) {
     Share* const share = shares_[s].get();
     share->Clear();
-    for (int h = s; h < folded_.grid.theta_h; h += kShares) {
+    for (int h = s; h < folded_.grid.theta_h; h += num_shares) {
       for (int d = 0; d < folded_.grid.theta_d; ++d) {
         const int row = h * folded_.grid.theta_d + d;
         if (folded_.row_begin[row] == folded_.row_begin[row + 1]) continue;

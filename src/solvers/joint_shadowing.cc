@@ -10,10 +10,6 @@
 namespace trilobe {
 namespace {
 
-// Work is split into this many shares whatever the number of threads, so that sums always add up in
-// the same order.
-constexpr int kShares = 8;
-
 // Samples per call of the kernels: their intermediate values stay in the first-level cache.
 constexpr int kChunk = 256;
 
@@ -192,8 +188,9 @@ JointShadowing::JointShadowing(const SplineCells& samples, const ModelSpec& spec
   }
   // As many samples in each share as in any other, in one piece.
   first_cell_.assign(1, 0);
-  for (int share = 0; share < kShares; ++share) {
-    const size_t end = samples.row.size() * (share + 1) / kShares;
+  const int num_shares = NumShares(static_cast<int>(samples.row.size()));
+  for (int share = 0; share < num_shares; ++share) {
+    const size_t end = samples.row.size() * (share + 1) / num_shares;
     first_cell_.push_back(static_cast<int>(std::ranges::count_if(
         samples.cells, [end](const auto& cell) { return static_cast<size_t>(cell.begin) < end; })));
     shares_.push_back(std::make_unique<Share>(pairs_.size(), tables, padded_nodes_));
@@ -317,7 +314,7 @@ void JointShadowing::SetPair(size_t pair, const Pass& pass, QuadraticModel* resu
   double* const across = &shares_[0]->across[pair * size];
   double* const along = &shares_[0]->along[pair * nodes * kStride];
   double* const curvature_sums = &shares_[0]->curvature[t * size];
-  for (int s = 1; s < kShares; ++s) {
+  for (size_t s = 1; s < shares_.size(); ++s) {
     Add(size, &shares_[s]->across[pair * size], across);
     Add(nodes * kStride, &shares_[s]->along[pair * nodes * kStride], along);
     if (curvature) Add(size, &shares_[s]->curvature[t * size], curvature_sums);
@@ -351,7 +348,7 @@ void JointShadowing::Evaluate(const FactorModel& model, Hessian hessian, int num
                               QuadraticModel* result) {
   const Pass pass{model, hessian, ShadowingPieces(model), LobeAmplitudes(samples_.grid, model),
                   MakeSides(model)};
-  ParallelFor(kShares, num_threads, [&](int s) {
+  ParallelFor(static_cast<int>(shares_.size()), num_threads, [&](int s) {
     Share* const share = shares_[s].get();
     share->Clear();
     for (int k = first_cell_[s]; k < first_cell_[s + 1]; ++k) {

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SOLVERS_NORMAL_EQUATIONS_H_
 #define TRILOBE_SOLVERS_NORMAL_EQUATIONS_H_
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -24,6 +25,11 @@ enum class Hessian {
   kGaussNewton,  // J'J
   kNewton,       // J'J + sum w (rho - rho*) d2 rho / dx2: all of it, perhaps indefinite
 };
+
+// Into how many shares a pass over folded samples is split, each with its own sums: as many
+// whatever the number of threads, so that they always add up in the same order, and few where there
+// are few samples, since sums are cleared and added up for each.
+constexpr int NumShares(int samples) { return std::clamp(samples / 65536, 2, 8); }
 
 // Accumulates it without ever storing J, in one pass over the samples (docs/method.md). Samples on
 // a grid are taken folded, by their cells; others one by one.
