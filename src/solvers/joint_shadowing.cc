@@ -333,9 +333,9 @@ void JointShadowing::SetPair(size_t pair, const Pass& pass, QuadraticModel* resu
   const int first_u = pass.model.TableOffset(Factor::kG, u);
   for (int k = 0; k < spec_.g_nodes; ++k) {
     double* const row = &result->H[(first_t + k) * n + first_u];
-    const auto set = [&](const double* sums, int l) {
+    const auto set = [&, same = t == u](const double* sums, int l) {
       row[l] += sums[(1 + k) * nodes + 1 + l];
-      if (t == u) row[l] += sums[(1 + l) * nodes + 1 + k];
+      if (same) row[l] += sums[(1 + l) * nodes + 1 + k];
     };
     for (int l = t == u ? k : 0; l < spec_.g_nodes; ++l) set(across, l);
     if (t == u) result->squared_lengths[first_t + k] = row[k];
