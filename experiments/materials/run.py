@@ -16,7 +16,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from fits import fit_once  # noqa: E402
 
-COLUMNS = "material | valid bins | E at the start | E | % of black | PSNR dB | peak /sr | mean rel. error % | sweeps | stopped by | solve s | all s"
+COLUMNS = "material | valid bins | E at the start | E | % of black | PSNR dB | peak /sr | mean rel. error % | iterations | stopped by | solve s | all s"
 
 
 def fit(program, source, folder, flags):

@@ -23,7 +23,7 @@ CHECKPOINTS = [5, 10, 20, 40, 80]
 
 def objectives(program, source, start, sweeps, folder):
     """E after each sweep of one fit."""
-    command = [program, "fit", source, f"--init={start}", f"--max_iterations={sweeps}",
+    command = [program, "fit", source, "--solver=awls", f"--init={start}", f"--max_iterations={sweeps}",
                "--tolerance=0", f"--out={folder}"]
     with open(fit_once(command, folder, "trace.csv"), newline="") as file:
         return {int(row["iteration"]): float(row["objective"]) for row in csv.DictReader(file)}

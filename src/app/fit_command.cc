@@ -195,9 +195,11 @@ int RunFit(std::span<const std::string> arguments) {
 // "  name  description" a line, from a registry.
 template <typename T>
 std::string List(const std::vector<T>& entries) {
+  size_t width = 0;
+  for (const T& entry : entries) width = std::max(width, entry.name.size());
   std::string text;
   for (const T& entry : entries) {
-    text += "  " + entry.name + std::string(14 - std::min<size_t>(12, entry.name.size()), ' ') +
+    text += "  " + entry.name + std::string(width + 2 - entry.name.size(), ' ') +
             entry.description + "\n";
   }
   return text;

@@ -36,11 +36,20 @@ Json ToJson(const PhaseSeconds& phases) {
           {"diagnosing", phases.diagnosing}};
 }
 
+Json ToJson(const std::vector<StartResult>& starts) {
+  Json array = Json::array();
+  for (const StartResult& start : starts) {
+    array.push_back({{"name", start.name}, {"objective", start.objective}});
+  }
+  return array;
+}
+
 Json ToJson(const Diagnosis& diagnosis) {
   return {{"optimality", diagnosis.optimality},
           {"live_parameters", diagnosis.live_parameters},
           {"rank", diagnosis.rank},
           {"rank_tolerance", diagnosis.rank_tolerance},
+          {"unresolved", diagnosis.unresolved},
           {"condition", diagnosis.condition}};
 }
 
@@ -66,6 +75,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"options",
            {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
           {"notes", summary.notes},
+          {"starts", ToJson(summary.starts)},
           {"stop_reason", fit.stop_reason},
           {"iterations", fit.iterations},
           {"best_iteration", summary.BestIteration()},

@@ -1,5 +1,7 @@
 #include "trilobe/model/brdf_samples.h"
 
+#include <algorithm>
+
 #include "trilobe/base/error.h"
 
 namespace trilobe {
@@ -18,6 +20,28 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
                 "values finite and >= 0; check that the file is a BRDF in MERL layout");
   }
   return samples;
+}
+
+BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
+  const MerlGrid& grid = samples.grid;
+  BrdfSamples thinned{samples.source, grid, {}, {}, {}};
+  for (int j = 0; j < samples.size(); ++j) {
+    int phase = j;
+    if (samples.on_grid()) {
+      const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
+      // Multiples without a common factor with a small stride, so that neighbouring rows differ.
+      phase =
+          std::min(p, grid.phi_d - 1 - p) + 11 * (row / grid.theta_d) + 13 * (row % grid.theta_d);
+    }
+    if (phase % stride != 0) continue;
+    if (samples.on_grid()) {
+      thinned.bins.push_back(samples.bins[j]);
+    } else {
+      thinned.angles.push_back(samples.angles[j]);
+    }
+    thinned.rho.push_back(samples.rho[j]);
+  }
+  return thinned;
 }
 
 }  // namespace trilobe

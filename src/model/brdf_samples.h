@@ -29,6 +29,11 @@ struct BrdfSamples {
 // The valid bins of a table. Throws Error when there is none.
 BrdfSamples ValidSamples(const BrdfTable& table);
 
+// About one in `stride` >= 1 of them, for a cheap look at the same problem: on a grid, of each
+// (theta_h, theta_d) every stride-th phi_d and its mirror, 180 degrees - phi_d, beginning with
+// another one in each row.
+BrdfSamples Thinned(const BrdfSamples& samples, int stride);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_MODEL_BRDF_SAMPLES_H_

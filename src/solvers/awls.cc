@@ -13,7 +13,7 @@ class Awls : public Solver {
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("awls", objective, options, model);
-    GridSweep sweep("awls", objective, &run);
+    GridSweep sweep("awls", objective, &run.summary().phases);
     RepeatSweeps([&](FactorModel* current) { sweep(options.on_element, current); }, objective,
                  *model, &run);
     return run.Finish();

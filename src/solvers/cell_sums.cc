@@ -7,6 +7,7 @@
 
 #include "trilobe/base/multiversion.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/solvers/bounded_quadratic.h"
 #include "trilobe/solvers/element_step.h"
 
 namespace trilobe {
@@ -45,13 +46,15 @@ void SubtractScaled(int size, double x, const double* __restrict K, double* __re
   for (int n = 0; n < size; ++n) residual[n] -= x * K[n];
 }
 
-// The sparse direction v in which an element moves a cell's x.
+// The sparse directions v in which elements, numbered from 0, move a cell's x.
 struct MovedLobes {
   int count = 0;
   std::array<int, kMaxBasis> basis{};
+  std::array<int, kMaxBasis> element{};
   std::array<double, kMaxBasis> v{};
-  void Add(int a, double value) {
+  void Add(int a, double value, int of_element = 0) {
     basis[count] = a;
+    element[count] = of_element;
     v[count++] = value;
   }
 };
@@ -93,8 +96,9 @@ void CellSums::Accumulate(const FactorModel& model, int num_threads) {
   });
 }
 
-template <typename Moved>
-void CellSums::UpdateElement(const Block& block, const Moved& moved, double* element) {
+template <int kMaxElements, typename Moved>
+void CellSums::Update(const Block& block, const Moved& moved, std::span<double* const> elements,
+                      double E) {
   const auto for_each_cell = [&](const auto& visit) {
     for (int h = block.h.begin; h < block.h.end; ++h) {
       for (int d = block.d.begin; d < block.d.end; ++d) {
@@ -102,28 +106,46 @@ void CellSums::UpdateElement(const Block& block, const Moved& moved, double* ele
       }
     }
   };
-  double v_b = 0, v_A_v = 0;
+  // A single element's sums stay in registers.
+  constexpr bool kSingle = kMaxElements == 1;
+  const int size = kSingle ? 1 : static_cast<int>(elements.size());
+  std::array<double, kMaxElements> g{};
+  std::array<double, kMaxElements * kMaxElements> H{};
   for_each_cell([&](int h, int d, int c) {
     const MovedLobes v = moved(h, d, c);
     const double* const b_hdc = b(h, d, c);
     const double* const A_hdc = A(h, d, c);
     for (int k = 0; k < v.count; ++k) {
-      v_b += v.v[k] * b_hdc[v.basis[k]];
+      const int row = kSingle ? 0 : v.element[k];
+      g[row] += v.v[k] * b_hdc[v.basis[k]];
       for (int l = 0; l < v.count; ++l) {
-        v_A_v += v.v[k] * v.v[l] * A_hdc[v.basis[k] * basis_ + v.basis[l]];
+        const int column = kSingle ? 0 : v.element[l];
+        H[row * size + column] += v.v[k] * v.v[l] * A_hdc[v.basis[k] * basis_ + v.basis[l]];
       }
     }
   });
-  const double before = *element;
-  *element = BestElement(before, {.c1 = -2 * v_b, .c2 = v_A_v});
-  const double delta = *element - before;
-  if (delta == 0) return;
+  std::array<double, kMaxElements> x{}, delta{};
+  for (int k = 0; k < size; ++k) x[k] = *elements[k];
+  if (size == 1) {
+    x[0] = BestElement(x[0], {.c1 = -2 * g[0], .c2 = H[0]});
+  } else {
+    MinimizeBounded({H.data(), static_cast<size_t>(size) * size},
+                    {g.data(), static_cast<size_t>(size)}, E,
+                    {x.data(), static_cast<size_t>(size)});
+  }
+  bool any = false;
+  for (int k = 0; k < size; ++k) {
+    delta[k] = x[k] - *elements[k];
+    *elements[k] = x[k];
+    any |= delta[k] != 0;
+  }
+  if (!any) return;
   for_each_cell([&](int h, int d, int c) {
     const MovedLobes v = moved(h, d, c);
     double* const b_hdc = mutable_b(h, d, c);
     const double* const A_hdc = A(h, d, c);
     for (int k = 0; k < v.count; ++k) {
-      const double step = delta * v.v[k];
+      const double step = delta[kSingle ? 0 : v.element[k]] * v.v[k];
       for (int a = 0; a < basis_; ++a) b_hdc[a] -= step * A_hdc[v.basis[k] * basis_ + a];
     }
   });
@@ -133,7 +155,7 @@ void CellSums::UpdateAll(const std::function<void(const FactorModel&)>& on_eleme
                          FactorModel* model) {
   const Range all_h{0, folded_.grid.theta_h}, all_d{0, folded_.grid.theta_d};
   const auto update = [&](const Block& block, const auto& moved, double* element) {
-    UpdateElement(block, moved, element);
+    Update<1>(block, moved, {&element, 1});
     if (on_element) on_element(*model);
   };
 
@@ -176,6 +198,61 @@ void CellSums::UpdateAll(const std::function<void(const FactorModel&)>& on_eleme
                &model->table(factor, t)[k]);
       }
     }
+  }
+}
+
+void CellSums::UpdateBlocks(double E, int num_threads,
+                            const std::function<void(const FactorModel&)>& on_block,
+                            FactorModel* model) {
+  const Range all_h{0, folded_.grid.theta_h}, all_d{0, folded_.grid.theta_d};
+  if (on_block) num_threads = 1;  // it sees the blocks in order
+  // Blocks of one kind move different cells.
+  const auto for_each_block = [&](int count, const auto& update) {
+    ParallelFor(count, num_threads, [&](int k) {
+      update(k);
+      if (on_block) on_block(*model);
+    });
+  };
+
+  for_each_block(kChannels, [&](int channel) {
+    std::array<double*, kMaxBasis> elements{&model->d()[channel]};
+    for (int m = 0; m < spec_.lobes; ++m) elements[1 + m] = &model->s(m)[channel];
+    const FactorModel& now = *model;
+    const auto moved = [&](int h, int d, int c) {
+      MovedLobes v;
+      v.Add(0, 1);
+      for (int m = 0; m < spec_.lobes; ++m) v.Add(1 + m, now.D(m, c)[h] * now.F(m, c)[d], 1 + m);
+      return v;
+    };
+    Update<kMaxBasis>({all_h, all_d, {channel, channel + 1}}, moved,
+                      {elements.data(), static_cast<size_t>(basis_)}, E);
+  });
+  for (const Factor factor : {Factor::kD, Factor::kF}) {
+    const bool is_D = factor == Factor::kD;
+    const TableSharing& sharing = spec_.sharing(factor);
+    const int groups = sharing.per_channel ? kChannels : 1;
+    const int tables = spec_.num_tables(factor) / groups;  // that channels of a group read
+    if (tables == 0) continue;
+    for_each_block(spec_.table_size(factor) * groups, [&](int item) {
+      const int k = item / groups, first_channel = item % groups;
+      std::array<double*, kMaxLobes> elements{};
+      for (int t = 0; t < tables; ++t) {
+        elements[t] = &model->table(factor, spec_.table(factor, t, first_channel))[k];
+      }
+      const FactorModel& now = *model;
+      const auto moved = [&](int h, int d, int c) {
+        MovedLobes v;
+        for (int m = 0; m < spec_.lobes; ++m) {
+          v.Add(1 + m, now.s(m)[c] * (is_D ? now.F(m, c)[d] : now.D(m, c)[h]),
+                sharing.per_lobe ? m : 0);
+        }
+        return v;
+      };
+      const auto [begin, end] = spec_.channels(factor, spec_.table(factor, 0, first_channel));
+      const Range only{k, k + 1};
+      Update<kMaxLobes>({is_D ? only : all_h, is_D ? all_d : only, {begin, end}}, moved,
+                        {elements.data(), static_cast<size_t>(tables)}, E);
+    });
   }
 }
 

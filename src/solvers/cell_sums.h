@@ -2,6 +2,7 @@
 #define TRILOBE_SOLVERS_CELL_SUMS_H_
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
@@ -18,7 +19,9 @@ namespace trilobe {
 // so that E depends on its samples only through
 //   b_a = sum w r phi_a  (r = rho* - rho, the current residual)  and  A_ab = sum w phi_a phi_b.
 // An element that moves x by delta v changes E by -2 delta v.b + delta^2 v.A.v, and b by -delta A
-// v. Sums of residuals, not of measured values: they keep their digits when the fit becomes good.
+// v. Several elements with directions v_k change it by delta'H delta - 2 g'delta, g_k = v_k.b and
+// H_kl = v_k.A.v_l, summed over the cells. Sums of residuals, not of measured values: they keep
+// their digits when the fit becomes good.
 class CellSums {
  public:
   CellSums(const FoldedGrid& folded, const ModelSpec& spec);
@@ -29,6 +32,14 @@ class CellSums {
   // Puts every element of d, s, D, F, in this order, where E is lowest with the others held, by the
   // sums of this model. `on_element`, if set, sees the model after each.
   void UpdateAll(const std::function<void(const FactorModel&)>& on_element, FactorModel* model);
+
+  // Puts blocks of elements where E is lowest with the others held (MinimizeBounded), by the sums
+  // of this model: d and s of one channel, then D of one theta_h bin and all lobes, then F of one
+  // theta_d bin and all lobes; channels that share no table apart. E: of the model that Accumulate
+  // saw, which tells what the sums can resolve. `on_block`, if set, sees the model after each. The
+  // same bits for any number of threads.
+  void UpdateBlocks(double E, int num_threads,
+                    const std::function<void(const FactorModel&)>& on_block, FactorModel* model);
 
   int basis() const { return basis_; }          // 1 + lobes
   const double* b(int h, int d, int c) const {  // [basis]
@@ -43,14 +54,16 @@ class CellSums {
   struct Range {
     int begin, end;
   };
-  // The cells that one element moves.
+  // Cells that the same elements move.
   struct Block {
     Range h, d, channels;
   };
 
-  // Puts *element where E is lowest. moved(h, d, c) tells how it moves a cell's x.
-  template <typename Moved>
-  void UpdateElement(const Block& block, const Moved& moved, double* element);
+  // Puts the elements, kMaxElements at most, where E is lowest. moved(h, d, c) tells how they move
+  // a cell's x. E: as for UpdateBlocks; a single element does without.
+  template <int kMaxElements, typename Moved>
+  void Update(const Block& block, const Moved& moved, std::span<double* const> elements,
+              double E = 0);
 
   int stride() const { return basis_ + basis_ * basis_; }
   double* mutable_b(int h, int d, int c) { return const_cast<double*>(b(h, d, c)); }

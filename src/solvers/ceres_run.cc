@@ -7,34 +7,62 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 namespace trilobe {
 namespace {
 
 class Recorder : public ceres::IterationCallback {
  public:
-  Recorder(const std::function<FactorModel()>& current_model, Run* run)
-      : current_model_(current_model), run_(*run) {}
+  Recorder(const std::function<CeresPoint()>& current, Run* run) : current_(current), run_(*run) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;  // recorded by Run::Start
-    const bool go_on = run_.Record(current_model_(), {.accepted = iteration.step_is_successful});
-    return go_on ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    Run::Step step{.accepted = iteration.step_is_successful};
+    CeresPoint point = current_();
+    step.objective = step.accepted ? point.objective : run_.summary().trace.back().objective;
+    return run_.Record(point.model, step) ? ceres::SOLVER_CONTINUE
+                                          : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
  private:
-  const std::function<FactorModel()>& current_model_;
+  const std::function<CeresPoint()>& current_;
   Run& run_;
 };
+
+ceres::LinearSolverType ToCeres(CeresLinearSolver linear_solver) {
+  switch (linear_solver) {
+    case CeresLinearSolver::kSparseCholesky:
+      return ceres::SPARSE_NORMAL_CHOLESKY;
+    case CeresLinearSolver::kDenseCholesky:
+      return ceres::DENSE_NORMAL_CHOLESKY;
+    case CeresLinearSolver::kDenseQr:
+      return ceres::DENSE_QR;
+  }
+  return ceres::DENSE_QR;
+}
+
+double Unit(const Objective& objective) {
+  const double mean_square = objective.MeasuredEnergy() / (kChannels * objective.samples().size());
+  return mean_square > 0 ? std::exp2(std::ilogb(std::sqrt(mean_square))) : 1;
+}
+
+bool UseSquares(Run* run) {
+  Positivity& positivity = run->summary().used.positivity;
+  if (positivity == Positivity::kActiveSet) {
+    positivity = Positivity::kBounds;
+    run->summary().notes.push_back("Ceres has no active set, so " + run->summary().solver +
+                                   " keeps parameters >= 0 by bounds; solver newton has one");
+  }
+  return positivity == Positivity::kSquares;
+}
 
 ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver linear_solver,
                                int num_threads) {
   ceres::Solver::Options to;
   to.trust_region_strategy_type =
       options.trust_region == TrustRegion::kDogleg ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
-  to.linear_solver_type = linear_solver == CeresLinearSolver::kSparse
-                              ? ceres::SPARSE_NORMAL_CHOLESKY
-                              : ceres::DENSE_NORMAL_CHOLESKY;
+  to.linear_solver_type = ToCeres(linear_solver);
   to.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   to.dense_linear_algebra_library_type = ceres::LAPACK;  // as fast as the BLAS that is installed
   // Ceres would take no more, and say so on stderr.
@@ -61,12 +89,13 @@ ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver l
 
 }  // namespace
 
-double CeresUnit(const Objective& objective) {
-  const double mean_square = objective.MeasuredEnergy() / (kChannels * objective.samples().size());
-  return mean_square > 0 ? std::exp2(std::ilogb(std::sqrt(mean_square))) : 1;
-}
+CeresParameters::CeresParameters(const Objective& objective, FactorModel start, Run* run)
+    : objective_(objective),
+      start_(std::move(start)),
+      unit_(Unit(objective)),
+      squares_(UseSquares(run)) {}
 
-FactorModel Scaled(FactorModel model, double by) {
+FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   for (double& d : model.d()) d *= by;
   for (int m = 0; m < model.spec().lobes; ++m) {
     for (double& s : model.s(m)) s *= by;
@@ -74,10 +103,29 @@ FactorModel Scaled(FactorModel model, double by) {
   return model;
 }
 
+FactorModel CeresParameters::Start() const {
+  FactorModel p = Scaled(start_, 1 / unit_);
+  if (squares_) {
+    for (double& x : p.parameters()) x = std::sqrt(x);
+  }
+  return p;
+}
+
+FactorModel CeresParameters::Model(FactorModel p) const {
+  if (squares_) {
+    for (double& x : p.parameters()) x *= x;
+  }
+  FactorModel model = Scaled(std::move(p), unit_);
+  for (size_t k = 0; k < model.parameters().size(); ++k) {
+    if (!(objective_.coverage()[k] > 0)) model.parameters()[k] = start_.parameters()[k];
+  }
+  return model;
+}
+
 void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
-                       const std::function<FactorModel()>& current_model, ceres::Problem* problem,
+                       const std::function<CeresPoint()>& current, ceres::Problem* problem,
                        Run* run) {
-  Recorder recorder(current_model, run);
+  Recorder recorder(current, run);
   ceres::Solver::Options options = ToCeres(run->options(), linear_solver, num_threads);
   options.callbacks.push_back(&recorder);
 

@@ -2,8 +2,10 @@
 #define TRILOBE_SOLVERS_CERES_RUN_H_
 
 #include <functional>
+#include <optional>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
 #include "trilobe/solvers/run.h"
 
 namespace ceres {
@@ -12,26 +14,53 @@ class Problem;
 
 namespace trilobe {
 
-// The power of two next to the root mean square of the weighted data. Residuals are measured in
-// it, because Ceres' scaling of columns and damping contain absolute constants.
-double CeresUnit(const Objective& objective);
+// A model's numbers x as Ceres sees them. d and s are measured in the power of two next to the root
+// mean square of the weighted data, since Ceres' scaling of columns and its damping contain
+// absolute constants; E becomes E / unit^2. x >= 0 is kept by bounds or, with squares, by Ceres'
+// numbers being p, x = p^2: a number at 0 stays there.
+class CeresParameters {
+ public:
+  // Takes from the run's options whether they are squares. Ceres has no active set: where the
+  // options ask for that, bounds are used and a note says so.
+  CeresParameters(const Objective& objective, FactorModel start, Run* run);
 
-// The model in other units: d and s times `by`.
-FactorModel Scaled(FactorModel model, double by);
+  double unit() const { return unit_; }
+  bool squares() const { return squares_; }
 
-// How Ceres solves the normal equations of a step: by SuiteSparse's sparse Cholesky factorisation,
-// or by a dense one, for which Ceres stores the whole Jacobian.
-enum class CeresLinearSolver { kSparse, kDense };
+  // The starting point in Ceres' numbers, each in the place of the model's.
+  FactorModel Start() const;
+  // The model of such numbers. Dead bins are the starting point's, to the last bit.
+  FactorModel Model(FactorModel p) const;
+
+ private:
+  FactorModel Scaled(FactorModel model, double by) const;  // d and s times `by`
+
+  const Objective& objective_;
+  const FactorModel start_;
+  const double unit_;
+  const bool squares_;
+};
+
+// How Ceres solves the linear least-squares problem of a step: by a Cholesky factorisation of the
+// normal equations, SuiteSparse's or a dense one, or by a QR factorisation of the Jacobian, which
+// does not square its condition number. The dense ones store the whole Jacobian.
+enum class CeresLinearSolver { kSparseCholesky, kDenseCholesky, kDenseQr };
+
+// Where Ceres stands, and E there if it is known.
+struct CeresPoint {
+  FactorModel model;
+  std::optional<double> objective = std::nullopt;
+};
 
 // Makes the iterations of a run that Run::Start has begun by Ceres' trust-region minimizer, with
 // `num_threads` threads, from where the problem's parameter blocks stand. The problem's cost is to
-// be E up to a constant factor. `current_model` makes a model of the blocks, which are up to date
-// when it is called; the run records it after each iteration of Ceres, those among them whose step
-// was taken back. The run's trust_region option is honoured, and its stopping test is the only one;
+// be E up to a constant factor. `current` makes a model of the blocks, which are up to date when it
+// is called; the run records it after each iteration of Ceres, those among them whose step was
+// taken back. The run's trust_region option is honoured, and its stopping test is the only one;
 // where Ceres can go no further before, it is kNoDecrease, with Ceres' reason in a note. Adds
 // Ceres' times to the run's phases.
 void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
-                       const std::function<FactorModel()>& current_model, ceres::Problem* problem,
+                       const std::function<CeresPoint()>& current, ceres::Problem* problem,
                        Run* run);
 
 }  // namespace trilobe

@@ -4,9 +4,30 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <vector>
 
 namespace trilobe {
+namespace {
+
+// Tables whose scale can move to s: those with a number that is not 0 in a column that is not 0.
+int GaugeDimensions(const FactorModel& model, const std::vector<double>& squared_lengths) {
+  const ModelSpec& spec = model.spec();
+  int dimensions = 0;
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const int begin = model.TableOffset(factor, t);
+      bool moves = false;
+      for (int k = begin; k < begin + spec.table_size(factor); ++k) {
+        moves = moves || (squared_lengths[k] > 0 && model.parameters()[k] > 0);
+      }
+      dimensions += moves;
+    }
+  }
+  return dimensions;
+}
+
+}  // namespace
 
 double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double> x) {
   if (!(at.objective > 0)) return 0;
@@ -52,7 +73,32 @@ Diagnosis Diagnose(const Objective& objective, const FactorModel& model) {
     if (singular <= diagnosis.rank_tolerance * largest) continue;
     if (diagnosis.rank++ == 0) diagnosis.condition = largest / singular;
   }
+  const int determinable =
+      static_cast<int>(moving.size()) - GaugeDimensions(model, at.squared_lengths);
+  diagnosis.unresolved = std::max(0, determinable - diagnosis.rank);
   return diagnosis;
+}
+
+std::optional<std::string> ConditionWarning(const Diagnosis& diagnosis) {
+  constexpr double kMargin = 10;
+  std::ostringstream out;
+  out.precision(2);
+  if (diagnosis.unresolved > 0) {
+    out << "in " << diagnosis.unresolved
+        << " of the fit's directions, those of scale between factors not counted, a step's normal"
+           " equations cannot tell the data's pull from rounding errors (J's condition number is"
+           " above "
+        << 1 / diagnosis.rank_tolerance << ")";
+  } else if (kMargin * diagnosis.condition * diagnosis.rank_tolerance > 1) {
+    out << "J's condition number, " << diagnosis.condition
+        << ", is within a factor of 10 of what a step's normal equations can resolve, "
+        << 1 / diagnosis.rank_tolerance;
+  } else {
+    return std::nullopt;
+  }
+  out << ": there the damping and the starting point decide, not the data; fit fewer lobes, or a"
+         " coarser grid by solver lm_plain, which works by QR where J is small";
+  return out.str();
 }
 
 }  // namespace trilobe

@@ -1,7 +1,9 @@
 #ifndef TRILOBE_SOLVERS_DIAGNOSIS_H_
 #define TRILOBE_SOLVERS_DIAGNOSIS_H_
 
+#include <optional>
 #include <span>
+#include <string>
 
 #include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/solver.h"
@@ -15,6 +17,10 @@ double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double>
 
 // All of a Diagnosis: one pass over the data and one eigenvalue decomposition of J'J.
 Diagnosis Diagnose(const Objective& objective, const FactorModel& model);
+
+// A sentence for the user where directions are so weak, within a factor of 10 of rank_tolerance or
+// below it, that normal equations do not determine them (docs/solvers.md).
+std::optional<std::string> ConditionWarning(const Diagnosis& diagnosis);
 
 }  // namespace trilobe
 

@@ -10,14 +10,14 @@ namespace {
 // do what is left. The switch comes when a sweep lowers E by less than this fraction, or after this
 // many.
 constexpr double kLeastDecrease = 0.02;
-constexpr int kMaxSweeps = 20;
+constexpr int kMaxSweeps = 5;
 
 class Hybrid : public Solver {
  public:
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("hybrid", objective, options, model);
-    GridSweep sweep("hybrid", objective, &run);
+    GridSweep sweep("hybrid", objective, &run.summary().phases);
     FactorModel current = *model;
     bool go_on = run.Start();
     for (int k = 0; k < kMaxSweeps && go_on; ++k) {
@@ -27,9 +27,10 @@ class Hybrid : public Solver {
       if (run.best_objective() > (1 - kLeastDecrease) * before) break;
     }
     if (go_on) {
-      JointStepper stepper(objective, &run.summary().phases);
+      JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
+                           JointStepper::Trial::kProjected, &run.summary().phases);
       stepper.Restart(current);
-      RepeatNewtonSteps(&stepper, &run);
+      RepeatJointSteps(&stepper, &run);
     }
     return run.Finish();
   }

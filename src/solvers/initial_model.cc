@@ -204,18 +204,30 @@ FactorModel HighlightModel(const Objective& objective, uint64_t seed) {
   return FromDistributions(objective, D);
 }
 
-// Log-uniform roughnesses, and every table entry times a log-uniform factor in [1/2, 2].
-FactorModel RandomModel(const Objective& objective, uint64_t seed) {
-  std::mt19937_64 engine(seed);
-  // The standard leaves std::uniform_real_distribution's method open; this is the same everywhere.
-  const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+// Uniform in [0, 1). The standard leaves std::uniform_real_distribution's method open; this is the
+// same everywhere.
+double Uniform(std::mt19937_64* engine) { return static_cast<double>((*engine)() >> 11) * 0x1p-53; }
+
+// Log-uniform roughnesses.
+FactorModel RoughnessModel(const Objective& objective, std::mt19937_64* engine) {
   const ModelSpec& spec = objective.spec();
   std::vector<Table> D;
   for (int m = 0; m < spec.lobes; ++m) {
-    D.push_back(GgxDistribution(spec.d_bins, 0.02 * std::pow(50.0, uniform())));
+    D.push_back(GgxDistribution(spec.d_bins, 0.02 * std::pow(50.0, Uniform(engine))));
   }
-  FactorModel model = FromDistributions(objective, D);
-  for (double& x : model.parameters()) x *= std::exp2(2 * uniform() - 1);
+  return FromDistributions(objective, D);
+}
+
+FactorModel RoughnessModel(const Objective& objective, uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  return RoughnessModel(objective, &engine);
+}
+
+// And every number times a log-uniform factor in [1/2, 2].
+FactorModel RandomModel(const Objective& objective, uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  FactorModel model = RoughnessModel(objective, &engine);
+  for (double& x : model.parameters()) x *= std::exp2(2 * Uniform(&engine) - 1);
   return model;
 }
 
@@ -228,6 +240,7 @@ const std::vector<InitialModel>& InitialModels() {
       {"highlight", "D from the measured highlight, averaged over theta_d <= 45 degrees",
        HighlightModel},
       {"constant", "all tables 1", ConstantModel},
+      {"roughness", "as analytic, with random roughnesses (--seed)", RoughnessModel},
       {"random", "GGX lobes of random roughness, every number times a random factor (--seed)",
        RandomModel},
   };

@@ -16,7 +16,7 @@ struct InitialModel {
   std::string name;
   std::string description;
   // A model with the objective's spec, finite and > 0 where a lobe is to live. `seed` matters to
-  // the random start only.
+  // the random starts only.
   FactorModel (*make)(const Objective& objective, uint64_t seed) = nullptr;
 };
 

@@ -1,6 +1,7 @@
 #include "trilobe/solvers/joint_step.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "trilobe/solvers/diagnosis.h"
@@ -9,17 +10,57 @@
 namespace trilobe {
 namespace {
 
-constexpr double kInitialLambda = 1e-3;  // against columns of J of length 1
+constexpr double kInitialLambda = 1e-2;  // against columns of J of length 1
 constexpr double kMinLambda = 1e-12, kMaxLambda = 1e16;
+// Along one column of J a step under this damping lowers E by less than 2 / lambda of it, however
+// much there is to gain.
+constexpr double kHeavyLambda = 1e3;
 constexpr double kMinGain = 1e-4;
-constexpr double kMaxFall = 1.0 / 8;  // of lambda after one step
+constexpr double kMaxFall = 1.0 / 3;  // of lambda after one step
 // Where H is indefinite, the least lambda that mends it is searched for by this factor.
 constexpr double kIndefiniteGrowth = 4, kMinIndefiniteLambda = 1e-4;
+// By this fraction of E a step that lowers it little does so.
+constexpr double kLittleProgress = 1e-3;
+// Columns of J shorter than the root of this times the root mean square of their table's count as
+// that long for the damping.
+constexpr double kMinSquaredLength = 1e-2;
+
+// The metric of the damping, S. 0 where the column of J is 0.
+std::vector<double> DampingMetric(const FactorModel& model,
+                                  const std::vector<double>& squared_lengths) {
+  std::vector<double> S(squared_lengths.size(), 0.0);
+  const auto set = [&](int begin, int size) {
+    double mean = 0;
+    for (int k = begin; k < begin + size; ++k) mean += squared_lengths[k] / size;
+    for (int k = begin; k < begin + size; ++k) {
+      if (!(squared_lengths[k] > 0)) continue;
+      S[k] = std::sqrt(std::max(squared_lengths[k], kMinSquaredLength * mean));
+    }
+  };
+  const ModelSpec& spec = model.spec();
+  for (int part = 0; part <= spec.lobes; ++part) set(part * kChannels, kChannels);  // d, s
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      set(model.TableOffset(factor, t), spec.table_size(factor));
+    }
+  }
+  return S;
+}
 
 }  // namespace
 
-JointStepper::JointStepper(const Objective& objective, PhaseSeconds* phases)
-    : objective_(objective), phases_(phases), equations_(objective), lambda_(kInitialLambda) {}
+JointStepper::JointStepper(const Objective& objective, Curvature curvature, Trial trial,
+                           PhaseSeconds* phases)
+    : objective_(objective),
+      curvature_(curvature),
+      hessian_(curvature == Curvature::kNewton ? Hessian::kNewton : Hessian::kGaussNewton),
+      phases_(phases),
+      equations_(objective),
+      lambda_(kInitialLambda) {
+  if (trial == Trial::kProjected && objective.folded() != nullptr) {
+    cells_.emplace(*objective.folded(), objective.spec());
+  }
+}
 
 void JointStepper::Restart(const FactorModel& model) {
   current_ = model;
@@ -27,16 +68,17 @@ void JointStepper::Restart(const FactorModel& model) {
   E_ = objective_.Value(current_);
   linearized_ = false;
   growth_ = 2;
+  indefinite_ = 0;
 }
 
 void JointStepper::Linearize() {
   if (linearized_) return;
   {
     const ScopedTimer timer(&phases_->evaluating);
-    equations_.Evaluate(current_, Hessian::kNewton, &at_);
+    equations_.Evaluate(current_, hessian_, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
-  step_.MoveTo(at_, current_.parameters());
+  step_.MoveTo(at_, DampingMetric(current_, at_.squared_lengths), current_.parameters());
   if (!binding_.empty()) step_.SetBinding(binding_);
   linearized_ = true;
 }
@@ -53,11 +95,17 @@ bool JointStepper::Step() {
       result = step_.Solve(lambda_);
     }
   }
+  held_back_ = lambda_ > kHeavyLambda;
   std::ranges::copy(result.x, trial.parameters().begin());
   double E = 0;
   {
     const ScopedTimer timer(&phases_->evaluating);
     E = objective_.Value(trial);
+    if (cells_) {
+      cells_->Accumulate(trial, objective_.num_threads());
+      cells_->UpdateBlocks(E, objective_.num_threads(), nullptr, &trial);
+      E = objective_.Value(trial);
+    }
   }
   const double gain = (E_ - E) / (2 * result.predicted_decrease);
   if (!(E < E_ && gain > kMinGain)) {
@@ -71,6 +119,9 @@ bool JointStepper::Step() {
       {kMinLambda, indefinite_ / kIndefiniteGrowth, lambda_ * std::max(kMaxFall, 1 - f * f * f)});
   indefinite_ = 0;
   growth_ = 2;
+  if (curvature_ == Curvature::kByProgress) {
+    hessian_ = E > (1 - kLittleProgress) * E_ ? Hessian::kNewton : Hessian::kGaussNewton;
+  }
   current_ = std::move(trial);
   E_ = E;
   binding_ = step_.binding();
@@ -85,12 +136,13 @@ double JointStepper::Optimality() {
   return ScaledProjectedGradient(at_, current_.parameters());
 }
 
-void RepeatNewtonSteps(JointStepper* stepper, Run* run) {
+void RepeatJointSteps(JointStepper* stepper, Run* run) {
   for (bool go_on = !run->stopped(); go_on;) {
     Run::Step step{.accepted = stepper->Step()};
     if (stepper->exhausted()) run->Stop(StopReason::kNoDecrease);
     if (step.accepted) step.optimality = stepper->Optimality();
     step.objective = stepper->E();
+    step.may_converge = !stepper->held_back();
     go_on = run->Record(stepper->current(), step);
   }
 }

@@ -1,8 +1,10 @@
 #ifndef TRILOBE_SOLVERS_JOINT_STEP_H_
 #define TRILOBE_SOLVERS_JOINT_STEP_H_
 
+#include <optional>
 #include <vector>
 
+#include "trilobe/solvers/cell_sums.h"
 #include "trilobe/solvers/nonnegative_step.h"
 #include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/run.h"
@@ -10,15 +12,30 @@
 
 namespace trilobe {
 
-// Damped Newton iterations on all parameters at once, under x >= 0, one trial step at a time. The
-// Hessian is all of it: residuals are not small here, and where two factors of a lobe are both free
-// to grow, J'J alone predicts a step's gain badly. Damping as in Levenberg-Marquardt, by Nielsen's
-// rule (Damping parameter in Marquardt's method, 1999): lambda falls smoothly with the gain of an
-// accepted step, and rises ever faster while steps are rejected.
+// Damped Newton or Gauss-Newton iterations on all parameters at once, under x >= 0, one trial step
+// at a time. Damping as in Levenberg-Marquardt, by Nielsen's rule (Damping parameter in Marquardt's
+// method, 1999): lambda falls smoothly with the gain of an accepted step, and rises ever faster
+// while steps are rejected. A number that the data hardly see is damped like its table's others
+// (docs/solvers.md): on its own it could go anywhere, and where its partners in the product
+// are small it would go far, and spoil the product once they grow.
 class JointStepper {
  public:
-  // Times go to *phases.
-  JointStepper(const Objective& objective, PhaseSeconds* phases);
+  // Which Hessian: J'J makes the longer steps as long as there is much to gain, but is blind to
+  // directions in which E curves down; all of it finds those, and is right near the end.
+  enum class Curvature {
+    kGaussNewton,
+    kNewton,
+    kByProgress,  // J'J until a step lowers E little; again after one that lowered it much
+  };
+
+  // What becomes of a trial point before it is judged.
+  enum class Trial {
+    kAsItIs,
+    kProjected,  // d, s, D and F are put where E is lowest, block by block, given G and the others
+  };
+
+  // Times go to *phases. Only samples on a grid can be projected; others are left as they are.
+  JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases);
 
   // Goes on from another point, with the same damping.
   void Restart(const FactorModel& model);
@@ -27,6 +44,9 @@ class JointStepper {
   bool Step();
   // No damping leads to a lower E.
   bool exhausted() const;
+  // Damping, not the shape of E, made the last step short: that it lowered E little says nothing
+  // about how much there is to gain.
+  bool held_back() const { return held_back_; }
 
   const FactorModel& current() const { return current_; }
   double E() const { return E_; }
@@ -37,8 +57,11 @@ class JointStepper {
   void Linearize();
 
   const Objective& objective_;
+  const Curvature curvature_;
+  Hessian hessian_;  // of the next point
   PhaseSeconds* const phases_;
   NormalEquations equations_;
+  std::optional<CellSums> cells_;  // if trials are projected
   FactorModel current_;
   double E_ = 0;
   bool linearized_ = false;
@@ -46,13 +69,14 @@ class JointStepper {
   NonnegativeStep step_;
   std::vector<bool> binding_;
   double lambda_;
+  bool held_back_ = false;
   double growth_ = 2;      // of lambda when the next step is rejected
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
 
 // Makes and records steps of the stepper, which stands at the run's last point, until the run
 // stops.
-void RepeatNewtonSteps(JointStepper* stepper, Run* run);
+void RepeatJointSteps(JointStepper* stepper, Run* run);
 
 }  // namespace trilobe
 

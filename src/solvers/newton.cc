@@ -11,10 +11,11 @@ class Newton : public Solver {
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("newton", objective, options, model);
-    JointStepper stepper(objective, &run.summary().phases);
+    JointStepper stepper(objective, JointStepper::Curvature::kNewton, JointStepper::Trial::kAsItIs,
+                         &run.summary().phases);
     stepper.Restart(*model);
     run.Start(stepper.Optimality());
-    RepeatNewtonSteps(&stepper, &run);
+    RepeatJointSteps(&stepper, &run);
     return run.Finish();
   }
 };

@@ -19,18 +19,25 @@ constexpr size_t kMaxBorder = 64;
 
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
+// Eigen's own solve refers to the first number of the factor even where there is none.
+Eigen::MatrixXd SolveBy(const Eigen::LLT<Eigen::MatrixXd>& factor, const Eigen::MatrixXd& b) {
+  if (b.size() == 0) return b;
+  return factor.solve(b);
+}
+
 }  // namespace
 
-void NonnegativeStep::MoveTo(const QuadraticModel& at, std::span<const double> x) {
+void NonnegativeStep::MoveTo(const QuadraticModel& at, std::span<const double> metric,
+                             std::span<const double> x) {
   at_ = &at;
   x_.assign(x.begin(), x.end());
   const size_t n = x.size();
   for (auto* of_all : {&scale_, &unit_, &g_, &z_, &p_, &u_}) of_all->assign(n, 0.0);
+  std::ranges::copy(metric, scale_.begin());
   binding_.assign(n, false);
   in_base_.assign(n, false);
   for (size_t k = 0; k < n; ++k) {
-    if (!(at.squared_lengths[k] > 0)) continue;
-    scale_[k] = std::sqrt(at.squared_lengths[k]);
+    if (!(scale_[k] > 0)) continue;
     unit_[k] = 1 / scale_[k];
     g_[k] = unit_[k] * at.gradient[k];
     z_[k] = scale_[k] * x[k];
@@ -153,10 +160,10 @@ bool NonnegativeStep::SetStep(double lambda) {
     const Eigen::MatrixXd U_V = U.transpose() * V;
     const Eigen::LLT<Eigen::MatrixXd> of_R(U.transpose() * U);
     const Eigen::LLT<Eigen::MatrixXd> of_N(A_NN - V.transpose() * V +
-                                           U_V.transpose() * of_R.solve(U_V));
+                                           U_V.transpose() * SolveBy(of_R, U_V));
     if (of_R.info() != Eigen::Success || of_N.info() != Eigen::Success) return false;
-    const Eigen::VectorXd p_N = of_N.solve(b_N + U_V.transpose() * of_R.solve(b_R));
-    y += U * of_R.solve(b_R - U_V * p_N) + V * p_N;
+    const Eigen::VectorXd p_N = SolveBy(of_N, b_N + U_V.transpose() * SolveBy(of_R, b_R));
+    y += U * SolveBy(of_R, b_R - U_V * p_N) + V * p_N;
     for (int a = 0; a < num_added; ++a) p_[added_[a]] = p_N(a);
   }
   SolveLowerTransposed(size, L_.data(), W_.data());

@@ -12,14 +12,15 @@ namespace trilobe {
 
 // Damped steps from one point x under the bounds x >= 0: the minimiser of
 //   g's + s'H s / 2 + lambda |S s|^2 / 2   over   x + s >= 0,
-// S the lengths of the columns of J, by an active set: solve for the parameters that are free, hold
+// S a diagonal metric, by an active set: solve for the parameters that are free, hold
 // those that would go below 0 at 0, and again; then free those that want to come back
 // (Portugal, Judice, Vicente 1994: block principal pivoting). What is left of a change after the
 // last round is projected. An object keeps its storage from one point to the next.
 class NonnegativeStep {
  public:
-  // From now on steps start from x. `at` must stay as it is while they are asked for.
-  void MoveTo(const QuadraticModel& at, std::span<const double> x);
+  // From now on steps start from x, with this S, which is 0 for parameters that cannot move. `at`
+  // must stay as it is while they are asked for.
+  void MoveTo(const QuadraticModel& at, std::span<const double> metric, std::span<const double> x);
 
   struct Result {
     std::vector<double> x;  // the new point, >= 0
@@ -43,8 +44,8 @@ class NonnegativeStep {
   double H_p(size_t k) const;
 
   const QuadraticModel* at_ = nullptr;
-  // Of all parameters; scale, the length of its column of J, is 0 for one that cannot move, and so
-  // are unit = 1 / scale, and g, z = scale x, the step p and u = unit p.
+  // Of all parameters; scale, its entry of S, is 0 for one that cannot move, and so are
+  // unit = 1 / scale, and g, z = scale x, the step p and u = unit p.
   std::vector<double> x_, scale_, unit_, g_, z_, p_, u_;
   std::vector<bool> binding_;
   // Of the parameters that were free at the last factorisation: which, and their scaled H + lambda.

@@ -53,14 +53,14 @@ double Run::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-std::optional<StopReason> Run::ReasonToStop() const {
+std::optional<StopReason> Run::ReasonToStop(bool may_converge) const {
   const SolverOptions& options = summary_.used;
   const IterationRecord& last = summary_.trace.back();
   if (last.objective <= exact_objective_) return StopReason::kExactFit;
   if (last.optimality && *last.optimality <= options.optimality_tolerance) {
     return StopReason::kOptimal;
   }
-  if (summary_.trace.size() > 1 && last.accepted) {
+  if (may_converge && summary_.trace.size() > 1 && last.accepted) {
     const double before = summary_.trace[summary_.trace.size() - 2].objective;
     // Absolute: a rise by the filter is no sign of convergence.
     if (std::abs(before - last.objective) < options.relative_decrease_tolerance * before) {
@@ -96,29 +96,13 @@ bool Run::Record(const FactorModel& current, const Step& step) {
     *model_ = current;
   }
   previous_ = current;
-  if (!reason_) reason_ = ReasonToStop();
+  if (!reason_) reason_ = ReasonToStop(step.may_converge);
   const auto& on_iteration = summary_.used.on_iteration;
   if (on_iteration && !on_iteration(record, current)) Stop(StopReason::kInterrupted);
   return !reason_;
 }
 
 void Run::Stop(StopReason reason) { reason_ = reason_.value_or(reason); }
-
-SolverOptions Run::Stage(int max_iterations) {
-  SolverOptions stage = summary_.used;
-  stage.diagnose = false;
-  stage.max_iterations =
-      std::min(max_iterations, stage.max_iterations - summary_.trace.back().iteration);
-  stage.max_seconds -= seconds();
-  stage.on_iteration = [this](const IterationRecord& record, const FactorModel& current) {
-    if (record.iteration == 0) return !stopped();
-    return Record(current, {.filtered = record.filtered,
-                            .accepted = record.accepted,
-                            .optimality = record.optimality,
-                            .objective = record.objective});
-  };
-  return stage;
-}
 
 SolverSummary Run::Finish() {
   summary_.stop_reason = reason_.value_or(StopReason::kMaxIterations);
@@ -128,6 +112,9 @@ SolverSummary Run::Finish() {
   if (summary_.used.diagnose) {
     const ScopedTimer timer = Time(&PhaseSeconds::diagnosing);
     summary_.diagnosis = Diagnose(objective_, *model_);
+    if (auto warning = ConditionWarning(*summary_.diagnosis)) {
+      summary_.notes.push_back(*std::move(warning));
+    }
   }
   summary_.used = WithoutCallbacks(summary_.used);
   return std::move(summary_);

@@ -41,6 +41,7 @@ class Run {
   struct Step {
     bool filtered = false;
     bool accepted = true;
+    bool may_converge = true;  // false where more is to come, however little this one lowered E
     std::optional<double> optimality = std::nullopt;
     std::optional<double> objective =
         std::nullopt;  // Objective::Value of the model, if it has been computed
@@ -68,14 +69,10 @@ class Run {
   void Stop(StopReason reason);
   bool stopped() const { return reason_.has_value(); }
 
-  // Options for another solver as a stage of this run, of at most `max_iterations`: its iterations
-  // after its start are recorded as this run's, in which all limits hold.
-  SolverOptions Stage(int max_iterations);
-
   SolverSummary Finish();
 
  private:
-  std::optional<StopReason> ReasonToStop() const;
+  std::optional<StopReason> ReasonToStop(bool may_converge) const;
 
   const Objective& objective_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -8,10 +8,15 @@
 // The solvers of the library, the default one first. NAME stands for the function NAMEEntry(),
 // which the solver's own file defines: to add a solver is one file, and one line here.
 #define TRILOBE_FOR_EACH_SOLVER(X) \
+  X(Auto)                          \
+  X(Multistart)                    \
   X(Awls)                          \
+  X(AwlsBlock)                     \
+  X(AwlsAccelerated)               \
   X(AwlsLiteral)                   \
   X(Hybrid)                        \
   X(Newton)                        \
+  X(Varpro)                        \
   X(Lm)                            \
   X(LmPlain)
 

@@ -42,11 +42,11 @@ const char* TrustRegionName(TrustRegion trust_region);  // "levenberg_marquardt"
 // What a run is asked to do. The first part is common to all solvers; each option of the second
 // part is one that only some solvers read, and SolverEntry::options says which.
 struct SolverOptions {
-  int max_iterations = 60;
+  int max_iterations = 100;
   double max_seconds = std::numeric_limits<double>::infinity();
 
   // Stop when an accepted iteration changes E by less than this fraction of it.
-  double relative_decrease_tolerance = 1e-3;
+  double relative_decrease_tolerance = 1e-5;
 
   // Stop when the scaled projected gradient (Diagnosis::optimality) is at most this, where the
   // solver knows it.
@@ -62,8 +62,8 @@ struct SolverOptions {
   // filter. With the filter E may rise.
   double g_filter_sigma = 0;
 
-  // Sees the model after every single element update, where a solver makes such updates. Slow;
-  // for checking that E never rises.
+  // Sees the model after every update of a single element, or of a block of elements that move
+  // together, where a solver makes such updates. Slow; for checking that E never rises.
   std::function<void(const FactorModel&)> on_element = nullptr;
 
   Positivity positivity = Positivity::kActiveSet;
@@ -77,13 +77,16 @@ struct SolverOptions {
   uint64_t seed = 1;
 };
 
-// Where the time of a run went [s]. What a solver does besides is in none of them.
+// Where the time of a run went [s], summed over what ran side by side. What a solver does besides
+// is in none of them.
 struct PhaseSeconds {
   double reading = 0;         // not a solver's: for the caller to fill
   double preparing = 0;       // sorting and copying before the first iteration
   double evaluating = 0;      // passes over the samples: E, sums, normal equations
   double linear_algebra = 0;  // factorisations and element updates
   double diagnosing = 0;
+
+  PhaseSeconds& operator+=(const PhaseSeconds& other);
 };
 
 // How good a point is, by measures that do not depend on the gauge (docs/solvers.md).
@@ -102,6 +105,15 @@ struct Diagnosis {
   int rank = 0;
   double rank_tolerance = 0;
   double condition = 0;
+  // Columns that are not 0, less the directions along which scale moves between tables and s
+  // without changing any value, less `rank`: what J'J cannot tell from 0, but theory does.
+  int unresolved = 0;
+};
+
+// Where one of several starting points led.
+struct StartResult {
+  std::string name;
+  double objective = 0;  // E there
 };
 
 struct SolverSummary {
@@ -117,6 +129,7 @@ struct SolverSummary {
   SolverOptions used;   // as the solver replaced what it could not honour or was free to choose
   std::vector<std::string> notes;  // one sentence for each such choice, and for each warning
   PhaseSeconds phases;
+  std::vector<StartResult> starts;     // of a solver that tries several, best first
   std::optional<Diagnosis> diagnosis;  // of the returned model
 
   int BestIteration() const;  // the returned model's number in the trace

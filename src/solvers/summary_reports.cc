@@ -33,6 +33,15 @@ std::string OptionsText(const SolverSummary& summary) {
 
 }  // namespace
 
+PhaseSeconds& PhaseSeconds::operator+=(const PhaseSeconds& other) {
+  reading += other.reading;
+  preparing += other.preparing;
+  evaluating += other.evaluating;
+  linear_algebra += other.linear_algebra;
+  diagnosing += other.diagnosing;
+  return *this;
+}
+
 int SolverSummary::BestIteration() const {
   if (trace.empty()) return 0;
   return std::ranges::min_element(trace, {}, &IterationRecord::objective)->iteration;
@@ -62,6 +71,10 @@ std::string SolverSummary::FullReport() const {
   }
   out << "\noptions      " << OptionsText(*this) << "\n";
   for (const std::string& note : notes) out << "note         " << note << "\n";
+  for (size_t k = 0; k < starts.size(); ++k) {
+    out << (k == 0 ? "starts       " : ", ") << starts[k].name << " " << starts[k].objective;
+  }
+  if (!starts.empty()) out << "\n";
   out << std::setprecision(3);
   if (diagnosis) {
     out << "diagnosis    optimality " << diagnosis->optimality << ", rank " << diagnosis->rank

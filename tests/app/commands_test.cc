@@ -76,12 +76,12 @@ TEST(HelpTest, ShowsTheFlagsOfTheSolverGiven) {
                                                  "flags of solver awls_literal:\n"
                                                  "  --g_filter=0\n(.*\n)*"
                                                  "flags:\n(.*\n)*"
-                                                 "  --max_iterations=60\n(.*\n)*"
+                                                 "  --max_iterations=100\n(.*\n)*"
                                                  "  --optimality_tolerance=1e-10\n(.*\n)*"
                                                  "  --diagnose=true\n"));
   EXPECT_THAT(result.out, Not(HasSubstr("--memory")));
   const ProgramResult unknown = RunProgram({"fit", "--solver=x", "--help"});
-  ExpectError(unknown, "known: awls");
+  ExpectError(unknown, "known: auto");
   EXPECT_EQ(unknown.out, "");
 }
 
@@ -111,7 +111,7 @@ TEST(SolversTest, DescribesEach) {
 }
 
 TEST(SolversTest, RejectsBadInput) {
-  ExpectError(RunProgram({"solvers", "x"}), "known: awls");
+  ExpectError(RunProgram({"solvers", "x"}), "known: auto");
   ExpectError(RunProgram({"solvers", "--solver=awls_literal"}), "no flag --solver");
 }
 

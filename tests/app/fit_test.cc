@@ -25,8 +25,8 @@ using ::testing::StartsWith;
 nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
 
 std::vector<std::string> Fit(const std::string& out, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"fit", "synth:plastic", "--noise=0.02",
-                                        "--max_iterations=3", "--out=" + out};
+  std::vector<std::string> arguments = {"fit",           "synth:plastic",      "--noise=0.02",
+                                        "--solver=awls", "--max_iterations=3", "--out=" + out};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -60,6 +60,7 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_EQ(report["options"]["used"]["g_filter_sigma"], 0);
   EXPECT_FALSE(report["options"]["used"].contains("memory"));  // awls does not read it
   EXPECT_TRUE(report["notes"].is_array());
+  EXPECT_TRUE(report["starts"].is_array());
   EXPECT_EQ(report["phases"]["reading"], report["seconds"]["read"]);
   EXPECT_GT(report["phases"]["evaluating"], 0);
   ASSERT_TRUE(report.contains("diagnosis"));
@@ -169,7 +170,7 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   const std::vector<BadInput> cases = {
-      {{"--solver=x"}, "known: awls, "},
+      {{"--solver=x"}, "known: auto, "},
       {{"--weighting=x"}, "known: compressive, log, percentage, cosine, uniform"},
       {{"--init=x"}, "known: "},
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},

@@ -17,7 +17,7 @@ TEST(ElementOptimality, NoOtherValueIsBetter) {
   const BrdfTable table = RandomTable(kGrid, 1);
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     const Objective objective = MakeObjective(table, spec);
-    for (const SolverEntry& solver : Solvers()) {
+    for (const SolverEntry& solver : kLibrarySolvers) {
       if (!UpdatesElements(solver)) continue;
       FactorModel model = RandomModel(spec, 2);
       int element = 0;  // updates come in the order of parameters()

@@ -1,4 +1,5 @@
-// No solver raises E, from one iteration to the next; nor does AWLS in a single element update.
+// No solver raises E, from one iteration to the next; nor do AWLS and its relatives in a single
+// update of an element or block.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +78,11 @@ TEST_P(Monotone, EveryUpdate) {
     for (const Weighting& weighting : Weightings()) {
       const Objective objective = MakeObjective(table, spec, weighting.name);
       for (const InitialModel& init : InitialModels()) {
-        for (const SolverEntry& solver : Solvers()) {
+        for (const SolverEntry& solver : kLibrarySolvers) {
+          // Joint steps are judged by E as a whole: one of each kind of data and spec will do.
+          const bool first =
+              &weighting == &Weightings().front() && &init == &InitialModels().front();
+          if (!ReportsUpdates(solver) && !first) continue;
           const std::string what =
               name + ", " + weighting.name + ", " + init.name + ", " + solver.name;
           FactorModel model = init.make(objective, 1);
@@ -109,8 +114,11 @@ TEST_P(Monotone, EveryUpdate) {
             return true;
           };
           const SolverSummary summary = solver.make()->Solve(objective, options, &model);
-          const int per_iteration = UpdatesElements(solver) ? spec.num_parameters() : 0;
-          EXPECT_EQ(updates, summary.iterations * per_iteration) << what;
+          if (UpdatesElements(solver)) {
+            EXPECT_EQ(updates, summary.iterations * spec.num_parameters()) << what;
+          } else {
+            EXPECT_EQ(updates > 0, summary.iterations > 0 && ReportsUpdates(solver)) << what;
+          }
           EXPECT_EQ(raised, 0) << what << ": by up to " << worst << " of it";
           EXPECT_EQ(bad, 0) << what;
         }

@@ -2,14 +2,27 @@
 #define TRILOBE_TESTS_SOLVERS_SOLVER_KINDS_H_
 
 #include <algorithm>
+#include <vector>
 
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 
-// Whether a solver updates element by element, as AWLS does: with SolverOptions::on_element and a
-// filter on G.
+// The library's own solvers: copied before main, so without those that tests register.
+inline const std::vector<SolverEntry> kLibrarySolvers = Solvers();
+
+// Whether each sweep of a solver updates all parameters one by one, in their order.
 inline bool UpdatesElements(const SolverEntry& solver) {
+  return solver.name == "awls" || solver.name == "awls_literal";
+}
+
+// Whether a solver reports its updates within an iteration to SolverOptions::on_element.
+inline bool ReportsUpdates(const SolverEntry& solver) {
+  return UpdatesElements(solver) || solver.name == "awls_block" ||
+         solver.name == "awls_accelerated";
+}
+
+inline bool FiltersG(const SolverEntry& solver) {
   return std::ranges::count(solver.options, "g_filter_sigma") > 0;
 }
 

@@ -18,7 +18,7 @@ TEST(Solver, KnowsItsNames) {
     EXPECT_NE(entry.make(), nullptr);
     EXPECT_NE(MakeSolver(entry.name), nullptr);
   }
-  EXPECT_EQ(names.front(), "awls");
+  EXPECT_EQ(names.front(), "auto");
   EXPECT_THAT(names, testing::IsSupersetOf({"awls_literal", "lm_plain"}));
 }
 
@@ -27,7 +27,7 @@ TEST(Solver, UnknownNamesListTheKnownOnes) {
     MakeSolver("simplex");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("unknown solver 'simplex'; known: awls, "));
+    EXPECT_THAT(error.what(), testing::HasSubstr("unknown solver 'simplex'; known: auto, "));
     EXPECT_THAT(error.what(), testing::HasSubstr("awls_literal"));
   }
 }
@@ -70,7 +70,7 @@ TEST(Solver, ReportsInFull) {
   for (const char* const part :
        {"solver       awls: 2 iterations, stopped by no_decrease\n",
         "E 34.5 -> 6.25, lowest after iteration 1, 1 steps taken back, last step 0 of |x|\n",
-        "max_iterations 60, max_seconds inf, ", "g_filter_sigma 0 (given 2)\n",
+        "max_iterations 100, max_seconds inf, ", "g_filter_sigma 0 (given 2)\n",
         "note         The filter was switched off.\n", "phases       1.5 s solving"}) {
     EXPECT_THAT(plain, testing::HasSubstr(part));
   }
@@ -91,7 +91,7 @@ TEST(Solver, ReportsInFull) {
 
 // An empty summary, of a solver that is in no list.
 TEST(Solver, ReportsWhatIsThere) {
-  EXPECT_THAT(SolverSummary().FullReport(), testing::HasSubstr("options      max_iterations 60"));
+  EXPECT_THAT(SolverSummary().FullReport(), testing::HasSubstr("options      max_iterations 100"));
   EXPECT_EQ(SolverSummary().BestIteration(), 0);
   EXPECT_EQ(SolverSummary().RejectedSteps(), 0);
 }
@@ -112,8 +112,8 @@ TEST(OptionValues, AreThoseThatTheSolverReads) {
   ASSERT_EQ(values.size(), 7U);
   std::vector<std::string> texts;
   for (const OptionValue& value : values) texts.push_back(value.name + "=" + ToText(value));
-  EXPECT_THAT(texts, testing::ElementsAre("max_iterations=60", "max_seconds=inf",
-                                          "relative_decrease_tolerance=0.001",
+  EXPECT_THAT(texts, testing::ElementsAre("max_iterations=100", "max_seconds=inf",
+                                          "relative_decrease_tolerance=1e-05",
                                           "optimality_tolerance=1e-10", "diagnose=true",
                                           "positivity=squares", "seed=18446744073709551615"));
 }
@@ -140,11 +140,13 @@ TEST(Solver, SomeFitScatteredSamples) {
   BrdfSamples samples = Scattered(ValidSamples(RandomTable(kGrid, 1)));
   for (HalfDiffAngles& angles : samples.angles) angles.theta_h *= 0.9;
   const Objective objective(samples, spec, FindWeighting("uniform"));
-  for (const char* const solver : {"awls_literal", "lm_plain"}) {
+  for (const char* const solver :
+       {"awls_literal", "lm_plain", "lm", "newton", "varpro", "auto", "multistart"}) {
     FactorModel model = RandomModel(spec, 1);
     SolverOptions options;
     options.max_iterations = 10;
     options.relative_decrease_tolerance = 0;
+    options.optimality_tolerance = 0;
     const SolverSummary summary = MakeSolver(solver)->Solve(objective, options, &model);
     EXPECT_EQ(summary.iterations, 10) << solver;
     for (size_t k = 1; k < summary.trace.size(); ++k) {

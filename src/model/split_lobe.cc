@@ -1,0 +1,87 @@
+#include "trilobe/model/split_lobe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "trilobe/base/error.h"
+
+namespace trilobe {
+namespace {
+
+// The share of each bin that stays with the narrow part: a smooth step from 1 to 0 at the theta_h
+// that halves the integral of sqrt(D) sin theta_h. The root weighs the flanks of a lobe, which a
+// second one is to take over, against its peak.
+std::vector<double> NarrowShare(std::span<const double> D) {
+  constexpr double kSteepness = 8;
+  const int bins = static_cast<int>(D.size());
+  const MerlGrid grid{.theta_h = bins};
+  std::vector<double> u(bins);
+  double sum = 0;
+  for (int h = 0; h < bins; ++h) {
+    const double width = grid.ThetaH(h + 1) - grid.ThetaH(h);
+    sum += std::sqrt(D[h]) * std::sin(grid.ThetaH(h + 0.5)) * width;
+    u[h] = sum;
+  }
+  for (double& x : u) {
+    const double fraction = sum > 0 ? x / sum : 0.5;
+    x = 1 / (1 + std::exp(kSteepness * (fraction - 0.5)));
+  }
+  return u;
+}
+
+}  // namespace
+
+FactorModel SplitLobe(const FactorModel& model, int lobe) {
+  ModelSpec spec = model.spec();
+  if (!spec.D.per_lobe) throw Error("lobes that share D cannot be split");
+  if (lobe < 0 || lobe >= spec.lobes) {
+    throw Error("there is no lobe " + std::to_string(lobe) + " to split: the model has " +
+                std::to_string(spec.lobes));
+  }
+  const int added = spec.lobes++;
+  FactorModel result(spec);
+  std::ranges::copy(model.d(), result.d().begin());
+  for (int m = 0; m < spec.lobes; ++m) {
+    const int from = m == added ? lobe : m;
+    std::ranges::copy(model.s(from), result.s(m).begin());
+    for (const Factor factor : kFactors) {
+      for (int c = 0; c < kChannels; ++c) {
+        std::ranges::copy(model.table(factor, model.spec().table(factor, from, c)),
+                          result.table(factor, spec.table(factor, m, c)).begin());
+      }
+    }
+  }
+  for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
+    for (int c = 0; c < kChannels; ++c) {
+      if (spec.table(Factor::kD, lobe, c) != t) continue;
+      const std::vector<double> share = NarrowShare(result.table(Factor::kD, t));
+      const std::span<double> narrow = result.table(Factor::kD, t);
+      const std::span<double> wide = result.table(Factor::kD, spec.table(Factor::kD, added, c));
+      for (size_t h = 0; h < share.size(); ++h) {
+        wide[h] = (1 - share[h]) * narrow[h];
+        narrow[h] -= wide[h];
+      }
+      break;  // one channel stands for all that share the table
+    }
+  }
+  return result;
+}
+
+int StrongestLobe(const FactorModel& canonical) {
+  int strongest = 0;
+  double most = 0;
+  for (int m = 0; m < canonical.spec().lobes; ++m) {
+    const std::span<const double> s = canonical.s(m);
+    const double sum = std::accumulate(s.begin(), s.end(), 0.0);
+    if (sum > most) {
+      most = sum;
+      strongest = m;
+    }
+  }
+  return strongest;
+}
+
+}  // namespace trilobe

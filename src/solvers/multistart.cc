@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/split_lobe.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/joint_step.h"
+#include "trilobe/solvers/run.h"
+#include "trilobe/solvers/start_race.h"
+
+namespace trilobe {
+namespace {
+
+// A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
+// a little: a lobe that grew out of another starts where it is needed.
+FactorModel Grow(const Objective& objective, uint64_t seed, const std::function<bool()>& stop) {
+  constexpr int kTries = 5;
+  ModelSpec spec = objective.spec();
+  FactorModel model;
+  for (int lobes = 1; lobes < objective.spec().lobes; ++lobes) {
+    spec.lobes = lobes;
+    const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
+    StartRace race(smaller, stop);
+    if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
+    race.Enter("", [&] { return model; });
+    race.Advance(kTries);
+    if (race.leader() != nullptr) model = *race.leader();
+    Canonicalize(smaller.coverage(), &model);
+    model = SplitLobe(model, StrongestLobe(model));
+  }
+  return model;
+}
+
+// Starts the race has besides the given one, in the order in which they enter.
+class Starts {
+ public:
+  Starts(const Objective& objective, const FactorModel& given, uint64_t seed, StartRace* race,
+         std::function<bool()> stop)
+      : objective_(objective), given_(given), seed_(seed), race_(race), stop_(std::move(stop)) {}
+
+  // Enters more of them, until there have been `count`.
+  void EnterUpTo(int count) {
+    for (; entered_ < count; ++entered_) EnterOne(entered_);
+  }
+
+ private:
+  void EnterOne(int number) {
+    if (number == 0) {
+      race_->Enter("given", [this] { return given_; });
+    } else if (number == 1) {
+      race_->Enter("grown", [this]() -> std::optional<FactorModel> {
+        const ModelSpec& spec = objective_.spec();
+        if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
+        return WithDeadBins(Grow(race_->thinned(), seed_, stop_));
+      });
+    } else if (number == 2) {
+      EnterInitial("highlight", seed_, "highlight");
+    } else if (number == 3) {
+      EnterInitial("analytic", seed_, "analytic");
+    } else {
+      const uint64_t seed = seed_ + static_cast<uint64_t>(number - 4);
+      EnterInitial("roughness", seed, "roughness/" + std::to_string(seed));
+    }
+  }
+
+  void EnterInitial(const char* init, uint64_t seed, std::string name) {
+    race_->Enter(std::move(name), [this, init, seed]() -> std::optional<FactorModel> {
+      FactorModel model = WithDeadBins(FindInitialModel(init).make(objective_, seed));
+      if (std::ranges::equal(model.parameters(), given_.parameters())) return std::nullopt;
+      return model;
+    });
+  }
+
+  // Dead bins are the caller's, and stay.
+  FactorModel WithDeadBins(FactorModel model) const {
+    for (size_t k = 0; k < model.parameters().size(); ++k) {
+      if (!(objective_.coverage()[k] > 0)) model.parameters()[k] = given_.parameters()[k];
+    }
+    return model;
+  }
+
+  const Objective& objective_;
+  const FactorModel& given_;
+  const uint64_t seed_;
+  StartRace* const race_;
+  const std::function<bool()> stop_;
+  int entered_ = 0;
+};
+
+// A part of the race: so many starts have entered, each that is in it goes on until it has tried so
+// many joint steps, and then the best stay.
+struct Leg {
+  int starts, tries, keep;
+};
+
+// E on all samples may be above the estimate from the thinned ones by this fraction.
+constexpr double kLargeMismatch = 0.03;
+
+// The legs one by one, then Gauss-Newton steps on all samples from the best point.
+void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
+             Run* run) {
+  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
+                       JointStepper::Trial::kProjected, &run->summary().phases);
+  stepper.Restart(given);
+  bool go_on = run->Start(stepper.Optimality());
+  if (!go_on) return;
+  const auto stop = [run] { return run->seconds() >= run->options().max_seconds; };
+  FactorModel best = given;
+  {
+    StartRace race(objective, stop);
+    Starts starts(objective, given, run->options().seed, &race, stop);
+    for (const Leg& leg : legs) {
+      if (!go_on) break;
+      starts.EnterUpTo(leg.starts);
+      race.Advance(leg.tries);
+      race.Keep(leg.keep);
+      if (race.leader() == nullptr) continue;
+      // On all samples a leader may be behind its predecessor.
+      const double E = objective.Value(*race.leader());
+      // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
+      // fits the thinned samples at the cost of the others.
+      if (E > (1 + kLargeMismatch) * race.Results().front().objective) race.ThinLess();
+      const bool better = E < run->best_objective();
+      if (better) best = *race.leader();
+      go_on = run->Record(best, {.accepted = better,
+                                 .may_converge = false,
+                                 .objective = better ? E : run->best_objective()});
+    }
+    run->summary().starts = race.Results();
+    run->summary().phases += race.phases();
+  }
+  if (!go_on) return;
+  stepper.Restart(best);
+  RepeatJointSteps(&stepper, run);
+}
+
+class Auto : public Solver {
+ public:
+  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
+                      FactorModel* model) const override {
+    Run run("auto", objective, options, model);
+    RunLegs({{.starts = 2, .tries = 12, .keep = 2},
+             {.starts = 2, .tries = 25, .keep = 2},
+             {.starts = 8, .tries = 10, .keep = 5},
+             {.starts = 8, .tries = 25, .keep = 3},
+             {.starts = 8, .tries = 60, .keep = 1},
+             {.starts = 8, .tries = 150, .keep = 1}},
+            objective, FactorModel(*model), &run);
+    return run.Finish();
+  }
+};
+
+class Multistart : public Solver {
+ public:
+  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
+                      FactorModel* model) const override {
+    if (options.starts < 1) throw Error("starts is below 1; give 1 or more starting points");
+    Run run("multistart", objective, options, model);
+    const int n = options.starts, half = (n + 1) / 2;
+    RunLegs({{.starts = n, .tries = 10, .keep = half},
+             {.starts = n, .tries = 30, .keep = half},
+             {.starts = n, .tries = 100, .keep = half}},
+            objective, FactorModel(*model), &run);
+    const std::vector<StartResult>& tried = run.summary().starts;
+    if (!tried.empty()) run.summary().notes.push_back(Agreement(tried));
+    return run.Finish();
+  }
+
+ private:
+  static std::string Agreement(const std::vector<StartResult>& starts) {
+    const auto within = [&](double fraction) {
+      return std::ranges::count_if(starts, [&](const StartResult& start) {
+        return start.objective <= (1 + fraction) * starts.front().objective;
+      });
+    };
+    std::ostringstream text;
+    text << "of " << starts.size() << " starts " << within(1e-3)
+         << " came within 0.1 % of the best E, " << within(1e-2) << " within 1 %";
+    return text.str();
+  }
+};
+
+}  // namespace
+
+SolverEntry AutoEntry() {
+  return {.name = "auto",
+          .description = "several starts raced on thinned data, the best finished on all",
+          .reference = "docs/solvers.md",
+          .options = {"seed"},
+          .make = [] { return std::make_unique<Auto>(); }};
+}
+
+SolverEntry MultistartEntry() {
+  return {.name = "multistart",
+          .description = "as auto, with as many starts as you like; tells how many agree",
+          .reference = "docs/solvers.md",
+          .options = {"starts", "seed"},
+          .make = [] { return std::make_unique<Multistart>(); }};
+}
+
+}  // namespace trilobe

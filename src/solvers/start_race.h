@@ -1,0 +1,67 @@
+#ifndef TRILOBE_SOLVERS_START_RACE_H_
+#define TRILOBE_SOLVERS_START_RACE_H_
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// Several starting points, fitted side by side to a thinned selection of the samples, a thread
+// each: E has many local minima, which one a start leads to cannot be told beforehand, and the
+// samples lie so dense that a fraction of them ranks the minima as all of them do.
+class StartRace {
+ public:
+  // Makes a starting point; asked once, from any thread. Nothing if there is none, or no new one.
+  using MakeStart = std::function<std::optional<FactorModel>()>;
+
+  // `stop` may be asked from several threads.
+  StartRace(const Objective& objective, std::function<bool()> stop);
+  ~StartRace();
+
+  // Goes on with about twice as many samples; false if these are all.
+  bool ThinLess();
+
+  // The selection of samples, for one thread.
+  const Objective& thinned() const { return *thinned_; }
+
+  void Enter(std::string name, MakeStart make_start);
+
+  // Those in the race go on until they have made a few sweeps of block AWLS, where samples are on a
+  // grid, and then tried so many Gauss-Newton steps. One that has converged, or is to stop, makes
+  // no more; one that has not begun by then never does.
+  void Advance(int tries);
+
+  // All but the best `count` leave the race.
+  void Keep(int count);
+
+  // The best of all that ever entered; null if there is none yet.
+  const FactorModel* leader() const;
+
+  // All that started, best first, with E on the thinned samples as an estimate of that on all.
+  std::vector<StartResult> Results() const;
+
+  // Summed over the entrants, which work at the same time.
+  PhaseSeconds phases() const;
+
+ private:
+  class Entrant;
+  void Thin();
+  std::vector<Entrant*> Ranked() const;
+
+  const Objective& objective_;
+  const std::function<bool()> stop_;
+  int stride_;
+  std::unique_ptr<const Objective> thinned_;
+  std::vector<std::unique_ptr<Entrant>> entrants_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_START_RACE_H_

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/test_util.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+SolverOptions Iterations(int count) {
+  SolverOptions options;
+  options.max_iterations = count;
+  options.relative_decrease_tolerance = 0;
+  options.diagnose = false;
+  return options;
+}
+
+struct Iterate {
+  IterationRecord record;
+  FactorModel model;
+};
+
+std::vector<Iterate> Iterates(const std::string& solver, const Objective& objective,
+                              SolverOptions options, FactorModel model) {
+  std::vector<Iterate> iterates;
+  options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
+    iterates.push_back({record, current});
+    return true;
+  };
+  MakeSolver(solver)->Solve(objective, options, &model);
+  return iterates;
+}
+
+double LargestDifference(const FactorModel& a, const FactorModel& b) {
+  double difference = 0;
+  for (size_t k = 0; k < a.parameters().size(); ++k) {
+    difference = std::max(difference, std::abs(a.parameters()[k] - b.parameters()[k]));
+  }
+  return difference / std::ranges::max(b.parameters());
+}
+
+// A model and a measurement of it with noise; then the model is moved away.
+Objective NoisyObjective(const MerlGrid& grid, int lobes, FactorModel* model) {
+  const ModelSpec spec = ModelSpec::SharedFactors(lobes, grid);
+  *model = RandomModel(spec, 1, 0.3);
+  BrdfTable table = TableOf(*model, grid);
+  Random random(2);
+  for (std::vector<double>& channel : table.stored) {
+    for (double& value : channel) value *= random.LogNormal(0.05);
+  }
+  for (double& x : model->parameters()) x *= random.LogNormal(0.2);
+  return MakeObjective(table, spec);
+}
+
+// Rounding errors of J'J and J'r, eps times the root of the number of parameters as they add up at
+// random, move a step by at most that over the damping. Ceres damps a first step of Levenberg and
+// Marquardt by 1e-4 of the squared columns and a third of it after each success; dogleg's
+// Gauss-Newton step by 1e-8.
+void ExpectSameIterates(const Objective& objective, const FactorModel& start,
+                        const SolverOptions& options, const std::string& what) {
+  const double damping = options.trust_region == TrustRegion::kDogleg
+                             ? 1e-8
+                             : 1e-4 / std::pow(3, options.max_iterations);
+  const double tolerance = std::numeric_limits<double>::epsilon() *
+                           std::sqrt(objective.spec().num_parameters()) / damping;
+  const std::vector<Iterate> condensed = Iterates("lm", objective, options, start);
+  const std::vector<Iterate> plain = Iterates("lm_plain", objective, options, start);
+  ASSERT_EQ(plain.size(), static_cast<size_t>(options.max_iterations) + 1) << what;
+  ASSERT_EQ(condensed.size(), plain.size()) << what;
+  EXPECT_LT(plain.back().record.objective, 0.2 * plain.front().record.objective) << what;
+  for (size_t k = 0; k < plain.size(); ++k) {
+    SCOPED_TRACE(what + ", iteration " + std::to_string(k));
+    const double E = plain[k].record.objective;
+    EXPECT_NEAR(condensed[k].record.objective, E, tolerance * E);
+    EXPECT_EQ(condensed[k].record.accepted, plain[k].record.accepted);
+    EXPECT_LE(LargestDifference(condensed[k].model, plain[k].model), tolerance);
+    // What the solver remembers of E is E.
+    EXPECT_EQ(condensed[k].record.objective, objective.Value(condensed[k].model));
+  }
+}
+
+// Here lm_plain works by QR: it never forms J'J.
+TEST(Lm, GoesWhereLmPlainGoes) {
+  constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 10};
+  for (const int lobes : {1, 2}) {
+    FactorModel start;
+    const Objective objective = NoisyObjective(kGrid, lobes, &start);
+    for (const Positivity positivity : {Positivity::kBounds, Positivity::kSquares}) {
+      for (const TrustRegion trust_region :
+           {TrustRegion::kLevenbergMarquardt, TrustRegion::kDogleg}) {
+        SolverOptions options = Iterations(6);
+        options.positivity = positivity;
+        options.trust_region = trust_region;
+        ExpectSameIterates(objective, start, options,
+                           std::to_string(lobes) + " lobes, " + PositivityName(positivity) + ", " +
+                               TrustRegionName(trust_region));
+      }
+    }
+  }
+}
+
+// Here the whole Jacobian takes more than 64 MiB, and lm_plain works by sparse normal equations.
+TEST(Lm, GoesWhereLmPlainGoesOnALargeProblem) {
+  constexpr MerlGrid kGrid{.theta_h = 32, .theta_d = 32, .phi_d = 32};
+  FactorModel start;
+  const Objective objective = NoisyObjective(kGrid, 2, &start);
+  ASSERT_GT(8.0 * kChannels * objective.samples().size() * objective.spec().num_parameters(),
+            64 << 20);
+  SolverOptions options = Iterations(2);
+  options.positivity = Positivity::kBounds;
+  ExpectSameIterates(objective, start, options, "bounds");
+}
+
+}  // namespace
+}  // namespace trilobe

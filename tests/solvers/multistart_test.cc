@@ -1,0 +1,281 @@
+// auto and multistart: what they promise beyond what every solver does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/test_util.h"
+#include "trilobe/base/error.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/start_race.h"
+
+namespace trilobe {
+namespace {
+
+constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+SolverOptions Iterations(int count) {
+  SolverOptions options;
+  options.max_iterations = count;
+  options.relative_decrease_tolerance = kNever;
+  options.diagnose = false;
+  return options;
+}
+
+// Three lobes of a GGX-like width each, with noise: data with more than one minimum.
+Objective NoisyObjective(const ModelSpec& spec, int num_threads = 1) {
+  FactorModel truth = RandomModel(ModelSpec::SharedFactors(3, kGrid), 2, 0.7);
+  BrdfTable table = TableOf(truth, kGrid);
+  Random random(3);
+  for (auto& plane : table.stored) {
+    for (double& x : plane) x *= random.LogNormal(0.1);
+  }
+  return MakeObjective(table, spec, "compressive", num_threads);
+}
+
+std::vector<std::string> Names(const SolverSummary& summary) {
+  std::vector<std::string> names;
+  for (const StartResult& start : summary.starts) names.push_back(start.name);
+  return names;
+}
+
+class Multistart : public testing::TestWithParam<const char*> {
+ protected:
+  static SolverSummary Solve(const Objective& objective, const SolverOptions& options,
+                             FactorModel* model) {
+    return MakeSolver(GetParam())->Solve(objective, options, model);
+  }
+};
+
+TEST_P(Multistart, NamesTheStartsBestFirst) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(3, kGrid));
+  FactorModel model = FindInitialModel("constant").make(objective, 1);
+  SolverOptions options = Iterations(5);
+  options.starts = 8;
+  options.seed = 7;
+  const SolverSummary summary = Solve(objective, options, &model);
+  EXPECT_THAT(Names(summary), testing::UnorderedElementsAre(
+                                  "given", "grown", "highlight", "analytic", "roughness/7",
+                                  "roughness/8", "roughness/9", "roughness/10"));
+  EXPECT_TRUE(std::ranges::is_sorted(summary.starts, {}, &StartResult::objective));
+  EXPECT_LT(summary.starts.front().objective, summary.starts.back().objective);
+  // So few samples are not thinned: E is that of all.
+  double least = summary.initial_objective;
+  for (const IterationRecord& record : summary.trace) least = std::min(least, record.objective);
+  EXPECT_LE(least, summary.starts.front().objective * (1 + 1e-12));
+}
+
+// A start that there is not, or that is the given one, does not run.
+TEST_P(Multistart, LeavesOutWhatIsNoStartOfItsOwn) {
+  SolverOptions options = Iterations(5);
+  const Objective one_lobe = NoisyObjective(ModelSpec::SharedFactors(1, kGrid));
+  FactorModel model = FindInitialModel("analytic").make(one_lobe, 1);
+  EXPECT_THAT(Names(Solve(one_lobe, options, &model)),
+              testing::AllOf(testing::Contains("given"), testing::Contains("highlight"),
+                             testing::Not(testing::Contains("grown")),
+                             testing::Not(testing::Contains("analytic"))));
+
+  ModelSpec shared = ModelSpec::SharedFactors(2, kGrid);
+  shared.D.per_lobe = false;
+  const Objective shared_D = NoisyObjective(shared);
+  model = RandomModel(shared, 1);
+  EXPECT_THAT(Names(Solve(shared_D, options, &model)),
+              testing::AllOf(testing::Contains("given"), testing::Contains("analytic"),
+                             testing::Not(testing::Contains("grown"))));
+}
+
+TEST_P(Multistart, IsNeverWorseThanAnyStart) {
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    const Objective objective = NoisyObjective(spec);
+    FactorModel model = RandomModel(spec, 4);
+    SolverOptions options = Iterations(4);
+    options.starts = 7;
+    const SolverSummary summary = Solve(objective, options, &model);
+    const double E = objective.Value(model);
+    EXPECT_EQ(E, summary.final_objective) << name;
+    EXPECT_LE(E, summary.initial_objective) << name;
+    for (const StartResult& start : summary.starts) {
+      EXPECT_LE(E, start.objective * (1 + 1e-12)) << name << ", " << start.name;
+    }
+    for (const char* const init : {"highlight", "analytic", "roughness"}) {
+      for (const uint64_t seed : {1, 2, 3}) {
+        const FactorModel start = FindInitialModel(init).make(objective, seed);
+        EXPECT_LE(E, objective.Value(start)) << name << ", " << init << "/" << seed;
+      }
+    }
+  }
+}
+
+// In data without any order there are about as many minima as starts.
+TEST_P(Multistart, KeepsAGivenStartThatIsTheBest) {
+  const Objective objective =
+      MakeObjective(RandomTable(kGrid, 8), ModelSpec::SharedFactors(5, kGrid));
+  FactorModel best = RandomModel(objective.spec(), 1);
+  SolverOptions many = Iterations(40);
+  many.starts = 16;
+  many.seed = 100;
+  const double E = MakeSolver("multistart")->Solve(objective, many, &best).final_objective;
+  FactorModel model = best;
+  Random random(3);
+  for (double& x : model.parameters()) x *= random.LogNormal(1e-3);
+  const SolverSummary summary = Solve(objective, Iterations(40), &model);
+  ASSERT_GE(summary.starts.size(), 2U);
+  EXPECT_EQ(summary.starts.front().name, "given");
+  EXPECT_GT(summary.starts[1].objective, summary.starts[0].objective * (1 + 1e-3));
+  EXPECT_LE(summary.final_objective, E * (1 + 1e-9));
+}
+
+TEST_P(Multistart, GivesTheSameBitsForAnyThreads) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  SolverSummary one;
+  FactorModel model_of_one;
+  for (const int threads : {1, 2}) {
+    const Objective objective = NoisyObjective(spec, threads);
+    FactorModel model = FindInitialModel("random").make(objective, 3);
+    const SolverSummary summary = Solve(objective, Iterations(8), &model);
+    if (threads == 1) {
+      one = summary;
+      model_of_one = model;
+    }
+    EXPECT_TRUE(std::ranges::equal(model.parameters(), model_of_one.parameters()));
+    EXPECT_EQ(Names(summary), Names(one));
+    EXPECT_TRUE(std::ranges::equal(summary.starts, one.starts, {}, &StartResult::objective,
+                                   &StartResult::objective));
+    EXPECT_TRUE(std::ranges::equal(summary.trace, one.trace, {}, &IterationRecord::objective,
+                                   &IterationRecord::objective));
+  }
+}
+
+// Whichever start wins, what no sample reads is the caller's.
+TEST_P(Multistart, LeavesDeadBinsToTheCaller) {
+  BrdfTable table = RandomTable(kGrid, 2);
+  for (int d = 0; d < kGrid.theta_d; ++d) {
+    for (int p = 0; p < kGrid.phi_d; ++p) table.stored[2][kGrid.Index(4, d, p)] = -1;
+  }
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective = MakeObjective(table, spec);
+  const std::vector<bool> dead = DeadParameters(objective.coverage());
+  ASSERT_GE(std::ranges::count(dead, true), spec.lobes);
+  const FactorModel start = RandomModel(spec, 3, 2);  // so bad that another one wins
+  FactorModel model = start;
+  const SolverSummary summary = Solve(objective, Iterations(6), &model);
+  EXPECT_NE(summary.starts.front().name, "given");
+  for (int k = 0; k < spec.num_parameters(); ++k) {
+    if (!dead[k]) continue;
+    EXPECT_EQ(model.parameters()[k], start.parameters()[k]) << "parameter " << k;
+  }
+}
+
+TEST_P(Multistart, TriesNoStartWhereNoIterationIsAskedFor) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid));
+  const FactorModel start = RandomModel(objective.spec(), 1);
+  SolverOptions no_time = Iterations(10);
+  no_time.max_seconds = 0;
+  for (const SolverOptions& options : {Iterations(0), no_time}) {
+    FactorModel model = start;
+    const SolverSummary summary = Solve(objective, options, &model);
+    EXPECT_EQ(summary.iterations, 0);
+    EXPECT_TRUE(summary.starts.empty());
+    EXPECT_TRUE(summary.notes.empty());
+    EXPECT_TRUE(std::ranges::equal(model.parameters(), start.parameters()));
+  }
+}
+
+TEST_P(Multistart, FitsScatteredSamples) {
+  constexpr MerlGrid kSmall{.theta_h = 5, .theta_d = 5, .phi_d = 8};
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kSmall);
+  const Objective objective(Scattered(ValidSamples(RandomTable(kSmall, 1))), spec,
+                            FindWeighting("compressive"));
+  FactorModel model = RandomModel(spec, 1);
+  SolverOptions options = Iterations(4);
+  options.starts = 3;
+  const SolverSummary summary = Solve(objective, options, &model);
+  EXPECT_EQ(summary.iterations, 4);
+  EXPECT_LT(summary.final_objective, summary.initial_objective);
+  EXPECT_EQ(objective.Value(model), summary.final_objective);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Multistart, testing::Values("auto", "multistart"),
+                         [](const auto& param) { return param.param; });
+
+TEST(MultistartOnly, TriesAsManyAsAskedFor) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid));
+  for (const int starts : {1, 2, 5}) {
+    FactorModel model = RandomModel(objective.spec(), 1);
+    SolverOptions options = Iterations(5);
+    options.starts = starts;
+    const SolverSummary summary = MakeSolver("multistart")->Solve(objective, options, &model);
+    EXPECT_EQ(summary.starts.size(), starts);
+    EXPECT_THAT(Names(summary), testing::Contains("given"));
+  }
+  FactorModel model = RandomModel(objective.spec(), 1);
+  SolverOptions options;
+  options.starts = 0;
+  EXPECT_THROW(MakeSolver("multistart")->Solve(objective, options, &model), Error);
+}
+
+TEST(MultistartOnly, SaysHowManyStartsAgree) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(3, kGrid));
+  FactorModel model = RandomModel(objective.spec(), 1);
+  SolverOptions options = Iterations(5);
+  options.starts = 6;
+  const SolverSummary summary = MakeSolver("multistart")->Solve(objective, options, &model);
+  const auto within = [&](double fraction) {
+    const double limit = (1 + fraction) * summary.starts.front().objective;
+    return std::to_string(std::ranges::count_if(
+        summary.starts, [&](const StartResult& start) { return start.objective <= limit; }));
+  };
+  EXPECT_THAT(summary.notes, testing::ElementsAre("of 6 starts " + within(1e-3) +
+                                                  " came within 0.1 % of the best E, " +
+                                                  within(1e-2) + " within 1 %"));
+}
+
+// Entrants that begin, and go on, only while there is time.
+TEST(StartRace, MakesNoStartOnceTimeIsUp) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid), 2);
+  bool stop = false;
+  StartRace race(objective, [&] { return stop; });
+  race.Enter("first", [&] { return RandomModel(objective.spec(), 1); });
+  EXPECT_EQ(race.leader(), nullptr);
+  race.Advance(3);
+  ASSERT_NE(race.leader(), nullptr);
+  const double E = race.thinned().Value(*race.leader());
+  stop = true;
+  int made = 0;
+  race.Enter("second", [&] {
+    ++made;
+    return RandomModel(objective.spec(), 2);
+  });
+  race.Advance(100);
+  race.Keep(1);
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(race.thinned().Value(*race.leader()), E);
+  ASSERT_EQ(race.Results().size(), 1U);
+  EXPECT_EQ(race.Results().front().name, "first");
+}
+
+// E of all samples is estimated from every stride-th: the same data twice as fine in phi_d.
+TEST(StartRace, RanksByAFewOfManySamples) {
+  constexpr MerlGrid kFine{.theta_h = 24, .theta_d = 24, .phi_d = 96};
+  const ModelSpec spec = ModelSpec::SharedFactors(0, kFine);
+  const Objective objective = MakeObjective(RandomTable(kFine, 1, 0.2, 0.3), spec);
+  StartRace race(objective, [] { return false; });
+  EXPECT_LT(race.thinned().samples().size(), objective.samples().size() / 6);
+  const FactorModel start = RandomModel(spec, 1);
+  race.Enter("start", [&]() -> std::optional<FactorModel> { return start; });
+  race.Advance(20);
+  // Noise of 0.3 in thousands of samples: the two means of E differ by some 5 %.
+  EXPECT_NEAR(race.Results().front().objective, objective.Value(*race.leader()),
+              0.05 * objective.Value(*race.leader()));
+}
+
+}  // namespace
+}  // namespace trilobe
