@@ -3,14 +3,21 @@ import json
 import subprocess
 
 
-def fit_once(command, folder, product):
+def is_done(command, folder, product):
+    """Whether that very command has made the product, a file in the folder."""
+    record = folder / "command.json"
+    return (record.exists() and (folder / product).exists()
+            and json.loads(record.read_text()) == command)
+
+
+def fit_once(command, folder, product, again=False):
     """Runs the command, which writes into the folder, unless that very command has done so before.
 
-    Returns the path of the product, a file in the folder.
+    Returns the path of the product, a file in the folder. With `again`, the command runs anyway.
     """
-    record = folder / "command.json"
-    done = record.exists() and json.loads(record.read_text()) == command
-    if not (done and (folder / product).exists()):
+    if again or not is_done(command, folder, product):
+        record = folder / "command.json"
+        record.unlink(missing_ok=True)  # a run that is cut short may leave files of two commands
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         record.write_text(json.dumps(command))
     return folder / product
