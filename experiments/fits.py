@@ -1,6 +1,15 @@
-"""Runs `trilobe fit` once for the scripts in this folder, and never mixes results."""
+"""What the scripts in this folder share: `trilobe fit` run once, never mixing results."""
 import json
+import pathlib
 import subprocess
+
+
+def material_name(source):
+    """The name of a file without its ending, or that of a synthetic material as it is."""
+    name = pathlib.Path(source).name
+    for suffix in (".binary", "_rgb.bsdf"):
+        name = name.removesuffix(suffix)
+    return name
 
 
 def is_done(command, folder, product):

@@ -14,7 +14,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from fits import fit_once  # noqa: E402
+from fits import fit_once, material_name  # noqa: E402
 
 COLUMNS = "material | valid bins | E at the start | E | % of black | PSNR dB | peak /sr | mean rel. error % | iterations | stopped by | solve s | all s"
 
@@ -51,9 +51,7 @@ def main():
     lines = ["| " + COLUMNS + " |", "|---" * (COLUMNS.count("|") + 1) + "|"]
     print("\n".join(lines), flush=True)
     for source in options.sources:
-        name = pathlib.Path(source).name
-        for suffix in (".binary", "_rgb.bsdf"):
-            name = name.removesuffix(suffix)
+        name = material_name(source)
         lines.append("| " + row(name, fit(options.program, source,
                                           options.out / name.replace(":", "-"), flags)) + " |")
         print(lines[-1], flush=True)

@@ -21,7 +21,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from fits import fit_once, is_done  # noqa: E402
+from fits import fit_once, is_done, material_name  # noqa: E402
 
 # The flags of each solver's fit; what is not named has the program's default.
 SETTINGS = {
@@ -109,11 +109,8 @@ class Result:
             self.seconds_to = {target: fit.seconds_to((1 + target) * best) for target in TARGETS}
 
 
-def material_name(source):
-    name = pathlib.Path(source).name
-    for suffix in (".binary", "_rgb.bsdf"):
-        name = name.removesuffix(suffix)
-    return name.replace(":", "-")
+def folder_name(source):
+    return material_name(source).replace(":", "-")
 
 
 def flags_of(solver, quick):
@@ -141,7 +138,7 @@ def run_fits(options):
     """{material: {solver: Fit, or None if it failed}}"""
     jobs = {}
     for source in options.sources:
-        name = material_name(source)
+        name = folder_name(source)
         for solver in options.solvers:
             folder = options.out / name / solver
             jobs[name, solver] = (folder, [options.program, "fit", source,
@@ -149,7 +146,7 @@ def run_fits(options):
     to_run = [key for key, (folder, command) in jobs.items()
               if options.quick or not is_done(command, folder, "report.json")]
     taken = {solver: [] for solver in options.solvers}
-    fits = {material_name(source): {} for source in options.sources}
+    fits = {folder_name(source): {} for source in options.sources}
     for done, ((name, solver), (folder, command)) in enumerate(jobs.items(), start=1):
         try:
             fit = Fit(fit_once(command, folder, "report.json", again=options.quick).parent)
@@ -336,7 +333,7 @@ def parse_arguments():
         options.sources = ["synth:plastic"]
     if not options.sources:
         parser.error("give at least one source, or --quick")
-    names = [material_name(source) for source in options.sources]
+    names = [folder_name(source) for source in options.sources]
     if len(set(names)) < len(names):
         parser.error("two sources are of the same material; give each once")
     if options.solvers is None:

@@ -37,6 +37,17 @@ FactorModel::FactorModel(const ModelSpec& spec) : spec_(spec) {
   values_.assign(offset, 0.0);
 }
 
+std::vector<FactorModel::Part> FactorModel::Parts() const {
+  std::vector<Part> parts;
+  for (int part = 0; part <= spec_.lobes; ++part) parts.push_back({part * kChannels, kChannels});
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec_.num_tables(factor); ++t) {
+      parts.push_back({TableOffset(factor, t), spec_.table_size(factor)});
+    }
+  }
+  return parts;
+}
+
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin) {
   SampleStencils stencils;
   stencils.D = PointStencil(bin / (grid.theta_d * grid.phi_d));

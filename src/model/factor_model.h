@@ -56,6 +56,12 @@ class FactorModel {
     return table(Factor::kG, spec_.table(Factor::kG, lobe, channel));
   }
 
+  // Numbers of one kind in parameters(): d, then s of each lobe, then each table.
+  struct Part {
+    int begin, size;
+  };
+  std::vector<Part> Parts() const;
+
   // Where a table starts in parameters().
   int TableOffset(Factor factor, int index) const {
     return offset_[static_cast<int>(factor)] + index * spec_.table_size(factor);

@@ -75,6 +75,13 @@ std::vector<bool> DeadParameters(std::span<const double> coverage) {
   return dead;
 }
 
+void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from,
+                        FactorModel* to) {
+  for (size_t k = 0; k < coverage.size(); ++k) {
+    if (!(coverage[k] > 0)) to->parameters()[k] = from.parameters()[k];
+  }
+}
+
 void Canonicalize(std::span<const double> coverage, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   for (const Factor factor : kFactors) {

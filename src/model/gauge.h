@@ -23,6 +23,9 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model);
 // Integral of D over the projected hemisphere, D constant in each bin.
 double ProjectedIntegral(std::span<const double> D);
 
+// Makes the parameters of `to` that no data touch those of `from`, a model of the same spec.
+void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from, FactorModel* to);
+
 // True for the table entries that no data touch, in the order of parameters().
 std::vector<bool> DeadParameters(std::span<const double> coverage);
 

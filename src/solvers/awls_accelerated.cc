@@ -102,17 +102,10 @@ class Coordinates {
   // of a lobe's s or of a table, by the root of the weight that the data give a number.
   VectorXd Metric(const VectorXd& x) const {
     VectorXd W = VectorXd::Zero(x.size());
-    const ModelSpec& spec = start_.spec();
-    const auto scale = [&](int begin, int size) {
+    for (const auto [begin, size] : start_.Parts()) {
       const double sum = x.segment(begin, size).sum();
-      if (!(sum > 0)) return;
+      if (!(sum > 0)) continue;
       for (int k = begin; k < begin + size; ++k) W[k] = std::sqrt(coverage_[k]) * size / sum;
-    };
-    for (int part = 0; part <= spec.lobes; ++part) scale(part * kChannels, kChannels);  // d, s
-    for (const Factor factor : kFactors) {
-      for (int t = 0; t < spec.num_tables(factor); ++t) {
-        scale(start_.TableOffset(factor, t), spec.table_size(factor));
-      }
     }
     return W;
   }

@@ -9,6 +9,9 @@
 #include <thread>
 #include <utility>
 
+#include "trilobe/model/gauge.h"
+#include "trilobe/solvers/element_step.h"
+
 namespace trilobe {
 namespace {
 
@@ -116,10 +119,16 @@ FactorModel CeresParameters::Model(FactorModel p) const {
     for (double& x : p.parameters()) x *= x;
   }
   FactorModel model = Scaled(std::move(p), unit_);
-  for (size_t k = 0; k < model.parameters().size(); ++k) {
-    if (!(objective_.coverage()[k] > 0)) model.parameters()[k] = start_.parameters()[k];
-  }
+  CopyDeadParameters(objective_.coverage(), start_, &model);
   return model;
+}
+
+void CeresParameters::SetBounds(std::span<double> block, ceres::Problem* problem) const {
+  if (squares_) return;
+  for (int k = 0; k < static_cast<int>(block.size()); ++k) {
+    problem->SetParameterLowerBound(block.data(), k, 0);
+    problem->SetParameterUpperBound(block.data(), k, std::max(block[k], kMaxParameter));
+  }
 }
 
 void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,

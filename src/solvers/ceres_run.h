@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective.h"
@@ -31,6 +32,9 @@ class CeresParameters {
   FactorModel Start() const;
   // The model of such numbers. Dead bins are the starting point's, to the last bit.
   FactorModel Model(FactorModel p) const;
+  // 0 <= x <= kMaxParameter, or the start if that is above, for a block of the problem that holds
+  // such numbers of the starting point; nothing with squares.
+  void SetBounds(std::span<double> block, ceres::Problem* problem) const;
 
  private:
   FactorModel Scaled(FactorModel model, double by) const;  // d and s times `by`

@@ -29,19 +29,12 @@ constexpr double kMinSquaredLength = 1e-2;
 std::vector<double> DampingMetric(const FactorModel& model,
                                   const std::vector<double>& squared_lengths) {
   std::vector<double> S(squared_lengths.size(), 0.0);
-  const auto set = [&](int begin, int size) {
+  for (const auto [begin, size] : model.Parts()) {
     double mean = 0;
     for (int k = begin; k < begin + size; ++k) mean += squared_lengths[k] / size;
     for (int k = begin; k < begin + size; ++k) {
       if (!(squared_lengths[k] > 0)) continue;
       S[k] = std::sqrt(std::max(squared_lengths[k], kMinSquaredLength * mean));
-    }
-  };
-  const ModelSpec& spec = model.spec();
-  for (int part = 0; part <= spec.lobes; ++part) set(part * kChannels, kChannels);  // d, s
-  for (const Factor factor : kFactors) {
-    for (int t = 0; t < spec.num_tables(factor); ++t) {
-      set(model.TableOffset(factor, t), spec.table_size(factor));
     }
   }
   return S;
@@ -134,6 +127,17 @@ bool JointStepper::exhausted() const { return !(lambda_ < kMaxLambda); }
 double JointStepper::Optimality() {
   Linearize();
   return ScaledProjectedGradient(at_, current_.parameters());
+}
+
+SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
+                                JointStepper::Trial trial, const Objective& objective,
+                                const SolverOptions& options, FactorModel* model) {
+  Run run(std::move(solver), objective, options, model);
+  JointStepper stepper(objective, curvature, trial, &run.summary().phases);
+  stepper.Restart(*model);
+  run.Start(stepper.Optimality());
+  RepeatJointSteps(&stepper, &run);
+  return run.Finish();
 }
 
 void RepeatJointSteps(JointStepper* stepper, Run* run) {

@@ -2,6 +2,7 @@
 #define TRILOBE_SOLVERS_JOINT_STEP_H_
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "trilobe/solvers/cell_sums.h"
@@ -73,6 +74,11 @@ class JointStepper {
   double growth_ = 2;      // of lambda when the next step is rejected
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
+
+// A solver that makes nothing but such steps, from its starting point on.
+SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
+                                JointStepper::Trial trial, const Objective& objective,
+                                const SolverOptions& options, FactorModel* model);
 
 // Makes and records steps of the stepper, which stands at the run's last point, until the run
 // stops.

@@ -11,7 +11,6 @@
 
 #include "trilobe/solvers/ceres_run.h"
 #include "trilobe/solvers/cholesky.h"
-#include "trilobe/solvers/element_step.h"
 #include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
@@ -137,10 +136,7 @@ class Lm : public Solver {
     problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(problem_options);
     problem.AddResidualBlock(&*cost, nullptr, p.data());
-    for (int k = 0; k < static_cast<int>(p.size()) && !parameters.squares(); ++k) {
-      problem.SetParameterLowerBound(p.data(), k, 0);
-      problem.SetParameterUpperBound(p.data(), k, std::max(p[k], kMaxParameter));
-    }
+    parameters.SetBounds(p, &problem);
     if (run.Start()) {
       MinimizeWithCeres(
           CeresLinearSolver::kDenseCholesky, objective.num_threads(),

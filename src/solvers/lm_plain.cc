@@ -12,7 +12,6 @@
 #include "trilobe/model/cost_functors.h"
 #include "trilobe/model/parameter_blocks.h"
 #include "trilobe/solvers/ceres_run.h"
-#include "trilobe/solvers/element_step.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
@@ -108,17 +107,14 @@ class PlainProblem {
     problem_.AddResidualBlock(cost, nullptr, parameters);
   }
 
-  // 0 <= x <= kMaxParameter, and dead bins stay as they are.
+  // Bounds, and dead bins stay as they are.
   void Constrain(int b, const std::vector<double>& coverage) {
     double* const values = blocks_.block(b).data();
     if (!problem_.HasParameterBlock(values)) return;
     const int size = static_cast<int>(blocks_.block(b).size());
     std::vector<int> dead;
+    parameters_.SetBounds(blocks_.block(b), &problem_);
     for (int k = 0; k < size; ++k) {
-      if (!parameters_.squares()) {
-        problem_.SetParameterLowerBound(values, k, 0);
-        problem_.SetParameterUpperBound(values, k, std::max(values[k], kMaxParameter));
-      }
       if (coverage[blocks_.parameters(b)[k]] == 0) dead.push_back(k);
     }
     if (static_cast<int>(dead.size()) == size) {

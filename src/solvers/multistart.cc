@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <functional>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trilobe/base/error.h"
@@ -36,7 +37,7 @@ FactorModel Grow(const Objective& objective, uint64_t seed, const std::function<
   return model;
 }
 
-// Starts the race has besides the given one, in the order in which they enter.
+// The race's starts, in the order in which they enter: the given one first.
 class Starts {
  public:
   Starts(const Objective& objective, const FactorModel& given, uint64_t seed, StartRace* race,
@@ -78,9 +79,7 @@ class Starts {
 
   // Dead bins are the caller's, and stay.
   FactorModel WithDeadBins(FactorModel model) const {
-    for (size_t k = 0; k < model.parameters().size(); ++k) {
-      if (!(objective_.coverage()[k] > 0)) model.parameters()[k] = given_.parameters()[k];
-    }
+    CopyDeadParameters(objective_.coverage(), given_, &model);
     return model;
   }
 
@@ -101,7 +100,7 @@ struct Leg {
 // E on all samples may be above the estimate from the thinned ones by this fraction.
 constexpr double kLargeMismatch = 0.03;
 
-// The legs one by one, then Gauss-Newton steps on all samples from the best point.
+// The legs one by one, then joint steps on all samples from the best point.
 void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
              Run* run) {
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,

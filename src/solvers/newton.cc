@@ -1,5 +1,4 @@
 #include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -10,13 +9,8 @@ class Newton : public Solver {
  public:
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
-    Run run("newton", objective, options, model);
-    JointStepper stepper(objective, JointStepper::Curvature::kNewton, JointStepper::Trial::kAsItIs,
-                         &run.summary().phases);
-    stepper.Restart(*model);
-    run.Start(stepper.Optimality());
-    RepeatJointSteps(&stepper, &run);
-    return run.Finish();
+    return SolveByJointSteps("newton", JointStepper::Curvature::kNewton,
+                             JointStepper::Trial::kAsItIs, objective, options, model);
   }
 };
 

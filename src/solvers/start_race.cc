@@ -115,14 +115,13 @@ void StartRace::Thin() {
                                          objective_.weighting(), /*num_threads=*/1);
 }
 
-bool StartRace::ThinLess() {
-  if (stride_ == 1) return false;
+void StartRace::ThinLess() {
+  if (stride_ == 1) return;
   stride_ /= 2;
-  const std::unique_ptr<const Objective> before = std::exchange(thinned_, nullptr);
+  const auto before = std::exchange(thinned_, nullptr);  // lives until no entrant refers to it
   Thin();
   ParallelFor(static_cast<int>(entrants_.size()), objective_.num_threads(),
               [&](int k) { entrants_[k]->MoveTo(thinned_.get()); });
-  return true;
 }
 
 StartRace::~StartRace() = default;

@@ -25,8 +25,8 @@ class StartRace {
   StartRace(const Objective& objective, std::function<bool()> stop);
   ~StartRace();
 
-  // Goes on with about twice as many samples; false if these are all.
-  bool ThinLess();
+  // Goes on with about twice as many samples, if these are not all.
+  void ThinLess();
 
   // The selection of samples, for one thread.
   const Objective& thinned() const { return *thinned_; }
@@ -34,7 +34,7 @@ class StartRace {
   void Enter(std::string name, MakeStart make_start);
 
   // Those in the race go on until they have made a few sweeps of block AWLS, where samples are on a
-  // grid, and then tried so many Gauss-Newton steps. One that has converged, or is to stop, makes
+  // grid, and then tried so many joint steps. One that has converged, or is to stop, makes
   // no more; one that has not begun by then never does.
   void Advance(int tries);
 

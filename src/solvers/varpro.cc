@@ -1,5 +1,4 @@
 #include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -14,13 +13,8 @@ class Varpro : public Solver {
  public:
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
-    Run run("varpro", objective, options, model);
-    JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
-                         JointStepper::Trial::kProjected, &run.summary().phases);
-    stepper.Restart(*model);
-    run.Start(stepper.Optimality());
-    RepeatJointSteps(&stepper, &run);
-    return run.Finish();
+    return SolveByJointSteps("varpro", JointStepper::Curvature::kByProgress,
+                             JointStepper::Trial::kProjected, objective, options, model);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/synth.h"
@@ -19,15 +20,6 @@ namespace trilobe {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
-constexpr double kNever = -std::numeric_limits<double>::infinity();
-
-SolverOptions Iterations(int count) {
-  SolverOptions options;
-  options.max_iterations = count;
-  options.relative_decrease_tolerance = kNever;
-  options.diagnose = false;
-  return options;
-}
 
 // The parameters of each block, in the order of CellSums::UpdateBlocks.
 std::vector<std::vector<int>> Blocks(const FactorModel& model) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
@@ -20,15 +21,6 @@ namespace trilobe {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
-constexpr double kNever = -std::numeric_limits<double>::infinity();
-
-SolverOptions Iterations(int count) {
-  SolverOptions options;
-  options.max_iterations = count;
-  options.relative_decrease_tolerance = kNever;
-  options.diagnose = false;
-  return options;
-}
 
 // Three lobes of a GGX-like width each, with noise: data with more than one minimum.
 Objective NoisyObjective(const ModelSpec& spec, int num_threads = 1) {

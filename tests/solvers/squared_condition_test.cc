@@ -65,7 +65,7 @@ struct Linearization {
 Linearization Linearize(const Objective& objective, const FactorModel& model) {
   ParameterBlocks layout(model.spec());
   layout.Read(model);
-  const std::vector<WeightedSample> samples = objective.weighted_samples();
+  const std::vector<WeightedSample>& samples = objective.weighted_samples();
   const auto rows = static_cast<Eigen::Index>(kChannels * samples.size());
   Linearization at{.J = MatrixXd::Zero(rows, model.spec().num_parameters()), .r = VectorXd(rows)};
   std::vector<int> numbers;

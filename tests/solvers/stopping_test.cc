@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/solvers/iterations.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/solvers/initial_model.h"
@@ -13,7 +14,6 @@ namespace trilobe {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
-constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 // Every test runs on every solver.
 class Stopping : public testing::TestWithParam<std::string> {
