@@ -1,0 +1,1 @@
+"""What the experiments share: units of work, campaigns, manifests, statistics, pictures, reports."""
