@@ -63,18 +63,26 @@ def performance_ratios(times):
             for solver, of in times.items()}
 
 
-def linear_rate(excesses, last=20):
-    """The factor by which the excess falls an iteration near the end: exp of the least-squares slope
-    of log excess over the last iterations with an excess above 0; nan with fewer than three."""
-    logs = [math.log(value) for value in excesses if value > 0][-last:]
+# Relative decreases of E below this are the rounding of a sum over a million samples.
+ROUNDING = 1e-13
+
+
+def linear_rate(decreases, last=20):
+    """The factor by which the decrease an iteration shrinks near the end: exp of the least-squares
+    slope of the logarithm of the last positive decreases; nan with fewer than three.
+
+    Where E - limit falls by a constant factor, its decreases fall by the same, and the limit need not
+    be known.
+    """
+    logs = [math.log(value) for value in decreases if value > 0][-last:]
     if len(logs) < 3:
         return math.nan
     return math.exp(numpy.polyfit(range(len(logs)), logs, 1)[0])
 
 
-def order(excesses):
-    """Order of convergence near the end: the median of log(e2/e1) / log(e1/e0) over the last five
-    triples of strictly falling excess; nan if there is none."""
+def order(decreases):
+    """Order of convergence near the end: the median of log(c/b) / log(b/a) over the last five triples
+    of strictly falling decreases; nan if there is none. 1: linear, 2: quadratic."""
     orders = [math.log(c / b) / math.log(b / a)
-              for a, b, c in zip(excesses, excesses[1:], excesses[2:]) if a > b > c > 0]
+              for a, b, c in zip(decreases, decreases[1:], decreases[2:]) if a > b > c > 0]
     return statistics.median(orders[-5:]) if orders else math.nan
