@@ -7,9 +7,6 @@ import math
 
 from lab.units import FOLDER, Unit
 
-# Every fit keeps its models at growing intervals and scores them when its clock has stopped.
-COMMON = {"course": True}
-
 
 def _flag(name, value):
     if isinstance(value, bool):
@@ -24,7 +21,7 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
     solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program. flags:
     more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
     """
-    flags = {**COMMON, "solver": solver, "init": start, "seed": seed, "threads": threads,
+    flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
              "weighting": weighting, "noise": noise, **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
     words = [_flag(name, flags[name]) for name in sorted(flags)]
@@ -36,7 +33,7 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
 
 
 def planned(setting):
-    """The fits of the manifest's "runs", without repetitions.
+    """The fits of the manifest's "runs", without repetitions within runs of one name.
 
     A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...], "threads":
     [...], "weightings": [...], "noises": [...], "flags": {...}}, all but the first with a default. It
@@ -52,7 +49,7 @@ def planned(setting):
                 run.get("weightings", ["compressive"]), run.get("noises", [0])):
             unit = fit(setting, source, solver, flags, start, seed, threads, weighting, noise,
                        run=run.get("name", ""))
-            units.setdefault(unit.key, unit)
+            units.setdefault((unit.key, unit.labels["run"]), unit)
     return list(units.values())
 
 
@@ -86,7 +83,7 @@ class Fit:
 
     @functools.cached_property
     def course(self):
-        """Rows of course.csv: scores of models on the way; `clock` as in the trace."""
+        """Rows of course.csv, of a fit with the flag "course": scores of models on the way; `clock` as in the trace."""
         clock = {row["iteration"]: row["clock"] for row in self.trace}
         rows = self._rows("course.csv")
         for row in rows:

@@ -34,7 +34,7 @@ def parse(arguments):
                         "others that the program has")
     parser.add_argument("--threads", help="comma-separated, instead of the manifest's")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
-                        help="another value in the manifest, --set=limits.max_seconds=5")
+                        help="another value in the manifest, --set=flags.max_seconds=5")
     parser.add_argument("--shard", metavar="i/n", help="make only the i-th of n parts, i from 1; "
                         "tables come when all are there")
     parser.add_argument("--again", action="store_true", help="make units anew that are there")

@@ -10,7 +10,8 @@ from lab import machine
 
 
 def load(path, quick, changes=()):
-    """The settings of one form, with changes ("limits.max_seconds=5", the value as JSON or text)."""
+    """The settings of one form, with changes ("flags.max_seconds=5", "runs.0.every=1"; values are
+    JSON, or else text)."""
     full = json.loads(path.read_text())
     replaced = full.pop("quick")
     settings = {**full, **replaced} if quick else full
@@ -18,8 +19,11 @@ def load(path, quick, changes=()):
         place, equals, value = change.partition("=")
         *parents, last = place.split(".")
         inner = settings
-        for parent in parents:
-            inner = inner.get(parent) if isinstance(inner, dict) else None
+        try:
+            for parent in parents:
+                inner = inner[int(parent)] if isinstance(inner, list) else inner[parent]
+        except (LookupError, TypeError, ValueError):
+            inner = None
         if not equals or not isinstance(inner, dict) or (inner is settings and last not in inner):
             known = ", ".join(settings)
             raise ValueError(f"--set={change}: not of the form NAME=VALUE with one of {known}")

@@ -44,9 +44,13 @@ class Unit:
     labels: dict = dataclasses.field(default_factory=dict, compare=False)
 
     @functools.cached_property
+    def program_sha256(self):
+        return program_hash(self.program)
+
+    @functools.cached_property
     def key(self):
         """Hash of the command and of the program's bytes, those of needed units among them."""
-        parts = [self.path, program_hash(self.program), self.product]
+        parts = [self.path, self.program_sha256, self.product]
         for argument in self.arguments:
             parts.append([argument.unit.key, argument.file] if isinstance(argument, Product)
                          else argument)
@@ -146,6 +150,8 @@ class Store:
         return words
 
     def _run(self, unit, folder):
+        if program_hash(unit.program) != unit.program_sha256:
+            raise UnitFailed(f"{unit.path}: {unit.program} has changed since this run began")
         words = self.command(unit, folder)
         # Should this process be killed, the kernel ends the command too.
         guard = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
@@ -172,7 +178,7 @@ class Store:
                 indent=1) + "\n")
             how = f"exit status {status}" if isinstance(status, int) else status
             raise UnitFailed(f"{unit.path}: {how}" + (f": {said[-1]}" if said else ""))
-        return {"command": self.command(unit, FOLDER), "program_sha256": program_hash(unit.program),
+        return {"command": self.command(unit, FOLDER), "program_sha256": unit.program_sha256,
                 "seconds": round(seconds, 3),
                 "finished": datetime.datetime.now(datetime.timezone.utc).isoformat("T", "seconds"),
                 "machine": machine.describe()}

@@ -13,7 +13,7 @@ namespace {
 
 // A model is kept when this many times the seconds of the one before have gone by; before the first
 // hundredth of a second, none but the start.
-constexpr double kGrowth = 1.25;
+constexpr double kGrowth = 1.5;
 constexpr double kFirstSeconds = 0.01;
 
 }  // namespace

@@ -38,12 +38,14 @@ class SettingsTest(unittest.TestCase):
     def test_manifest_forms_and_changes(self):
         path = self.folder / "manifest.json"
         path.write_text(json.dumps({"question": "?", "limits": {"s": 9}, "starts": ["x"],
-                                    "quick": {"limits": {"s": 1}}}))
+                                    "runs": [{"every": 4}], "quick": {"limits": {"s": 1}}}))
         self.assertEqual(manifest.load(path, quick=False)["limits"], {"s": 9})
         self.assertEqual(manifest.load(path, quick=True)["limits"], {"s": 1})
-        changed = manifest.load(path, False, ["limits.s=2.5", 'starts=["y"]', "question=why"])
-        self.assertEqual(changed, {"question": "why", "limits": {"s": 2.5}, "starts": ["y"]})
-        for wrong in ("limits.s", "unknown=1", "starts.s=1"):
+        changed = manifest.load(path, False, ["limits.s=2.5", 'starts=["y"]', "question=why",
+                                              "runs.0.every=1"])
+        self.assertEqual(changed, {"question": "why", "limits": {"s": 2.5}, "starts": ["y"],
+                                   "runs": [{"every": 1}]})
+        for wrong in ("limits.s", "unknown=1", "starts.s=1", "runs.1.every=1", "question.s.t=1"):
             with self.assertRaisesRegex(ValueError, "--set="):
                 manifest.load(path, False, [wrong])
 
