@@ -48,7 +48,7 @@ def _run_row(result, fit, best, database):
             "mean_relative_error": report["mean_relative_error"]}
 
 
-def _on_grid(rows, column, grid, rise=False):
+def _on_grid(rows, column, grid):
     """The column of the last row at or before each time; inf before the first."""
     values = [row[column] for row in rows]
     if column == "objective":
@@ -123,11 +123,6 @@ def _percent(share):
     return f"{100 * share:.0f} %"
 
 
-def _log_ticks(axis):
-    from lab import plots
-    plots.plain_numbers(axis)
-
-
 def _draw_shares(axes, of_solver, solvers, low, high):
     """Share of problems at most x, over a logarithmic x; the highest line labelled first."""
     from lab import plots
@@ -136,7 +131,7 @@ def _draw_shares(axes, of_solver, solvers, low, high):
         axes.plot(at, 100 * stats.data_profile(of_solver[solver], at), label=solver,
                   **plots.solver_style(solver, solvers))
     axes.set(xscale="log", xlim=(low, high), ylim=(-2, 102))
-    _log_ticks(axes.xaxis)
+    plots.plain_numbers(axes.xaxis)
     plots.label_ends(axes)
 
 
@@ -198,8 +193,8 @@ def _median_figure(curves, rows, solvers, threads):
             axes.set_yscale("log")
         else:
             axes.set_yscale("symlog", linthresh=1)
-        _log_ticks(axes.yaxis)
-        _log_ticks(axes.xaxis)
+        plots.plain_numbers(axes.yaxis)
+        plots.plain_numbers(axes.xaxis)
         plots.label_ends(axes)
     panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} threads; "
                         "bands: quartiles of auto and awls")
@@ -225,15 +220,13 @@ def _material_figure(curves, rows, solvers, threads):
                       **{**plots.solver_style(solver, solvers), "linewidth": 1.3})
         axes.set_title(name, fontsize=9)
         axes.set(xscale="log", yscale="log", ylim=(0.009, 1e3))
-        _log_ticks(axes.xaxis)
-        _log_ticks(axes.yaxis)
+        plots.plain_numbers(axes.xaxis)
+        plots.plain_numbers(axes.yaxis)
     for axes in panels.flat[len(names):]:
         axes.set_axis_off()
     figure.supxlabel("seconds on the clock")
     figure.supylabel("excess of E over the best (%), 0.01 or less at the bottom")
-    handles, labels = panels.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right upper" if False else "upper center",
-                  ncol=len(labels), bbox_to_anchor=(0.5, 1.06), fontsize=9)
+    plots.legend_above(figure, panels.flat[0])
     return figure
 
 
@@ -264,7 +257,7 @@ def _start_figure(runs, threads):
     axes.set(yscale="log", ylabel="excess of E over the best (%), 0.01 or less at the bottom",
              title=f"Where each start leads ({len(others)} materials, a dot each; bar: median)")
     axes.grid(axis="x", visible=False)
-    _log_ticks(axes.yaxis)
+    plots.plain_numbers(axes.yaxis)
     axes.legend(title="start", ncol=len(starts), loc="upper left", bbox_to_anchor=(0, -0.18))
     return figure
 

@@ -1,7 +1,10 @@
 """Final error: see README.md beside this file."""
+import io
 import json
 import math
 import pathlib
+
+from PIL import Image
 
 from lab import fits, stats, tables
 from lab.fits import Fit
@@ -10,10 +13,13 @@ from lab.units import FOLDER, Product, Unit
 MEASURES = ("psnr_db", "mean_relative_error", "mean_log_error")
 COMPRESSIVE = "compressive"
 PUBLISHED = "published, one lobe"
+OURS = "three lobes"
+BELOW = 75  # degrees; beyond, the published fits do not follow the measurements
 
 
-def _published(setting):
-    """The units that score the published one-lobe fits, if their file is given."""
+def _published(setting, judged):
+    """The units that score the published one-lobe fits, if their file is given: on all samples, and
+    on those below BELOW degrees together with a fit of judged, {material: its unit}."""
     picture, names = setting.manifest["npf"], setting.manifest["npf_names"]
     if not picture or not names:
         return []
@@ -29,6 +35,12 @@ def _published(setting):
                 ("score", Product(model, "model.json"), source.path, "--json"),
                 labels={"material": source.name, "solver": PUBLISHED, "run": PUBLISHED,
                         "weighting": COMPRESSIVE})]
+            if source.name in judged:
+                scores.append(Unit(
+                    f"npf/{source.name}/below", pathlib.Path(__file__).with_name("score_below"),
+                    (str(setting.program()), source.path, str(BELOW), FOLDER,
+                     Product(judged[source.name], "model.json"), Product(model, "model.json")),
+                    labels={"material": source.name, "run": "below"}))
     return scores
 
 
@@ -37,14 +49,14 @@ def units(setting):
     fitted = fits.planned(setting)
     path_of = {source.name: source.path for source in setting.sources}
     chosen = setting.manifest["plots"]
+    judged = {unit.labels["material"]: unit for unit in fitted
+              if (unit.labels["solver"], unit.labels["run"]) == (chosen["solver"], chosen["run"])}
     pictures = [
-        Unit(f"plot/{unit.labels['material']}/{unit.path.rsplit('/', 1)[-1]}", setting.program(),
-             ("plot", Product(unit, "model.json"), path_of[unit.labels["material"]],
-              f"--out={FOLDER}"), "slices.png",
-             labels={"run": "pictures", "material": unit.labels["material"]})
-        for unit in fitted
-        if (unit.labels["solver"], unit.labels["run"]) == (chosen["solver"], chosen["run"])]
-    return fitted + pictures + _published(setting)
+        Unit(f"plot/{name}/{unit.path.rsplit('/', 1)[-1]}", setting.program(),
+             ("plot", Product(unit, "model.json"), path_of[name], f"--out={FOLDER}"), "slices.png",
+             labels={"run": "pictures", "material": name})
+        for name, unit in judged.items()]
+    return fitted + pictures + _published(setting, judged)
 
 
 # --- tables ---------------------------------------------------------------------------------------
@@ -70,9 +82,21 @@ def _row(result):
             "solve_s": report["seconds"]["solve"], "all_s": sum(report["seconds"].values())}
 
 
+def _for_a_page(path):
+    """The picture at half its size, without its title, which names a path."""
+    picture = Image.open(path).convert("RGB")
+    width, height = picture.size
+    picture = picture.crop((0, round(0.09 * height), width, height))
+    picture = picture.resize((width // 2, picture.height // 2), Image.LANCZOS)
+    picture = picture.quantize(64, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    text = io.BytesIO()
+    picture.save(text, "PNG", optimize=True)
+    return text.getvalue()
+
+
 def tabulate(setting, results):
     rows = [_row(result) for result in results
-            if result.labels["run"] not in ("pictures", "npf model")]
+            if result.labels["run"] not in ("pictures", "npf model", "below")]
     database = {source.name: source.database for source in setting.sources}
     for row in rows:
         row["database"] = database[row["material"]]
@@ -83,11 +107,21 @@ def tabulate(setting, results):
     products = {"fits": rows,
                 "worst": [{key: row[key] for key in ("material", "relative_objective", *MEASURES)}
                           for row in worst]}
+    below = []
+    for result in results:
+        if result.labels["run"] == "below" and result.folder:
+            scores = json.loads((result.folder / "stdout.txt").read_text())
+            below += [{"material": result.labels["material"], "fit": fit,
+                       **{key: score[key] for key in ("valid_samples", "objective", *MEASURES)}}
+                      for fit, score in zip((OURS, PUBLISHED), scores)]
+    if below:
+        products["below"] = below
     folder = {result.labels["material"]: result.folder for result in results
               if result.labels["run"] == "pictures"}
     for row in worst:
         if folder.get(row["material"]):
-            products[f"slices-{row['material']}.png"] = folder[row["material"]] / "slices.png"
+            products[f"slices-{row['material']}.png"] = _for_a_page(
+                folder[row["material"]] / "slices.png")
     return products
 
 
@@ -168,33 +202,58 @@ def _defaults_table(rows):
     return tables.markdown(header, lines)
 
 
-def _published_figure(rows):
-    """Three lobes against the published one lobe, an arrow a material."""
+def _published_rows(rows):
+    """[{"material", "fit", measures}] of the materials with a published fit, on all samples."""
+    known = {row["material"] for row in rows if row["run"] == PUBLISHED
+             and math.isfinite(row["objective"])}
+    return [{**row, "fit": PUBLISHED if row["run"] == PUBLISHED else OURS} for row in rows
+            if row["material"] in known and row["run"] in ("defaults", PUBLISHED)
+            and math.isfinite(row["objective"])]
+
+
+def _published_figure(everywhere, below):
+    """Three lobes against the published one lobe, a line a material, on all samples and on those
+    that are not near grazing."""
     from lab import plots
-    published = {row["material"]: row for row in rows if row["run"] == PUBLISHED
-                 and math.isfinite(row["objective"])}
-    ours = {row["material"]: row for row in rows if row["run"] == "defaults"
-            and row["material"] in published and math.isfinite(row["objective"])}
+    ours = {row["material"]: row for row in below if row["fit"] == OURS}
     names = sorted(ours, key=lambda name: ours[name]["mean_log_error"])
-    if not names:
-        return None
-    figure, panels = plots.plt.subplots(1, 2, figsize=(11, 0.2 * len(names) + 1.6), sharey=True)
-    for axes, measure, label in ((panels[0], "psnr_db", "PSNR (dB), more is better"),
-                                 (panels[1], "mean_log_error", "mean log error, less is better")):
+    figure, panels = plots.plt.subplots(1, 4, figsize=(14, 0.2 * len(names) + 1.8), sharey=True)
+    for k, (axes, (measure, label)) in enumerate(zip(
+            panels, 2 * (("psnr_db", "PSNR (dB), more is better"),
+                         ("mean_log_error", "mean log error, less is better")))):
+        of = {fit: {row["material"]: row[measure] for row in group} for fit, group in
+              tables.groups(everywhere if k < 2 else below, "fit").items()}
         for y, name in enumerate(names):
-            axes.plot([published[name][measure], ours[name][measure]], [y, y], color="#BBBBBB",
-                      linewidth=1)
-        for of, colour, text in ((published, plots.VERMILION, "published, one lobe"),
-                                 (ours, plots.BLACK, "auto, three lobes")):
-            axes.plot([of[name][measure] for name in names], range(len(names)), "o", color=colour,
-                      markersize=4, label=text)
-        axes.set(xlabel=label)
-    panels[1].set_xscale("log")
+            axes.plot([of[PUBLISHED][name], of[OURS][name]], [y, y], color="#BBBBBB", linewidth=1)
+        for fit, colour in ((PUBLISHED, plots.VERMILION), (OURS, plots.BLACK)):
+            axes.plot([of[fit][name] for name in names], range(len(names)), "o", color=colour,
+                      markersize=4, label=fit)
+        axes.set_xlabel(label)
+        axes.set_title("all samples" if k < 2 else f"both directions below {BELOW}°")
+        if measure == "mean_log_error":
+            axes.set_xscale("log")
+            plots.plain_numbers(axes.xaxis)
     panels[0].set_yticks(range(len(names)), names, fontsize=8)
-    figure.suptitle("Three lobes fitted here, and the published one-lobe fits, on the same samples",
-                    x=0.01, ha="left")
-    panels[0].legend(loc="lower right")
+    panels[0].set_ylim(-0.7, len(names) - 0.3)
+    plots.legend_above(figure, panels[0])
     return figure
+
+
+def _published_table(everywhere, below):
+    lines = []
+    for samples, rows in (("all", everywhere), (f"both directions below {BELOW}°", below)):
+        pairs = [{row["fit"]: row for row in of}
+                 for of in tables.groups(rows, "material").values()]
+        for fit in (OURS, PUBLISHED):
+            lines.append([samples, fit, str(len(pairs)),
+                          *(f"{stats.median([factor * pair[fit][measure] for pair in pairs]):.4g}"
+                            for measure, factor in (("psnr_db", 1), ("mean_relative_error", 100),
+                                                    ("mean_log_error", 1))),
+                          str(sum(pair[fit]["mean_log_error"] == min(
+                              row["mean_log_error"] for row in pair.values()) for pair in pairs))])
+    return tables.markdown(["samples", "fit", "materials", "PSNR dB, median",
+                            "mean relative error %, median", "mean log error, median",
+                            "less mean log error on"], lines)
 
 
 def _spread_figure(rows):
@@ -213,6 +272,7 @@ def _spread_figure(rows):
         axes.set(xlabel=label, ylim=(0, 102))
         if measure != "psnr_db":
             axes.set_xscale("log")
+            plots.plain_numbers(axes.xaxis)
     panels[0].set_ylabel("share of materials (%) at or below")
     panels[0].legend(loc="lower right")
     figure.suptitle("How well the defaults fit, over all materials", x=0.01, ha="left")
@@ -254,6 +314,8 @@ def draw(drawn, folder):
                                                          "{:.2%}".format)
     if fitted:
         products["spread"] = _spread_figure(fitted)
-    if (figure := _published_figure(rows)) is not None:
-        products["published"] = figure
+    if drawn.get("below"):
+        everywhere = _published_rows(rows)
+        products["published"] = _published_figure(everywhere, drawn["below"])
+        products["published.md"] = _published_table(everywhere, drawn["below"])
     return products

@@ -4,17 +4,17 @@ experiment.py has three functions. Only the first and the second see the program
 pictures can be drawn again anywhere from the tables alone.
 
     units(setting) -> [Unit]             what to run; labels say what each is
-    tabulate(setting, results) -> {name: rows or Path}
-                                         rows, a list of dicts, become NAME.csv; a file is copied
+    tabulate(setting, results) -> {name: rows or bytes}
+                                         rows, a list of dicts, become NAME.csv; bytes the file NAME
     draw(tables, folder) -> {name: Figure or text}
-                                         tables: {name: rows} as read back; folder holds the copied
-                                         files; a Figure becomes NAME.svg, a text NAME as it is
+                                         tables: {name: rows} as read back; folder holds all files of
+                                         tabulate; a Figure becomes NAME.svg, a text NAME as it is
 """
 import dataclasses
 import importlib.util
 import pathlib
 
-from lab import manifest, materials
+from lab import UsageError, manifest, materials
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1]
 
@@ -34,7 +34,7 @@ class Setting:
         """The program `trilobe`, or one that experiments/CMakeLists.txt builds."""
         path = self.main_program if name == "trilobe" else self.build / "experiments" / name
         if not path.is_file():
-            raise ValueError(f"no program {path}; build it (docs/building.md), or name another "
+            raise UsageError(f"no program {path}; build it (docs/building.md), or name another "
                              "with --program or --build")
         return path
 
@@ -86,9 +86,9 @@ def names():
 
 
 def load(name):
-    """Throws ValueError that lists the known names."""
+    """Raises UsageError that lists the known names."""
     if name not in names():
-        raise ValueError(f"unknown experiment '{name}'; known: {', '.join(names())}")
+        raise UsageError(f"unknown experiment '{name}'; known: {', '.join(names())}")
     path = FOLDER / name / "experiment.py"
     spec = importlib.util.spec_from_file_location(f"experiment_{name}", path)
     module = importlib.util.module_from_spec(spec)

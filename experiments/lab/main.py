@@ -5,7 +5,7 @@ import shutil
 import signal
 import sys
 
-from lab import campaign, experiments, manifest, materials, tables
+from lab import UsageError, campaign, experiments, manifest, materials, tables
 from lab.experiments import Result, Setting
 from lab.units import Store
 
@@ -52,7 +52,7 @@ def shard(text):
     """(i, n) of "i/n"."""
     i, slash, n = text.partition("/")
     if not (slash and i.isdigit() and n.isdigit() and 1 <= int(i) <= int(n)):
-        raise ValueError(f"--shard={text}: give i/n with 1 <= i <= n")
+        raise UsageError(f"--shard={text}: give i/n with 1 <= i <= n")
     return int(i), int(n)
 
 
@@ -68,7 +68,7 @@ def setting_of(experiment, options):
                                  if name in run_of["solvers"] or name not in known]
     places = options.sources or settings.get("sources", [])
     if not places and settings.get("needs_sources", True):
-        raise ValueError("give BRDF files or folders of them, or --quick")
+        raise UsageError("give BRDF files or folders of them, or --quick")
     return Setting(name=experiment.name, quick=options.quick, manifest=settings,
                    sources=materials.find(places), build=options.build,
                    main_program=options.program or options.build / "bin" / "trilobe")
@@ -79,7 +79,7 @@ def draw(experiment, folder):
     from lab import plots  # here: it takes a second to load
     of_name = {path.stem: tables.read(path) for path in sorted(folder.glob("*.csv"))}
     if not of_name:
-        raise ValueError(f"{folder} holds no tables; run the experiment first")
+        raise UsageError(f"{folder} holds no tables; run the experiment first")
     for name, content in experiment.module.draw(of_name, folder).items():
         if isinstance(content, str):
             (folder / name).write_text(content)
@@ -94,9 +94,8 @@ def tabulate(experiment, setting, store, units, folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name, content in experiment.module.tabulate(setting, results).items():
-        if isinstance(content, pathlib.Path):
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(content, folder / name)
+        if isinstance(content, bytes):
+            (folder / name).write_bytes(content)
         else:
             tables.write(folder / f"{name}.csv", content)
     manifest.write_run(folder / "manifest.json", setting, store, campaign.distinct(units),
@@ -180,7 +179,7 @@ def main(arguments=None):
         else:
             return run(experiments.load(options.name), options)
         return 0
-    except ValueError as error:
+    except UsageError as error:
         print(f"trilobe-experiments: error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

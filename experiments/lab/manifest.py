@@ -6,7 +6,7 @@ quick form. A run leaves a copy of what it used in its own folder, with machine,
 import datetime
 import json
 
-from lab import machine
+from lab import UsageError, machine
 
 
 def load(path, quick, changes=()):
@@ -26,7 +26,7 @@ def load(path, quick, changes=()):
             inner = None
         if not equals or not isinstance(inner, dict) or (inner is settings and last not in inner):
             known = ", ".join(settings)
-            raise ValueError(f"--set={change}: not of the form NAME=VALUE with one of {known}")
+            raise UsageError(f"--set={change}: not of the form NAME=VALUE with one of {known}")
         try:
             inner[last] = json.loads(value)
         except json.JSONDecodeError:

@@ -2,6 +2,8 @@
 import dataclasses
 import pathlib
 
+from lab import UsageError
+
 # All that we have, whether a file is given or not: what a material is counted as must not depend on
 # the files given. MERL's are the 40 for which there are smooth stand-ins (docs/materials.md).
 MERL = sorted("""
@@ -54,7 +56,7 @@ def name_of(path):
 
 
 def find(places):
-    """The sources in files, folders and synth: names, by name. Throws ValueError for a bad one."""
+    """The sources in files, folders and synth: names, by name. Raises UsageError for a bad one."""
     paths = []
     for place in places:
         path = pathlib.Path(place)
@@ -63,17 +65,17 @@ def find(places):
         elif path.is_dir():
             found = [str(file) for file in path.iterdir() if file.name.endswith(SUFFIXES)]
             if not found:
-                raise ValueError(f"{place} holds no file that ends in {' or '.join(SUFFIXES)}")
+                raise UsageError(f"{place} holds no file that ends in {' or '.join(SUFFIXES)}")
             paths += found
         elif path.exists():
             paths.append(place)
         else:
-            raise ValueError(f"{place} does not exist; give BRDF files, folders of them, or synth:NAME")
+            raise UsageError(f"{place} does not exist; give BRDF files, folders of them, or synth:NAME")
     sources = sorted((Source(name_of(path), path) for path in dict.fromkeys(paths)),
                      key=lambda source: source.name)
     for before, after in zip(sources, sources[1:]):
         if before.name == after.name:
-            raise ValueError(f"{before.path} and {after.path} are of one material; give one")
+            raise UsageError(f"{before.path} and {after.path} are of one material; give one")
     return sources
 
 

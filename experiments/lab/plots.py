@@ -74,11 +74,24 @@ def label_ends(axes, x=1.01, spacing=0.05):
 
 
 def plain_numbers(axis):
-    """Ticks of a logarithmic axis as 0.1, 1, 10 instead of powers of ten."""
+    """Ticks of a logarithmic axis as 0.1, 1, 10, and 0.2, 0.5, ... where it spans two decades or
+    less. To be called when the data are drawn."""
+    low, high = sorted(axis.get_view_interval())
+    if axis.get_scale() == "log" and high <= 100 * low:
+        axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+
+
+def legend_above(figure, axes):
+    """One legend for a figure of many panels that all show the lines of these axes."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=len(labels), fontsize=9,
+                  bbox_to_anchor=(0.5, 1.0))
 
 
 def save(figure, path):
     """Writes the picture, the same bytes for the same data, and closes it."""
-    figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
+    figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None,
+                   bbox_inches="tight", pad_inches=0.15)  # legends outside the axes are kept
     plt.close(figure)

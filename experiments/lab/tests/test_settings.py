@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from lab import main, manifest, materials, tables
+from lab import UsageError, main, manifest, materials, tables
 
 
 class SettingsTest(unittest.TestCase):
@@ -21,9 +21,9 @@ class SettingsTest(unittest.TestCase):
                          ["chrome", "mine", "satin_purple", "synth-plastic"])
         self.assertEqual([source.database for source in sources], ["MERL", "own", "RGL", "own"])
         self.assertEqual(sources[0].half, "reporting")
-        with self.assertRaisesRegex(ValueError, "does not exist"):
+        with self.assertRaisesRegex(UsageError, "does not exist"):
             materials.find([str(self.folder / "none.binary")])
-        with self.assertRaisesRegex(ValueError, "one material"):
+        with self.assertRaisesRegex(UsageError, "one material"):
             materials.find([str(self.folder / "mine.binary"), str(self.folder / "../x/mine.binary")
                             .replace("../x", ".")])
 
@@ -46,13 +46,13 @@ class SettingsTest(unittest.TestCase):
         self.assertEqual(changed, {"question": "why", "limits": {"s": 2.5}, "starts": ["y"],
                                    "runs": [{"every": 1}]})
         for wrong in ("limits.s", "unknown=1", "starts.s=1", "runs.1.every=1", "question.s.t=1"):
-            with self.assertRaisesRegex(ValueError, "--set="):
+            with self.assertRaisesRegex(UsageError, "--set="):
                 manifest.load(path, False, [wrong])
 
     def test_shard(self):
         self.assertEqual(main.shard("2/3"), (2, 3))
         for wrong in ("0/3", "4/3", "1", "a/b"):
-            with self.assertRaises(ValueError):
+            with self.assertRaises(UsageError):
                 main.shard(wrong)
 
     def test_tables_read_back(self):
