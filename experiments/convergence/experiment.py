@@ -53,7 +53,7 @@ def _solver_row(result, fit):
 
 def _curve_rows(result, fit, best):
     """Iterations that grow by a constant factor; the decrease is the mean of an iteration since
-    the row before."""
+    the row before. No decrease and no step where the step was taken back."""
     trace = fit.trace
     chosen = sorted({0, len(trace) - 1} | {
         round(k) for k in numpy.geomspace(1, max(1, len(trace) - 1), POINTS)})
@@ -65,12 +65,12 @@ def _curve_rows(result, fit, best):
         decrease = None
         if before is not None and trace[before]["objective"] > 0:
             ratio = now["objective"] / trace[before]["objective"]
-            decrease = 1 - ratio ** (1 / (k - before))
+            decrease = 1 - ratio ** (1 / (k - before)) if ratio != 1 else None
         rows.append({"material": result.labels["material"], "solver": result.labels["solver"],
                      "iteration": k,
                      "excess": float(f"{stats.excess(now['objective'], best):.4g}"),
                      "decrease": None if decrease is None else float(f"{decrease:.4g}"),
-                     "step": float(f"{now['step']:.4g}"),
+                     "step": float(f"{now['step']:.4g}") if now["accepted"] else None,
                      "optimality": None if math.isnan(now["optimality"])
                      else float(f"{now['optimality']:.4g}")})
         before = k

@@ -170,6 +170,7 @@ def _median_figure(curves, rows, solvers, threads):
     columns = (("excess", "excess of E over the best (%)", 100),
                ("psnr_loss_db", "PSNR below that of the best fit (dB)", 1),
                ("log_error_ratio", "mean log error over that of the best fit", 1))
+    last = 1.05 * max(row["seconds"] for row in rows if row.get("seconds"))
     by_time = tables.groups(curves, "solver", "seconds")
     for axes, (column, label, factor) in zip(panels, columns):
         for solver in solvers:
@@ -185,7 +186,7 @@ def _median_figure(curves, rows, solvers, threads):
             axes.plot(seconds, middle, label=solver, **style)
             if solver in ("auto", "awls"):
                 axes.fill_between(seconds, low, high, color=style["color"], alpha=0.12, linewidth=0)
-        axes.set(xscale="log", ylabel=label)
+        axes.set(xscale="log", ylabel=label, xlim=(None, last))
         if column == "excess":
             axes.set_yscale("symlog", linthresh=0.1)
             axes.set_ylim(bottom=0)
@@ -206,6 +207,7 @@ def _material_figure(curves, rows, solvers, threads):
     """A small picture for each material: excess over time."""
     from lab import plots
     names = sorted({row["material"] for row in rows})
+    last = 1.05 * max(row["seconds"] for row in rows if row.get("seconds"))
     columns = min(4, len(names))
     lines = math.ceil(len(names) / columns)
     figure, panels = plots.plt.subplots(lines, columns, figsize=(3 * columns + 1, 2.3 * lines + 1),
@@ -219,13 +221,13 @@ def _material_figure(curves, rows, solvers, threads):
                       [max(100 * row["excess"], 0.01) for row in points], label=solver,
                       **{**plots.solver_style(solver, solvers), "linewidth": 1.3})
         axes.set_title(name, fontsize=9)
-        axes.set(xscale="log", yscale="log", ylim=(0.009, 1e3))
+        axes.set(xscale="log", yscale="log", xlim=(None, last), ylim=(0.009, 1e3))
         plots.plain_numbers(axes.xaxis)
         plots.plain_numbers(axes.yaxis)
     for axes in panels.flat[len(names):]:
         axes.set_axis_off()
     figure.supxlabel("seconds on the clock")
-    figure.supylabel("excess of E over the best (%), 0.01 or less at the bottom")
+    figure.supylabel("excess of E over the best (%)")
     plots.legend_above(figure, panels.flat[0])
     return figure
 

@@ -80,7 +80,10 @@ def find(places):
 
 
 def every(sources, n):
-    """Every n-th name of each list, from the first; of other names every n-th of those given."""
+    """Every n-th name of each list, from the first; of other names every n-th of those given.
+
+    An odd n takes materials of both halves.
+    """
     own = sorted(source.name for source in sources if source.database == "own")
     chosen = {name for names in (MERL, RGL, own) for name in names[::n]}
     return [source for source in sources if source.name in chosen]

@@ -20,12 +20,14 @@ SOLVERS = {
     "varpro": (BLUE, "-"),
     "newton": (ORANGE, "-"),
     "lm": (PURPLE, "-"),
+    "lm_squares": (PURPLE, ":"),
     "lm_plain": (PURPLE, "--"),
     "awls": (VERMILION, "-"),
     "awls_literal": (VERMILION, "--"),
     "awls_block": (SKY, "-"),
     "awls_accelerated": (GREY, "-"),
 }
+# Of your own, in the order of their names.
 OTHER_SOLVERS = [(YELLOW, "-"), (YELLOW, "--"), (GREEN, "--"), (BLUE, "--")]
 
 plt.rcParams.update({
