@@ -176,7 +176,7 @@ def _elements_figure(elements):
                   color="#555555")
     axes.set(yscale="log", ylim=(1e-17, 1e-9), xlabel="materials, sorted",
              ylabel="worst relative rise of E in one update",
-             title="No single update raises E beyond rounding; 1e-17: no rise at all")
+             title="The worst rise of each material, a dot each (1e-17: none at all)")
     plots.label_ends(axes)
     return figure
 

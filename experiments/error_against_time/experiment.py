@@ -273,25 +273,27 @@ def _quartiles(values, format_spec=".3g", unit=""):
 
 
 def _summary(rows, solvers):
-    """A Markdown table: a column a solver."""
+    """Two Markdown tables, a row a solver: what it reaches, and how soon."""
     of = tables.groups(rows, "solver")
-    lines = [[f"within {100 * target:g} % at the end",
-              *(_percent(sum(row["excess"] <= target for row in of[s]) / len(of[s]))
-                for s in solvers)] for target in TARGETS]
-    lines.append(["excess at the end, %",
-                  *(_quartiles([100 * row["excess"] for row in of[s]]) for s in solvers)])
-    lines.append(["largest excess, %",
-                  *(f"{100 * max(row['excess'] for row in of[s]):.3g}" for s in solvers)])
-    for target in TARGETS:
-        column = f"seconds_to_{100 * target:g}_percent"
-        lines.append([f"seconds to {100 * target:g} %",
-                      *(_quartiles([row[column] for row in of[s]]) for s in solvers)])
-    for label, column, factor in (("iterations made", "iterations", 1),
-                                  ("trace, % of solving", "trace_share", 100)):
-        lines.append([label, *(_quartiles([factor * row[column] for row in of[s]
-                                           if row.get(column) is not None] or [math.inf])
-                               for s in solvers)])
-    return tables.markdown(["", *solvers], lines)
+    reached, times = [], []
+    for solver in solvers:
+        mine = of[solver]
+
+        def column(name, factor=1, rows_of=mine):
+            return _quartiles([factor * row[name] for row in rows_of
+                               if row.get(name) is not None] or [math.inf])
+        reached.append([solver, str(len(mine)),
+                        *(_percent(sum(row["excess"] <= target for row in mine) / len(mine))
+                          for target in TARGETS),
+                        column("excess", 100), f"{100 * max(row['excess'] for row in mine):.3g}"])
+        times.append([solver, *(column(f"seconds_to_{100 * target:g}_percent")
+                                for target in TARGETS),
+                      column("iterations"), column("trace_share", 100)])
+    names = [f"{100 * target:g} %" for target in TARGETS]
+    return (tables.markdown(["solver", "materials", *(f"ends within {name}" for name in names),
+                             "excess at the end, %", "largest, %"], reached) + "\n"
+            + tables.markdown(["solver", *(f"seconds to {name}" for name in names), "iterations",
+                               "trace, % of solving"], times))
 
 
 def _thread_table(runs):

@@ -165,7 +165,8 @@ def write_report(options):
                                            else None)
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "report.html"
-    report.write(path, [experiments.load(name) for name in experiments.names()], results_of)
+    everything = [experiments.load(name) for name in experiments.names()]
+    report.write(path, report.in_order(everything, experiments.FOLDER / "README.md"), results_of)
     print(f"wrote {path}")
 
 

@@ -45,6 +45,11 @@ def _csv_table(path):
                                            for row in rows])
 
 
+def _inline(text):
+    """A line of Markdown as HTML without a paragraph around it."""
+    return markdown.markdown(text).removeprefix("<p>").removesuffix("</p>")
+
+
 def _inlined(page, results):
     """The page with each link that stands alone in its line and leads into results/ replaced by what
     it leads to: a picture with its caption, a table, a text."""
@@ -52,10 +57,10 @@ def _inlined(page, results):
         picture, caption, name = match.groups()
         path = results / name if results else None
         if path is None or not path.exists():
-            return f'<p class="missing">{html.escape(caption)}: not there yet.</p>'
+            return f'<p class="missing">Not there yet: {_inline(caption)}</p>'
         if picture:
             return (f'<figure><img alt="" src="{_data_uri(path)}"/>'
-                    f"<figcaption>{html.escape(caption)}</figcaption></figure>")
+                    f"<figcaption>{_inline(caption)}</figcaption></figure>")
         text = _csv_table(path) if path.suffix == ".csv" else path.read_text()
         return f"{caption}:\n\n{text}"
     return _LINK_ALONE.sub(content, page)
@@ -87,6 +92,13 @@ def _section(experiment, results):
                  f"units, {record['seconds'] / 3600:.2f} h)</summary>"
                  f"<pre>{html.escape(json.dumps(record, indent=1))}</pre></details>")
     return f"<section>{body}</section>"
+
+
+def in_order(experiments, index):
+    """The experiments in the order in which a page links to theirs, others after."""
+    text = index.read_text()
+    places = {e.name: text.find(f"({e.name}/README.md)") for e in experiments}
+    return sorted(experiments, key=lambda e: (places[e.name] < 0, places[e.name], e.name))
 
 
 def write(path, experiments, results_of):
