@@ -48,7 +48,7 @@ def units(setting):
     """The fits, pictures of one solver's, and the scores of the published ones."""
     fitted = fits.planned(setting)
     path_of = {source.name: source.path for source in setting.sources}
-    chosen = setting.manifest["judged"]
+    chosen = setting.manifest["plots"]
     judged = {unit.labels["material"]: unit for unit in fitted
               if (unit.labels["solver"], unit.labels["run"]) == (chosen["solver"], chosen["run"])}
     pictures = [
@@ -100,7 +100,7 @@ def tabulate(setting, results):
     database = {source.name: source.database for source in setting.sources}
     for row in rows:
         row["database"] = database[row["material"]]
-    chosen = setting.manifest["judged"]
+    chosen = setting.manifest["plots"]
     judged = [row for row in rows if row["solver"] == chosen["solver"]
               and row["run"] == chosen["run"] and math.isfinite(row["objective"])]
     worst = sorted(judged, key=lambda row: -row["mean_log_error"])[:chosen["worst"]]
