@@ -6,7 +6,7 @@ import numpy
 from lab import fits, stats, tables
 from lab.fits import Fit
 
-POINTS = 40  # of a curve, at times that grow by a constant factor
+POINTS = 32  # of a curve, at times that grow by a constant factor
 TARGETS = (0.1, 0.01, 0.001)
 DEFAULT_START = "analytic"
 
@@ -57,8 +57,12 @@ def _on_grid(rows, column, grid):
 
 
 def _curves(fit_of, best, grid):
-    """A row a time of each fit from the default start: excess, loss of PSNR, mean log error over
-    that of the fit with the lowest E of the material."""
+    """A row a time of each fit from the default start, of the materials that most solvers fitted:
+    excess, loss of PSNR, mean log error over that of the fit with the lowest E of the material."""
+    solvers = {}
+    for result, _ in fit_of:
+        solvers.setdefault(result.labels["material"], set()).add(result.labels["solver"])
+    most = max(map(len, solvers.values()), default=0)
     final = {}
     for result, fit in fit_of:
         name = result.labels["material"]
@@ -66,7 +70,8 @@ def _curves(fit_of, best, grid):
             final[name] = fit.report
     rows = []
     for result, fit in fit_of:
-        if result.labels["start"] != DEFAULT_START:
+        if (result.labels["start"] != DEFAULT_START
+                or len(solvers[result.labels["material"]]) < most):
             continue
         reference = final[result.labels["material"]]
         objective = _on_grid(fit.trace, "objective", grid)
@@ -224,6 +229,7 @@ def _material_figure(curves, rows, solvers, threads):
         axes.set(xscale="log", yscale="log", xlim=(None, last), ylim=(0.009, 1e3))
         plots.plain_numbers(axes.xaxis)
         plots.plain_numbers(axes.yaxis)
+        axes.minorticks_off()
     for axes in panels.flat[len(names):]:
         axes.set_axis_off()
     figure.supxlabel("seconds on the clock")
@@ -282,10 +288,13 @@ def _summary(rows, solvers):
         def column(name, factor=1, rows_of=mine):
             return _quartiles([factor * row[name] for row in rows_of
                                if row.get(name) is not None] or [math.inf])
-        reached.append([solver, str(len(mine)),
+        missing = sum(math.isinf(row["excess"]) for row in mine)
+        largest = max(row["excess"] for row in mine)
+        reached.append([solver, f"{len(mine)}, {missing} missing" if missing else str(len(mine)),
                         *(_percent(sum(row["excess"] <= target for row in mine) / len(mine))
                           for target in TARGETS),
-                        column("excess", 100), f"{100 * max(row['excess'] for row in mine):.3g}"])
+                        column("excess", 100),
+                        f"{100 * largest:.3g}" if math.isfinite(largest) else "–"])
         times.append([solver, *(column(f"seconds_to_{100 * target:g}_percent")
                                 for target in TARGETS),
                       column("iterations"), column("trace_share", 100)])
@@ -354,7 +363,8 @@ def draw(drawn, _):
     products["profiles"] = _profile_figure(rows, solvers, threads, "all solvers")
     if count > names:
         products["profiles_all"] = _profile_figure(
-            [row for row in everywhere if row["solver"] in widest], widest, threads, "two solvers")
+            [row for row in everywhere if row["solver"] in widest], widest, threads,
+            ", ".join(widest))
     if (figure := _start_figure(runs, threads)) is not None:
         products["starts"] = figure
     return products

@@ -312,7 +312,7 @@ def draw(drawn, folder):
         products["weighting_psnr.md"] = _table(weightings, "psnr_db", "{:.2f}".format, True)
         products["weighting_relative_error.md"] = _table(weightings, "mean_relative_error",
                                                          "{:.2%}".format)
-    if fitted:
+    if fitted:  # none if only other fits were asked for
         products["spread"] = _spread_figure(fitted)
     if drawn.get("below"):
         everywhere = _published_rows(rows)
