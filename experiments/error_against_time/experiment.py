@@ -19,7 +19,8 @@ def units(setting):
 
 
 def _labels(result):
-    return {key: result.labels[key] for key in ("material", "solver", "start", "seed", "threads")}
+    return {key: result.labels[key] for key in ("material", "solver", "start", "seed", "threads",
+                                                  "repeat")}
 
 
 def _best_objectives(fit_of):
@@ -70,7 +71,7 @@ def _curves(fit_of, best, grid):
             final[name] = fit.report
     rows = []
     for result, fit in fit_of:
-        if (result.labels["start"] != DEFAULT_START
+        if (result.labels["start"] != DEFAULT_START or result.labels["repeat"] > 1
                 or len(solvers[result.labels["material"]]) < most):
             continue
         reference = final[result.labels["material"]]
@@ -328,6 +329,23 @@ def _thread_table(runs):
                               for t in TARGETS[:2])], lines)
 
 
+def _repeat_table(runs):
+    """The same fit made again: the longer time to 10 % over the shorter one."""
+    times = {}
+    for (name, solver, threads), of in tables.groups(
+            [row for row in runs if row["start"] == DEFAULT_START],
+            "material", "solver", "threads").items():
+        of_fit = [row["seconds_to_10_percent"] for row in of]
+        if len(of_fit) > 1 and all(map(math.isfinite, of_fit)):
+            times.setdefault((solver, threads), []).append(max(of_fit) / min(of_fit))
+    if not times:
+        return ""
+    return tables.markdown(["solver", "threads", "fits", "longest over shortest", "worst"],
+                           [[solver, str(threads), str(len(ratios)), _quartiles(ratios),
+                             f"{max(ratios):.3g}"]
+                            for (solver, threads), ratios in times.items()])
+
+
 def _halves(runs, solvers, threads):
     """Summaries for the half on which `auto` was developed, and for the other one."""
     from lab import materials
@@ -343,7 +361,8 @@ def _halves(runs, solvers, threads):
 
 
 def draw(drawn, _):
-    runs, curves = drawn["runs"], drawn["curves"]
+    curves = drawn["curves"]
+    runs = [row for row in drawn["runs"] if row["repeat"] == 1]
     rows, solvers, threads = _complete(runs)
     everywhere = [row for row in runs if row["start"] == DEFAULT_START
                   and row["threads"] == threads]
@@ -356,7 +375,7 @@ def draw(drawn, _):
         wide = [row for row in everywhere if row["solver"] in widest]
         summary += f"\nAll {count} materials:\n\n{_summary(wide, widest)}\n"
     products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads),
-                "threads.md": _thread_table(runs)}
+                "threads.md": _thread_table(runs), "repeats.md": _repeat_table(drawn["runs"])}
     if curves:
         products["median"] = _median_figure(curves, rows, solvers, threads)
         products["materials"] = _material_figure(curves, rows, solvers, threads)

@@ -34,6 +34,12 @@ class FitsTest(unittest.TestCase):
         self.assertEqual(len({unit.key for unit in planned}), 8)  # the last is made already
         self.assertEqual(planned[-1].labels["run"], "again")
 
+    def test_a_repeat_is_another_fit(self):
+        first, second = fits.planned(self.setting([{"solvers": ["awls"], "every": 2, "repeats": 2}]))
+        self.assertEqual(first.arguments, second.arguments)
+        self.assertNotEqual(first.key, second.key)
+        self.assertEqual(second.labels["repeat"], 2)
+
     def test_flags_of_a_solver_come_last(self):
         unit, = fits.planned(self.setting(
             [{"solvers": ["mine"], "every": 2, "flags": {"tolerance": 0, "course": True}}],
