@@ -78,7 +78,7 @@ def _curve_rows(result, fit, best):
 
 
 def _roughness(fit):
-    """Root mean square second difference of the G tables, each over its mean, from 1 to 89 degrees."""
+    """Root mean square second difference of the G tables, each over its mean; of whole ones."""
     model = json.loads((fit.folder / "model.json").read_text())
     values = []
     for table, dead in zip(model["G"], model.get("dead", {}).get("G", [[]] * len(model["G"]))):
@@ -197,7 +197,8 @@ def _filter_figure(rows):
             axes.plot(shown, [at[name, w][column] / base for w in shown], marker="o", label=name,
                       color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
                       linestyle="-" if k < len(plots.SERIES) else "--")
-        axes.set(yscale="log", xlabel="standard deviation of the filter on G (degrees)", title=label)
+        axes.set(yscale="log", title=label,
+                 xlabel="standard deviation of the filter on G (degrees)")
         axes.set_xticks(widths)
         plots.plain_numbers(axes.yaxis)
         plots.label_ends(axes, spacing=0.06)

@@ -75,6 +75,7 @@ def _curves(fit_of, best, grid):
                 or len(solvers[result.labels["material"]]) < most):
             continue
         reference = final[result.labels["material"]]
+        lowest = best[result.labels["material"]]
         objective = _on_grid(fit.trace, "objective", grid)
         psnr = _on_grid(fit.course, "psnr_db", grid)
         log_error = _on_grid(fit.course, "mean_log_error", grid)
@@ -85,7 +86,7 @@ def _curves(fit_of, best, grid):
             rows.append({
                 **{key: result.labels[key] for key in ("material", "solver", "threads")},
                 "seconds": float(f"{seconds:.4g}"),
-                "excess": float(f"{stats.excess(objective[k], best[result.labels['material']]):.4g}"),
+                "excess": float(f"{stats.excess(objective[k], lowest):.4g}"),
                 "psnr_loss_db": float(f"{reference['psnr_db'] - psnr[k]:.4g}") if known else None,
                 "log_error_ratio": float(f"{log_error[k] / reference['mean_log_error']:.4g}")
                 if known and reference["mean_log_error"] > 0 else None})
@@ -203,8 +204,8 @@ def _median_figure(curves, rows, solvers, threads):
         plots.plain_numbers(axes.yaxis)
         plots.plain_numbers(axes.xaxis)
         plots.label_ends(axes)
-    panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} threads; "
-                        "bands: quartiles of auto and awls")
+    panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} "
+                        "threads; bands: quartiles of auto and awls")
     panels[-1].set_xlabel("seconds on the clock, reading and preparing included")
     return figure
 

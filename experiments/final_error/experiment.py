@@ -284,8 +284,8 @@ def _worst_text(worst, folder):
     for place, row in enumerate(worst, start=1):
         text += (f"{place}. {row['material']}: mean log error {row['mean_log_error']:.4g}, "
                  f"PSNR {row['psnr_db']:.1f} dB, mean relative error "
-                 f"{100 * row['mean_relative_error']:.1f} %, E {100 * row['relative_objective']:.3g} "
-                 "% of that of a black model\n\n")
+                 f"{100 * row['mean_relative_error']:.1f} %, E "
+                 f"{100 * row['relative_objective']:.3g} % of that of a black model\n\n")
         name = f"slices-{row['material']}.png"
         if (folder / name).exists():
             text += f"![Measured and fitted values of {row['material']}]({name})\n\n"

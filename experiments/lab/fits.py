@@ -18,8 +18,8 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
         weighting="compressive", noise=0, repeat=1, **labels):
     """The unit of one fit.
 
-    solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program. flags:
-    more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
+    solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program.
+    flags: more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
     repeat: the same fit is made once for each number, where its times are the question.
     """
     flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
@@ -31,16 +31,16 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
                 program=setting.program(),
                 arguments=("fit", source.path, f"--out={FOLDER}", *words), product="report.json",
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
-                        "threads": threads, "weighting": weighting, "noise": noise, "repeat": repeat,
-                        **labels})
+                        "threads": threads, "weighting": weighting, "noise": noise,
+                        "repeat": repeat, **labels})
 
 
 def planned(setting):
     """The fits of the manifest's "runs", without repetitions within runs of one name.
 
-    A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...], "threads":
-    [...], "weightings": [...], "noises": [...], "repeats": 2, "flags": {...}}, all but the first with
-    a default. It stands for every combination on every 4th material of each list; its flags come on
+    A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...],
+    "threads": [...], "weightings": [...], "noises": [...], "repeats": 2, "flags": {...}}, all but
+    the first with a default. It stands for every combination on every 4th material of each list; its flags come on
     top of the manifest's "flags". Its "name", if it has one, is a label of its fits.
     """
     units = {}
@@ -87,7 +87,8 @@ class Fit:
 
     @functools.cached_property
     def course(self):
-        """Rows of course.csv, of a fit with the flag "course": scores of models on the way; `clock` as in the trace."""
+        """Rows of course.csv, of a fit with the flag "course": scores of models on the way;
+        `clock` as in the trace."""
         clock = {row["iteration"]: row["clock"] for row in self.trace}
         rows = self._rows("course.csv")
         for row in rows:

@@ -43,7 +43,8 @@ def parse(arguments):
     parser.add_argument("--shard", metavar="i/n", help="make only the i-th of n parts, i from 1; "
                         "tables come when all are there")
     parser.add_argument("--again", action="store_true", help="make units anew that are there")
-    parser.add_argument("--count", action="store_true", help="only print how many units are to make")
+    parser.add_argument("--count", action="store_true",
+                        help="only print how many units are to make")
     parser.add_argument("--no-run", action="store_true",
                         help="make nothing; tables and pictures of what is there")
     parser.add_argument("--draw", action="store_true", help="only draw, from the tables in OUT")

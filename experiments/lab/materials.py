@@ -70,7 +70,8 @@ def find(places):
         elif path.exists():
             paths.append(place)
         else:
-            raise UsageError(f"{place} does not exist; give BRDF files, folders of them, or synth:NAME")
+            raise UsageError(f"{place} does not exist; give BRDF files, folders of them, or "
+                             "synth:NAME")
     sources = sorted((Source(name_of(path), path) for path in dict.fromkeys(paths)),
                      key=lambda source: source.name)
     for before, after in zip(sources, sources[1:]):

@@ -39,7 +39,7 @@ plt.rcParams.update({
 
 
 def solver_style(solver, solvers=()):
-    """Colour and dashes of a solver; one of your own has its own as long as the list is the same."""
+    """Colour and dashes of a solver; one of your own keeps its own while the list is the same."""
     if solver not in SOLVERS:
         own = sorted(name for name in {*solvers, solver} if name not in SOLVERS)
         colour, dashes = OTHER_SOLVERS[own.index(solver) % len(OTHER_SOLVERS)]

@@ -10,11 +10,13 @@ import markdown
 from lab import tables
 
 STYLE = """
-body { font: 16px/1.5 sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+body { font: 16px/1.5 sans-serif; color: #222; max-width: 62rem; margin: 2rem auto;
+       padding: 0 1rem; }
 h1 { border-top: 3px solid #0072B2; padding-top: .6rem; margin-top: 4rem; }
 header h1 { border: 0; margin-top: 0; }
 table { border-collapse: collapse; font-size: 13px; margin: 1rem 0; }
-th, td { border-bottom: 1px solid #ddd; padding: .15rem .6rem; text-align: right; white-space: nowrap; }
+th, td { border-bottom: 1px solid #ddd; padding: .15rem .6rem; text-align: right;
+         white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 .table { overflow-x: auto; max-height: 32rem; overflow-y: auto; }
 img { max-width: 100%; }
@@ -51,8 +53,8 @@ def _inline(text):
 
 
 def _inlined(page, results):
-    """The page with each link that stands alone in its line and leads into results/ replaced by what
-    it leads to: a picture with its caption, a table, a text."""
+    """The page with each link that stands alone in its line and leads into results/ replaced by
+    what it leads to: a picture with its caption, a table, a text."""
     def content(match):
         picture, caption, name = match.groups()
         path = results / name if results else None

@@ -35,7 +35,8 @@ class FitsTest(unittest.TestCase):
         self.assertEqual(planned[-1].labels["run"], "again")
 
     def test_a_repeat_is_another_fit(self):
-        first, second = fits.planned(self.setting([{"solvers": ["awls"], "every": 2, "repeats": 2}]))
+        first, second = fits.planned(self.setting(
+            [{"solvers": ["awls"], "every": 2, "repeats": 2}]))
         self.assertEqual(first.arguments, second.arguments)
         self.assertNotEqual(first.key, second.key)
         self.assertEqual(second.labels["repeat"], 2)
