@@ -40,8 +40,9 @@ def planned(setting):
 
     A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...],
     "threads": [...], "weightings": [...], "noises": [...], "repeats": 2, "flags": {...}}, all but
-    the first with a default. It stands for every combination on every 4th material of each list; its flags come on
-    top of the manifest's "flags". Its "name", if it has one, is a label of its fits.
+    the first with a default. It stands for every combination on every 4th material of each list;
+    its flags come on top of the manifest's "flags". Its "name", if it has one, is a label of its
+    fits.
     """
     units = {}
     for run in setting.manifest["runs"]:

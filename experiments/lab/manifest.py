@@ -1,7 +1,8 @@
 """Manifests: what an experiment measures, and what a run of it was made with.
 
 `experiments/NAME/manifest.json` holds the full form; its member `quick` replaces members of it for
-the quick form. A run leaves a copy of what it used in its own folder, with machine, versions and time.
+the quick form. A run leaves a copy of what it used in its own folder, with machine, versions and
+time.
 """
 import datetime
 import json
