@@ -56,8 +56,8 @@ def label_ends(axes, x=1.01, spacing=0.05):
     """
     lines = [line for line in axes.get_lines() if not line.get_label().startswith("_")
              and len(line.get_xdata())]
-    axes.figure.canvas.draw()  # limits are final only then
-    to_axes = axes.transData + axes.transAxes.inverted()
+    axes.get_xlim(), axes.get_ylim()  # matplotlib scales the axes to the data when it is asked
+    to_axes = axes.transScale + axes.transLimits  # of data; fractions of the axes
     wanted = []
     for line in lines:
         height = to_axes.transform((line.get_xdata()[-1], line.get_ydata()[-1]))[1]
