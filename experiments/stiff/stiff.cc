@@ -96,7 +96,8 @@ Json Run(const StiffCase& stiff_case, const SolverEntry& solver, const Certifica
                    {"worst_rise", WorstRise(summary.trace)},
                    {"valid", std::isfinite(E) && IsValid(model)},
                    {"seconds", summary.seconds},
-                   {"iterations", summary.iterations}});
+                   {"iterations", summary.iterations},
+                   {"notes", summary.notes}});
     if (summary.diagnosis) {
       result.update({{"optimality", summary.diagnosis->optimality},
                      {"rank", summary.diagnosis->rank},

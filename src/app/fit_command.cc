@@ -9,6 +9,7 @@
 #include <string>
 
 #include "trilobe/app/command.h"
+#include "trilobe/app/course.h"
 #include "trilobe/app/fit_report.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/progress.h"
@@ -35,6 +36,9 @@ DEFINE_string(model, "shared",
               "one lobe, nothing shared (Bagher et al.)");
 DEFINE_int32(lobes, 3, "specular lobes of --model=shared, 0 to 8");
 DEFINE_bool(reconstruction, false, "also write DIR/reconstruction.binary, the fit in MERL layout");
+DEFINE_bool(
+    course, false,
+    "also write DIR/course.csv: errors of the models on the way, scored when the fit is over");
 DEFINE_bool(plots, false, "also draw the pictures of `trilobe plot` into DIR");
 
 namespace trilobe {
@@ -100,11 +104,12 @@ std::string UtcNow() {
 }
 
 SolverSummary Solve(const SolverEntry& solver, const Objective& objective, SolverOptions options,
-                    FactorModel* model) {
+                    FactorModel* model, Course* course) {
   const InterruptGuard guard;
   Progress progress(options);
-  options.on_iteration = [&progress](const IterationRecord& record, const FactorModel&) {
+  options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
     progress.Show(record);
+    if (FLAGS_course) course->Keep(record, current);
     return InterruptGuard::signal() == 0;
   };
   return solver.make()->Solve(objective, options, model);
@@ -113,7 +118,7 @@ SolverSummary Solve(const SolverEntry& solver, const Objective& objective, Solve
 // Everything that a fit leaves in its folder. Each file is written whole or not at all, the model
 // first.
 void WriteOutputs(const ModelFile& file, const FitReport& report, const BrdfTable& measured,
-                  int threads) {
+                  const Course& course, const Objective& objective) {
   const std::string folder = FLAGS_out + "/";
   WriteModel(file, folder + "model.json");
   WriteTrace(folder + "trace.csv", report.summary.trace);
@@ -121,6 +126,11 @@ void WriteOutputs(const ModelFile& file, const FitReport& report, const BrdfTabl
     out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   });
   std::string written = "model.json, trace.csv, report.json";
+  if (FLAGS_course) {
+    course.Write(folder + "course.csv", objective);
+    written += ", course.csv";
+  }
+  const int threads = objective.num_threads();
   if (FLAGS_reconstruction) {
     WriteMerl(Reconstruct(file.model, file.fit.source, measured.grid, threads),
               folder + "reconstruction.binary");
@@ -159,8 +169,9 @@ int RunFit(std::span<const std::string> arguments) {
   report.seconds.init = stopwatch.Lap();
   // Now, not later: a fit must not be lost for want of a folder.
   if (!FLAGS_out.empty()) MakeDirectories(FLAGS_out);
+  Course course;
   SolverSummary& summary = report.summary;
-  summary = Solve(solver, objective, SolverOptionsFromFlags(solver, report.spec), &model);
+  summary = Solve(solver, objective, SolverOptionsFromFlags(solver, report.spec), &model, &course);
   summary.phases.reading = report.seconds.read;
   report.seconds.solve = stopwatch.Lap();
   Canonicalize(objective.coverage(), &model);
@@ -187,7 +198,7 @@ int RunFit(std::span<const std::string> arguments) {
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
     WriteOutputs({model, DeadParameters(objective.coverage()), report.fit}, report, measured,
-                 threads);
+                 course, objective);
   }
   return interrupted ? 128 + InterruptGuard::signal() : 0;  // as a shell reports such an end
 }
@@ -210,7 +221,8 @@ std::string List(const std::vector<T>& entries) {
 Command FitCommand() {
   std::vector<std::string> flags = {"solver", "init", "weighting", "model", "lobes"};
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(), {"threads", "noise", "seed", "out", "reconstruction", "plots"});
+  flags.insert(flags.end(),
+               {"threads", "noise", "seed", "out", "reconstruction", "course", "plots"});
   return {.name = "fit",
           .summary = "fit a model to a measurement",
           .arguments = "SOURCE",

@@ -32,6 +32,7 @@ Json ToJson(const PhaseSeconds& phases) {
   return {{"reading", phases.reading},
           {"preparing", phases.preparing},
           {"evaluating", phases.evaluating},
+          {"tracing", phases.tracing},
           {"linear_algebra", phases.linear_algebra},
           {"diagnosing", phases.diagnosing}};
 }

@@ -82,7 +82,7 @@ bool Run::Record(const FactorModel& current, const Step& step) {
   if (step.objective) {
     record.objective = *step.objective;
   } else {
-    const ScopedTimer timer = Time(&PhaseSeconds::evaluating);
+    const ScopedTimer timer = Time(&PhaseSeconds::tracing);
     record.objective = objective_.Value(current);
   }
   record.seconds = seconds();

@@ -83,6 +83,7 @@ struct PhaseSeconds {
   double reading = 0;         // not a solver's: for the caller to fill
   double preparing = 0;       // sorting and copying before the first iteration
   double evaluating = 0;      // passes over the samples: E, sums, normal equations
+  double tracing = 0;         // passes for E where only trace and stopping test want it
   double linear_algebra = 0;  // factorisations and element updates
   double diagnosing = 0;
 

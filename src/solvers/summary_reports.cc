@@ -37,6 +37,7 @@ PhaseSeconds& PhaseSeconds::operator+=(const PhaseSeconds& other) {
   reading += other.reading;
   preparing += other.preparing;
   evaluating += other.evaluating;
+  tracing += other.tracing;
   linear_algebra += other.linear_algebra;
   diagnosing += other.diagnosing;
   return *this;
@@ -85,8 +86,8 @@ std::string SolverSummary::FullReport() const {
   out << "phases       ";
   if (phases.reading > 0) out << phases.reading << " s reading, ";
   out << seconds << " s solving (" << phases.preparing << " preparing, " << phases.evaluating
-      << " evaluating, " << phases.linear_algebra << " linear algebra), " << phases.diagnosing
-      << " s diagnosing\n";
+      << " evaluating, " << phases.tracing << " tracing, " << phases.linear_algebra
+      << " linear algebra), " << phases.diagnosing << " s diagnosing\n";
   return out.str();
 }
 

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -81,6 +83,32 @@ TEST(Fit, WritesModelTraceAndReport) {
       RunProgram({"score", out + "/model.json", "synth:plastic", "--noise=0.02", "--json"});
   ASSERT_EQ(score.status, 0) << score.err;
   EXPECT_EQ(nlohmann::json::parse(score.out)["objective"].get<double>(), file.fit.objective);
+}
+
+TEST(Fit, CourseScoresTheModelsOnTheWay) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  ASSERT_EQ(RunProgram(Fit(out, {"--course"})).status, 0);
+  const std::vector<IterationRecord> trace = ReadTrace(out + "/trace.csv");
+  const nlohmann::json report = Json(out + "/report.json");
+  std::istringstream course(Contents(out + "/course.csv"));
+  std::string line;
+  ASSERT_TRUE(std::getline(course, line));
+  EXPECT_EQ(line, "iteration,seconds,objective,psnr_db,rmse,mean_relative_error,mean_log_error");
+  int rows = 0, iteration = -1;
+  double seconds = -1, objective = 0, psnr_db = 0;
+  while (std::getline(course, line)) {
+    const double before = seconds;
+    ASSERT_EQ(
+        std::sscanf(line.c_str(), "%d,%lf,%lf,%lf", &iteration, &seconds, &objective, &psnr_db), 4);
+    ASSERT_LT(iteration, static_cast<int>(trace.size()));
+    EXPECT_EQ(iteration == 0, rows++ == 0);
+    EXPECT_EQ(seconds, trace[iteration].seconds);
+    EXPECT_GT(seconds, before);
+    EXPECT_EQ(objective, trace[iteration].objective);
+  }
+  EXPECT_EQ(iteration, trace.back().iteration);
+  EXPECT_NEAR(psnr_db, report["psnr_db"].get<double>(), 1e-9);  // that one is in canonical form
 }
 
 TEST(Fit, RepeatsToTheBitAndThreadsAgree) {

@@ -1,0 +1,28 @@
+"""Fast and literal AWLS: see README.md beside this file."""
+from lab import tables
+from lab.units import Unit
+
+
+def units(setting):
+    settings = setting.manifest
+    return [Unit(f"awls_equality/{source.name}", setting.program("awls_equality"),
+                 (f"--sweeps={settings['sweeps']}", f"--stride={settings['stride']}", source.path),
+                 labels={"material": source.name})
+            for source in setting.every(settings["every"])]
+
+
+def tabulate(_, results):
+    return {"sweeps": [{"material": result.labels["material"], **row}
+                       for result in results if result.folder
+                       for row in tables.read(result.folder / "stdout.txt")]}
+
+
+def draw(drawn, _):
+    rows = drawn["sweeps"]
+    header = ["material", "filter", "sweeps", "first E", "best E", "worst relative difference",
+              "literal s/sweep", "awls s/sweep"]
+    body = [[row["material"], f"{row['filter']:g}", str(row["sweeps"]), f"{row['first_E']:.6g}",
+             f"{row['best_E']:.6g}", f"{row['worst_relative_difference']:.1e}",
+             f"{row['literal_s_a_sweep']:.2f}", f"{row['awls_s_a_sweep']:.4f}"] for row in rows]
+    worst = max(row["worst_relative_difference"] for row in rows)
+    return {"sweeps.md": tables.markdown(header, body) + f"\nThe largest of all: {worst:.1e}.\n"}

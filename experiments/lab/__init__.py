@@ -1,0 +1,5 @@
+"""What the experiments share: units of work, campaigns, manifests, statistics, pictures, reports."""
+
+
+class UsageError(Exception):
+    """A mistake of the one who runs it; the message says in one line what to do."""

@@ -1,0 +1,96 @@
+"""The experiments: folders with a manifest.json, an experiment.py and a README.md.
+
+experiment.py has three functions. Only the first and the second see the program's results, so
+pictures can be drawn again anywhere from the tables alone.
+
+    units(setting) -> [Unit]             what to run; labels say what each is
+    tabulate(setting, results) -> {name: rows or bytes}
+                                         rows, a list of dicts, become NAME.csv; bytes the file NAME
+    draw(tables, folder) -> {name: Figure or text}
+                                         tables: {name: rows} as read back; folder holds all files of
+                                         tabulate; a Figure becomes NAME.svg, a text NAME as it is
+"""
+import dataclasses
+import importlib.util
+import pathlib
+
+from lab import UsageError, manifest, materials
+
+FOLDER = pathlib.Path(__file__).resolve().parents[1]
+
+
+@dataclasses.dataclass(frozen=True)
+class Setting:
+    """What one run is asked to do."""
+
+    name: str
+    quick: bool
+    manifest: dict  # of the form that runs, with the changes that were asked for
+    sources: list  # [Source], those given or else the manifest's, before any choice among them
+    build: pathlib.Path
+    main_program: pathlib.Path
+
+    def program(self, name="trilobe"):
+        """The program `trilobe`, or one that experiments/CMakeLists.txt builds."""
+        path = self.main_program if name == "trilobe" else self.build / "experiments" / name
+        if not path.is_file():
+            raise UsageError(f"no program {path}; build it (docs/building.md), or name another "
+                             "with --program or --build")
+        return path
+
+    def every(self, n):
+        """Every n-th source of each list of materials."""
+        return materials.every(self.sources, n)
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+    """A unit and the folder that it has filled, None if it is missing."""
+
+    unit: object
+    folder: pathlib.Path | None
+
+    @property
+    def labels(self):
+        return self.unit.labels
+
+
+@dataclasses.dataclass(frozen=True)
+class Experiment:
+    name: str
+    module: object
+
+    @property
+    def folder(self):
+        return FOLDER / self.name
+
+    @property
+    def page(self):
+        return self.folder / "README.md"
+
+    @property
+    def published(self):
+        """Where the tables and pictures of the run lie that the page quotes."""
+        return self.folder / "results"
+
+    @property
+    def title(self):
+        return self.page.read_text().splitlines()[0].removeprefix("# ")
+
+    def settings(self, quick, changes=()):
+        return manifest.load(self.folder / "manifest.json", quick, changes)
+
+
+def names():
+    return sorted(path.parent.name for path in FOLDER.glob("*/manifest.json"))
+
+
+def load(name):
+    """Raises UsageError that lists the known names."""
+    if name not in names():
+        raise UsageError(f"unknown experiment '{name}'; known: {', '.join(names())}")
+    path = FOLDER / name / "experiment.py"
+    spec = importlib.util.spec_from_file_location(f"experiment_{name}", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return Experiment(name, module)

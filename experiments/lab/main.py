@@ -1,0 +1,187 @@
+"""The command `trilobe-experiments`."""
+import argparse
+import pathlib
+import shutil
+import signal
+import sys
+
+from lab import UsageError, campaign, experiments, manifest, materials, tables
+from lab.experiments import Result, Setting
+from lab.units import Store
+
+EPILOGUE = """
+NAME     run an experiment: what is in the folder --out already is kept
+list     the experiments and their questions
+report   all pages with their tables and pictures in one file, OUT/report.html
+"""
+
+
+def parse(arguments):
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        prog="trilobe-experiments", description="Runs the experiments (experiments/README.md).",
+        epilog=EPILOGUE, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name", metavar="NAME|list|report")
+    parser.add_argument("sources", nargs="*", metavar="SOURCE",
+                        help="BRDF files, folders of them, synth:NAME; default: the manifest's")
+    parser.add_argument("--quick", action="store_true", help="the form of a few seconds")
+    parser.add_argument("--out", type=pathlib.Path, help="default: out/experiments, with --quick "
+                        "out/experiments-quick")
+    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path("build/release"),
+                        help="build folder (%(default)s)")
+    parser.add_argument("--program", type=pathlib.Path, help="default: BUILD/bin/trilobe")
+    parser.add_argument("--solvers", help="comma-separated: these of the manifest's, and "
+                        "others that the program has")
+    parser.add_argument("--threads", help="comma-separated, instead of the manifest's")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
+                        help="another value in the manifest, --set=flags.max_seconds=5")
+    parser.add_argument("--shard", metavar="i/n", help="make only the i-th of n parts, i from 1; "
+                        "tables come when all are there")
+    parser.add_argument("--again", action="store_true", help="make units anew that are there")
+    parser.add_argument("--count", action="store_true", help="only print how many units are to make")
+    parser.add_argument("--draw", action="store_true", help="only draw, from the tables in OUT")
+    parser.add_argument("--publish", action="store_true",
+                        help="copy tables and pictures into experiments/NAME/results")
+    options = parser.parse_intermixed_args(arguments)
+    if options.out is None:
+        options.out = pathlib.Path("out/experiments-quick" if options.quick else "out/experiments")
+    return options
+
+
+def shard(text):
+    """(i, n) of "i/n"."""
+    i, slash, n = text.partition("/")
+    if not (slash and i.isdigit() and n.isdigit() and 1 <= int(i) <= int(n)):
+        raise UsageError(f"--shard={text}: give i/n with 1 <= i <= n")
+    return int(i), int(n)
+
+
+def setting_of(experiment, options):
+    """What this command line asks for."""
+    settings = experiment.settings(options.quick, options.set)
+    for run_of in settings.get("runs", []):
+        if options.threads:
+            run_of["threads"] = [int(number) for number in options.threads.split(",")]
+        if options.solvers:
+            known = settings.get("solvers", {})
+            run_of["solvers"] = [name for name in options.solvers.split(",")
+                                 if name in run_of["solvers"] or name not in known]
+    places = options.sources or settings.get("sources", [])
+    if not places and settings.get("needs_sources", True):
+        raise UsageError("give BRDF files or folders of them, or --quick")
+    return Setting(name=experiment.name, quick=options.quick, manifest=settings,
+                   sources=materials.find(places), build=options.build,
+                   main_program=options.program or options.build / "bin" / "trilobe")
+
+
+def draw(experiment, folder):
+    """Draws all pictures and texts into the folder, from the tables there."""
+    from lab import plots  # here: it takes a second to load
+    of_name = {path.stem: tables.read(path) for path in sorted(folder.glob("*.csv"))}
+    if not of_name:
+        raise UsageError(f"{folder} holds no tables; run the experiment first")
+    for name, content in experiment.module.draw(of_name, folder).items():
+        if isinstance(content, str):
+            (folder / name).write_text(content)
+        else:
+            plots.save(content, folder / f"{name}.svg")
+        print(f"wrote {folder / (name if isinstance(content, str) else name + '.svg')}")
+
+
+def tabulate(experiment, setting, store, units, folder):
+    """Writes the tables of what is there."""
+    results = [Result(unit, store.folder(unit) if store.is_done(unit) else None) for unit in units]
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name, content in experiment.module.tabulate(setting, results).items():
+        if isinstance(content, bytes):
+            (folder / name).write_bytes(content)
+        else:
+            tables.write(folder / f"{name}.csv", content)
+    manifest.write_run(folder / "manifest.json", setting, store, campaign.distinct(units),
+                       setting.build)
+
+
+def publish(experiment, folder):
+    """Copies a run's tables and pictures to where the page looks for them."""
+    shutil.rmtree(experiment.published, ignore_errors=True)
+    shutil.copytree(folder, experiment.published)
+    size = sum(path.stat().st_size for path in experiment.published.rglob("*") if path.is_file())
+    print(f"copied to {experiment.published}: {size / 1e6:.2f} MB")
+
+
+def run(experiment, options):
+    """Runs one experiment; returns the exit status."""
+    folder = options.out / experiment.name
+    if options.draw:
+        draw(experiment, folder)
+    else:
+        setting = setting_of(experiment, options)
+        store = Store(options.out / "units")
+        units = experiment.module.units(setting)
+        part = units
+        if options.shard:
+            part = campaign.shard_of(units, *shard(options.shard))
+        if options.count:
+            print(sum(not store.is_done(unit) for unit in campaign.distinct(part)))
+            return 0
+        failures = campaign.run(store, part, options.again)
+        if options.shard and not all(store.is_done(unit) for unit in units):
+            print("the other shards are still to come; run it without --shard for tables and "
+                  "pictures", file=sys.stderr)
+            return 1 if failures else 0
+        tabulate(experiment, setting, store, units, folder)
+        draw(experiment, folder)
+        if failures:
+            print(f"missing: {len(failures)} units; the same command tries them again\n  "
+                  + "\n  ".join(failures), file=sys.stderr)
+            return 1
+    if options.publish:
+        publish(experiment, folder)
+    return 0
+
+
+def list_experiments():
+    """A line or two for each."""
+    for name in experiments.names():
+        experiment = experiments.load(name)
+        print(f"{name}\n    {experiment.settings(quick=False)['question']}")
+
+
+def write_report(options):
+    """Takes what was run last into --out, or else what is published."""
+    from lab import report
+
+    def results_of(experiment):
+        here = options.out / experiment.name
+        return here if here.is_dir() else (experiment.published if experiment.published.is_dir()
+                                           else None)
+    options.out.mkdir(parents=True, exist_ok=True)
+    path = options.out / "report.html"
+    report.write(path, [experiments.load(name) for name in experiments.names()], results_of)
+    print(f"wrote {path}")
+
+
+def stop(signal_number, _):
+    """As Ctrl-C: the unit that is being made is dropped, all others stay."""
+    raise KeyboardInterrupt(signal_number)
+
+
+def main(arguments=None):
+    """Returns the exit status."""
+    options = parse(arguments)
+    signal.signal(signal.SIGTERM, stop)
+    try:
+        if options.name == "list":
+            list_experiments()
+        elif options.name == "report":
+            write_report(options)
+        else:
+            return run(experiments.load(options.name), options)
+        return 0
+    except UsageError as error:
+        print(f"trilobe-experiments: error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\nstopped; the same command goes on from here", file=sys.stderr)
+        return 130

@@ -1,0 +1,52 @@
+"""Manifests: what an experiment measures, and what a run of it was made with.
+
+`experiments/NAME/manifest.json` holds the full form; its member `quick` replaces members of it for the
+quick form. A run leaves a copy of what it used in its own folder, with machine, versions and time.
+"""
+import datetime
+import json
+
+from lab import UsageError, machine
+
+
+def load(path, quick, changes=()):
+    """The settings of one form, with changes ("flags.max_seconds=5", "runs.0.every=1"; values are
+    JSON, or else text)."""
+    full = json.loads(path.read_text())
+    replaced = full.pop("quick")
+    settings = {**full, **replaced} if quick else full
+    for change in changes:
+        place, equals, value = change.partition("=")
+        *parents, last = place.split(".")
+        inner = settings
+        try:
+            for parent in parents:
+                inner = inner[int(parent)] if isinstance(inner, list) else inner[parent]
+        except (LookupError, TypeError, ValueError):
+            inner = None
+        if not equals or not isinstance(inner, dict) or (inner is settings and last not in inner):
+            known = ", ".join(settings)
+            raise UsageError(f"--set={change}: not of the form NAME=VALUE with one of {known}")
+        try:
+            inner[last] = json.loads(value)
+        except json.JSONDecodeError:
+            inner[last] = value
+    return settings
+
+
+def write_run(path, setting, store, units, build):
+    """Writes what a run used, how much of it is there, and how long that took."""
+    records = [record for unit in units if (record := store.record(unit))]
+    machines = {json.dumps(record["machine"]): record["machine"] for record in records}
+    run = {"experiment": setting.name,
+           "form": "quick" if setting.quick else "full",
+           "settings": setting.manifest,
+           "sources": [source.name for source in setting.sources],
+           "units": {"all": len(units), "made": len(records)},
+           "seconds": round(sum(record["seconds"] for record in records), 1),
+           "first_finished": min((record["finished"] for record in records), default=None),
+           "last_finished": max((record["finished"] for record in records), default=None),
+           "machines": list(machines.values()),
+           "versions": machine.versions(build),
+           "date": datetime.date.today().isoformat()}
+    path.write_text(json.dumps(run, indent=1) + "\n")

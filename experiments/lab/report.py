@@ -1,0 +1,100 @@
+"""All pages, with their pictures and tables, in one HTML file that needs nothing else."""
+import base64
+import html
+import json
+import mimetypes
+import re
+
+import markdown
+
+from lab import tables
+
+STYLE = """
+body { font: 16px/1.5 sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { border-top: 3px solid #0072B2; padding-top: .6rem; margin-top: 4rem; }
+header h1 { border: 0; margin-top: 0; }
+table { border-collapse: collapse; font-size: 13px; margin: 1rem 0; }
+th, td { border-bottom: 1px solid #ddd; padding: .15rem .6rem; text-align: right; white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; }
+.table { overflow-x: auto; max-height: 32rem; overflow-y: auto; }
+img { max-width: 100%; }
+figure { margin: 1.5rem 0; } figcaption { color: #555; font-size: 14px; }
+pre, code { background: #f4f4f4; font-size: 13px; } pre { padding: .6rem; overflow-x: auto; }
+details { margin: 1rem 0; }
+.missing { color: #D55E00; }
+"""
+
+_LINK_ALONE = re.compile(r"^(!?)\[([^\]]*)\]\(results/([^)\s]+)\)$", re.MULTILINE)
+_IMAGE = re.compile(r'<img alt="([^"]*)" src="([^"]+)"\s*/?>')
+
+
+def _data_uri(path):
+    kind = mimetypes.guess_type(path.name)[0]
+    return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
+
+
+def _cell(value):
+    return "" if value is None else f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _csv_table(path):
+    rows = tables.read(path)
+    if not rows:
+        return ""
+    return tables.markdown(list(rows[0]), [[_cell(value) for value in row.values()]
+                                           for row in rows])
+
+
+def _inlined(page, results):
+    """The page with each link that stands alone in its line and leads into results/ replaced by what
+    it leads to: a picture with its caption, a table, a text."""
+    def content(match):
+        picture, caption, name = match.groups()
+        path = results / name if results else None
+        if path is None or not path.exists():
+            return f'<p class="missing">{html.escape(caption)}: not there yet.</p>'
+        if picture:
+            return (f'<figure><img alt="" src="{_data_uri(path)}"/>'
+                    f"<figcaption>{html.escape(caption)}</figcaption></figure>")
+        text = _csv_table(path) if path.suffix == ".csv" else path.read_text()
+        return f"{caption}:\n\n{text}"
+    return _LINK_ALONE.sub(content, page)
+
+
+def _embed_images(text, folder):
+    """Pictures that are still links: those of a text in the results, relative to them."""
+    def embedded(match):
+        path = folder / match.group(2) if folder else None
+        if match.group(2).startswith("data:") or path is None or not path.exists():
+            return match.group(0)
+        return f'<img alt="{match.group(1)}" src="{_data_uri(path)}"/>'
+    return _IMAGE.sub(embedded, text)
+
+
+def _section(experiment, results):
+    page = _inlined(experiment.page.read_text(), results)
+    body = markdown.markdown(page, extensions=["tables", "fenced_code"])
+    body = _embed_images(body, results)
+    body = re.sub(r'<a href="(?![a-z]+:|#)[^"]*">(.*?)</a>', r"\1", body)  # other pages: not here
+    body = body.replace("<table>", '<div class="table"><table>').replace("</table>",
+                                                                         "</table></div>")
+    body = body.replace("<h1>", f'<h1 id="{experiment.name}">', 1)
+    run = results / "manifest.json" if results else None
+    if run is not None and run.exists():
+        record = json.loads(run.read_text())
+        body += ("<details><summary>Settings, machine and versions of this run "
+                 f"({record['form']} form, {record['units']['made']} of {record['units']['all']} "
+                 f"units, {record['seconds'] / 3600:.2f} h)</summary>"
+                 f"<pre>{html.escape(json.dumps(record, indent=1))}</pre></details>")
+    return f"<section>{body}</section>"
+
+
+def write(path, experiments, results_of):
+    """Writes the page. results_of(experiment): the folder of its tables and pictures, or None."""
+    contents = "".join(f'<li><a href="#{e.name}">{html.escape(e.title)}</a></li>'
+                       for e in experiments)
+    sections = "\n".join(_section(e, results_of(e)) for e in experiments)
+    path.write_text(
+        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"/><title>Experiments with '
+        f"Trilobe</title><style>{STYLE}</style></head><body><header><h1>Experiments with Trilobe"
+        f"</h1><ol>{contents}</ol></header>\n{sections}\n</body></html>\n")

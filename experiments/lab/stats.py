@@ -1,0 +1,88 @@
+"""Statistics of runs. A value that is missing or was never reached is infinite: it is counted."""
+import math
+import statistics
+
+import numpy
+
+
+def quantile(values, q):
+    """The smallest value that at least a share q of them do not exceed; nan of none.
+
+    No interpolation: between a finite value and infinity there is nothing to interpolate.
+    """
+    ordered = sorted(values)
+    return ordered[max(0, math.ceil(q * len(ordered)) - 1)] if ordered else math.nan
+
+
+def median(values):
+    return quantile(values, 0.5)
+
+
+def geometric_mean(values):
+    return math.exp(statistics.fmean(math.log(value) for value in values)) if values else math.nan
+
+
+def excess(objective, best):
+    """(E - E*) / E*; where E* is 0, 0 or infinite."""
+    if best == 0:
+        return 0.0 if objective == 0 else math.inf
+    return max(0.0, objective / best - 1)
+
+
+def time_to_target(times, objectives, target):
+    """The first time at which the objective is at most the target; infinite if never."""
+    return next((t for t, value in zip(times, objectives) if value <= target), math.inf)
+
+
+def best_so_far(values):
+    """The running minimum."""
+    return numpy.minimum.accumulate(numpy.asarray(values, dtype=float))
+
+
+def value_at(times, values, when):
+    """The last value at or before each time of `when`; infinite before the first. [len(when)]"""
+    index = numpy.searchsorted(times, when, side="right") - 1
+    return numpy.where(index >= 0, numpy.asarray(values, dtype=float)[index], math.inf)
+
+
+def data_profile(times, at):
+    """Share of problems that are solved after each time of `at` (Moré and Wild 2009, in seconds
+    instead of evaluations). times: one a problem, infinite if never."""
+    ordered = numpy.sort(numpy.asarray(times, dtype=float))
+    return numpy.searchsorted(ordered, at, side="right") / len(ordered)
+
+
+def performance_ratios(times):
+    """{solver: [time over the least of any solver, one a problem]} (Dolan and Moré 2002).
+
+    times: {solver: [one a problem, infinite if never]}. A problem that none solves is infinite for
+    all.
+    """
+    least = [min(of) for of in zip(*times.values())]
+    return {solver: [t / b if math.isfinite(t) else math.inf for t, b in zip(of, least)]
+            for solver, of in times.items()}
+
+
+# Relative decreases of E below this are the rounding of a sum over a million samples.
+ROUNDING = 1e-13
+
+
+def linear_rate(decreases, last=20):
+    """The factor by which the decrease an iteration shrinks near the end: exp of the least-squares
+    slope of the logarithm of the last positive decreases; nan with fewer than three.
+
+    Where E - limit falls by a constant factor, its decreases fall by the same, and the limit need not
+    be known.
+    """
+    logs = [math.log(value) for value in decreases if value > 0][-last:]
+    if len(logs) < 3:
+        return math.nan
+    return math.exp(numpy.polyfit(range(len(logs)), logs, 1)[0])
+
+
+def order(decreases):
+    """Order of convergence near the end: the median of log(c/b) / log(b/a) over the last five triples
+    of strictly falling decreases; nan if there is none. 1: linear, 2: quadratic."""
+    orders = [math.log(c / b) / math.log(b / a)
+              for a, b, c in zip(decreases, decreases[1:], decreases[2:]) if a > b > c > 0]
+    return statistics.median(orders[-5:]) if orders else math.nan

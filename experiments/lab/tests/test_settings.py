@@ -1,0 +1,67 @@
+"""Sources, manifests, tables: what the command line and the files say."""
+import json
+import pathlib
+import tempfile
+import unittest
+
+from lab import UsageError, main, manifest, materials, tables
+
+
+class SettingsTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def test_sources_of_folders_files_and_names(self):
+        for name in ("chrome.binary", "satin_purple_rgb.bsdf", "mine.binary", "readme.txt"):
+            (self.folder / name).touch()
+        sources = materials.find([str(self.folder), "synth:plastic"])
+        self.assertEqual([source.name for source in sources],
+                         ["chrome", "mine", "satin_purple", "synth-plastic"])
+        self.assertEqual([source.database for source in sources], ["MERL", "own", "RGL", "own"])
+        self.assertEqual(sources[0].half, "reporting")
+        with self.assertRaisesRegex(UsageError, "does not exist"):
+            materials.find([str(self.folder / "none.binary")])
+        with self.assertRaisesRegex(UsageError, "one material"):
+            materials.find([str(self.folder / "mine.binary"), str(self.folder / "../x/mine.binary")
+                            .replace("../x", ".")])
+
+    def test_a_subset_does_not_depend_on_the_files_given(self):
+        everything = [materials.Source(name, name) for name in materials.MERL + materials.RGL]
+        chosen = {source.name for source in materials.every(everything, 4)}
+        self.assertEqual(len(chosen), 10 + 6)
+        some = everything[1::2]
+        self.assertEqual({source.name for source in materials.every(some, 4)},
+                         chosen & {source.name for source in some})
+
+    def test_manifest_forms_and_changes(self):
+        path = self.folder / "manifest.json"
+        path.write_text(json.dumps({"question": "?", "limits": {"s": 9}, "starts": ["x"],
+                                    "runs": [{"every": 4}], "quick": {"limits": {"s": 1}}}))
+        self.assertEqual(manifest.load(path, quick=False)["limits"], {"s": 9})
+        self.assertEqual(manifest.load(path, quick=True)["limits"], {"s": 1})
+        changed = manifest.load(path, False, ["limits.s=2.5", 'starts=["y"]', "question=why",
+                                              "runs.0.every=1"])
+        self.assertEqual(changed, {"question": "why", "limits": {"s": 2.5}, "starts": ["y"],
+                                   "runs": [{"every": 1}]})
+        for wrong in ("limits.s", "unknown=1", "starts.s=1", "runs.1.every=1", "question.s.t=1"):
+            with self.assertRaisesRegex(UsageError, "--set="):
+                manifest.load(path, False, [wrong])
+
+    def test_shard(self):
+        self.assertEqual(main.shard("2/3"), (2, 3))
+        for wrong in ("0/3", "4/3", "1", "a/b"):
+            with self.assertRaises(UsageError):
+                main.shard(wrong)
+
+    def test_tables_read_back(self):
+        rows = [{"a": 1, "b": 0.1, "c": "text"}, {"a": None, "b": float("inf"), "d": 2}]
+        tables.write(self.folder / "t.csv", rows)
+        self.assertEqual(tables.read(self.folder / "t.csv"),
+                         [{"a": 1, "b": 0.1, "c": "text", "d": None},
+                          {"a": None, "b": float("inf"), "c": None, "d": 2}])
+
+
+if __name__ == "__main__":
+    unittest.main()

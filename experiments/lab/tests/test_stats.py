@@ -1,0 +1,46 @@
+import math
+import unittest
+
+from lab import stats
+
+INF = math.inf
+
+
+class StatsTest(unittest.TestCase):
+    def test_quantiles_count_what_was_never_reached(self):
+        self.assertEqual(stats.median([3, 1, 2]), 2)
+        self.assertEqual(stats.median([1, INF, INF]), INF)
+        self.assertEqual(stats.quantile([1, 2, 3, INF], 0.75), 3)
+        self.assertEqual(stats.quantile([5], 0), 5)
+        self.assertTrue(math.isnan(stats.median([])))
+
+    def test_excess(self):
+        self.assertAlmostEqual(stats.excess(1.5, 1), 0.5)
+        self.assertEqual(stats.excess(0, 0), 0)
+        self.assertEqual(stats.excess(1, 0), INF)
+
+    def test_time_to_target(self):
+        self.assertEqual(stats.time_to_target([1, 2, 4], [9, 5, 3], 5), 2)
+        self.assertEqual(stats.time_to_target([1, 2, 4], [9, 5, 3], 2), INF)
+
+    def test_value_at(self):
+        self.assertEqual(list(stats.value_at([1, 2, 4], [9, 5, 3], [0.5, 1, 3, 9])), [INF, 9, 5, 3])
+
+    def test_profiles(self):
+        self.assertEqual(list(stats.data_profile([1, INF, 3, 2], [0.5, 2, 10])), [0, 0.5, 0.75])
+        ratios = stats.performance_ratios({"a": [1, 4, INF], "b": [2, 2, INF]})
+        self.assertEqual(ratios, {"a": [1, 2, INF], "b": [2, 1, INF]})
+
+    def test_rates(self):
+        self.assertAlmostEqual(stats.linear_rate([0.5 ** k for k in range(30)]), 0.5)
+        self.assertTrue(math.isnan(stats.linear_rate([1, 0, 0])))
+        quadratic = [1e-1, 1e-2, 1e-4, 1e-8]
+        self.assertAlmostEqual(stats.order(quadratic), 2)
+        self.assertAlmostEqual(stats.order([0.5 ** k for k in range(9)]), 1)
+
+    def test_geometric_mean(self):
+        self.assertAlmostEqual(stats.geometric_mean([1, 4]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
