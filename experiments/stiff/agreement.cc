@@ -25,7 +25,11 @@ FactorModel Reordered(const FactorModel& model, const std::vector<int>& order) {
   return result;
 }
 
-// Largest right value of d and s: where all of a part is 0, errors are relative to this.
+// What is less than this share of a table, or of the largest d or s, is 0: its errors are relative
+// to that.
+constexpr double kNothing = 1e-15;
+
+// Largest right value of d and s.
 double LargestValue(const FactorModel& right) {
   const int values = kChannels * (1 + right.spec().lobes);
   const double largest = std::ranges::max(right.parameters().first(values));
@@ -41,20 +45,23 @@ struct Comparison {
 Comparison CompareInOrder(const FactorModel& model, const FactorModel& right,
                           const std::vector<bool>& determined) {
   Comparison comparison;
+  const double largest = LargestValue(right);
   const auto x = model.parameters(), x0 = right.parameters();
   for (const auto [begin, size] : right.Parts()) {
-    double scale = 0, error = 0;
+    double scale = 0;
     for (int k = begin; k < begin + size; ++k) {
       if (determined[k]) scale = std::max(scale, x0[k]);
     }
-    if (scale == 0) scale = LargestValue(right);
+    const bool of_table = begin >= kChannels * (1 + right.spec().lobes);
+    if (!of_table && scale < kNothing * largest) scale = largest;
+    double error = 0;
     TableAgreement& agreement = comparison.agreement;
     for (int k = begin; k < begin + size; ++k) {
       if (!determined[k]) continue;
+      const double of_entry = x0[k] < kNothing * scale ? scale : x0[k];
       error = std::max(error, std::abs(x[k] - x0[k]) / scale);
       agreement.tables = std::min(agreement.tables, DigitsOfAgreement(x[k], x0[k], scale));
-      agreement.entries =
-          std::min(agreement.entries, DigitsOfAgreement(x[k], x0[k], x0[k] > 0 ? x0[k] : scale));
+      agreement.entries = std::min(agreement.entries, DigitsOfAgreement(x[k], x0[k], of_entry));
     }
     comparison.error += error;
   }

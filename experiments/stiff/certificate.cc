@@ -18,11 +18,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kIterations = 400;
+// In extended precision, and in fifty digits.
+constexpr int kIterations = 600, kPolishIterations = 3000;
 // Ends of E within this of each other, relative to E, are one; and those whose E is at the rounding
 // error of the data, relative to the measured energy.
 constexpr double kSameObjective = 1e-8, kExact = 1e-27;
-constexpr int kPolished = 3;  // of the starts that agree
+constexpr int kPolished = 2;  // of the starts that agree
 // Eigenvalues below this share of the largest are 0.
 constexpr double kFlat = 1e-25;
 // Entries that differ by less, relative to the largest of their table, are the same: of minimisers
@@ -275,7 +276,7 @@ Certificate Certify(const StiffCase& stiff_case, int random_starts) {
     if (same(end.objective, lowest)) {
       ++certificate.agreeing;
       if (static_cast<int>(polished.size()) == kPolished) continue;
-      polished.push_back(polisher.Minimize(end.x.cast<Big>(), kIterations));
+      polished.push_back(polisher.Minimize(end.x.cast<Big>(), kPolishIterations));
     } else if (end.converged) {
       const auto objective = static_cast<double>(end.objective);
       if (!certificate.others.empty() && same(objective, certificate.others.back().objective)) {
@@ -298,6 +299,7 @@ Certificate Certify(const StiffCase& stiff_case, int random_starts) {
   around.Describe(&certificate);
   certificate.model = ToModel(of.spec, problem.Canonical(best.x));
   std::vector<bool> undetermined = around.Undetermined();
+  if (!best.converged) undetermined.assign(undetermined.size(), true);  // nor E beyond the promise
   const auto canonical = [&](const VectorOf<Big>& x) {
     return ToModel(of.spec, problem.Canonical(x));
   };

@@ -12,40 +12,40 @@
 
 #include "experiments/stiff/certificate.h"
 
-DEFINE_string(case, "", "certify this case alone, and keep the other answers of the file");
-DEFINE_int32(random_starts, 8, "starts besides the truth and the deterministic ones");
+DEFINE_string(case, "all", "name of a case, or all; other answers in the file are kept");
+DEFINE_int32(random_starts, 24, "starts besides the truth and the deterministic ones");
 DEFINE_string(out, TRILOBE_STIFF_ANSWERS, "file of the answers");
 
 namespace trilobe {
 namespace {
 
+// Replaces a certificate of the list or adds it, in the order of the cases.
+void Put(const Certificate& certificate, std::vector<Certificate>* all) {
+  std::erase_if(*all, [&](const Certificate& of) { return of.name == certificate.name; });
+  all->push_back(certificate);
+  std::ranges::stable_sort(*all, {}, [](const Certificate& of) {
+    return std::ranges::find(StiffCases(), of.name, &StiffCase::name) - StiffCases().begin();
+  });
+}
+
 void Main() {
-  std::vector<Certificate> certificates;
-  if (!FLAGS_case.empty() && std::filesystem::exists(FLAGS_out)) {
-    certificates = ReadCertificates(FLAGS_out);
-  }
-  if (!FLAGS_case.empty()) FindStiffCase(FLAGS_case);  // or an error
+  std::vector<StiffCase> cases = StiffCases();
+  if (FLAGS_case != "all") cases = {FindStiffCase(FLAGS_case)};
   std::vector<Certificate> all;
-  for (const StiffCase& stiff_case : StiffCases()) {
-    if (!FLAGS_case.empty() && FLAGS_case != stiff_case.name) {
-      const auto known = std::ranges::find(certificates, stiff_case.name, &Certificate::name);
-      if (known != certificates.end()) all.push_back(*known);
-      continue;
-    }
+  if (std::filesystem::exists(FLAGS_out)) all = ReadCertificates(FLAGS_out);
+  for (const StiffCase& stiff_case : cases) {
     const auto start = std::chrono::steady_clock::now();
-    all.push_back(Certify(stiff_case, FLAGS_random_starts));
-    const Certificate& of = all.back();
+    const Certificate of = Certify(stiff_case, FLAGS_random_starts);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     std::printf(
-        "%-20s E %.12e of %.3e, promise %.0e, optimality %.0e, %d of %d starts, %zu others, flat "
-        "%d, down %d, rank "
-        "%d of %d, condition %.1e, undetermined %zu, spread %.0e, %.1f s\n",
-        of.name.c_str(), of.objective, of.measured_energy, of.relative_decrease, of.optimality,
-        of.agreeing, of.starts, of.others.size(), of.flat_directions, of.descent_directions,
-        of.rank, of.parameters, of.condition, of.undetermined.size(), of.spread, seconds.count());
+        "%-18s E %.9e of %.3e, optimality %.0e, %d of %d starts agree, %zu other minima, rank %d "
+        "of %d, %zu undetermined, %.1f s\n",
+        of.name.c_str(), of.objective, of.measured_energy, of.optimality, of.agreeing, of.starts,
+        of.others.size(), of.rank, of.parameters, of.undetermined.size(), seconds.count());
     std::fflush(stdout);
+    Put(of, &all);
+    WriteCertificates(all, FLAGS_out);
   }
-  WriteCertificates(all, FLAGS_out);
 }
 
 }  // namespace

@@ -21,7 +21,6 @@
 DEFINE_string(case, "all", "name of a case, or all");
 DEFINE_string(solver, "all", "name of a solver, or all that can work on the case");
 DEFINE_bool(list, false, "print the cases and what is hard about each, and end");
-DEFINE_bool(quick, false, "8 iterations of each");
 DEFINE_int32(max_iterations, 500,
              "iterations of each; no other stopping rule but that of a solver"
              " that finds no lower E, or an exact fit");
@@ -69,10 +68,11 @@ Json Run(const StiffCase& stiff_case, const SolverEntry& solver, const Certifica
   CheckCertifies(right, objective);
   FactorModel model = StartOf(problem, objective);
   SolverOptions options;
-  options.max_iterations = FLAGS_quick ? 8 : FLAGS_max_iterations;
+  options.max_iterations = FLAGS_max_iterations;
   options.relative_decrease_tolerance = 0;
   options.optimality_tolerance = 0;
-  Json result = {{"case", stiff_case.name}, {"solver", solver.name}};
+  Json result = {
+      {"case", stiff_case.name}, {"description", stiff_case.description}, {"solver", solver.name}};
   try {
     const SolverSummary summary = solver.make()->Solve(objective, options, &model);
     const double E = summary.final_objective;
