@@ -50,14 +50,16 @@ double Unit(const Objective& objective) {
   return mean_square > 0 ? std::exp2(std::ilogb(std::sqrt(mean_square))) : 1;
 }
 
-bool UseSquares(Run* run) {
+// Replaces an active set that there is not by bounds.
+Positivity ChoosePositivity(CeresParameters::ActiveSet active_set, Run* run) {
   Positivity& positivity = run->summary().used.positivity;
-  if (positivity == Positivity::kActiveSet) {
+  if (positivity == Positivity::kActiveSet && active_set == CeresParameters::ActiveSet::kNone) {
     positivity = Positivity::kBounds;
     run->summary().notes.push_back("Ceres has no active set, so " + run->summary().solver +
-                                   " keeps parameters >= 0 by bounds; solver newton has one");
+                                   " keeps parameters >= 0 by bounds; solvers lm and newton have"
+                                   " one");
   }
-  return positivity == Positivity::kSquares;
+  return positivity;
 }
 
 ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver linear_solver,
@@ -92,11 +94,13 @@ ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver l
 
 }  // namespace
 
-CeresParameters::CeresParameters(const Objective& objective, FactorModel start, Run* run)
+CeresParameters::CeresParameters(const Objective& objective, FactorModel start,
+                                 ActiveSet active_set, Run* run)
     : objective_(objective),
       start_(std::move(start)),
       unit_(Unit(objective)),
-      squares_(UseSquares(run)) {}
+      squares_(ChoosePositivity(active_set, run) == Positivity::kSquares),
+      holds_(run->options().positivity == Positivity::kActiveSet) {}
 
 FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   for (double& d : model.d()) d *= by;

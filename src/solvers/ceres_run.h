@@ -21,12 +21,20 @@ namespace trilobe {
 // numbers being p, x = p^2: a number at 0 stays there.
 class CeresParameters {
  public:
-  // Takes from the run's options whether they are squares. Ceres has no active set: where the
-  // options ask for that, bounds are used and a note says so.
-  CeresParameters(const Objective& objective, FactorModel start, Run* run);
+  // Whether the cost function holds numbers on their bounds (IsHeld).
+  enum class ActiveSet { kNone, kInCost };
+
+  // Takes from the run's options whether they are squares. Ceres itself has no active set: where
+  // the options ask for one and the cost has none, there are bounds alone and a note says so.
+  CeresParameters(const Objective& objective, FactorModel start, ActiveSet active_set, Run* run);
 
   double unit() const { return unit_; }
   bool squares() const { return squares_; }
+
+  // True for a number that is 0 and that a lower E would push below, with dE/dx given, where there
+  // is an active set. As Ceres would project its step only after it is made for all numbers
+  // together, such a number spoils the steps of the others: it is to have no derivative.
+  bool IsHeld(double p, double gradient) const { return holds_ && p <= 0 && gradient > 0; }
 
   // The starting point in Ceres' numbers, each in the place of the model's.
   FactorModel Start() const;
@@ -42,7 +50,7 @@ class CeresParameters {
   const Objective& objective_;
   const FactorModel start_;
   const double unit_;
-  const bool squares_;
+  const bool squares_, holds_;
 };
 
 // How Ceres solves the linear least-squares problem of a step: by a Cholesky factorisation of the

@@ -93,7 +93,8 @@ class CondensedCost : public ceres::CostFunction {
     for (size_t k = 0; k < n; ++k) rest -= residuals[k] * residuals[k];
     residuals[n] = std::sqrt(std::max(0.0, rest));
 
-    // d (r / unit) / dp = J C, C diagonal: 1 or 1 / unit for the change of units, 2 p for squares.
+    // d (r / unit) / dp = J C, C diagonal: 1 or 1 / unit for the change of units, 2 p for squares;
+    // 0 for what is held.
     const double unit = parameters_.unit();
     for (size_t k = 0; k <= n; ++k) residuals[k] /= unit;
     const size_t num_in_units = kChannels * (1 + objective_.spec().lobes);  // d and s
@@ -101,6 +102,7 @@ class CondensedCost : public ceres::CostFunction {
     for (size_t k = 0; k < n; ++k) {
       column[k] = std::sqrt(at_.squared_lengths[k]) * (k < num_in_units ? 1 : 1 / unit);
       if (parameters_.squares()) column[k] *= 2 * p[k];
+      if (parameters_.IsHeld(p[k], at_.gradient[k])) column[k] = 0;
     }
     for (size_t k = 0; k < n; ++k) {
       for (size_t l = k; l < n; ++l) R[k * n + l] *= column[l];
@@ -124,7 +126,7 @@ class Lm : public Solver {
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("lm", objective, options, model);
-    const CeresParameters parameters(objective, *model, &run);
+    const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kInCost, &run);
     std::optional<CondensedCost> cost;
     {
       const ScopedTimer timer = run.Time(&PhaseSeconds::preparing);

@@ -137,7 +137,7 @@ class LmPlain : public Solver {
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("lm_plain", objective, options, model);
-    const CeresParameters parameters(objective, *model, &run);
+    const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kNone, &run);
     std::optional<PlainProblem> problem;
     {
       const ScopedTimer timer = run.Time(&PhaseSeconds::preparing);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -114,6 +115,25 @@ TEST(Lm, GoesWhereLmPlainGoesOnALargeProblem) {
   SolverOptions options = Iterations(2);
   options.positivity = Positivity::kBounds;
   ExpectSameIterates(objective, start, options, "bounds");
+}
+
+// Numbers that a step has put on their bound, and that E holds there, do not spoil the steps of the
+// others: of a material that the model can represent nothing is left, though the start is far from
+// it and steps run into bounds on the way.
+TEST(Lm, GoesOnWhereNumbersAreOnTheirBounds) {
+  constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 8};
+  for (const uint64_t seed : {1, 2, 3}) {
+    FactorModel truth = RandomModel(ModelSpec::SharedFactors(2, kGrid), seed, 0.3);
+    for (int k = 0; k < 6; ++k) truth.table(Factor::kD, 0)[k] *= std::pow(10, -k);
+    const Objective objective = MakeObjective(TableOf(truth, kGrid), truth.spec());
+    FactorModel model = InitialModels().front().make(objective, 1);
+    SolverOptions options = Iterations(500);
+    options.optimality_tolerance = 0;
+    const SolverSummary summary = MakeSolver("lm")->Solve(objective, options, &model);
+    EXPECT_EQ(summary.stop_reason, StopReason::kExactFit) << seed << ", " << summary.BriefReport();
+    EXPECT_EQ(summary.used.positivity, Positivity::kActiveSet);
+    EXPECT_TRUE(summary.notes.empty());
+  }
 }
 
 }  // namespace

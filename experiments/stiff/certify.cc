@@ -1,0 +1,64 @@
+// The right answers to the stiff cases, in fifty digits. See README.md beside this file.
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/stiff/certificate.h"
+
+DEFINE_string(case, "all", "name of a case, or all; other answers in the file are kept");
+DEFINE_int32(random_starts, 24, "starts besides the truth and the deterministic ones");
+DEFINE_string(out, TRILOBE_STIFF_ANSWERS, "file of the answers");
+
+namespace trilobe {
+namespace {
+
+// Replaces a certificate of the list or adds it, in the order of the cases.
+void Put(const Certificate& certificate, std::vector<Certificate>* all) {
+  std::erase_if(*all, [&](const Certificate& of) { return of.name == certificate.name; });
+  all->push_back(certificate);
+  std::ranges::stable_sort(*all, {}, [](const Certificate& of) {
+    return std::ranges::find(StiffCases(), of.name, &StiffCase::name) - StiffCases().begin();
+  });
+}
+
+void Main() {
+  std::vector<StiffCase> cases = StiffCases();
+  if (FLAGS_case != "all") cases = {FindStiffCase(FLAGS_case)};
+  std::vector<Certificate> all;
+  if (std::filesystem::exists(FLAGS_out)) all = ReadCertificates(FLAGS_out);
+  for (const StiffCase& stiff_case : cases) {
+    const auto start = std::chrono::steady_clock::now();
+    const Certificate of = Certify(stiff_case, FLAGS_random_starts);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    std::printf(
+        "%-18s E %.9e of %.3e, optimality %.0e, %d of %d starts agree, %zu other minima, rank %d "
+        "of %d, %zu undetermined, %.1f s\n",
+        of.name.c_str(), of.objective, of.measured_energy, of.optimality, of.agreeing, of.starts,
+        of.others.size(), of.rank, of.parameters, of.undetermined.size(), seconds.count());
+    std::fflush(stdout);
+    Put(of, &all);
+    WriteCertificates(all, FLAGS_out);
+  }
+}
+
+}  // namespace
+}  // namespace trilobe
+
+int main(int argc, char** argv) {
+  gflags::SetUsageMessage("certify [--case=NAME] [--random_starts=N] [--out=FILE]");
+  gflags::ParseCommandLineFlags(&argc, &argv, true);
+  try {
+    trilobe::Main();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "certify: error: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
