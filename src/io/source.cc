@@ -1,7 +1,5 @@
 #include "trilobe/io/source.h"
 
-#include <string_view>
-
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
@@ -10,17 +8,21 @@
 #include "trilobe/io/synth.h"
 
 namespace trilobe {
-BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
-  constexpr std::string_view kSynth = "synth:";
-  if (source.starts_with(kSynth)) {
-    BrdfTable table = Synthesize(FindSynthMaterial(source.substr(kSynth.size())), options.noise,
-                                 options.seed, {}, options.num_threads);
-    table.source = source;
-    return table;
-  }
-  const std::string bytes = ReadFile(source);
+namespace {
+
+constexpr std::string_view kSynth = "synth:";
+
+}  // namespace
+
+bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
+
+const SynthMaterial& SynthMaterialOf(std::string_view source) {
+  return FindSynthMaterial(source.substr(kSynth.size()));
+}
+
+BrdfTable ParseSource(std::string_view bytes, const std::string& source, int num_threads) {
   if (LooksLikeRgl(bytes)) {
-    return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, options.num_threads);
+    return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, num_threads);
   }
   if (LooksLikeModel(bytes)) {
     throw Error(source +
@@ -28,6 +30,14 @@ BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
                 ".binary file, an RGL *_rgb.bsdf file, or synth:NAME");
   }
   return ParseMerl(bytes, source);
+}
+
+BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
+  if (!IsSynthetic(source)) return ParseSource(ReadFile(source), source, options.num_threads);
+  BrdfTable table =
+      Synthesize(SynthMaterialOf(source), options.noise, options.seed, {}, options.num_threads);
+  table.source = source;
+  return table;
 }
 
 }  // namespace trilobe
