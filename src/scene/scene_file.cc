@@ -224,10 +224,10 @@ SceneBudget ReadBudget(const Node& node) {
   using Unit = SceneBudget::Unit;
   if (node.Has("relative_rise")) {
     return {Unit::kRelativeRise,
-            node["relative_rise"].Number(0, 1e6, "a fraction of E, 0.01 for 1 %")};
+            node["relative_rise"].Number(-1, 1e6, "a fraction of E, 0.01 for 1 %")};
   }
   if (node.Has("psnr_drop_db")) {
-    return {Unit::kPsnrDrop, node["psnr_drop_db"].Number(0, 1e3, "decibels")};
+    return {Unit::kPsnrDrop, node["psnr_drop_db"].Number(-1e3, 1e3, "decibels")};
   }
   if (node.Has("bytes")) return {Unit::kBytes, node["bytes"].Number(8, kInfinity, "bytes")};
   return {Unit::kSeconds, node["seconds"].Number(0, kInfinity, "seconds")};

@@ -14,8 +14,9 @@ enum class SceneChannels { kRgb, kLuminance };
 // What may be given up, in one of four units.
 struct SceneBudget {
   enum class Unit {
-    kRelativeRise,  // of E, over that of the fit with nothing left out; 0.01 is 1 %
-    kPsnrDrop,      // [dB], below that of the fit with nothing left out
+    kRelativeRise,  // of E, over that of the fit with nothing left out; 0.01 is 1 %, and below 0
+                    // E is to fall, by more lobes
+    kPsnrDrop,      // [dB], below that of the fit with nothing left out; below 0 it is to rise
     kBytes,         // that the numbers of the model may take, 8 each
     kSeconds,       // of fitting and leaving out
   };
