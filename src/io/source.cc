@@ -4,8 +4,10 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
-#include "trilobe/io/rgl_file.h"
 #include "trilobe/io/synth.h"
+#ifdef TRILOBE_RGL
+#include "trilobe/io/rgl_file.h"
+#endif
 
 namespace trilobe {
 namespace {
@@ -20,10 +22,13 @@ const SynthMaterial& SynthMaterialOf(std::string_view source) {
   return FindSynthMaterial(source.substr(kSynth.size()));
 }
 
-BrdfTable ParseSource(std::string_view bytes, const std::string& source, int num_threads) {
+BrdfTable ParseSource(std::string_view bytes, const std::string& source,
+                      [[maybe_unused]] int num_threads) {
+#ifdef TRILOBE_RGL
   if (LooksLikeRgl(bytes)) {
     return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, num_threads);
   }
+#endif
   if (LooksLikeModel(bytes)) {
     throw Error(source +
                 ": this is a JSON file, as a fitted model is, and not a measurement; give a MERL "
