@@ -87,6 +87,8 @@ class Node {
     return json_.get<std::string>();
   }
 
+  bool is_object() const { return json_.is_object(); }
+
   void Numbers(std::span<double> values) const {
     CheckArraySize(values.size());
     for (size_t k = 0; k < values.size(); ++k) values[k] = (*this)[k].Number();
@@ -145,7 +147,13 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
   }
 }
 
-// The shape of the model, bounded by what the file really holds, before anything is allocated.
+// Entries of a table: those that the file lists, or, where it lists nodes, as many as it says.
+size_t TableEntries(const Node& table) {
+  if (!table.is_object()) return table.ArraySize();
+  return table["size"].Integer(kMaxTableSize);
+}
+
+// The shape of the model, bounded before anything is allocated.
 ModelSpec ReadSpec(const Node& root) {
   ModelSpec spec;
   spec.lobes = root["lobes"].Integer(kMaxLobes);
@@ -154,31 +162,74 @@ ModelSpec ReadSpec(const Node& root) {
     const std::vector<Node> tables =
         TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes);
     if (tables.empty()) continue;
-    const size_t size = tables[0].ArraySize();
+    const size_t size = TableEntries(tables[0]);
     if (size < 4 || size > kMaxTableSize) {
       tables[0].Fail("must have at least 4 and at most " + std::to_string(kMaxTableSize) +
                      " entries, not " + std::to_string(size));
     }
-    for (const Node& table : tables) table.CheckArraySize(size);
+    for (const Node& table : tables) {
+      if (!table.is_object()) {
+        table.CheckArraySize(size);
+      } else if (TableEntries(table) != size) {
+        table["size"].Fail("must be " + std::to_string(size) + ", as in the first table");
+      }
+    }
     TableSize(factor, &spec) = static_cast<int>(size);
   }
   return spec;
 }
 
-FactorModel ReadNumbers(const Node& root) {
-  FactorModel model(ReadSpec(root));
-  const int lobes = model.spec().lobes;
-  root["d"].Numbers(model.d());
-  root["s"].CheckArraySize(lobes);
-  for (int m = 0; m < lobes; ++m) root["s"][m].Numbers(model.s(m));
+// A number for each channel, or one for all.
+bool ReadChannels(const Node& node, std::span<double> values) {
+  const bool coloured = node.ArraySize() != 1;
+  node.Numbers(coloured ? values : values.first(1));
+  return coloured;
+}
+
+// The nodes of a table, whose numbers go to their entries.
+std::vector<int> ReadTable(const Node& node, std::span<double> table) {
+  std::vector<int> entries;
+  if (!node.is_object()) {
+    node.Numbers(table);
+    for (size_t k = 0; k < table.size(); ++k) entries.push_back(static_cast<int>(k));
+    return entries;
+  }
+  const Node nodes = node["nodes"], values = node["values"];
+  if (nodes.ArraySize() == 0) nodes.Fail("must have at least one entry");
+  values.CheckArraySize(nodes.ArraySize());
+  for (size_t k = 0; k < nodes.ArraySize(); ++k) {
+    const int entry = nodes[k].Integer(static_cast<int>(table.size()) - 1);
+    if (k > 0 && entry <= entries.back()) nodes[k].Fail("must be above the one before it");
+    entries.push_back(entry);
+    table[entry] = values[k].Number();
+  }
+  return entries;
+}
+
+// Sets file->model, and the layout of a compact file.
+void ReadNumbers(const Node& root, ModelFile* file) {
+  FactorModel& model = file->model = FactorModel(ReadSpec(root));
+  const ModelSpec& spec = model.spec();
+  TableLayout layout = TableLayout::Full(spec);
+  layout.coloured_d = ReadChannels(root["d"], model.d());
+  root["s"].CheckArraySize(spec.lobes);
+  for (int m = 0; m < spec.lobes; ++m) {
+    const bool coloured = ReadChannels(root["s"][m], model.s(m));
+    if (m > 0 && coloured != layout.coloured_s) {
+      root["s"][m].Fail("must have as many entries as the others");
+    }
+    layout.coloured_s = coloured;
+  }
   for (const Factor factor : kFactors) {
     const std::vector<Node> tables =
-        TableNodes(root[FactorName(factor)], model.spec().sharing(factor), lobes);
-    for (size_t k = 0; k < tables.size(); ++k) {
-      tables[k].Numbers(model.table(factor, static_cast<int>(k)));
+        TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes);
+    for (int k = 0; k < static_cast<int>(tables.size()); ++k) {
+      layout.of(factor, k) = ReadTable(tables[k], model.table(factor, k));
     }
   }
-  return model;
+  if (layout == TableLayout::Full(spec)) return;
+  ExpandStored(layout, &model);
+  file->layout = std::move(layout);
 }
 
 std::vector<bool> ReadDead(const Node& root, const FactorModel& model) {
@@ -259,11 +310,24 @@ OrderedJson FiniteNumbers(std::span<const double> values, const char* key) {
   return OrderedJson(std::vector<double>(values.begin(), values.end()));
 }
 
-OrderedJson TablesToJson(const FactorModel& model, Factor factor) {
+// The first alone where it stands for all.
+OrderedJson ChannelsToJson(std::span<const double> values, bool coloured, const char* key) {
+  return FiniteNumbers(coloured ? values : values.first(1), key);
+}
+
+OrderedJson TablesToJson(const FactorModel& model, const TableLayout& layout, Factor factor) {
   const ModelSpec& spec = model.spec();
   std::vector<OrderedJson> tables;
   for (int k = 0; k < spec.num_tables(factor); ++k) {
-    tables.push_back(FiniteNumbers(model.table(factor, k), FactorName(factor)));
+    const std::span<const double> table = model.table(factor, k);
+    const std::vector<int>& nodes = layout.of(factor, k);
+    std::vector<double> values;
+    for (const int entry : nodes) values.push_back(table[entry]);
+    OrderedJson numbers = FiniteNumbers(values, FactorName(factor));
+    if (nodes.size() < table.size()) {
+      numbers = {{"size", table.size()}, {"nodes", nodes}, {"values", std::move(numbers)}};
+    }
+    tables.push_back(std::move(numbers));
   }
   return Nest(tables, spec.sharing(factor), spec.lobes);
 }
@@ -283,7 +347,8 @@ OrderedJson DeadToJson(const ModelFile& file, Factor factor) {
 
 // Indented by two, but arrays of numbers each on one line.
 void Print(const OrderedJson& json, const std::string& indent, std::string* text) {
-  const bool nested = json.is_object() || (json.is_array() && !json.empty() && json[0].is_array());
+  const bool nested = json.is_object() ||
+                      (json.is_array() && std::ranges::any_of(json, &OrderedJson::is_structured));
   if (!nested || json.empty()) {
     // A source name need not be UTF-8, but JSON must.
     *text += json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
@@ -326,7 +391,7 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
     root["kind"].Fail("must be \"" + std::string(kKind) + "\", the only kind this program reads");
   }
   ModelFile file;
-  file.model = ReadNumbers(root);
+  ReadNumbers(root, &file);
   file.dead = ReadDead(root, file.model);
   file.fit = ReadFitInfo(root);
   return file;
@@ -346,10 +411,16 @@ std::string FormatModel(const ModelFile& file) {
     const auto [per_lobe, per_channel] = spec.sharing(factor);
     json["sharing"][FactorName(factor)] = {{"per_lobe", per_lobe}, {"per_channel", per_channel}};
   }
-  json["d"] = FiniteNumbers(model.d(), "d");
+  const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
+  CheckLayout(layout, spec);
+  json["d"] = ChannelsToJson(model.d(), layout.coloured_d, "d");
   json["s"] = OrderedJson::array();
-  for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(FiniteNumbers(model.s(m), "s"));
-  for (const Factor factor : kFactors) json[FactorName(factor)] = TablesToJson(model, factor);
+  for (int m = 0; m < spec.lobes; ++m) {
+    json["s"].push_back(ChannelsToJson(model.s(m), layout.coloured_s, "s"));
+  }
+  for (const Factor factor : kFactors) {
+    json[FactorName(factor)] = TablesToJson(model, layout, factor);
+  }
   if (!file.dead.empty()) {
     for (const Factor factor : kFactors) {
       json["dead"][FactorName(factor)] = DeadToJson(file, factor);

@@ -1,11 +1,13 @@
 #ifndef TRILOBE_IO_MODEL_FILE_H_
 #define TRILOBE_IO_MODEL_FILE_H_
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/table_layout.h"
 
 namespace trilobe {
 
@@ -31,6 +33,9 @@ struct ModelFile {
   FactorModel model;
   std::vector<bool> dead;  // [num_parameters]: table entries that no data touched; display only
   FitInfo fit;
+  // Which of the model's numbers are stored; without one, all. The others follow from those, in the
+  // model too (ExpandStored).
+  std::optional<TableLayout> layout = std::nullopt;
 };
 
 // True if the bytes begin like a JSON object, as model files do and no measurement does.
@@ -40,8 +45,10 @@ bool LooksLikeModel(std::string_view bytes);
 // "s" [M][3], "D" [M][90], "F" [3][90], "G" [M][90] as docs/file-formats.md has it for the paper's
 // model. Tables with other sharing nest as the spec says: [lobe][channel][entry], a level left out
 // where it is shared; "sharing" {"D": {"per_lobe": true, "per_channel": false}, ...} says so, and
-// may be missing for the paper's model. "dead" {"D": [[indices], ...] a table, ...} lists dead
-// bins. Unknown keys are ignored. Errors name the file and the key. All numbers must be finite and
+// may be missing for the paper's model. In a compact file, one with a layout, "d" and the rows of
+// "s" may be [1], and a table may be {"size", "nodes": [indices], "values": [as many]}.
+// "dead" {"D": [[indices], ...] a table, ...} lists dead bins. Unknown keys are ignored. Errors
+// name the file and the key. All numbers must be finite and
 // >= 0. Doubles read back bit for bit.
 ModelFile ParseModel(std::string_view text, const std::string& source);
 ModelFile ReadModel(const std::string& path);
