@@ -206,65 +206,76 @@ class Pruner {
            "they change no value");
   }
 
-  // Shapes that change no number.
+  // The first shape that changes no number.
   void ShareWhatIsEqual() {
     for (const Shape& shape : Shapes(state_)) {
-      if (shape.constant_G || shape.spec == state_.spec()) continue;
+      if (shape.constant_G || shape.name.empty()) continue;
       const Reduction sharing = Reduction::BySharing(state_.spec(), shape.spec);
-      const std::vector<double> y = sharing.Restrict(state_.model.parameters());
-      if (!std::ranges::equal(sharing.Expand(y), state_.model.parameters())) continue;
+      const Reduction reduction =
+          sharing.After(Reduction(shape.spec, LayoutOf(shape, TableLayout::Full(shape.spec))));
+      const std::span<const double> x = state_.model.parameters();
+      if (!std::ranges::equal(reduction.Expand(reduction.Restrict(x)), x)) continue;
       FactorModel model(shape.spec);
-      std::ranges::copy(y, model.parameters().begin());
-      TableLayout flags;
-      flags.coloured_d = shape.coloured_d;
-      flags.coloured_s = shape.coloured_s;
+      std::ranges::copy(sharing.Restrict(x), model.parameters().begin());
       State to = MakeState(shape.spec, model);
-      to.layout.coloured_d = shape.coloured_d;
-      to.layout.coloured_s = shape.coloured_s;
-      FactorModel expanded = to.model;
-      ExpandStored(to.layout, &expanded);
-      if (!std::ranges::equal(expanded.parameters(), to.model.parameters())) continue;
+      to.layout = LayoutOf(shape, std::move(to.layout));
       Decide(shape.name, std::move(to), true, "they are equal");
       return;
     }
   }
 
-  // Ways to share that go beyond the state's own, the one with the fewest numbers first.
-  std::vector<Shape> Shapes(const State& state) const {
-    std::vector<Shape> colours = {{.name = "", .spec = state.spec()}};
-    if (options_.colour) {
-      Shape shape = colours[0];
-      shape.spec.D.per_channel = shape.spec.F.per_channel = shape.spec.G.per_channel = false;
-      shape.name = "tables shared by the channels";
-      colours.push_back(shape);
-      shape.coloured_d = false;
-      shape.name = "colour in s alone";
-      colours.push_back(shape);
-      shape.coloured_s = false;
-      shape.name = "one channel for all";
-      colours.push_back(shape);
+  // The layout with the shape's colour, and its G.
+  static TableLayout LayoutOf(const Shape& shape, TableLayout layout) {
+    layout.coloured_d = shape.coloured_d;
+    layout.coloured_s = shape.coloured_s;
+    if (shape.constant_G) {
+      for (std::vector<int>& nodes : layout.nodes[static_cast<int>(Factor::kG)]) {
+        nodes.resize(1);
+      }
     }
-    std::vector<Shape> shapes;
-    for (const Shape& colour : colours) {
-      shapes.push_back(colour);
-      if (!options_.shadowing || Lobes(state) == 0) continue;
-      Shape shape = colour;
-      const auto add = [&](const std::string& name) {
-        shape.name = colour.name + (colour.name.empty() ? "" : ", ") + name;
-        shapes.push_back(shape);
-      };
-      shape.spec.G.per_lobe = false;
-      if (shape.spec != colour.spec && Lobes(state) > 1) add("G shared by the lobes");
-      shape.spec.G.per_channel = false;
-      shape.constant_G = true;
-      add("G constant");
+    return layout;
+  }
+
+  // The state's own shape, without a name, and those that share more; the one with the fewest
+  // numbers first.
+  std::vector<Shape> Shapes(const State& state) const {
+    const Shape own{.name = "",
+                    .spec = state.spec(),
+                    .coloured_d = state.layout.coloured_d,
+                    .coloured_s = state.layout.coloured_s};
+    std::vector<Shape> shapes = {own};
+    // What is no change has no name.
+    const auto add = [&](Shape shape, const Shape& of, const std::string& name) {
+      shape.name = of.name + (of.name.empty() ? "" : ", ") + name;
+      const bool changes = shape.spec != of.spec || shape.coloured_d != of.coloured_d ||
+                           shape.coloured_s != of.coloured_s || shape.constant_G;
+      if (changes) shapes.push_back(shape);
+    };
+    if (options_.colour) {
+      Shape shape = own;
+      shape.spec.F.per_channel = shape.spec.D.per_channel = false;
+      if (options_.shadowing) shape.spec.G.per_channel = false;
+      if (Lobes(state) > 0) add(shape, own, "tables shared by the channels");
+      if (Lobes(state) > 0) shape.coloured_s = false;
+      shape.coloured_d = false;
+      add(shape, own, "one channel for all");
+      if (Lobes(state) > 0) {
+        shape.coloured_s = own.coloured_s;
+        add(shape, own, "colour in s alone");
+      }
+    }
+    if (options_.shadowing && Lobes(state) > 0) {
+      for (const Shape& colour : std::vector<Shape>(shapes)) {
+        Shape shape = colour;
+        shape.spec.G.per_lobe = false;
+        if (Lobes(state) > 1) add(shape, colour, "G shared by the lobes");
+        shape.spec.G.per_channel = false;
+        shape.constant_G = true;
+        add(shape, colour, "G constant");
+      }
     }
     const auto numbers = [](const Shape& shape) {
-      TableLayout layout = TableLayout::Full(shape.spec);
-      layout.coloured_d = shape.coloured_d;
-      layout.coloured_s = shape.coloured_s;
-      if (shape.constant_G) layout.nodes[2].assign(1, {0});
-      return layout.num_numbers(shape.spec);
+      return LayoutOf(shape, TableLayout::Full(shape.spec)).num_numbers(shape.spec);
     };
     std::ranges::stable_sort(shapes, {}, numbers);
     return shapes;
@@ -348,13 +359,8 @@ class Pruner {
       FactorModel model(shape.spec);
       const std::vector<double> coverage = sharing.Transpose(state_.objective->coverage());
       const bool as_it_is = shape.name.empty();
-      TableLayout layout =
-          as_it_is ? state_.layout : NeededLayout(model, coverage, /*drop_equal=*/false);
-      layout.coloured_d = layout.coloured_d && shape.coloured_d && state_.layout.coloured_d;
-      layout.coloured_s = layout.coloured_s && shape.coloured_s && state_.layout.coloured_s;
-      if (shape.constant_G) {
-        for (std::vector<int>& nodes : layout.nodes[2]) nodes.resize(1);
-      }
+      const TableLayout layout = LayoutOf(
+          shape, as_it_is ? state_.layout : NeededLayout(model, coverage, /*drop_equal=*/false));
       double rise = 0;
       if (as_it_is) {
         model = state_.model;
@@ -442,7 +448,7 @@ class Pruner {
         }
         // The rise is as far off for fewer, about.
         const double share = (guide_ - state_.E) / (to.E - state_.E);
-        const double rise = std::clamp(share, 0.1, 0.9) * order[count - 1].rise;
+        const double rise = std::clamp(share, 0.1, 0.7) * order[count - 1].rise;
         const int less = static_cast<int>(
             std::ranges::lower_bound(order, rise, {}, &Elimination::rise) - order.begin());
         count = std::min(less, count - 1);
