@@ -43,6 +43,13 @@ void WriteSeeds(const std::string& folder) {
   WriteSeed(folder + "/model", "shared", SmallModel(ModelSpec::SharedFactors(2, grid)));
   WriteSeed(folder + "/model", "independent", SmallModel(ModelSpec::IndependentG(grid)));
 
+  WriteSeed(folder + "/scene", "scene", R"({"format": "trilobe-scene", "version": 1,
+      "directions": {"theta_i": [0, 60]}, "channels": "luminance", "budget": {"bytes": 800},
+      "leave_out": {"lobes": false}, "materials": [{"name": "a", "source": "synth:felt",
+      "directions": {"list": [{"theta_i": 1, "theta_o": 2, "phi": 3}]}}]})");
+  WriteSeed(folder + "/scene", "histogram",
+            std::string("\1\0\0\0\1\0\0\0\1\0\0\0\0\0\0\0\0\0\0\x40", 20));
+
   const IterationRecord records[] = {{0, 0, 1e6, false},
                                      {1, 0.25, 1.0 / 3, true, true, 0.5, 1e-3},
                                      {2, 0.5, 1.0 / 3, false, false, 0, 1e-3}};
