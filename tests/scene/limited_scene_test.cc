@@ -49,10 +49,14 @@ TEST(LimitedScene, LeavesOutTheEntriesThatNothingReads) {
   };
   // theta_h and theta_d are at most 30 degrees; a node of G serves to two nodes beyond.
   for (int h = 0; h < kGrid.theta_h; ++h) {
-    if (kGrid.Center(h, 0, 0).theta_h > DegreesToRadians(30)) EXPECT_EQ(coverage(Factor::kD, h), 0);
+    if (kGrid.Center(h, 0, 0).theta_h > DegreesToRadians(30)) {
+      EXPECT_EQ(coverage(Factor::kD, h), 0);
+    }
   }
   for (int d = 0; d < kGrid.theta_d; ++d) {
-    if (kGrid.Center(0, d, 0).theta_d > DegreesToRadians(30)) EXPECT_EQ(coverage(Factor::kF, d), 0);
+    if (kGrid.Center(0, d, 0).theta_d > DegreesToRadians(30)) {
+      EXPECT_EQ(coverage(Factor::kF, d), 0);
+    }
   }
   EXPECT_GT(coverage(Factor::kD, 0), 0);
   EXPECT_GT(coverage(Factor::kF, 0), 0);
