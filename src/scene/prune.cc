@@ -30,10 +30,12 @@ constexpr double kRounding = 1e-12;  // of E
 constexpr int kMaxPolish = 8;
 constexpr double kSmallGain = 0.02, kSmallDecrease = 1e-4;
 
-// Rounds of: linearise, give up nodes, refit. Those after the first spend what the quadratic
-// model's errors left of the budget.
-constexpr int kRounds = 4;
-constexpr int kTriesARound = 5;
+// Giving up nodes and refitting, again and again from where that led: what the errors of the
+// quadratic left of the budget is spent the next time. Where they were too large, a part of it is
+// tried, which grows again. It ends when few numbers went.
+constexpr int kMaxAttempts = 8;
+constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
+constexpr double kFewNumbers = 0.02;
 
 // Damping of the step to the best point of a reduction, in units in which the diagonal of H is 1.
 constexpr double kDamping = 1e-3;
@@ -431,29 +433,34 @@ class Pruner {
     return to;
   }
 
+  // How many nodes go before E has risen by more than this, but one.
+  static int CountWithin(const std::vector<Elimination>& order, double rise) {
+    const auto end = std::ranges::upper_bound(order, rise, {}, &Elimination::rise);
+    return std::max(1, static_cast<int>(end - order.begin()));
+  }
+
   // Gives up nodes until the budget is spent.
   void ThinTables() {
     const State before = state_;
-    for (int round = 0; round < kRounds; ++round) {
+    double share = 1;  // of what is left, to be spent next: less where predictions are too low
+    for (int attempt = 0; attempt < kMaxAttempts;) {
       const int numbers = state_.numbers();
       const QuadraticModel at = Linearize(state_);
       const std::vector<Elimination> order =
           OrderOfElimination(at, state_.model, state_.layout, LimitsFor(state_.E, numbers));
       int count = static_cast<int>(order.size());
-      for (int attempt = 0; attempt < kTriesARound && count > 0; ++attempt) {
+      for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
+        if (share < 1) count = std::min(count, CountWithin(order, share * (guide_ - state_.E)));
         State to = Without(order, count, at);
-        if (by_numbers_ || (to.E <= guide_ && Keeps(to))) {
+        taken = by_numbers_ || (to.E <= guide_ && Keeps(to));
+        if (taken) {
+          share = std::min(1.0, kGrowth * share);
           state_ = std::move(to);
-          break;
+        } else {
+          share *= std::clamp((guide_ - state_.E) / (to.E - state_.E), kMinCut, kMaxCut);
         }
-        // The rise is as far off for fewer, about.
-        const double share = (guide_ - state_.E) / (to.E - state_.E);
-        const double rise = std::clamp(share, 0.1, 0.7) * order[count - 1].rise;
-        const int less = static_cast<int>(
-            std::ranges::lower_bound(order, rise, {}, &Elimination::rise) - order.begin());
-        count = std::min(less, count - 1);
       }
-      if (by_numbers_ || state_.numbers() > 0.98 * numbers) break;
+      if (by_numbers_ || state_.numbers() > (1 - kFewNumbers) * numbers) break;
     }
     if (state_.numbers() == before.numbers()) return;
     std::ostringstream what;
