@@ -43,8 +43,8 @@ struct TradeOff {
 };
 
 // A row a material, with both models on axes of bytes, seconds and PSNR. Throws Error when there is
-// no row.
-void DrawTradeOff(std::span<const TradeOff> rows, const std::string& path);
+// no model.
+void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 
 // All pictures that the inputs allow, as factors.png, slices.png, spheres.png and trace.png in an
 // existing folder: slices and spheres need `measured`, trace needs records. Returns their paths.
