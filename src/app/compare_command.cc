@@ -253,8 +253,8 @@ Command CompareCommand() {
           .max_arguments = 1,
           .details =
               "For each material: numbers, bytes, seconds, E and PSNR of a full fit, as `trilobe "
-              "fit SOURCE` makes\nit without plots and diagnosis, and of the pruned model; E and "
-              "PSNR on the directions and channels\nthat the scene uses. Of a scene file the "
+              "fit SOURCE` makes\nit, and of the pruned model; E and PSNR on the directions and "
+              "channels\nthat the scene uses. Of a scene file the "
               "pruned models are made, or taken from the cache; of a folder\nthat `trilobe fit "
               "--scene` wrote they are read. With --out=FILE.png, draws it.",
           .flags = flags,

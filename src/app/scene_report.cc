@@ -90,7 +90,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
           {"relative_rise", Rise(fit)},
           {"psnr_db", {{"full", fit.full.psnr_db}, {"pruned", fit.pruned.psnr_db}}},
           {"seconds", {{"fit", fit.fit_seconds}, {"prune", fit.prune_seconds}}},
-          {"from_cache", fit.from_cache},
+          {"from_cache", {{"fit", fit.fit_from_cache}, {"prune", fit.prune_from_cache}}},
           {"decisions", decisions}};
 }
 
@@ -116,7 +116,10 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
         << Right(Text(100 * Rise(fit), 3) + " %", 12)
         << Right(Text(fit.full.psnr_db - fit.pruned.psnr_db, 3) + " dB", 15)
         << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
-        << (fit.from_cache ? "  from the cache" : "") << "\n";
+        << (fit.prune_from_cache ? "  from the cache"
+            : fit.fit_from_cache ? "  the fit from the cache"
+                                 : "")
+        << "\n";
   }
   out << name("all") << Right("", 6) << Right(std::to_string(pruned), 9)
       << Right(std::to_string(full), 9) << Right(std::to_string(BytesOf(pruned)), 9)

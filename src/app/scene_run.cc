@@ -121,7 +121,7 @@ SceneRun RunScene(const std::string& path, const SceneFitSettings& settings,
   for (const std::optional<MaterialFit>& fit : fits) {
     if (!fit) continue;
     run.fits.push_back(*fit);
-    run.reused += fit->from_cache ? 1 : 0;
+    run.reused += fit->fit_from_cache ? 1 : 0;
     when_made += fit->fit_seconds + fit->prune_seconds;
   }
   if (run.reused > 0) {

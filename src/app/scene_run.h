@@ -24,7 +24,7 @@ struct SceneRun {
   // From the first file read to the last model, all side by side. Where fits came from the cache,
   // that says nothing: then it is what the parts took when they were made, spread over the threads.
   double seconds = 0;
-  int reused = 0;       // materials for which nothing had to be done
+  int reused = 0;       // materials that took something from the cache
   int interrupted = 0;  // the signal that ended it; 0 for none
 };
 

@@ -122,7 +122,7 @@ Json Encode(const FullFit& fit) {
 }
 
 FullFit DecodeFullFit(const Json& json) {
-  return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds")};
+  return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds"), true};
 }
 
 Json Encode(const SceneScore& score) {
@@ -175,7 +175,7 @@ MaterialFit DecodeMaterialFit(const Json& json) {
   }
   fit.fit_seconds = json.at("fit_seconds");
   fit.prune_seconds = json.at("prune_seconds");
-  fit.from_cache = true;
+  fit.fit_from_cache = fit.prune_from_cache = true;
   return fit;
 }
 
@@ -329,6 +329,7 @@ class MaterialFitter {
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;
+    fit.fit_from_cache = full->from_cache;
     fit.valid_samples = valid_samples_;
     fit.used_samples = objective.samples().size();
     fit.full_numbers = full->file.model.spec().num_parameters();
@@ -389,7 +390,9 @@ std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSet
   SceneMaterial whole;
   whole.name = material.name;
   whole.source = material.source;
-  return MaterialFitter(whole, settings, num_threads)
+  SceneFitSettings diagnosed = settings;
+  diagnosed.options.diagnose = true;
+  return MaterialFitter(whole, diagnosed, num_threads)
       .Fit("alone on " + std::to_string(num_threads) + " threads");
 }
 

@@ -41,6 +41,7 @@ struct SceneScore {
 struct FullFit {
   ModelFile file;
   double seconds = 0;  // reading, preparing and fitting, when it was made
+  bool from_cache = false;
 };
 
 // What numbers take in memory [bytes].
@@ -57,7 +58,7 @@ struct MaterialFit {
   int numbers = 0;  // that it stores
   std::vector<PruneDecision> decisions;
   double fit_seconds = 0, prune_seconds = 0;  // when they were made
-  bool from_cache = false;                    // nothing was fitted or pruned for it
+  bool fit_from_cache = false, prune_from_cache = false;
 };
 
 // Fits a material as the scene limits it, and leaves out what its budget allows. Nothing if it was
@@ -73,7 +74,8 @@ std::vector<std::optional<MaterialFit>> FitScene(
     const std::function<void(const MaterialFit&)>& on_done);
 
 // What one would do without a scene: the material as a whole, in all directions and in RGB, on all
-// threads. Timed for itself, so a fit of FitScene is not reused. Nothing if it was stopped.
+// threads, with the diagnosis that `trilobe fit` makes. Timed for itself, so a fit of FitScene is
+// not reused. Nothing if it was stopped.
 std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,
                                 int num_threads);
 

@@ -35,7 +35,7 @@ std::string MakeScene(const TemporaryFolder& folder, const std::string& text = k
 }
 
 // A command with a cache of the test's own and a quick solver.
-ProgramResult Run(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+ProgramResult RunQuickly(const TemporaryFolder& folder, std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--solver=awls", "--max_iterations=2", "--lobes=1",
                                      "--cache=" + (folder / "cache")});
   return RunProgram(arguments);
@@ -44,13 +44,13 @@ ProgramResult Run(const TemporaryFolder& folder, std::vector<std::string> argume
 TEST(Scene, IsPlannedFittedAndCompared) {
   const TemporaryFolder folder;
   const std::string scene = MakeScene(folder), out = folder / "out";
-  const ProgramResult plan = Run(folder, {"plan", scene});
+  const ProgramResult plan = RunQuickly(folder, {"plan", scene});
   ASSERT_EQ(plan.status, 0) << plan.err;
   EXPECT_EQ(plan.err, "");
   EXPECT_THAT(plan.out, HasSubstr("\nwall: synth:rubber; E may rise by 5 %\n"));
   EXPECT_THAT(plan.out, HasSubstr("in directions that the scene does not use"));
 
-  const ProgramResult fit = Run(folder, {"fit", "--scene=" + scene, "--out=" + out});
+  const ProgramResult fit = RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("from the cache"));
   EXPECT_THAT(fit.out, HasSubstr(Contents(out + "/plan.txt")));
@@ -61,13 +61,13 @@ TEST(Scene, IsPlannedFittedAndCompared) {
   for (const auto& material : json["materials"]) {
     const std::string name = material["name"];
     const FactorModel model = ReadModel(out + "/" + name + ".json").model;
-    EXPECT_EQ(model.spec().lobes, material["lobes"]);
-    EXPECT_LT(material["numbers"]["pruned"], material["numbers"]["full"]);
-    EXPECT_LT(material["samples"]["used"], material["samples"]["valid"]);
-    EXPECT_LE(material["relative_rise"], 0.05 + 1e-12);
+    EXPECT_EQ(model.spec().lobes, material["lobes"].get<int>());
+    EXPECT_LT(material["numbers"]["pruned"].get<int>(), material["numbers"]["full"].get<int>());
+    EXPECT_LT(material["samples"]["used"].get<int>(), material["samples"]["valid"].get<int>());
+    EXPECT_LE(material["relative_rise"].get<double>(), 0.05 + 1e-12);
   }
 
-  const ProgramResult of_scene = Run(folder, {"compare", scene, "--json"});
+  const ProgramResult of_scene = RunQuickly(folder, {"compare", scene, "--json"});
   ASSERT_EQ(of_scene.status, 0) << of_scene.err;
   const ProgramResult of_folder = RunProgram(
       {"compare", out, "--json", "--cache=" + (folder / "cache")});  // the other flags are kept

@@ -63,7 +63,7 @@ TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
   EXPECT_LT(fit->used_samples, fit->valid_samples);
   EXPECT_LE(fit->pruned.objective, 1.01 * fit->full.objective * (1 + 1e-12));
   EXPECT_FALSE(fit->decisions.empty());
-  EXPECT_FALSE(fit->from_cache);
+  EXPECT_FALSE(fit->fit_from_cache || fit->prune_from_cache);
   const SceneScore again = ScoreOnScene(fit->file.model, Material("felt"), Settings(), 2);
   EXPECT_EQ(again.objective, fit->pruned.objective);
   EXPECT_EQ(again.psnr_db, fit->pruned.psnr_db);
@@ -78,7 +78,7 @@ TEST(FitMaterial, TakesFromTheCacheWhatItWouldMake) {
   EXPECT_EQ(directory.Names().size(), 2U);  // the full fit, and what is left of it
   const auto found = FitMaterial(material, Settings(cache), 2);
   ASSERT_TRUE(found);
-  EXPECT_TRUE(found->from_cache);
+  EXPECT_TRUE(found->fit_from_cache && found->prune_from_cache);
   ExpectSame(*made, *found);
   EXPECT_EQ(found->fit_seconds, made->fit_seconds);
   // Another name changes nothing, another budget reuses the full fit.
@@ -88,7 +88,8 @@ TEST(FitMaterial, TakesFromTheCacheWhatItWouldMake) {
   EXPECT_EQ(directory.Names().size(), 2U);
   other.budget.amount = 0.05;
   const auto reused = FitMaterial(other, Settings(cache), 1);
-  EXPECT_FALSE(reused->from_cache);
+  EXPECT_TRUE(reused->fit_from_cache);
+  EXPECT_FALSE(reused->prune_from_cache);
   EXPECT_EQ(reused->fit_seconds, made->fit_seconds);
   EXPECT_EQ(directory.Names().size(), 3U);
   // Torn entries are made again, to the same bits.
@@ -96,7 +97,7 @@ TEST(FitMaterial, TakesFromTheCacheWhatItWouldMake) {
     std::filesystem::resize_file(directory.Path(name), 100);
   }
   const auto remade = FitMaterial(material, Settings(cache), 1);
-  EXPECT_FALSE(remade->from_cache);
+  EXPECT_FALSE(remade->fit_from_cache || remade->prune_from_cache);
   ExpectSame(*made, *remade);
 }
 
@@ -106,7 +107,7 @@ TEST(FitMaterial, AnythingThatMattersMakesAnotherEntry) {
   ASSERT_TRUE(FitMaterial(Material("felt"), Settings(cache), 1));
   const auto expect_new = [&](const SceneMaterial& material, const SceneFitSettings& settings,
                               const char* what) {
-    EXPECT_FALSE(FitMaterial(material, settings, 1)->from_cache) << what;
+    EXPECT_FALSE(FitMaterial(material, settings, 1)->prune_from_cache) << what;
   };
   SceneMaterial material = Material("felt");
   material.directions = DirectionRanges{{0, 0.4}, {0, 0.3}};
