@@ -2,7 +2,7 @@
 """Fits a scene as a whole and within several budgets; tabulates and draws error against size and time.
 
     experiments/scene/run.py FOLDER...           the scene of materials.txt, its files in these folders
-    experiments/scene/run.py --quick             two synthetic materials, seconds; says nothing
+    experiments/scene/run.py --quick             a synthetic material, seconds; says nothing
 """
 import argparse
 import csv
@@ -164,7 +164,7 @@ def parse_arguments():
 def main():
     options = parse_arguments()
     if options.quick:
-        materials = [("plastic", "synth:plastic"), ("felt", "synth:felt")]
+        materials = [("plastic", "synth:plastic")]
     else:
         materials = read_manifest(options.folders)
     if options.only is not None:

@@ -59,8 +59,9 @@ class Node {
     for (const auto& item : json_.items()) {
       if (std::ranges::find(known, item.key()) != known.end()) continue;
       std::string list;
-      for (const std::string_view key : known)
+      for (const std::string_view key : known) {
         list += (list.empty() ? "" : ", ") + std::string(key);
+      }
       Node(item.value(), pointer_ / item.key(), file_)
           .Fail("unknown key; did you mean '" + std::string(NearestName(item.key(), known)) +
                 "'? Known here: " + list);
@@ -98,8 +99,9 @@ class Node {
     std::string word = String();
     if (std::ranges::find(known, word) != known.end()) return word;
     std::string list;
-    for (const std::string_view each : known)
+    for (const std::string_view each : known) {
       list += (list.empty() ? "" : " or ") + Quoted(std::string(each));
+    }
     Fail("must be " + list + ", not " + Quoted(word));
   }
 

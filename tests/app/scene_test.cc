@@ -96,7 +96,7 @@ TEST(Scene, AnInterruptKeepsWhatIsFinished) {
   const TemporaryFolder folder;
   const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
       "materials": [
-        {"name": "quick", "source": "synth:rubber",
+        {"name": "quick", "source": "synth:rubber", "budget": {"seconds": 1},
          "directions": {"theta_i": [0, 10], "theta_o": [0, 10]}},
         {"name": "slow", "source": "synth:felt"}]})");
   const std::string out = folder / "out";
