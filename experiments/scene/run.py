@@ -177,7 +177,7 @@ def main():
     draw(options.out / "error_against_bytes.png", results, "What error buys in bytes",
          "numbers of the model (bytes)", lambda side: side["bytes"])
     draw(options.out / "error_against_seconds.png", results, "What error buys in seconds",
-         "time to make the model (s)", lambda side: side["seconds"])
+         "time x threads to make it (s)", lambda side: side["seconds"] * side["threads"])
     print((options.out / "table.md").read_text(), end="")
 
 

@@ -25,7 +25,8 @@ using Json = nlohmann::ordered_json;
 // One model of a material, judged on the directions that the scene uses.
 struct Side {
   int numbers = 0;
-  double seconds = 0;
+  int threads = 0;
+  double seconds = 0;  // on so many threads
   SceneScore score;
 };
 
@@ -122,10 +123,11 @@ Comparison Compare(const PrunedScene& pruned) {
     const std::optional<FullFit> full = FitWhole(material, pruned.settings, comparison.threads);
     if (!full) throw Error("interrupted; the same command goes on from the cache");
     comparison.full_seconds += full->seconds;
-    comparison.rows.push_back(
-        {material.name,
-         {full->file.model.spec().num_parameters(), full->seconds, score(full->file.model)},
-         {pruned.numbers[k], pruned.material_seconds[k], score(pruned.files[k].model)}});
+    comparison.rows.push_back({material.name,
+                               {full->file.model.spec().num_parameters(), full->file.fit.threads,
+                                full->seconds, score(full->file.model)},
+                               {pruned.numbers[k], pruned.files[k].fit.threads,
+                                pruned.material_seconds[k], score(pruned.files[k].model)}});
   }
   return comparison;
 }
@@ -138,11 +140,9 @@ auto Total(const Comparison& comparison, const Value& value) {
 }
 
 Json SideToJson(const Side& side) {
-  return {{"numbers", side.numbers},
-          {"bytes", BytesOf(side.numbers)},
-          {"seconds", side.seconds},
-          {"objective", side.score.objective},
-          {"psnr_db", side.score.psnr_db}};
+  return {{"numbers", side.numbers},           {"bytes", BytesOf(side.numbers)},
+          {"threads", side.threads},           {"seconds", side.seconds},
+          {"objective", side.score.objective}, {"psnr_db", side.score.psnr_db}};
 }
 
 Json ToJson(const Comparison& comparison) {
@@ -220,7 +220,7 @@ void Print(const Comparison& comparison) {
 void Draw(const Comparison& comparison, const std::string& path) {
   std::vector<TradeOff> rows;
   const auto end = [](const Side& side) {
-    return TradeOff::End{static_cast<double>(BytesOf(side.numbers)), side.seconds,
+    return TradeOff::End{static_cast<double>(BytesOf(side.numbers)), side.seconds * side.threads,
                          side.score.psnr_db};
   };
   for (const Row& row : comparison.rows) rows.push_back({row.name, end(row.full), end(row.pruned)});

@@ -51,8 +51,8 @@ void DrawTradeOff(std::span<const TradeOff> models, const std::string& path) {
   for (size_t k = 0; k < models.size(); ++k) {
     const auto& [name, full, pruned] = models[k];
     const auto y = static_cast<double>(models.size() - 1 - k);  // the first one on top
-    rows.push_back(
-        {y, full.bytes, pruned.bytes, full.seconds, pruned.seconds, full.psnr_db, pruned.psnr_db});
+    rows.push_back({y, full.bytes, pruned.bytes, full.core_seconds, pruned.core_seconds,
+                    full.psnr_db, pruned.psnr_db});
     const std::string comma = k == 0 ? "" : ", ";
     names += comma + GnuplotQuote(name) + " " + GnuplotNumber(y);
     ticks += comma + "'' " + GnuplotNumber(y);
@@ -68,7 +68,7 @@ void DrawTradeOff(std::span<const TradeOff> models, const std::string& path) {
   script += "set ytics (" + names + ") noenhanced\n";
   script += Panel("numbers of the model [bytes]", 0, true, rows);
   script += "unset label\nset ytics (" + ticks + ")\n";
-  script += Panel("time to make it [s]", 1, true, rows);
+  script += Panel("time x threads to make it [s]", 1, true, rows);
   script += Panel("PSNR [dB]", 2, false, rows);
   DrawPng(path, 1600, height, script);
 }

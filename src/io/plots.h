@@ -36,13 +36,13 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
 // Two models of one material: what each takes, and how well it fits.
 struct TradeOff {
   struct End {
-    double bytes = 0, seconds = 0, psnr_db = 0;
+    double bytes = 0, core_seconds = 0, psnr_db = 0;
   };
   std::string name;
   End full, pruned;
 };
 
-// A row a material, with both models on axes of bytes, seconds and PSNR. Throws Error when there is
+// A row a material, with both models on axes of bytes, time and PSNR. Throws Error when there is
 // no model.
 void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 
