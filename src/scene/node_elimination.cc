@@ -7,18 +7,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 
+#include "trilobe/scene/reduced_quadratic.h"
 #include "trilobe/solvers/cholesky.h"
 #include "trilobe/solvers/joint_step.h"
 #include "trilobe/solvers/reduction.h"
 
 namespace trilobe {
 namespace {
-
-// Against H in units in which its diagonal is 1: moves of numbers that the data hardly see cost
-// this much, since E is no quadratic far away.
-constexpr double kDamping = 1e-3;
 
 // A few numbers with a factor each.
 struct Term {
@@ -234,7 +230,7 @@ class Eliminator {
       for (int i = 0; i < n; ++i) {
         A_at(i, j) = at.H[static_cast<size_t>(j) * n + i] / (scale_[i] * scale_[j]);
       }
-      A_at(j, j) += kDamping;
+      A_at(j, j) += kQuadraticDamping;
     }
     Tableau tableau(std::move(A), z);
     for (int j = 0; j < n; ++j) {
@@ -325,21 +321,6 @@ class Eliminator {
 };
 
 }  // namespace
-
-void HoldTableSizes(std::span<const FactorModel::Part> parts, int first_table,
-                    std::span<const double> y, std::span<const double> scale, QuadraticModel* at) {
-  const size_t n = y.size();
-  std::vector<double> u(n);  // scale^2 y
-  for (size_t j = 0; j < n; ++j) u[j] = scale[j] * scale[j] * y[j];
-  for (const auto [begin, size] : parts.subspan(first_table)) {
-    double squares = 0;
-    for (int j = begin; j < begin + size; ++j) squares += u[j] * y[j];
-    if (!(squares > 0)) continue;
-    for (int i = begin; i < begin + size; ++i) {
-      for (int j = begin; j < begin + size; ++j) at->H[i * n + j] += u[i] * u[j] / squares;
-    }
-  }
-}
 
 std::vector<Elimination> OrderOfElimination(const QuadraticModel& at, const FactorModel& model,
                                             const TableLayout& layout,

@@ -1,7 +1,6 @@
 #ifndef TRILOBE_SCENE_NODE_ELIMINATION_H_
 #define TRILOBE_SCENE_NODE_ELIMINATION_H_
 
-#include <span>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
@@ -34,13 +33,6 @@ struct EliminationLimits {
 std::vector<Elimination> OrderOfElimination(const QuadraticModel& at, const FactorModel& model,
                                             const TableLayout& layout,
                                             const EliminationLimits& limits);
-
-// E is flat where scale moves between a table and s, and a quadratic knows no end of that: it would
-// meet a constraint by scaling the table to 0. This adds to H what holds the size of each table:
-// the part of its change along itself counts in full, lengths being those that `scale` makes of
-// numbers y. `parts` are those of y, and the first of them that is a table is `first_table`.
-void HoldTableSizes(std::span<const FactorModel::Part> parts, int first_table,
-                    std::span<const double> y, std::span<const double> scale, QuadraticModel* at);
 
 }  // namespace trilobe
 

@@ -14,10 +14,12 @@
 #include "trilobe/model/score.h"
 #include "trilobe/scene/lobe_search.h"
 #include "trilobe/scene/node_elimination.h"
+#include "trilobe/scene/reduced_quadratic.h"
+#include "trilobe/scene/shapes.h"
 #include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/nonnegative_step.h"
 #include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/reduction.h"
+#include "trilobe/solvers/run.h"
 
 namespace trilobe {
 namespace {
@@ -37,9 +39,6 @@ constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
 constexpr double kFewNumbers = 0.02;
 
-// Damping of the step to the best point of a reduction, in units in which the diagonal of H is 1.
-constexpr double kDamping = 1e-3;
-
 // A model on the way from the full to the pruned one, with its own objective.
 struct State {
   std::shared_ptr<const Objective> objective;
@@ -49,13 +48,6 @@ struct State {
 
   const ModelSpec& spec() const { return model.spec(); }
   int numbers() const { return layout.num_numbers(spec()); }
-};
-
-// A way for lobes and channels to share.
-struct Shape {
-  std::string name;
-  ModelSpec spec;
-  bool coloured_d = true, coloured_s = true, constant_G = false;
 };
 
 int Lobes(const State& state) { return state.spec().lobes; }
@@ -99,6 +91,7 @@ class Pruner {
       // E and PSNR go different ways, but where E is about the squared error this is where they
       // agree.
       limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
+      if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(objective));
       guide_ = std::min(limit_, E_full_ * std::pow(10, options.max_psnr_drop_db / 10));
     }
   }
@@ -210,7 +203,7 @@ class Pruner {
 
   // The first shape that changes no number.
   void ShareWhatIsEqual() {
-    for (const Shape& shape : Shapes(state_)) {
+    for (const Shape& shape : Shapes()) {
       if (shape.constant_G || shape.name.empty()) continue;
       const Reduction sharing = Reduction::BySharing(state_.spec(), shape.spec);
       const Reduction reduction =
@@ -226,89 +219,8 @@ class Pruner {
     }
   }
 
-  // The layout with the shape's colour, and its G.
-  static TableLayout LayoutOf(const Shape& shape, TableLayout layout) {
-    layout.coloured_d = shape.coloured_d;
-    layout.coloured_s = shape.coloured_s;
-    if (shape.constant_G) {
-      for (std::vector<int>& nodes : layout.nodes[static_cast<int>(Factor::kG)]) {
-        nodes.resize(1);
-      }
-    }
-    return layout;
-  }
-
-  // The state's own shape, without a name, and those that share more; the one with the fewest
-  // numbers first.
-  std::vector<Shape> Shapes(const State& state) const {
-    const Shape own{.name = "",
-                    .spec = state.spec(),
-                    .coloured_d = state.layout.coloured_d,
-                    .coloured_s = state.layout.coloured_s};
-    std::vector<Shape> shapes = {own};
-    // What is no change has no name.
-    const auto add = [&](Shape shape, const Shape& of, const std::string& name) {
-      shape.name = of.name + (of.name.empty() ? "" : ", ") + name;
-      const bool changes = shape.spec != of.spec || shape.coloured_d != of.coloured_d ||
-                           shape.coloured_s != of.coloured_s || shape.constant_G;
-      if (changes) shapes.push_back(shape);
-    };
-    if (options_.colour) {
-      Shape shape = own;
-      shape.spec.F.per_channel = shape.spec.D.per_channel = false;
-      if (options_.shadowing) shape.spec.G.per_channel = false;
-      if (Lobes(state) > 0) add(shape, own, "tables shared by the channels");
-      if (Lobes(state) > 0) shape.coloured_s = false;
-      shape.coloured_d = false;
-      add(shape, own, "one channel for all");
-      if (Lobes(state) > 0) {
-        shape.coloured_s = own.coloured_s;
-        add(shape, own, "colour in s alone");
-      }
-    }
-    if (options_.shadowing && Lobes(state) > 0) {
-      for (const Shape& colour : std::vector<Shape>(shapes)) {
-        Shape shape = colour;
-        shape.spec.G.per_lobe = false;
-        if (Lobes(state) > 1) add(shape, colour, "G shared by the lobes");
-        shape.spec.G.per_channel = false;
-        shape.constant_G = true;
-        add(shape, colour, "G constant");
-      }
-    }
-    const auto numbers = [](const Shape& shape) {
-      return LayoutOf(shape, TableLayout::Full(shape.spec)).num_numbers(shape.spec);
-    };
-    std::ranges::stable_sort(shapes, {}, numbers);
-    return shapes;
-  }
-
-  // Where E is lowest in the numbers y of a reduction, by the quadratic `at` of a point x: from y0,
-  // and by how much E rises.
-  struct Best {
-    std::vector<double> y;
-    double rise = 0;
-  };
-  static Best BestWithin(const Reduction& reduction, const QuadraticModel& at,
-                         std::span<const double> x, std::span<const double> y0, int first_table) {
-    const size_t n = x.size();
-    const std::vector<double> x0 = reduction.Expand(y0);
-    std::vector<double> H_d(n);
-    double rise = 0;
-    for (size_t k = 0; k < n; ++k) {
-      for (size_t l = 0; l < n; ++l) H_d[k] += at.H[k * n + l] * (x0[l] - x[l]);
-    }
-    for (size_t k = 0; k < n; ++k) rise += (x0[k] - x[k]) * (2 * at.gradient[k] + H_d[k]);
-    QuadraticModel reduced = reduction(at);
-    const std::vector<double> to_gradient = reduction.Transpose(H_d);
-    for (size_t j = 0; j < to_gradient.size(); ++j) reduced.gradient[j] += to_gradient[j];
-    const std::vector<double> scale = DampingMetric(reduction.parts(), reduced.squared_lengths);
-    HoldTableSizes(reduction.parts(), first_table, y0, scale, &reduced);
-    NonnegativeStep step;
-    step.MoveTo(reduced, scale, y0);
-    NonnegativeStep::Result result = step.Solve(kDamping);
-    rise -= 2 * result.predicted_decrease;
-    return {.y = std::move(result.x), .rise = rise};
+  std::vector<Shape> Shapes() const {
+    return ShapesWithin(state_.spec(), state_.layout, options_.colour, options_.shadowing);
   }
 
   QuadraticModel Linearize(const State& state) const {
@@ -356,11 +268,12 @@ class Pruner {
       int numbers;
     };
     std::vector<Option> options;
-    for (const Shape& shape : Shapes(state_)) {
+    for (const Shape& shape : Shapes()) {
       const Reduction sharing = Reduction::BySharing(state_.spec(), shape.spec);
       FactorModel model(shape.spec);
       const std::vector<double> coverage = sharing.Transpose(state_.objective->coverage());
       const bool as_it_is = shape.name.empty();
+      if (as_it_is && options.empty()) return;  // it has the most numbers, and comes last
       const TableLayout layout = LayoutOf(
           shape, as_it_is ? state_.layout : NeededLayout(model, coverage, /*drop_equal=*/false));
       double rise = 0;
@@ -371,19 +284,15 @@ class Pruner {
         std::vector<double> y0 = reduction.Transpose(x);
         const std::vector<double> counts = reduction.Transpose(std::vector<double>(x.size(), 1.0));
         for (size_t j = 0; j < y0.size(); ++j) y0[j] /= counts[j];
-        const Best best = BestWithin(reduction, at, x, y0, 1 + Lobes(state_));
+        const ReducedPoint best = LowestWithin(reduction, at, x, y0, Lobes(state_));
         rise = best.rise;
         std::ranges::copy(inner.Expand(best.y), model.parameters().begin());
       }
       if (!by_numbers_ && state_.E + rise > guide_) continue;
       QuadraticModel there = sharing(at);
       const std::vector<double> moved = sharing.Expand(model.parameters());
-      std::vector<double> gradient = at.gradient;
-      for (size_t k = 0; k < x.size(); ++k) {
-        for (size_t l = 0; l < x.size(); ++l) {
-          gradient[k] += at.H[k * x.size() + l] * (moved[l] - x[l]);
-        }
-      }
+      std::vector<double> gradient = GradientChange(at, x, moved);
+      for (size_t k = 0; k < x.size(); ++k) gradient[k] += at.gradient[k];
       there.gradient = sharing.Transpose(gradient);
       const double E = state_.E + rise;
       const int numbers = layout.num_numbers(shape.spec);
@@ -419,7 +328,8 @@ class Pruner {
     }
     const Reduction reduction(to.spec(), to.layout);
     const std::vector<double> y0 = reduction.Restrict(state_.model.parameters());
-    const Best best = BestWithin(reduction, at, state_.model.parameters(), y0, 1 + Lobes(state_));
+    const ReducedPoint best =
+        LowestWithin(reduction, at, state_.model.parameters(), y0, Lobes(state_));
     to.E = kInfinity;
     for (const std::vector<double>& y : {best.y, y0}) {
       FactorModel model(to.spec());

@@ -50,8 +50,9 @@ struct PrunedModel {
 
 // The smallest model found that keeps within the budget (docs/pruning.md). `full` is a fit of the
 // objective and has its spec. What is returned never exceeds the budget, up to rounding (1e-12 of
-// E); if the full model does, and more lobes do not help, it is the one that comes closest, and the
-// last decision says so. With a budget of 0 nothing moves, and only what is free is left out.
+// E, and E of a fit that is exact but for rounding); if the full model does, and more lobes do not
+// help, it is the one that comes closest, and the last decision says so. With a budget of 0 nothing
+// moves, and only what is free is left out.
 //
 // Costs less than a fit by the solver `auto`; the same bits for any number of threads.
 // Throws Error for a budget that is no number, or less than one stored number.

@@ -268,6 +268,7 @@ TEST(Prune, TheSameBitsForAnyNumberOfThreads) {
 
 TEST(Prune, OtherSharingAndScatteredSamples) {
   for (const NamedSpec& named : TestSpecs(kGrid)) {
+    if (kSanitized && named.spec.lobes > 2) continue;
     const Objective objective = MakeObjective(RandomTable(kGrid, 1), named.spec);
     FactorModel model = RandomModel(named.spec, 1);
     const double E = objective.Value(model);
