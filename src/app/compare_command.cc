@@ -76,7 +76,7 @@ PrunedScene FromRun(const std::string& path) {
 // Fits the same way as the command that made the folder did, unless other flags are given.
 void TakeFlags(const Json& flags) {
   for (const auto& [flag, value] : flags.items()) {
-    const std::vector<std::string> known = SceneFlags();
+    const std::vector<std::string> known = SceneModelFlags();
     if (std::ranges::find(known, flag) != known.end() && IsDefault(flag)) {
       gflags::SetCommandLineOption(flag.c_str(), value.get<std::string>().c_str());
     }

@@ -133,7 +133,7 @@ Json PlanToJson(const SceneRun& run) {
   Json materials = Json::array();
   for (const MaterialFit& fit : run.fits) materials.push_back(ToJson(run, fit));
   return {{"scene", std::filesystem::absolute(run.scene.path).lexically_normal().string()},
-          {"flags", GivenFlags(SceneFlags())},
+          {"flags", GivenFlags(SceneModelFlags())},
           {"threads", run.threads},
           {"seconds", run.seconds},
           {"reused", run.reused},

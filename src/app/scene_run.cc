@@ -88,6 +88,13 @@ std::vector<std::string> SceneFlags() {
           "nocache"};
 }
 
+std::vector<std::string> SceneModelFlags() {
+  std::vector<std::string> flags = SceneFlags();
+  for (const char* const flag : {"threads", "cache", "nocache"}) std::erase(flags, flag);
+  for (const std::string& flag : ParticularSolverFlags()) flags.push_back(flag);
+  return flags;
+}
+
 SceneFitSettings SceneSettingsFromFlags() {
   const SolverEntry& solver = SolverFromFlags();
   const ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes);

@@ -10,8 +10,11 @@
 
 namespace trilobe {
 
-// The flags that say how the materials of a scene are fitted, and what only some solvers read.
+// The flags of the commands that fit scenes; those that only some solvers read are not among them.
 std::vector<std::string> SceneFlags();
+
+// The flags on which the models depend.
+std::vector<std::string> SceneModelFlags();
 
 // What these flags ask for. Throws Error for a value that makes no sense.
 SceneFitSettings SceneSettingsFromFlags();
