@@ -39,6 +39,15 @@ constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
 constexpr double kFewNumbers = 0.02;
 
+// Towards a budget of numbers: this part of those in excess goes at once, if they are more than
+// few.
+constexpr double kExcessAtOnce = 0.75;
+constexpr int kFewInExcess = 10;
+
+// Towards a limit of PSNR: so often, and by this factor, the rise of E that is allowed grows.
+constexpr int kStretches = 4;
+constexpr double kStretch = 3;
+
 // A model on the way from the full to the pruned one, with its own objective.
 struct State {
   std::shared_ptr<const Objective> objective;
@@ -83,13 +92,12 @@ class Pruner {
       : objective_(objective), options_(options) {
     state_ = MakeState(objective.spec(), full);
     E_full_ = state_.E;
-    if (std::isfinite(options.max_psnr_drop_db)) {
-      lowest_psnr_ = ScoreModel(objective, full).psnr_db - options.max_psnr_drop_db;
-    }
     by_numbers_ = options.max_numbers < std::numeric_limits<int>::max();
     if (!by_numbers_) {
-      // E and PSNR go different ways, but where E is about the squared error this is where they
-      // agree.
+      if (std::isfinite(options.max_psnr_drop_db)) {
+        lowest_psnr_ = ScoreModel(objective, full).psnr_db - options.max_psnr_drop_db;
+      }
+      // Where E is the squared error, PSNR falls by as much at this E; elsewhere it is a start.
       limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
       if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(objective));
       guide_ = std::min(limit_, E_full_ * std::pow(10, options.max_psnr_drop_db / 10));
@@ -165,13 +173,13 @@ class Pruner {
     return taken;
   }
 
-  std::string Against(double limit, double E) const {
+  std::string Against(double E, bool within) const {
     std::ostringstream out;
     out.precision(3);
     const double rise = 100 * (E / E_full_ - 1);
     out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
         << " the full model's";
-    if (!by_numbers_) out << "; " << (E <= limit ? "within" : "beyond") << " the budget";
+    if (!by_numbers_) out << "; " << (within ? "within" : "beyond") << " the budget";
     return out.str();
   }
 
@@ -315,7 +323,7 @@ class Pruner {
       to.E = to.objective->Value(to.model);
       Polish(&to);
       const bool taken = by_numbers_ || (to.E <= guide_ && Keeps(to));
-      const std::string why = Against(guide_, to.E);
+      const std::string why = Against(to.E, taken);
       if (Decide(option.shape.name, std::move(to), taken, why)) return;
     }
   }
@@ -359,6 +367,7 @@ class Pruner {
       const std::vector<Elimination> order =
           OrderOfElimination(at, state_.model, state_.layout, LimitsFor(state_.E, numbers));
       int count = static_cast<int>(order.size());
+      if (by_numbers_ && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
       for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
         if (share < 1) count = std::min(count, CountWithin(order, share * (guide_ - state_.E)));
         State to = Without(order, count, at);
@@ -370,7 +379,7 @@ class Pruner {
           share *= std::clamp((guide_ - state_.E) / (to.E - state_.E), kMinCut, kMaxCut);
         }
       }
-      if (by_numbers_ || state_.numbers() > (1 - kFewNumbers) * numbers) break;
+      if (state_.numbers() > (by_numbers_ ? numbers - 1 : (1 - kFewNumbers) * numbers)) break;
     }
     if (state_.numbers() == before.numbers()) return;
     std::ostringstream what;
@@ -383,7 +392,7 @@ class Pruner {
            << " to " << to;
     }
     State after = std::exchange(state_, before);
-    const std::string why = Against(guide_, after.E);
+    const std::string why = Against(after.E, /*within=*/true);
     Decide(what.str(), std::move(after), true, why);
   }
 
@@ -401,15 +410,29 @@ class Pruner {
     const bool more = spec.lobes > Lobes(state_);
     const bool taken = more ? to.E < state_.E : to.E <= wanted && Keeps(to);
     const std::string what = LobesText(spec.lobes) + " instead of " + LobesText(Lobes(state_));
-    const std::string why = Against(wanted, to.E);
+    const std::string why = Against(to.E, to.E <= wanted && Keeps(to));
     return Decide(what, std::move(to), taken, why);
   }
 
   void SpendBudget() {
-    while (options_.lobes && Lobes(state_) > 0 && TryLobes(WithOneLobeLess(state_.model), guide_)) {
+    // The guide says nothing about a PSNR far away, so that E may rise beyond it here.
+    const double wanted = lowest_psnr_ ? limit_ : guide_;
+    while (options_.lobes && Lobes(state_) > 0 && TryLobes(WithOneLobeLess(state_.model), wanted)) {
     }
+    guide_ = std::max(guide_, state_.E);
     ChooseShape();
     ThinTables();
+    for (int round = 0; round < kStretches && SparesPsnr(); ++round) {
+      guide_ = std::min(limit_, E_full_ + kStretch * (guide_ - E_full_));
+      ThinTables();
+    }
+  }
+
+  // True where PSNR alone limits, and less than half of what it may fall is spent.
+  bool SparesPsnr() const {
+    if (!lowest_psnr_ || guide_ >= limit_) return false;
+    return ScoreModel(*state_.objective, state_.model).psnr_db >
+           *lowest_psnr_ + options_.max_psnr_drop_db / 2;
   }
 
   void AddLobes() {
@@ -439,9 +462,17 @@ class Pruner {
     ThinTables();
     while (options_.lobes && Lobes(lobes_kept) > 0) {
       State best = std::exchange(state_, lobes_kept);
+      const size_t decided = decisions_.size();
       const bool met = best.numbers() <= options_.max_numbers;
-      if (!TryLobes(WithOneLobeLess(state_.model), met ? best.E : kInfinity)) {
+      const auto back_to_best = [&] {
         state_ = std::move(best);
+        for (size_t k = decided; k < decisions_.size(); ++k) {
+          if (decisions_[k].taken) decisions_[k].why += "; with more lobes it ends lower";
+          decisions_[k].taken = false;
+        }
+      };
+      if (!TryLobes(WithOneLobeLess(state_.model), met ? best.E : kInfinity)) {
+        back_to_best();
         break;
       }
       lobes_kept = state_;
@@ -449,7 +480,7 @@ class Pruner {
       ThinTables();
       const bool meets = state_.numbers() <= options_.max_numbers;
       if (met && !(meets && state_.E < best.E)) {
-        state_ = std::move(best);
+        back_to_best();
         break;
       }
     }

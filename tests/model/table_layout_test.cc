@@ -27,16 +27,16 @@ TEST(TableLayout, TheFullOneStoresEverythingAndChangesNothing) {
 TEST(TableLayout, IsLinearBetweenNodesAndConstantBeyond) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   TableLayout layout = TableLayout::Full(model.spec());
-  layout.of(Factor::kD, 0) = {1, 4};
+  layout.of(Factor::kD, 0) = {1, 5};
   layout.of(Factor::kG, 0) = {2};
   layout.coloured_s = false;
   const auto D = model.table(Factor::kD, 0), G = model.table(Factor::kG, 0);
   D[1] = 4;
-  D[4] = 1;
+  D[5] = 0;
   G[2] = 7;
   model.s(0)[0] = 5;
   ExpandStored(layout, &model);
-  EXPECT_EQ(std::vector<double>(D.begin(), D.end()), (std::vector<double>{4, 4, 3, 2, 1, 1}));
+  EXPECT_EQ(std::vector<double>(D.begin(), D.end()), (std::vector<double>{4, 4, 3, 2, 1, 0}));
   for (const double g : G) EXPECT_EQ(g, 7);
   EXPECT_EQ(model.s(0)[2], 5);
   const int dropped = (6 - 2) + (model.spec().g_nodes - 1) + 2;
