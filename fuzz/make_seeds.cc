@@ -26,6 +26,15 @@ std::string SmallModel(const ModelSpec& spec) {
   return FormatModel(file);
 }
 
+std::string CompactModel(const ModelSpec& spec) {
+  ModelFile file{FactorModel(spec), {}, {}};
+  file.layout = TableLayout::Full(spec);
+  file.layout->coloured_d = file.layout->coloured_s = false;
+  file.layout->of(Factor::kD, 0) = {0, 2};
+  file.layout->of(Factor::kG, 0) = {1};
+  return FormatModel(file);
+}
+
 void WriteSeeds(const std::string& folder) {
   // A MERL header, and the two modes of merl_fuzzer.
   const std::string header("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12);
@@ -42,6 +51,14 @@ void WriteSeeds(const std::string& folder) {
   const MerlGrid grid{.theta_h = 4, .theta_d = 4, .phi_d = 4};
   WriteSeed(folder + "/model", "shared", SmallModel(ModelSpec::SharedFactors(2, grid)));
   WriteSeed(folder + "/model", "independent", SmallModel(ModelSpec::IndependentG(grid)));
+  WriteSeed(folder + "/model", "compact", CompactModel(ModelSpec::SharedFactors(1, grid)));
+
+  WriteSeed(folder + "/scene", "scene", R"({"format": "trilobe-scene", "version": 1,
+      "directions": {"theta_i": [0, 60]}, "channels": "luminance", "budget": {"bytes": 800},
+      "leave_out": {"lobes": false}, "materials": [{"name": "a", "source": "synth:felt",
+      "directions": {"list": [{"theta_i": 1, "theta_o": 2, "phi": 3}]}}]})");
+  WriteSeed(folder + "/scene", "histogram",
+            std::string("\1\0\0\0\1\0\0\0\1\0\0\0\0\0\0\0\0\0\0\x40", 20));
 
   const IterationRecord records[] = {{0, 0, 1e6, false},
                                      {1, 0.25, 1.0 / 3, true, true, 0.5, 1e-3},

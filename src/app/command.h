@@ -26,9 +26,11 @@ struct Command {
 };
 
 // One function a command, each in its own file.
+Command CompareCommand();
 Command ConvertCommand();
 Command FitCommand();
 Command InfoCommand();
+Command PlanCommand();
 Command PlotCommand();
 Command ScoreCommand();
 Command SolversCommand();

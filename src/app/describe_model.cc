@@ -22,6 +22,15 @@ std::string SharingText(const ModelSpec& spec, Factor factor) {
   return tables + "shared by all";
 }
 
+// Numbers that the file stores of all tables of one factor.
+int CountStored(const ModelFile& file, Factor factor) {
+  int count = 0;
+  for (const std::vector<int>& nodes : file.layout->nodes[static_cast<int>(factor)]) {
+    count += static_cast<int>(nodes.size());
+  }
+  return count;
+}
+
 // Dead entries of all tables of one factor.
 int CountDead(const ModelFile& file, Factor factor) {
   const ModelSpec& spec = file.model.spec();
@@ -56,7 +65,9 @@ void DescribeModel(const std::string& path) {
                                             {"per_lobe", sharing.per_lobe},
                                             {"per_channel", sharing.per_channel},
                                             {"dead", CountDead(file, factor)}};
+      if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
+    json["stored_numbers"] = file.layout ? file.layout->num_numbers(spec) : spec.num_parameters();
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},
                    {"init", fit.init},
@@ -76,11 +87,17 @@ void DescribeModel(const std::string& path) {
   PrintLine("file", path);
   PrintLine("kind", "model, " + std::to_string(spec.lobes) + " lobes, " +
                         std::to_string(spec.num_parameters()) + " parameters");
+  if (file.layout) {
+    PrintLine("stored", std::to_string(file.layout->num_numbers(spec)) + " numbers, and " +
+                            std::to_string(file.layout->num_places(spec)) + " places of nodes");
+  }
   for (const Factor factor : kFactors) {
     const int dead = CountDead(file, factor);
-    PrintLine(std::string("  ") + FactorName(factor),
-              SharingText(spec, factor) +
-                  (dead > 0 ? "; " + std::to_string(dead) + " entries without data" : ""));
+    PrintLine(
+        std::string("  ") + FactorName(factor),
+        SharingText(spec, factor) +
+            (file.layout ? "; " + std::to_string(CountStored(file, factor)) + " stored" : "") +
+            (dead > 0 ? "; " + std::to_string(dead) + " entries without data" : ""));
   }
   PrintLine("d, RGB", Text(ToRgb(model.d())) + " /sr");
   for (int m = 0; m < spec.lobes; ++m) {

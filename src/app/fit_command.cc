@@ -1,8 +1,6 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -13,8 +11,11 @@
 #include "trilobe/app/fit_report.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/progress.h"
+#include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/base/utc_time.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
@@ -34,7 +35,7 @@ DEFINE_string(
 DEFINE_string(model, "shared",
               "shared: D and G shared by the channels, F by the lobes (Peng et al.); independent: "
               "one lobe, nothing shared (Bagher et al.)");
-DEFINE_int32(lobes, 3, "specular lobes of --model=shared, 0 to 8");
+DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
 DEFINE_bool(reconstruction, false, "also write DIR/reconstruction.binary, the fit in MERL layout");
 DEFINE_bool(
     course, false,
@@ -43,20 +44,6 @@ DEFINE_bool(plots, false, "also draw the pictures of `trilobe plot` into DIR");
 
 namespace trilobe {
 namespace {
-
-class Stopwatch {
- public:
-  // Seconds since construction or the last call.
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const std::chrono::duration<double> lap = now - last_;
-    last_ = now;
-    return lap.count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 ModelSpec SpecFromFlags(const MerlGrid& grid) {
   if (FLAGS_model == "independent") {
@@ -92,15 +79,6 @@ FactorModel StartFromFile(const MerlGrid& grid) {
                 "for; leave these flags out to fit the file's own");
   }
   return model;
-}
-
-std::string UtcNow() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
 }
 
 SolverSummary Solve(const SolverEntry& solver, const Objective& objective, SolverOptions options,
@@ -145,7 +123,25 @@ void WriteOutputs(const ModelFile& file, const FitReport& report, const BrdfTabl
   std::cout << "written      " << written << " in " << FLAGS_out << "\n";
 }
 
+// A scene says what is fitted and, by its budgets, what models come out.
+int RunFitOfScene(std::span<const std::string> arguments) {
+  if (!arguments.empty()) {
+    throw Error("--scene names the sources in its file; leave out " + arguments[0]);
+  }
+  for (const char* const flag : {"init", "model", "reconstruction", "plots", "diagnose"}) {
+    if (!IsDefault(flag)) {
+      throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
+    }
+  }
+  return RunSceneFit(FLAGS_scene);
+}
+
 int RunFit(std::span<const std::string> arguments) {
+  if (!FLAGS_scene.empty()) return RunFitOfScene(arguments);
+  if (arguments.empty()) throw Error("trilobe fit needs a SOURCE, or --scene=SCENE");
+  for (const char* const flag : {"cache", "nocache"}) {
+    if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " goes with --scene");
+  }
   const int threads = ThreadsFromFlags();
   const Weighting& weighting = FindWeighting(FLAGS_weighting);
   const SolverEntry& solver = SolverFromFlags();
@@ -221,19 +217,22 @@ std::string List(const std::vector<T>& entries) {
 Command FitCommand() {
   std::vector<std::string> flags = {"solver", "init", "weighting", "model", "lobes"};
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(),
-               {"threads", "noise", "seed", "out", "reconstruction", "course", "plots"});
+  flags.insert(flags.end(), {"threads", "noise", "seed", "out", "reconstruction", "course", "plots",
+                             "scene", "cache", "nocache"});
   return {.name = "fit",
           .summary = "fit a model to a measurement",
-          .arguments = "SOURCE",
-          .min_arguments = 1,
+          .arguments = "SOURCE | --scene=SCENE",
+          .min_arguments = 0,
           .max_arguments = 1,
           .details =
               "Writes DIR/model.json (the model, in canonical form), DIR/trace.csv (E, step and "
               "seconds of\neach iteration; row 0 is the starting point) and DIR/report.json "
               "(settings, errors, diagnosis,\ntimes). Ctrl-C stops after the iteration and keeps "
               "the best model so far; go on from it, with the\nsame solver or another, with "
-              "--init=DIR/model.json.\n\nsolvers:\n" +
+              "--init=DIR/model.json.\n\nWith --scene, does what `trilobe plan` says for the "
+              "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
+              "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
+              "command goes on with the others.\n\nsolvers:\n" +
               List(Solvers()) + "\nstarting points (--init):\n" + List(InitialModels()) +
               "\nweightings:\n" + List(Weightings()) +
               "\n`trilobe help fit --solver=NAME` shows the flags of another solver than this:",

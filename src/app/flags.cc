@@ -14,6 +14,7 @@ DEFINE_int64(
     seed, 1,
     "seed of whatever is random: the noise of synth: sources, --init=random, random starts of "
     "a solver");
+DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
 DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
 DEFINE_string(weighting, "compressive",
               "weights of the objective: compressive, log, percentage, cosine or uniform");
@@ -23,6 +24,15 @@ namespace trilobe {
 
 bool IsDefault(const std::string& flag) {
   return gflags::GetCommandLineFlagInfoOrDie(flag.c_str()).is_default;
+}
+
+std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags) {
+  std::map<std::string, std::string> given;
+  for (const std::string& flag : flags) {
+    const auto info = gflags::GetCommandLineFlagInfoOrDie(flag.c_str());
+    if (!info.is_default) given[flag] = info.current_value;
+  }
+  return given;
 }
 
 std::string FlagHelp(const std::string& flag) {

@@ -3,10 +3,13 @@
 
 #include <gflags/gflags_declare.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 // Flags that several commands take.
 DECLARE_int32(threads);
+DECLARE_int32(lobes);
 DECLARE_int64(seed);
 DECLARE_double(noise);
 DECLARE_string(weighting);
@@ -18,6 +21,9 @@ struct SourceOptions;
 
 // True unless the flag was given a value other than its default.
 bool IsDefault(const std::string& flag);
+
+// The flags of these that were given, by name, as text.
+std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags);
 
 // A flag for `trilobe help COMMAND`: "  --lobes=3", and its description on the next line.
 std::string FlagHelp(const std::string& flag);

@@ -18,9 +18,9 @@
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {FitCommand(),  SolversCommand(), ScoreCommand(),
-                                                PlotCommand(), InfoCommand(),    ConvertCommand(),
-                                                SynthCommand()};
+  static const std::vector<Command> commands = {FitCommand(),     SolversCommand(), PlanCommand(),
+                                                CompareCommand(), ScoreCommand(),   PlotCommand(),
+                                                InfoCommand(),    ConvertCommand(), SynthCommand()};
   return commands;
 }
 

@@ -2,49 +2,13 @@
 #define TRILOBE_IO_MODEL_FILE_H_
 
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include "trilobe/model/factor_model.h"
+#include "trilobe/io/read_model.h"
 
 namespace trilobe {
 
-// What helps a person months later to know where a model came from. Empty or 0 where unknown.
-struct FitInfo {
-  std::string solver;
-  std::string init;
-  std::string weighting;
-  double objective = 0;  // E
-  double initial_objective = 0;
-  std::string stop_reason;
-  int iterations = 0;
-  double seconds = 0;
-  int threads = 0;
-  std::string source;
-  int valid_samples = 0;
-  std::string program;  // "trilobe 0.1.0"
-  std::string date;     // ISO 8601, UTC
-};
-
-// A model as it is stored (docs/file-formats.md).
-struct ModelFile {
-  FactorModel model;
-  std::vector<bool> dead;  // [num_parameters]: table entries that no data touched; display only
-  FitInfo fit;
-};
-
-// True if the bytes begin like a JSON object, as model files do and no measurement does.
-bool LooksLikeModel(std::string_view bytes);
-
-// JSON with "format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes", "d" [3],
-// "s" [M][3], "D" [M][90], "F" [3][90], "G" [M][90] as docs/file-formats.md has it for the paper's
-// model. Tables with other sharing nest as the spec says: [lobe][channel][entry], a level left out
-// where it is shared; "sharing" {"D": {"per_lobe": true, "per_channel": false}, ...} says so, and
-// may be missing for the paper's model. "dead" {"D": [[indices], ...] a table, ...} lists dead
-// bins. Unknown keys are ignored. Errors name the file and the key. All numbers must be finite and
-// >= 0. Doubles read back bit for bit.
-ModelFile ParseModel(std::string_view text, const std::string& source);
-ModelFile ReadModel(const std::string& path);
+// A model file as ParseModel reads it: its text, and the file. Throws Error for numbers that are
+// not finite and >= 0, and if the file cannot be written.
 std::string FormatModel(const ModelFile& file);
 void WriteModel(const ModelFile& file, const std::string& path);
 

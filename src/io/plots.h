@@ -33,6 +33,19 @@ void DrawSpheres(const BrdfTable& measured, const BrdfTable& fitted, const std::
 void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path);
 
+// Two models of one material: what each takes, and how well it fits.
+struct TradeOff {
+  struct End {
+    double bytes = 0, core_seconds = 0, psnr_db = 0;
+  };
+  std::string name;
+  End full, pruned;
+};
+
+// A row a material, with both models on axes of bytes, time and PSNR. Throws Error when there is
+// no model.
+void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
+
 // All pictures that the inputs allow, as factors.png, slices.png, spheres.png and trace.png in an
 // existing folder: slices and spheres need `measured`, trace needs records. Returns their paths.
 std::vector<std::string> DrawPictures(const ModelFile& file, const BrdfTable* measured,

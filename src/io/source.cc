@@ -1,33 +1,48 @@
 #include "trilobe/io/source.h"
 
-#include <string_view>
-
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
-#include "trilobe/io/rgl_file.h"
 #include "trilobe/io/synth.h"
+#ifdef TRILOBE_RGL
+#include "trilobe/io/rgl_file.h"
+#endif
 
 namespace trilobe {
-BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
-  constexpr std::string_view kSynth = "synth:";
-  if (source.starts_with(kSynth)) {
-    BrdfTable table = Synthesize(FindSynthMaterial(source.substr(kSynth.size())), options.noise,
-                                 options.seed, {}, options.num_threads);
-    table.source = source;
-    return table;
-  }
-  const std::string bytes = ReadFile(source);
+namespace {
+
+constexpr std::string_view kSynth = "synth:";
+
+}  // namespace
+
+bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
+
+const SynthMaterial& SynthMaterialOf(std::string_view source) {
+  return FindSynthMaterial(source.substr(kSynth.size()));
+}
+
+BrdfTable ParseSource(std::string_view bytes, const std::string& source,
+                      [[maybe_unused]] int num_threads) {
+#ifdef TRILOBE_RGL
   if (LooksLikeRgl(bytes)) {
-    return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, options.num_threads);
+    return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, num_threads);
   }
+#endif
   if (LooksLikeModel(bytes)) {
     throw Error(source +
                 ": this is a JSON file, as a fitted model is, and not a measurement; give a MERL "
                 ".binary file, an RGL *_rgb.bsdf file, or synth:NAME");
   }
   return ParseMerl(bytes, source);
+}
+
+BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
+  if (!IsSynthetic(source)) return ParseSource(ReadFile(source), source, options.num_threads);
+  BrdfTable table =
+      Synthesize(SynthMaterialOf(source), options.noise, options.seed, {}, options.num_threads);
+  table.source = source;
+  return table;
 }
 
 }  // namespace trilobe

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
+#include "trilobe/io/synth.h"
 #include "trilobe/model/brdf_table.h"
 
 namespace trilobe {
@@ -17,6 +19,13 @@ struct SourceOptions {
   int num_threads = 1;
 };
 BrdfTable LoadSource(const std::string& source, const SourceOptions& options = {});
+
+// Whether the source is synth:NAME, and if it is, what it names. Throws Error for an unknown NAME.
+bool IsSynthetic(std::string_view source);
+const SynthMaterial& SynthMaterialOf(std::string_view source);
+
+// The measurement in the bytes of a file, whose name `source` is. Throws Error.
+BrdfTable ParseSource(std::string_view bytes, const std::string& source, int num_threads = 1);
 
 }  // namespace trilobe
 

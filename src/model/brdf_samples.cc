@@ -22,9 +22,23 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
   return samples;
 }
 
+BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers) {
+  BrdfSamples selected{samples.source, samples.grid, {}, {}, {}};
+  for (const int j : numbers) {
+    if (samples.on_grid()) {
+      selected.bins.push_back(samples.bins[j]);
+    } else {
+      selected.angles.push_back(samples.angles[j]);
+    }
+    selected.rho.push_back(samples.rho[j]);
+    if (!samples.multiplicity.empty()) selected.multiplicity.push_back(samples.multiplicity[j]);
+  }
+  return selected;
+}
+
 BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
   const MerlGrid& grid = samples.grid;
-  BrdfSamples thinned{samples.source, grid, {}, {}, {}};
+  std::vector<int> kept;
   for (int j = 0; j < samples.size(); ++j) {
     int phase = j;
     if (samples.on_grid()) {
@@ -33,15 +47,9 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
       phase =
           std::min(p, grid.phi_d - 1 - p) + 11 * (row / grid.theta_d) + 13 * (row % grid.theta_d);
     }
-    if (phase % stride != 0) continue;
-    if (samples.on_grid()) {
-      thinned.bins.push_back(samples.bins[j]);
-    } else {
-      thinned.angles.push_back(samples.angles[j]);
-    }
-    thinned.rho.push_back(samples.rho[j]);
+    if (phase % stride == 0) kept.push_back(j);
   }
-  return thinned;
+  return Selected(samples, kept);
 }
 
 }  // namespace trilobe

@@ -20,14 +20,21 @@ struct BrdfSamples {
   std::vector<int> bins;               // [n], or empty when scattered
   std::vector<HalfDiffAngles> angles;  // [n], or empty when on the grid
   std::vector<Rgb> rho;                // [n], BRDF [1/sr], finite and >= 0
+  // [n], or empty where all are 1: what the weighting's weight of a sample is multiplied by, finite
+  // and >= 0; how often the sample counts.
+  std::vector<double> multiplicity = {};
 
   int size() const { return static_cast<int>(rho.size()); }
   bool on_grid() const { return angles.empty(); }
+  double Multiplicity(int j) const { return multiplicity.empty() ? 1 : multiplicity[j]; }
   HalfDiffAngles Angles(int j) const { return on_grid() ? grid.Center(bins[j]) : angles[j]; }
 };
 
 // The valid bins of a table. Throws Error when there is none.
 BrdfSamples ValidSamples(const BrdfTable& table);
+
+// The samples whose numbers in `samples` are these, in this order. [any size]
+BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers);
 
 // About one in `stride` >= 1 of them, for a cheap look at the same problem: on a grid, of each
 // (theta_h, theta_d) every stride-th phi_d and its mirror, 180 degrees - phi_d, beginning with

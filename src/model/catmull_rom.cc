@@ -1,14 +1,16 @@
 #include "trilobe/model/catmull_rom.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
+#include <string>
 
+#include "trilobe/base/error.h"
 #include "trilobe/model/directions.h"
 
 namespace trilobe {
 
-CatmullRom::CatmullRom(int nodes) : nodes_(nodes) { CHECK_GE(nodes, 4); }
+CatmullRom::CatmullRom(int nodes) : nodes_(nodes) {
+  if (nodes < 4) throw Error("a spline needs at least 4 nodes, not " + std::to_string(nodes));
+}
 
 double CatmullRom::NodeAngle(int k) const { return (k + 0.5) / nodes_ * (kPi / 2); }
 

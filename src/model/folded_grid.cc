@@ -83,12 +83,14 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
         folded.t_o[n] = o.t - 0.5;
         folded.inverse_cosines[n] =
             1 / (cosine[i.interval](i.t - 0.5) * cosine[o.interval](o.t - 0.5));
+        const double multiplicity1 = pair.first < 0 ? 0 : samples.Multiplicity(pair.first);
+        const double multiplicity2 = pair.second < 0 ? 0 : samples.Multiplicity(pair.second);
         for (int c = 0; c < kChannels; ++c) {
           // The mirror bin has theta_i and theta_o exchanged, and its own weight.
           const double rho1 = pair.first < 0 ? 0 : samples.rho[pair.first][c];
           const double rho2 = pair.second < 0 ? 0 : samples.rho[pair.second][c];
-          const double w1 = pair.first < 0 ? 0 : weighting.weight(rho1, cos_i);
-          const double w2 = pair.second < 0 ? 0 : weighting.weight(rho2, cos_o);
+          const double w1 = multiplicity1 * weighting.weight(rho1, cos_i);
+          const double w2 = multiplicity2 * weighting.weight(rho2, cos_o);
           const double w = w1 + w2;
           // As rho1 plus a share of the difference: exact when the two agree.
           const double share = w > 0 ? w2 / w : 0;

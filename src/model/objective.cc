@@ -137,7 +137,8 @@ WeightedSample Objective::Sample(int j) const {
                                        : ScatteredStencils(spec_, angles);
   sample.rho = samples_.rho[j];
   for (int c = 0; c < kChannels; ++c) {
-    sample.weight[c] = weighting_.weight(sample.rho[c], ToCosines(angles).i);
+    sample.weight[c] =
+        samples_.Multiplicity(j) * weighting_.weight(sample.rho[c], ToCosines(angles).i);
   }
   return sample;
 }

@@ -54,7 +54,7 @@ Sums SumRange(const Objective& objective, const std::vector<Rgb>& fitted, int be
     for (int c = 0; c < kChannels; ++c) {
       const double rho = fitted[j][c], rho_star = samples.rho[j][c];
       const double difference = std::abs(rho - rho_star);
-      const double weight = objective.weighting().weight(rho_star, cos_i);
+      const double weight = samples.Multiplicity(j) * objective.weighting().weight(rho_star, cos_i);
       sums.squared[c] += difference / unit * (difference / unit);
       sums.relative += difference / (rho_star + kRelativeErrorFloor);
       sums.log += std::abs(std::log1p(std::max(rho, 0.0) * cos_i) - std::log1p(rho_star * cos_i));

@@ -9,6 +9,9 @@ namespace trilobe {
 // above is neither read nor written. False, and no factor, if it is not positive definite.
 bool FactorCholesky(int n, double* A);
 
+// Overwrites the factor L by both triangles of the inverse of L L'.
+void InvertFactored(int n, double* L);
+
 // Overwrites B [n][columns] with L^-1 B, b [n] with L^-T b.
 void SolveLower(int n, const double* L, int columns, double* B);
 void SolveLowerTransposed(int n, const double* L, double* b);

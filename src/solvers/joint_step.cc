@@ -1,5 +1,7 @@
 #include "trilobe/solvers/joint_step.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,11 +27,12 @@ constexpr double kLittleProgress = 1e-3;
 // that long for the damping.
 constexpr double kMinSquaredLength = 1e-2;
 
-// The metric of the damping, S. 0 where the column of J is 0.
-std::vector<double> DampingMetric(const FactorModel& model,
-                                  const std::vector<double>& squared_lengths) {
+}  // namespace
+
+std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
+                                  std::span<const double> squared_lengths) {
   std::vector<double> S(squared_lengths.size(), 0.0);
-  for (const auto [begin, size] : model.Parts()) {
+  for (const auto [begin, size] : parts) {
     double mean = 0;
     for (int k = begin; k < begin + size; ++k) mean += squared_lengths[k] / size;
     for (int k = begin; k < begin + size; ++k) {
@@ -40,16 +43,17 @@ std::vector<double> DampingMetric(const FactorModel& model,
   return S;
 }
 
-}  // namespace
-
 JointStepper::JointStepper(const Objective& objective, Curvature curvature, Trial trial,
-                           PhaseSeconds* phases)
+                           PhaseSeconds* phases, const Reduction* reduction)
     : objective_(objective),
       curvature_(curvature),
+      reduction_(reduction),
       hessian_(curvature == Curvature::kNewton ? Hessian::kNewton : Hessian::kGaussNewton),
       phases_(phases),
       equations_(objective),
       lambda_(kInitialLambda) {
+  CHECK(reduction == nullptr || trial == Trial::kAsItIs)
+      << "a projection would leave the reduction";
   if (trial == Trial::kProjected && objective.folded() != nullptr) {
     cells_.emplace(*objective.folded(), objective.spec());
   }
@@ -71,7 +75,16 @@ void JointStepper::Linearize() {
     equations_.Evaluate(current_, hessian_, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
-  step_.MoveTo(at_, DampingMetric(current_, at_.squared_lengths), current_.parameters());
+  const std::span<const double> x = current_.parameters();
+  if (reduction_ != nullptr) {
+    at_ = (*reduction_)(at_);
+    y_ = reduction_->Restrict(x);
+  } else {
+    y_.assign(x.begin(), x.end());
+  }
+  const std::vector<FactorModel::Part> parts =
+      reduction_ != nullptr ? reduction_->parts() : current_.Parts();
+  step_.MoveTo(at_, DampingMetric(parts, at_.squared_lengths), y_);
   if (!binding_.empty()) step_.SetBinding(binding_);
   linearized_ = true;
 }
@@ -89,7 +102,8 @@ bool JointStepper::Step() {
     }
   }
   held_back_ = lambda_ > kHeavyLambda;
-  std::ranges::copy(result.x, trial.parameters().begin());
+  std::ranges::copy(reduction_ != nullptr ? reduction_->Expand(result.x) : result.x,
+                    trial.parameters().begin());
   double E = 0;
   {
     const ScopedTimer timer(&phases_->evaluating);
@@ -126,7 +140,7 @@ bool JointStepper::exhausted() const { return !(lambda_ < kMaxLambda); }
 
 double JointStepper::Optimality() {
   Linearize();
-  return ScaledProjectedGradient(at_, current_.parameters());
+  return ScaledProjectedGradient(at_, y_);
 }
 
 SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,

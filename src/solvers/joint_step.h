@@ -2,12 +2,14 @@
 #define TRILOBE_SOLVERS_JOINT_STEP_H_
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "trilobe/solvers/cell_sums.h"
 #include "trilobe/solvers/nonnegative_step.h"
 #include "trilobe/solvers/normal_equations.h"
+#include "trilobe/solvers/reduction.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
@@ -36,9 +38,13 @@ class JointStepper {
   };
 
   // Times go to *phases. Only samples on a grid can be projected; others are left as they are.
-  JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases);
+  // With a reduction, which must outlive the stepper, the steps are of its numbers y; trials cannot
+  // be projected then.
+  JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases,
+               const Reduction* reduction = nullptr);
 
-  // Goes on from another point, with the same damping.
+  // Goes on from another point, with the same damping. With a reduction the point must be one of
+  // its own.
   void Restart(const FactorModel& model);
 
   // Tries one step; false if it did not lower E, so that the point stayed where it was.
@@ -59,6 +65,7 @@ class JointStepper {
 
   const Objective& objective_;
   const Curvature curvature_;
+  const Reduction* const reduction_;
   Hessian hessian_;  // of the next point
   PhaseSeconds* const phases_;
   NormalEquations equations_;
@@ -66,7 +73,8 @@ class JointStepper {
   FactorModel current_;
   double E_ = 0;
   bool linearized_ = false;
-  QuadraticModel at_;  // of the current point, if linearized_
+  QuadraticModel at_;      // of the current point, if linearized_; in y with a reduction
+  std::vector<double> y_;  // what steps move: the reduction's numbers, or all
   NonnegativeStep step_;
   std::vector<bool> binding_;
   double lambda_;
@@ -74,6 +82,11 @@ class JointStepper {
   double growth_ = 2;      // of lambda when the next step is rejected
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
+
+// The metric S of the damping of steps in numbers that make up these parts, from the squared
+// lengths of the columns of J. 0 where that is 0.
+std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
+                                  std::span<const double> squared_lengths);
 
 // A solver that makes nothing but such steps, from its starting point on.
 SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,

@@ -11,12 +11,6 @@
 namespace trilobe {
 namespace {
 
-// E of a model whose every value is off by a few rounding errors of the measured one.
-double RoundingFloor(const Objective& objective) {
-  constexpr double kError = 4 * std::numeric_limits<double>::epsilon();
-  return kError * kError * objective.MeasuredEnergy();
-}
-
 // |a - b| / |b|, scaled against overflow.
 double RelativeDistance(std::span<const double> a, std::span<const double> b) {
   double largest = 0;
@@ -38,10 +32,15 @@ SolverOptions WithoutCallbacks(SolverOptions options) {
 
 }  // namespace
 
+double ExactObjective(const Objective& objective) {
+  constexpr double kError = 4 * std::numeric_limits<double>::epsilon();
+  return kError * kError * objective.MeasuredEnergy();
+}
+
 Run::Run(std::string solver, const Objective& objective, const SolverOptions& options,
          FactorModel* model)
     : objective_(objective),
-      exact_objective_(RoundingFloor(objective)),
+      exact_objective_(ExactObjective(objective)),
       model_(model),
       previous_(*model) {
   summary_.solver = std::move(solver);

@@ -25,6 +25,10 @@ class ScopedTimer {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// E of a model whose every value is off by a few rounding errors of the measured one: nothing lower
+// means anything.
+double ExactObjective(const Objective& objective);
+
 // What all solvers share, from the start of a run to its summary: the clock, the trace, the best
 // model, the stopping test and the callback. A solver makes its steps in between:
 //

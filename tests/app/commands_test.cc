@@ -248,6 +248,23 @@ TEST(InfoTest, DescribesAModel) {
   EXPECT_NEAR(info["albedo"]["blue"][40].get<double>(), 0.3 * 3.14159265, 1e-4);
 }
 
+TEST(InfoTest, TellsWhatACompactModelStores) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", R"({"format": "trilobe-model", "version": 1, "kind": "isotropic",
+    "lobes": 1, "d": [0.1], "s": [[0.2]],
+    "sharing": {"D": {"per_lobe": true, "per_channel": false},
+                "F": {"per_lobe": false, "per_channel": false},
+                "G": {"per_lobe": true, "per_channel": false}},
+    "D": [{"size": 90, "nodes": [0, 20, 40], "values": [9, 1, 0]}],
+    "F": {"size": 90, "nodes": [0, 89], "values": [1, 2]},
+    "G": [{"size": 90, "nodes": [45], "values": [1]}]})");
+  EXPECT_THAT(RunProgram({"info", folder / "model.json"}).out,
+              AllOf(HasSubstr("8 numbers, and 6 places of nodes"), HasSubstr("3 stored")));
+  const json info = json::parse(RunProgram({"info", folder / "model.json", "--json"}).out);
+  EXPECT_EQ(info["stored_numbers"], 8);
+  EXPECT_EQ(info["tables"]["F"]["stored"], 2);
+}
+
 TEST(InfoTest, RejectsBadInput) {
   const TemporaryFolder folder;
   Write(folder / "broken.json", "{\"format\": ");

@@ -120,6 +120,45 @@ TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
   EXPECT_EQ(read.fit.date, file.fit.date);
 }
 
+// One of which some numbers are left out.
+ModelFile CompactModel(const ModelSpec& spec) {
+  ModelFile file{FactorModel(spec), std::vector<bool>(spec.num_parameters(), false), {}};
+  for (size_t k = 0; k < file.model.parameters().size(); ++k) {
+    file.model.parameters()[k] = 1 / (1.0 + static_cast<double>(k));
+  }
+  file.layout = TableLayout::Full(spec);
+  file.layout->coloured_d = false;
+  file.layout->coloured_s = spec.lobes == 0;
+  for (auto& tables : file.layout->nodes) {
+    if (!tables.empty()) tables.front() = {1, 3};
+    if (tables.size() > 1) tables.back() = {2};
+  }
+  ExpandStored(*file.layout, &file.model);
+  return file;
+}
+
+TEST(ModelFile, ACompactOneReadsBackTheSameBitsAtFullSize) {
+  const MerlGrid small{.theta_h = 5, .theta_d = 7, .phi_d = 4};
+  ModelSpec shared = ModelSpec::SharedFactors(2, small);
+  shared.D = shared.F = shared.G = {.per_lobe = false, .per_channel = false};
+  for (const ModelSpec& spec : {ModelSpec::SharedFactors(3), ModelSpec::IndependentG(small),
+                                ModelSpec::SharedFactors(0), shared}) {
+    const ModelFile file = CompactModel(spec);
+    const ModelFile read = ParseModel(FormatModel(file), "model.json");
+    EXPECT_TRUE(SameBits(read.model, file.model)) << FormatModel(file);
+    ASSERT_TRUE(read.layout.has_value());
+    EXPECT_EQ(*read.layout, *file.layout);
+    EXPECT_EQ(FormatModel(read), FormatModel(file));
+  }
+  const std::string compact = FormatModel(CompactModel(ModelSpec::SharedFactors(3)));
+  EXPECT_FALSE(ParseModel(FormatModel(RandomModel(ModelSpec::SharedFactors(3))), "").layout);
+  const json D = json::parse(compact)["D"];
+  EXPECT_EQ(D[0]["nodes"], json({1, 3}));
+  EXPECT_EQ(D[0]["values"].size(), 2);
+  EXPECT_EQ(D[0]["size"], 90);
+  EXPECT_TRUE(D[1].is_array());
+}
+
 TEST(ModelFile, ASourceNameNeedNotBeUtf8) {
   ModelFile file = RandomModel(ModelSpec::SharedFactors(1));
   file.fit.source = "caf\xe9.binary";
@@ -151,6 +190,42 @@ std::string ErrorAfter(const std::function<void(json*)>& change) {
 
 std::string ErrorOfText(const std::string& text) {
   return ErrorOf([&] { ParseModel(text, "model.json"); });
+}
+
+TEST(ModelFile, NamesWhatIsWrongInACompactOne) {
+  const auto error_after = [](const std::function<void(json*)>& change) {
+    json document = json::parse(FormatModel(CompactModel(ModelSpec::SharedFactors(3))));
+    change(&document);
+    return ErrorOf([&] { ParseModel(document.dump(), "model.json"); });
+  };
+  struct Case {
+    std::function<void(json*)> change;
+    const char* key;
+    const char* problem;
+  };
+  const Case cases[] = {
+      {[](json* d) { (*d)["D"][0].erase("size"); }, "D[0].size", "missing"},
+      {[](json* d) { (*d)["D"][0]["size"] = 1e9; }, "D[0].size", "integer"},
+      {[](json* d) { (*d)["D"][0]["size"] = 3; }, "D[0]", "at least 4"},
+      {[](json* d) { (*d)["D"][2]["size"] = 89; }, "D[2].size", "must be 90"},
+      {[](json* d) { (*d)["F"][0].erase("nodes"); }, "F[0].nodes", "missing"},
+      {[](json* d) { (*d)["F"][0]["nodes"] = json::array(); }, "F[0].nodes", "at least one"},
+      {[](json* d) { (*d)["F"][0]["nodes"][1] = 90; }, "F[0].nodes[1]", "0 to 89"},
+      {[](json* d) { (*d)["F"][0]["nodes"][1] = 1; }, "F[0].nodes[1]", "above"},
+      {[](json* d) { (*d)["F"][0]["nodes"][0] = 0.5; }, "F[0].nodes[0]", "integer"},
+      {[](json* d) { (*d)["G"][0]["values"].erase(0); }, "G[0].values", "2 entries"},
+      {[](json* d) { (*d)["G"][0]["values"][0] = -1; }, "G[0].values[0]", "finite and >= 0"},
+      {[](json* d) { (*d)["d"] = json::array(); }, "d", "3 entries"},
+      {[](json* d) {
+         (*d)["s"][1] = {1, 2, 3};
+       },
+       "s[1]", "as many"},
+  };
+  for (const Case& bad : cases) {
+    EXPECT_THAT(error_after(bad.change),
+                AllOf(HasSubstr("model.json"), HasSubstr("'" + std::string(bad.key) + "'"),
+                      HasSubstr(bad.problem)));
+  }
 }
 
 TEST(ModelFile, IgnoresUnknownKeysAndTakesDefaultsForOptionalOnes) {

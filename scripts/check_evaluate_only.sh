@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Builds the library that only evaluates models, uses it as another project would, checks that it needs
+# nothing but the standard library, and prints how large it and the full library are:
+# scripts/check_evaluate_only.sh BUILD_DIR. Needs the release preset to have been built.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+build_dir=$(realpath -m "${1:?usage: scripts/check_evaluate_only.sh BUILD_DIR}")
+consumer=$build_dir/consumer
+
+cmake -S . -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTRILOBE_EVALUATE_ONLY=ON
+cmake --build "$build_dir"
+rm -rf "$consumer"
+cmake --install "$build_dir" --prefix "$consumer/prefix"
+cmake -S tests/evaluate_only -B "$consumer/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$consumer/prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+cmake --build "$consumer/build"
+
+# d + s / (cos theta_i cos theta_o) with cosines of 0.8 and 1.
+diff <("$consumer/build/consumer" tests/evaluate_only/model.json) <(echo "0.725 0.825 0.925")
+
+# What the program loads comes with every C++ compiler.
+needed=$(readelf --dynamic "$consumer/build/consumer" | grep -oP '\(NEEDED\).*\[\K[^]]+')
+if others=$(grep -vE '^(libstdc\+\+|libm|libgcc_s|libc|ld-linux[^.]*)\.so' <<<"$needed"); then
+  echo "the library that only evaluates needs more than the standard library: $others" >&2
+  exit 1
+fi
+
+kilobytes() { size --totals "$1" | awk 'END { printf "%.0f kB", $4 / 1000 }'; }
+echo "code and data of libtrilobe.a: $(kilobytes "$build_dir/src/libtrilobe.a") to evaluate models," \
+  "$(kilobytes build/release/src/libtrilobe.a) with everything"

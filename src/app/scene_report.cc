@@ -1,0 +1,143 @@
+#include "trilobe/app/scene_report.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "trilobe/app/flags.h"
+#include "trilobe/app/print.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double Rise(const MaterialFit& fit) {
+  return fit.full.objective > 0 ? fit.pruned.objective / fit.full.objective - 1 : 0;
+}
+
+std::string BudgetText(const SceneBudget& budget) {
+  const std::string amount = Text(budget.amount);
+  switch (budget.unit) {
+    case SceneBudget::Unit::kRelativeRise:
+      return "E may rise by " + Text(100 * budget.amount) + " %";
+    case SceneBudget::Unit::kPsnrDrop:
+      return "PSNR may fall by " + amount + " dB";
+    case SceneBudget::Unit::kBytes:
+      return "at most " + amount + " bytes";
+    case SceneBudget::Unit::kSeconds:
+      return "at most " + amount + " seconds";
+  }
+  return "";
+}
+
+Json ToJson(const SceneBudget& budget) {
+  switch (budget.unit) {
+    case SceneBudget::Unit::kRelativeRise:
+      return {{"relative_rise", budget.amount}};
+    case SceneBudget::Unit::kPsnrDrop:
+      return {{"psnr_drop_db", budget.amount}};
+    case SceneBudget::Unit::kBytes:
+      return {{"bytes", budget.amount}};
+    case SceneBudget::Unit::kSeconds:
+      return {{"seconds", budget.amount}};
+  }
+  return {};
+}
+
+const SceneMaterial& MaterialOf(const SceneRun& run, const MaterialFit& fit) {
+  return *std::ranges::find(run.scene.materials, fit.name, &SceneMaterial::name);
+}
+
+void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
+  const SceneMaterial& material = MaterialOf(run, fit);
+  out << "\n" << fit.name << ": " << material.source << "; " << BudgetText(material.budget) << "\n";
+  if (fit.used_samples < fit.valid_samples) {
+    out << "  left out: " << fit.valid_samples - fit.used_samples << " of " << fit.valid_samples
+        << " samples, in directions that the scene does not use\n";
+  }
+  if (material.channels == SceneChannels::kLuminance) out << "  left out: colour, by the scene\n";
+  for (const PruneDecision& decision : fit.decisions) {
+    out << (decision.taken ? "  left out: " : "  kept:     ") << decision.what << ": "
+        << decision.numbers_before << " -> " << decision.numbers_after << " numbers, E "
+        << Text(decision.E_before, 6) << " -> " << Text(decision.E_after, 6);
+    if (!decision.why.empty()) out << "; " << decision.why;
+    out << "\n";
+  }
+}
+
+Json ToJson(const SceneRun& run, const MaterialFit& fit) {
+  const SceneMaterial& material = MaterialOf(run, fit);
+  Json decisions = Json::array();
+  for (const PruneDecision& decision : fit.decisions) {
+    decisions.push_back({{"what", decision.what},
+                         {"taken", decision.taken},
+                         {"why", decision.why},
+                         {"numbers_before", decision.numbers_before},
+                         {"numbers_after", decision.numbers_after},
+                         {"objective_before", decision.E_before},
+                         {"objective_after", decision.E_after}});
+  }
+  return {{"name", fit.name},
+          {"source", material.source},
+          {"budget", ToJson(material.budget)},
+          {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},
+          {"lobes", fit.file.model.spec().lobes},
+          {"numbers", {{"full", fit.full_numbers}, {"pruned", fit.numbers}}},
+          {"bytes", {{"full", BytesOf(fit.full_numbers)}, {"pruned", BytesOf(fit.numbers)}}},
+          {"objective", {{"full", fit.full.objective}, {"pruned", fit.pruned.objective}}},
+          {"relative_rise", Rise(fit)},
+          {"psnr_db", {{"full", fit.full.psnr_db}, {"pruned", fit.pruned.psnr_db}}},
+          {"seconds", {{"fit", fit.fit_seconds}, {"prune", fit.prune_seconds}}},
+          {"from_cache", {{"fit", fit.fit_from_cache}, {"prune", fit.prune_from_cache}}},
+          {"decisions", decisions}};
+}
+
+}  // namespace
+
+void PrintPlan(const SceneRun& run, std::ostream& out) {
+  size_t width = 10;
+  for (const MaterialFit& fit : run.fits) width = std::max(width, fit.name.size() + 2);
+  const auto name = [&](const std::string& text) {
+    return text + std::string(width - text.size(), ' ');
+  };
+  out << name("material")
+      << " lobes  numbers  of full    bytes  E rises by  PSNR falls by  seconds\n";
+  int full = 0, pruned = 0;
+  double seconds = 0;
+  for (const MaterialFit& fit : run.fits) {
+    full += fit.full_numbers;
+    pruned += fit.numbers;
+    seconds += fit.fit_seconds + fit.prune_seconds;
+    out << name(fit.name) << Right(std::to_string(fit.file.model.spec().lobes), 6)
+        << Right(std::to_string(fit.numbers), 9) << Right(std::to_string(fit.full_numbers), 9)
+        << Right(std::to_string(BytesOf(fit.numbers)), 9)
+        << Right(Text(100 * Rise(fit), 3) + " %", 12)
+        << Right(Text(fit.full.psnr_db - fit.pruned.psnr_db, 3) + " dB", 15)
+        << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
+        << (fit.prune_from_cache ? "  from the cache"
+            : fit.fit_from_cache ? "  the fit from the cache"
+                                 : "")
+        << "\n";
+  }
+  out << name("all") << Right("", 6) << Right(std::to_string(pruned), 9)
+      << Right(std::to_string(full), 9) << Right(std::to_string(BytesOf(pruned)), 9)
+      << Right("", 27) << Right(Text(seconds, 3), 9) << "\n"
+      << Text(run.seconds, 3) << " seconds side by side on " << run.threads << " threads"
+      << (run.reused > 0 ? ", reckoned from what the parts took when they were made" : "") << "\n";
+  for (const MaterialFit& fit : run.fits) PrintDecisions(run, fit, out);
+}
+
+Json PlanToJson(const SceneRun& run) {
+  Json materials = Json::array();
+  for (const MaterialFit& fit : run.fits) materials.push_back(ToJson(run, fit));
+  return {{"scene", std::filesystem::absolute(run.scene.path).lexically_normal().string()},
+          {"flags", GivenFlags(SceneModelFlags())},
+          {"threads", run.threads},
+          {"seconds", run.seconds},
+          {"reused", run.reused},
+          {"materials", materials}};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,32 @@
+#ifndef TRILOBE_IO_MODEL_FORMAT_H_
+#define TRILOBE_IO_MODEL_FORMAT_H_
+
+namespace trilobe {
+
+// What the reader and the writer of model files share.
+
+inline constexpr const char* kModelFormat = "trilobe-model";
+inline constexpr int kModelVersion = 1;
+inline constexpr const char* kModelKind = "isotropic";
+
+// Calls visit(key, member) for every member.
+template <typename Info, typename Visitor>
+void VisitFitInfo(Info* fit, const Visitor& visit) {
+  visit("solver", &fit->solver);
+  visit("init", &fit->init);
+  visit("weighting", &fit->weighting);
+  visit("objective", &fit->objective);
+  visit("initial_objective", &fit->initial_objective);
+  visit("stop_reason", &fit->stop_reason);
+  visit("iterations", &fit->iterations);
+  visit("seconds", &fit->seconds);
+  visit("threads", &fit->threads);
+  visit("source", &fit->source);
+  visit("valid_samples", &fit->valid_samples);
+  visit("program", &fit->program);
+  visit("date", &fit->date);
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_MODEL_FORMAT_H_

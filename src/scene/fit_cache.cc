@@ -1,0 +1,72 @@
+#include "trilobe/scene/fit_cache.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <ostream>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/file.h"
+
+namespace trilobe {
+namespace {
+
+// The first line of an entry: this, the hash of what follows, and a newline.
+constexpr std::string_view kMagic = "trilobe-cache 1 ";
+
+std::string Header(std::string_view content) {
+  return std::string(kMagic) + ContentHash(content) + "\n";
+}
+
+}  // namespace
+
+std::string ContentHash(std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  std::array<char, 33> text;
+  std::snprintf(text.data(), text.size(), "%016llx%016llx",
+                static_cast<unsigned long long>(hash.high64),  // NOLINT(google-runtime-int)
+                static_cast<unsigned long long>(hash.low64));  // NOLINT(google-runtime-int)
+  return text.data();
+}
+
+FitCache::FitCache(const std::string& folder) : folder_(folder) { MakeDirectories(folder); }
+
+std::string FitCache::PathOf(std::string_view key) const {
+  return folder_ + "/" + ContentHash(key) + ".cache";
+}
+
+std::optional<std::string> FitCache::Find(std::string_view key) const {
+  if (folder_.empty()) return std::nullopt;
+  try {
+    std::string entry = ReadFile(PathOf(key));
+    const size_t header_size = Header("").size();
+    if (entry.size() < header_size) return std::nullopt;
+    std::string content = entry.substr(header_size);
+    if (!entry.starts_with(Header(content))) return std::nullopt;
+    return content;
+  } catch (const Error&) {
+    return std::nullopt;  // not there, or not to be read
+  }
+}
+
+void FitCache::Keep(std::string_view key, std::string_view content) const {
+  if (folder_.empty()) return;
+  try {
+    WriteFile(PathOf(key), [&](std::ostream& out) { out << Header(content) << content; });
+  } catch (const Error&) {
+    return;  // it will be made again
+  }
+}
+
+std::string DefaultCacheFolder() {
+  // As the XDG Base Directory Specification has it, a relative path is no path.
+  const char* const xdg = std::getenv("XDG_CACHE_HOME");
+  if (xdg != nullptr && xdg[0] == '/') return std::string(xdg) + "/trilobe";
+  const char* const home = std::getenv("HOME");
+  return home != nullptr && home[0] == '/' ? std::string(home) + "/.cache/trilobe" : "";
+}
+
+}  // namespace trilobe

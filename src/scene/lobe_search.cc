@@ -1,0 +1,69 @@
+#include "trilobe/scene/lobe_search.h"
+
+#include <optional>
+
+#include "trilobe/model/merge_lobes.h"
+#include "trilobe/model/split_lobe.h"
+#include "trilobe/solvers/joint_step.h"
+#include "trilobe/solvers/start_race.h"
+
+namespace trilobe {
+namespace {
+
+// Steps of each start on thinned samples, and of the best two.
+constexpr int kFirstTries = 3, kNextTries = 12;
+// On all samples.
+constexpr int kMaxTries = 40;
+// A fit is given up when at its present pace it needs more steps than this to come down to what is
+// wanted, and ends when it is there and a step gains less than this.
+constexpr int kPatience = 12;
+constexpr double kSmallDecrease = 1e-4;
+
+}  // namespace
+
+std::vector<FactorModel> WithOneLobeLess(const FactorModel& canonical) {
+  std::vector<FactorModel> models;
+  const int lobes = canonical.spec().lobes;
+  for (int m = 0; m < lobes; ++m) models.push_back(WithoutLobe(canonical, m));
+  for (int m = 0; m < lobes; ++m) {
+    for (int other = m + 1; other < lobes; ++other) {
+      models.push_back(WithLobesMerged(canonical, m, other));
+    }
+  }
+  return models;
+}
+
+std::vector<FactorModel> WithOneLobeMore(const FactorModel& canonical) {
+  std::vector<FactorModel> models;
+  const ModelSpec& spec = canonical.spec();
+  if (!spec.D.per_lobe || spec.lobes == kMaxLobes) return models;
+  for (int m = 0; m < spec.lobes; ++m) models.push_back(SplitLobe(canonical, m));
+  return models;
+}
+
+FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
+                    double wanted) {
+  PhaseSeconds phases;
+  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
+                       JointStepper::Trial::kProjected, &phases);
+  {
+    StartRace race(objective, [] { return false; });
+    for (const FactorModel& start : starts) {
+      race.Enter("", [&start] { return std::optional(start); });
+    }
+    race.Advance(kFirstTries);
+    race.Keep(2);
+    race.Advance(kNextTries);
+    stepper.Restart(*race.leader());
+  }
+  for (int tries = 0; tries < kMaxTries && !stepper.exhausted(); ++tries) {
+    const double before = stepper.E();
+    if (!stepper.Step()) continue;
+    const double decrease = before - stepper.E();
+    if (stepper.E() > wanted + kPatience * decrease) break;
+    if (stepper.E() <= wanted && decrease < kSmallDecrease * before) break;
+  }
+  return {stepper.current(), stepper.E()};
+}
+
+}  // namespace trilobe

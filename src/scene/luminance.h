@@ -1,0 +1,22 @@
+#ifndef TRILOBE_SCENE_LUMINANCE_H_
+#define TRILOBE_SCENE_LUMINANCE_H_
+
+#include "trilobe/model/brdf_samples.h"
+#include "trilobe/model/channels.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// Relative luminance of linear RGB with the primaries of ITU-R BT.709.
+inline constexpr Rgb kLuminance = {0.2126, 0.7152, 0.0722};
+
+// The samples in grey: all three channels are the luminance.
+BrdfSamples LuminanceOf(BrdfSamples samples);
+
+// The model in grey, whose values are the luminance of the model's. F becomes one table a lobe,
+// sum_C y_C s_C F_C, so D and G must be shared by the channels; throws Error if they are not.
+FactorModel LuminanceOf(const FactorModel& model);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SCENE_LUMINANCE_H_

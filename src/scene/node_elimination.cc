@@ -1,0 +1,331 @@
+#include "trilobe/scene/node_elimination.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "trilobe/scene/reduced_quadratic.h"
+#include "trilobe/solvers/cholesky.h"
+#include "trilobe/solvers/joint_step.h"
+#include "trilobe/solvers/reduction.h"
+
+namespace trilobe {
+namespace {
+
+// A few numbers with a factor each.
+struct Term {
+  int row;
+  double factor;
+};
+struct Constraint {
+  std::array<Term, 3> terms;
+  int size = 0;
+  void Add(int row, double factor) { terms[size++] = {row, factor}; }
+  const Term* begin() const { return terms.data(); }
+  const Term* end() const { return terms.data() + size; }
+};
+
+// The minimum of a quadratic over numbers z >= 0 some of which, Z, are held at 0 while the others,
+// F, are free; and how it answers to constraints. With the matrix A of the quadratic and its
+// gradient q / 2 at the minimum, h = (z_F, -q_Z) and
+//   T_FF = A_FF^-1,  T_FZ = -A_FF^-1 A_FZ,  T_ZZ = -(A_ZZ - A_ZF A_FF^-1 A_FZ),
+// the principal pivot transform of A^-1. The columns of T_FZ are how the free numbers follow one of
+// Z that is let go.
+class Tableau {
+ public:
+  // All free. A: positive definite, column by column; it is taken over.
+  Tableau(std::vector<double> A, std::vector<double> z)
+      : stride_(z.size()),
+        size_(static_cast<int>(z.size())),
+        T_(std::move(A)),
+        h_(std::move(z)),
+        free_(stride_, true) {
+    CHECK(FactorCholesky(size_, T_.data())) << "a damped J'J is positive definite";
+    InvertFactored(size_, T_.data());
+  }
+
+  int size() const { return size_; }
+  bool free(int k) const { return free_[k]; }
+  double h(int k) const { return h_[k]; }
+  void Set(int k, double h) { h_[k] = h; }
+
+  // Holds a free number at 0, or lets it go; the change of the minimum.
+  double Pivot(int k) {
+    const double pivot = At(k, k), scale = 1 / std::abs(pivot);
+    const double h_k = h_[k];
+    std::vector<double>& t = t_;
+    t.assign(row(k), row(k) + size_);
+    t[k] = 0;
+    AddOuterProduct(-1 / pivot);
+    for (int i = 0; i < size_; ++i) {
+      h_[i] -= t[i] * h_k / pivot;
+      At(i, k) = At(k, i) = t[i] * scale;
+    }
+    At(k, k) = -1 / pivot;
+    h_[k] = h_k * scale;
+    free_[k] = !free_[k];
+    return h_k * h_k / pivot;
+  }
+
+  // By how much the minimum rises if sum factor z = 0 over the terms, the first of which is let go
+  // if it is held.
+  double Rise(const Constraint& c) const {
+    double value = 0, variance = 0;
+    for (const Term& a : c) {
+      if (!free_[a.row]) continue;
+      value += a.factor * h_[a.row];
+      for (const Term& b : c) {
+        if (free_[b.row]) variance += a.factor * b.factor * At(a.row, b.row);
+      }
+    }
+    const int first = c.begin()->row;
+    double release = 0;
+    if (!free_[first]) {
+      // Where it would go below 0 the others of the constraint have to be 0 with it.
+      const double sigma = -At(first, first);
+      double follow = c.begin()->factor;
+      for (const Term& a : c) {
+        if (free_[a.row]) follow += a.factor * At(first, a.row);
+      }
+      value += follow * h_[first] / sigma;
+      variance += follow * follow / sigma;
+      release = h_[first] * h_[first] / sigma;
+      if (!(variance > 0)) return 0;
+      const double held = follow / sigma * (1 / c.begin()->factor);
+      const double z = h_[first] / sigma - held * value / variance;
+      if (z * c.begin()->factor < 0) {
+        double rise = 0;
+        for (const Term& a : c) {
+          if (free_[a.row] && h_[a.row] > 0) rise += h_[a.row] * h_[a.row] / At(a.row, a.row);
+        }
+        return rise;
+      }
+    }
+    return variance > 0 ? value * value / variance - release : 0;
+  }
+
+  // Imposes it, its first number being free.
+  void Impose(const Constraint& c) {
+    t_.assign(size_, 0.0);
+    double value = 0, variance = 0;
+    for (const Term& a : c) {
+      if (!free_[a.row]) continue;
+      value += a.factor * h_[a.row];
+      const double* const T_a = row(a.row);
+      for (int i = 0; i < size_; ++i) t_[i] += a.factor * T_a[i];
+    }
+    for (const Term& a : c) {
+      if (free_[a.row]) {
+        variance += a.factor * t_[a.row];
+      } else {
+        t_[a.row] += a.factor;
+      }
+    }
+    if (!(variance > 0)) return;
+    AddOuterProduct(-1 / variance);
+    for (int i = 0; i < size_; ++i) h_[i] -= t_[i] * value / variance;
+  }
+
+  // Forgets a number that follows from others. The last one takes its place.
+  void Remove(int k) {
+    const int last = --size_;
+    for (int i = 0; i <= last; ++i) At(k, i) = At(last, i);
+    for (int i = 0; i < last; ++i) At(i, k) = At(i, last);
+    At(k, k) = At(last, last);
+    h_[k] = h_[last];
+    free_[k] = free_[last];
+  }
+
+ private:
+  double* row(int i) { return T_.data() + i * stride_; }
+  const double* row(int i) const { return T_.data() + i * stride_; }
+  double& At(int i, int j) { return row(i)[j]; }
+  double At(int i, int j) const { return row(i)[j]; }
+
+  // T += factor t t'.
+  void AddOuterProduct(double factor) {
+    const double* const t = t_.data();
+    for (int i = 0; i < size_; ++i) {
+      const double a = factor * t[i];
+      if (a == 0) continue;
+      double* const to = row(i);
+      for (int j = 0; j < size_; ++j) to[j] += a * t[j];
+    }
+  }
+
+  const size_t stride_;
+  int size_;
+  std::vector<double> T_, h_;
+  std::vector<bool> free_;
+  std::vector<double> t_;
+};
+
+// A stored entry of a table, in the list of those that are left.
+struct Node {
+  Factor factor;
+  int table, entry;
+  bool may_go;
+  int previous = -1, next = -1;  // by number in y; -1 at the ends
+  bool gone = false;
+};
+
+class Eliminator {
+ public:
+  Eliminator(const QuadraticModel& at_all, const FactorModel& model, const TableLayout& layout,
+             const EliminationLimits& limits)
+      : limits_(limits),
+        reduction_(model.spec(), layout),
+        scale_(reduction_.size()),
+        tableau_(MakeTableau(reduction_(at_all), model)) {
+    const int n = reduction_.size();
+    for (int j = 0; j < n; ++j) {
+      row_of_.push_back(j);
+      number_of_.push_back(j);
+    }
+    AddNodes(model.spec(), layout);
+  }
+
+  std::vector<Elimination> Run() {
+    std::vector<Elimination> order;
+    double rise = 0;
+    while (static_cast<int>(order.size()) < limits_.max_count) {
+      int best = -1;
+      double least = std::numeric_limits<double>::infinity();
+      for (int j = first_node_; j < reduction_.size(); ++j) {
+        const Node& node = nodes_[j - first_node_];
+        if (node.gone || !node.may_go || (node.previous < 0 && node.next < 0)) continue;
+        const double rise_by_it = tableau_.Rise(ConstraintOf(j));
+        if (rise_by_it < least) {
+          least = rise_by_it;
+          best = j;
+        }
+      }
+      if (best < 0 || rise + least > limits_.max_rise) break;
+      rise += Eliminate(best);
+      rise += RestoreSigns();
+      const Node& node = nodes_[best - first_node_];
+      order.push_back({node.factor, node.table, node.entry, std::max(rise, 0.0)});
+    }
+    return order;
+  }
+
+ private:
+  // In numbers z = scale y in which the diagonal of J'J is about 1.
+  Tableau MakeTableau(QuadraticModel at, const FactorModel& model) {
+    const int n = reduction_.size();
+    const std::vector<double> y = reduction_.Restrict(model.parameters());
+    scale_ = DampingMetric(reduction_.parts(), at.squared_lengths);
+    for (double& s : scale_) {
+      if (s == 0) s = 1;  // nothing depends on it
+    }
+    HoldTableSizes(reduction_.parts(), 1 + model.spec().lobes, y, scale_, &at);
+    std::vector<double> z(n), A(at.H.size());
+    for (int j = 0; j < n; ++j) z[j] = scale_[j] * y[j];
+    const auto A_at = [&](int i, int j) -> double& { return A[static_cast<size_t>(j) * n + i]; };
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        A_at(i, j) = at.H[static_cast<size_t>(j) * n + i] / (scale_[i] * scale_[j]);
+      }
+      A_at(j, j) += kQuadraticDamping;
+    }
+    Tableau tableau(std::move(A), z);
+    for (int j = 0; j < n; ++j) {
+      if (y[j] == 0 && at.gradient[j] > 0) tableau.Pivot(j);
+    }
+    // The model is taken for the minimum: what is left of the gradient where it is free is noise.
+    for (int j = 0; j < n; ++j) {
+      tableau.Set(j, tableau.free(j) ? z[j] : -at.gradient[j] / scale_[j]);
+    }
+    return tableau;
+  }
+
+  void AddNodes(const ModelSpec& spec, const TableLayout& layout) {
+    first_node_ = reduction_.parts()[spec.lobes].begin + reduction_.parts()[spec.lobes].size;
+    int j = first_node_;
+    for (const Factor factor : kFactors) {
+      for (int t = 0; t < spec.num_tables(factor); ++t) {
+        const std::vector<int>& entries = layout.of(factor, t);
+        const int begin = j, end = begin + static_cast<int>(entries.size());
+        for (; j < end; ++j) {
+          nodes_.push_back({.factor = factor,
+                            .table = t,
+                            .entry = entries[j - begin],
+                            .may_go = limits_.may_thin[static_cast<int>(factor)],
+                            .previous = j > begin ? j - 1 : -1,
+                            .next = j + 1 < end ? j + 1 : -1});
+        }
+      }
+    }
+  }
+
+  Node& node(int j) { return nodes_[j - first_node_]; }
+  const Node& node(int j) const { return nodes_[j - first_node_]; }
+
+  // y_j is linear between its neighbours, or equal to its only one.
+  Constraint ConstraintOf(int j) const {
+    const int a = node(j).previous, b = node(j).next;
+    Constraint c;
+    const auto add = [&](int k, double factor) { c.Add(row_of_[k], factor / scale_[k]); };
+    add(j, 1);
+    if (a >= 0 && b >= 0) {
+      const double t =
+          static_cast<double>(node(j).entry - node(a).entry) / (node(b).entry - node(a).entry);
+      add(a, t - 1);
+      add(b, -t);
+    } else {
+      add(a >= 0 ? a : b, -1);
+    }
+    return c;
+  }
+
+  double Eliminate(int j) {
+    const Constraint c = ConstraintOf(j);
+    const double rise = tableau_.Rise(c);
+    if (!tableau_.free(row_of_[j])) tableau_.Pivot(row_of_[j]);
+    tableau_.Impose(c);
+    const int row = row_of_[j], last = number_of_[tableau_.size() - 1];
+    tableau_.Remove(row);
+    number_of_[row] = last;
+    row_of_[last] = row;
+    Node& gone = node(j);
+    gone.gone = true;
+    if (gone.previous >= 0) node(gone.previous).next = gone.next;
+    if (gone.next >= 0) node(gone.next).previous = gone.previous;
+    return rise;
+  }
+
+  // Holds numbers that went below 0, and lets go those that would rise from it; each once, so that
+  // it ends. The change of the minimum.
+  double RestoreSigns() {
+    double change = 0;
+    for (const bool free : {true, false}) {
+      for (int j = 0; j < tableau_.size(); ++j) {
+        if (tableau_.free(j) != free) continue;
+        if (free ? tableau_.h(j) < 0 : tableau_.h(j) > 0) change += tableau_.Pivot(j);
+      }
+    }
+    return change;
+  }
+
+  const EliminationLimits& limits_;
+  const Reduction reduction_;
+  std::vector<double> scale_;  // z = scale y
+  Tableau tableau_;
+  std::vector<int> row_of_, number_of_;  // in the tableau of a number of y, and back
+  int first_node_ = 0;
+  std::vector<Node> nodes_;  // of the numbers of y from the first node on
+};
+
+}  // namespace
+
+std::vector<Elimination> OrderOfElimination(const QuadraticModel& at, const FactorModel& model,
+                                            const TableLayout& layout,
+                                            const EliminationLimits& limits) {
+  return Eliminator(at, model, layout, limits).Run();
+}
+
+}  // namespace trilobe

@@ -1,0 +1,404 @@
+#include "trilobe/scene/scene_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <utility>
+#include <variant>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/base/utc_time.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/source.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/scene/luminance.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/option_values.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// With a budget of seconds: the share of it after which a fit stops. The rest is for leaving out
+// what is free.
+constexpr double kFitShare = 0.8;
+
+// Lobes where a budget asks for less error than that of the full fit.
+constexpr int kMoreLobes = 5;
+
+// What distinguishes two cached results: one line each.
+class Key {
+ public:
+  explicit Key(const std::string& kind) { Add("result", kind); }
+
+  template <typename T>
+  void Add(const std::string& name, const T& value) {
+    text_ << name << "=" << value << "\n";
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_ = [] {
+    std::ostringstream text;
+    text.precision(17);
+    return text;
+  }();
+};
+
+std::string HashOf(std::span<const double> numbers) {
+  return ContentHash({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
+}
+
+struct DirectionsText {
+  std::string operator()(const AllDirections& /*all*/) const { return "all"; }
+  std::string operator()(const DirectionRanges& ranges) const {
+    const double bounds[] = {ranges.theta_i.min, ranges.theta_i.max, ranges.theta_o.min,
+                             ranges.theta_o.max};
+    return "ranges " + HashOf(bounds);
+  }
+  std::string operator()(const DirectionList& list) const {
+    std::vector<double> angles;
+    for (const HalfDiffAngles& a : list.directions) {
+      angles.insert(angles.end(), {a.theta_h, a.theta_d, a.phi_d});
+    }
+    return "list " + HashOf(angles);
+  }
+  std::string operator()(const DirectionHistogram& histogram) const {
+    return "histogram " + HashOf(histogram.counts);
+  }
+};
+
+PruneOptions PruneOptionsOf(const SceneMaterial& material) {
+  const auto& [unit, amount] = material.budget;
+  PruneOptions options;
+  options.max_relative_rise = 0;
+  switch (unit) {
+    case SceneBudget::Unit::kRelativeRise:
+      options.max_relative_rise = amount;
+      break;
+    case SceneBudget::Unit::kPsnrDrop:
+      options.max_relative_rise = std::numeric_limits<double>::infinity();
+      options.max_psnr_drop_db = amount;
+      break;
+    case SceneBudget::Unit::kBytes:
+      options.max_numbers = static_cast<int>(std::min(amount / sizeof(double), 1e9));
+      break;
+    case SceneBudget::Unit::kSeconds:
+      break;
+  }
+  options.lobes = material.reductions.lobes;
+  options.colour = material.reductions.colour;
+  options.shadowing = material.reductions.shadowing;
+  options.tables = material.reductions.tables;
+  const bool wants_more = amount < 0 || unit == SceneBudget::Unit::kBytes;
+  options.max_lobes = options.lobes && wants_more ? kMoreLobes : 0;
+  return options;
+}
+
+// What is kept of results between runs. Entries of another version of the program have other keys,
+// so one that cannot be decoded is a defect, or somebody's work; it is made again.
+template <typename T, typename Decode>
+std::optional<T> Cached(const FitCache& cache, const std::string& key, const Decode& decode) {
+  const std::optional<std::string> content = cache.Find(key);
+  if (!content) return std::nullopt;
+  try {
+    return decode(Json::parse(*content));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+Json Encode(const FullFit& fit) {
+  return {{"model", FormatModel(fit.file)}, {"seconds", fit.seconds}};
+}
+
+FullFit DecodeFullFit(const Json& json) {
+  return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds"), true};
+}
+
+Json Encode(const SceneScore& score) {
+  // JSON has no infinite PSNR, that of an exact fit.
+  return {{"objective", score.objective},
+          {"psnr_db", std::isfinite(score.psnr_db) ? Json(score.psnr_db) : Json()}};
+}
+
+SceneScore DecodeScore(const Json& json) {
+  const Json& psnr_db = json.at("psnr_db");
+  return {json.at("objective"),
+          psnr_db.is_null() ? std::numeric_limits<double>::infinity() : psnr_db.get<double>()};
+}
+
+Json Encode(const MaterialFit& fit) {
+  Json decisions = Json::array();
+  for (const PruneDecision& decision : fit.decisions) {
+    decisions.push_back({{"what", decision.what},
+                         {"numbers_before", decision.numbers_before},
+                         {"numbers_after", decision.numbers_after},
+                         {"E_before", decision.E_before},
+                         {"E_after", decision.E_after},
+                         {"taken", decision.taken},
+                         {"why", decision.why}});
+  }
+  return {{"model", FormatModel(fit.file)},   {"valid_samples", fit.valid_samples},
+          {"used_samples", fit.used_samples}, {"full_numbers", fit.full_numbers},
+          {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
+          {"numbers", fit.numbers},           {"decisions", decisions},
+          {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds}};
+}
+
+MaterialFit DecodeMaterialFit(const Json& json) {
+  MaterialFit fit;
+  fit.valid_samples = json.at("valid_samples");
+  fit.used_samples = json.at("used_samples");
+  fit.full_numbers = json.at("full_numbers");
+  fit.full = DecodeScore(json.at("full"));
+  fit.pruned = DecodeScore(json.at("pruned"));
+  fit.file = ParseModel(json.at("model").get<std::string>(), "cache");
+  fit.numbers = json.at("numbers");
+  for (const Json& decision : json.at("decisions")) {
+    fit.decisions.push_back({.what = decision.at("what"),
+                             .numbers_before = decision.at("numbers_before"),
+                             .numbers_after = decision.at("numbers_after"),
+                             .E_before = decision.at("E_before"),
+                             .E_after = decision.at("E_after"),
+                             .taken = decision.at("taken"),
+                             .why = decision.at("why")});
+  }
+  fit.fit_seconds = json.at("fit_seconds");
+  fit.prune_seconds = json.at("prune_seconds");
+  fit.fit_from_cache = fit.prune_from_cache = true;
+  return fit;
+}
+
+BrdfSamples InChannels(BrdfSamples samples, SceneChannels channels) {
+  if (channels == SceneChannels::kLuminance) return LuminanceOf(std::move(samples));
+  return samples;
+}
+
+// One material, of which nothing is read more than once, or without need.
+class MaterialFitter {
+ public:
+  MaterialFitter(const SceneMaterial& material, const SceneFitSettings& settings, int num_threads)
+      : material_(material),
+        settings_(settings),
+        num_threads_(num_threads),
+        bytes_(IsSynthetic(material.source) ? material.source : ReadFile(material.source)),
+        bytes_hash_(ContentHash(bytes_)) {}
+
+  // `purpose` is for the key alone: fits that are to be timed apart.
+  std::optional<FullFit> Fit(const std::string& purpose) {
+    const std::string key = FitKey(purpose).text();
+    if (auto cached = Cached<FullFit>(settings_.cache, key, DecodeFullFit)) return cached;
+    std::optional<FullFit> fit = FitAnew();
+    if (fit) settings_.cache.Keep(key, Encode(*fit).dump());
+    return fit;
+  }
+
+  std::optional<MaterialFit> FitAndPrune() {
+    const std::string key = PruneKey();
+    std::optional<MaterialFit> fit = Cached<MaterialFit>(settings_.cache, key, DecodeMaterialFit);
+    if (!fit) {
+      fit = PruneAnew();
+      if (fit) settings_.cache.Keep(key, Encode(*fit).dump());
+    }
+    if (fit) fit->name = material_.name;
+    return fit;
+  }
+
+  SceneScore Score(const FactorModel& model) {
+    const BrdfSamples used = UsedSamples(ValidSamples(Table()), material_.directions);
+    const bool grey = material_.channels == SceneChannels::kLuminance;
+    return ScoreOn(InChannels(used, material_.channels), grey ? LuminanceOf(model) : model);
+  }
+
+ private:
+  // All that the fit with nothing left out depends on.
+  Key FitKey(const std::string& purpose) const {
+    Key key("fit 1, " + purpose);
+    key.Add("program", settings_.program);
+    key.Add("source", bytes_hash_);
+    if (IsSynthetic(material_.source)) {
+      key.Add("noise", settings_.noise);
+      key.Add("synth_seed", settings_.seed);
+    }
+    key.Add("directions", material_.reductions.samples
+                              ? std::visit(DirectionsText(), material_.directions)
+                              : "all");
+    key.Add("luminance", material_.channels == SceneChannels::kLuminance);
+    key.Add("weighting", settings_.weighting);
+    key.Add("lobes", settings_.lobes);
+    key.Add("init", settings_.init);
+    key.Add("init_seed", settings_.seed);
+    key.Add("solver", settings_.solver);
+    for (const OptionValue& option :
+         OptionValues(settings_.options, FindSolver(settings_.solver).options)) {
+      std::visit([&](const auto& value) { key.Add(option.name, value); }, option.value);
+    }
+    if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
+      key.Add("seconds", material_.budget.amount);
+    }
+    return key;
+  }
+
+  std::string PruneKey() const {
+    Key key = FitKey("scene");
+    key.Add("then", "prune 1");
+    key.Add("unit", static_cast<int>(material_.budget.unit));
+    key.Add("amount", material_.budget.amount);
+    const SceneReductions& reductions = material_.reductions;
+    key.Add("lobes", reductions.lobes);
+    key.Add("colour", reductions.colour);
+    key.Add("shadowing", reductions.shadowing);
+    key.Add("tables", reductions.tables);
+    return key.text();
+  }
+
+  BrdfTable Table() const {
+    if (!IsSynthetic(material_.source)) {
+      return ParseSource(bytes_, material_.source, num_threads_);
+    }
+    return LoadSource(
+        material_.source,
+        {.noise = settings_.noise, .seed = settings_.seed, .num_threads = num_threads_});
+  }
+
+  // What is fitted.
+  const Objective& FitObjective() {
+    if (!objective_) {
+      BrdfSamples samples = ValidSamples(Table());
+      valid_samples_ = samples.size();
+      if (material_.reductions.samples) samples = UsedSamples(samples, material_.directions);
+      const ModelSpec spec = ModelSpec::SharedFactors(settings_.lobes, samples.grid);
+      objective_.emplace(InChannels(std::move(samples), material_.channels), spec,
+                         FindWeighting(settings_.weighting), num_threads_);
+    }
+    return *objective_;
+  }
+
+  std::optional<FullFit> FitAnew() {
+    Stopwatch stopwatch;
+    const Objective& objective = FitObjective();
+    FullFit fit;
+    FactorModel& model = fit.file.model;
+    model = FindInitialModel(settings_.init).make(objective, settings_.seed);
+    SolverOptions options = settings_.options;
+    options.on_iteration = [this](const IterationRecord&, const FactorModel&) {
+      return !settings_.stop || !settings_.stop();
+    };
+    fit.seconds = stopwatch.Lap();
+    if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
+      options.max_seconds = std::min(
+          options.max_seconds, std::max(0.0, kFitShare * material_.budget.amount - fit.seconds));
+    }
+    const SolverSummary summary = MakeSolver(settings_.solver)->Solve(objective, options, &model);
+    if (summary.stop_reason == StopReason::kInterrupted) return std::nullopt;
+    Canonicalize(objective.coverage(), &model);
+    fit.file.dead = DeadParameters(objective.coverage());
+    fit.file.fit = {.solver = settings_.solver,
+                    .init = settings_.init,
+                    .weighting = settings_.weighting,
+                    .objective = objective.Value(model),
+                    .initial_objective = summary.initial_objective,
+                    .stop_reason = StopReasonName(summary.stop_reason),
+                    .iterations = summary.iterations,
+                    .seconds = summary.seconds,
+                    .threads = num_threads_,
+                    .source = material_.source,
+                    .valid_samples = objective.samples().size(),
+                    .program = settings_.program,
+                    .date = UtcNow()};
+    fit.seconds += stopwatch.Lap();
+    return fit;
+  }
+
+  std::optional<MaterialFit> PruneAnew() {
+    const std::optional<FullFit> full = Fit("scene");
+    if (!full || (settings_.stop && settings_.stop())) return std::nullopt;
+    const Objective& objective = FitObjective();
+    Stopwatch stopwatch;
+    PrunedModel pruned = Prune(objective, full->file.model, PruneOptionsOf(material_));
+    MaterialFit fit;
+    fit.prune_seconds = stopwatch.Lap();
+    fit.fit_seconds = full->seconds;
+    fit.fit_from_cache = full->from_cache;
+    fit.valid_samples = valid_samples_;
+    fit.used_samples = objective.samples().size();
+    fit.full_numbers = full->file.model.spec().num_parameters();
+    fit.full = ScoreOn(objective.samples(), full->file.model);
+    fit.pruned = ScoreOn(objective.samples(), pruned.model);
+    const Objective of_pruned(objective.samples(), pruned.model.spec(), objective.weighting(),
+                              num_threads_);
+    fit.file = {.model = std::move(pruned.model),
+                .dead = DeadParameters(of_pruned.coverage()),
+                .fit = full->file.fit,
+                .layout = std::move(pruned.layout)};
+    fit.file.fit.objective = fit.pruned.objective;
+    fit.numbers = pruned.numbers;
+    fit.decisions = std::move(pruned.decisions);
+    return fit;
+  }
+
+  SceneScore ScoreOn(BrdfSamples samples, const FactorModel& model) const {
+    const Objective objective(std::move(samples), model.spec(), FindWeighting(settings_.weighting),
+                              num_threads_);
+    const ScoreReport report = ScoreModel(objective, model);
+    return {report.objective, report.psnr_db};
+  }
+
+  const SceneMaterial& material_;
+  const SceneFitSettings& settings_;
+  const int num_threads_;
+  const std::string bytes_;
+  const std::string bytes_hash_;
+  std::optional<Objective> objective_;
+  int valid_samples_ = 0;
+};
+
+}  // namespace
+
+std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
+                                       const SceneFitSettings& settings, int num_threads) {
+  return MaterialFitter(material, settings, num_threads).FitAndPrune();
+}
+
+std::vector<std::optional<MaterialFit>> FitScene(
+    const Scene& scene, const SceneFitSettings& settings, int num_threads,
+    const std::function<void(const MaterialFit&)>& on_done) {
+  const int count = static_cast<int>(scene.materials.size());
+  std::vector<std::optional<MaterialFit>> fits(count);
+  std::mutex mutex;
+  ParallelFor(count, num_threads, [&](int k) {
+    if (settings.stop && settings.stop()) return;
+    fits[k] = FitMaterial(scene.materials[k], settings, std::max(1, num_threads / count));
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (fits[k]) on_done(*fits[k]);
+  });
+  return fits;
+}
+
+std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,
+                                int num_threads) {
+  SceneMaterial whole;
+  whole.name = material.name;
+  whole.source = material.source;
+  SceneFitSettings diagnosed = settings;
+  diagnosed.options.diagnose = true;
+  return MaterialFitter(whole, diagnosed, num_threads)
+      .Fit("alone on " + std::to_string(num_threads) + " threads");
+}
+
+SceneScore ScoreOnScene(const FactorModel& model, const SceneMaterial& material,
+                        const SceneFitSettings& settings, int num_threads) {
+  return MaterialFitter(material, settings, num_threads).Score(model);
+}
+
+}  // namespace trilobe

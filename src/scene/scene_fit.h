@@ -1,0 +1,88 @@
+#ifndef TRILOBE_SCENE_SCENE_FIT_H_
+#define TRILOBE_SCENE_SCENE_FIT_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/io/model_file.h"
+#include "trilobe/model/score.h"
+#include "trilobe/scene/fit_cache.h"
+#include "trilobe/scene/prune.h"
+#include "trilobe/scene/scene_file.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// How the materials of a scene are fitted, before anything is left out.
+struct SceneFitSettings {
+  std::string solver;
+  SolverOptions options;  // on_iteration is replaced
+  std::string init;
+  std::string weighting;
+  int lobes = 3;
+  double noise = 0;  // of synth: sources
+  uint64_t seed = 1;
+  std::string program;  // "trilobe 0.1.0": fits of another version are not reused
+  FitCache cache;
+  // Asked after each iteration, from several threads; true to stop and keep nothing.
+  std::function<bool()> stop = nullptr;
+};
+
+// What a fit reaches on the samples that a scene uses.
+struct SceneScore {
+  double objective = 0;  // E
+  double psnr_db = 0;
+};
+
+// A fit with nothing left out.
+struct FullFit {
+  ModelFile file;
+  double seconds = 0;  // reading, preparing and fitting, when it was made
+  bool from_cache = false;
+};
+
+// What numbers take in memory [bytes].
+inline int BytesOf(int numbers) { return numbers * static_cast<int>(sizeof(double)); }
+
+// What a material needs.
+struct MaterialFit {
+  std::string name;
+  int valid_samples = 0;  // of the measurement
+  int used_samples = 0;   // of these, by the fit
+  int full_numbers = 0;
+  SceneScore full, pruned;
+  ModelFile file;   // the pruned model, and how the full one came about
+  int numbers = 0;  // that it stores
+  std::vector<PruneDecision> decisions;
+  double fit_seconds = 0, prune_seconds = 0;  // when they were made
+  bool fit_from_cache = false, prune_from_cache = false;
+};
+
+// Fits a material as the scene limits it, and leaves out what its budget allows. Nothing if it was
+// stopped. The same bits for any number of threads, unless seconds are the budget or a limit.
+// Throws Error.
+std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
+                                       const SceneFitSettings& settings, int num_threads);
+
+// All materials side by side, a thread each, or more where there are fewer materials than threads.
+// `on_done` sees each when it is finished, one at a time. Those that were stopped are missing.
+std::vector<std::optional<MaterialFit>> FitScene(
+    const Scene& scene, const SceneFitSettings& settings, int num_threads,
+    const std::function<void(const MaterialFit&)>& on_done);
+
+// What one would do without a scene: the material as a whole, in all directions and in RGB, on all
+// threads, with the diagnosis that `trilobe fit` makes. Timed for itself, so a fit of FitScene is
+// not reused. Nothing if it was stopped.
+std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,
+                                int num_threads);
+
+// How well any model does on the samples that the scene uses of the material.
+SceneScore ScoreOnScene(const FactorModel& model, const SceneMaterial& material,
+                        const SceneFitSettings& settings, int num_threads);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SCENE_SCENE_FIT_H_

@@ -1,0 +1,57 @@
+#include "trilobe/scene/shapes.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace trilobe {
+
+TableLayout LayoutOf(const Shape& shape, TableLayout layout) {
+  layout.coloured_d = shape.coloured_d;
+  layout.coloured_s = shape.coloured_s;
+  if (shape.constant_G) {
+    for (std::vector<int>& nodes : layout.nodes[static_cast<int>(Factor::kG)]) nodes.resize(1);
+  }
+  return layout;
+}
+
+std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
+                                bool shadowing) {
+  const Shape own{
+      .name = "", .spec = spec, .coloured_d = layout.coloured_d, .coloured_s = layout.coloured_s};
+  std::vector<Shape> shapes = {own};
+  const auto add = [&](Shape shape, const Shape& of, const std::string& name) {
+    const bool changes = shape.spec != of.spec || shape.coloured_d != of.coloured_d ||
+                         shape.coloured_s != of.coloured_s || shape.constant_G;
+    shape.name = of.name + (of.name.empty() ? "" : ", ") + name;
+    if (changes) shapes.push_back(std::move(shape));
+  };
+  if (colour) {
+    Shape shape = own;
+    if (spec.lobes > 0) {
+      shape.spec.D.per_channel = shape.spec.F.per_channel = false;
+      if (shadowing) shape.spec.G.per_channel = false;
+      add(shape, own, "tables shared by the channels");
+      shape.coloured_d = false;
+      add(shape, own, "colour in s alone");
+      shape.coloured_s = false;
+    }
+    shape.coloured_d = false;
+    add(shape, own, "one channel for all");
+  }
+  if (shadowing && spec.lobes > 0) {
+    for (const Shape& of : std::vector<Shape>(shapes)) {
+      Shape shape = of;
+      shape.spec.G.per_lobe = false;
+      if (spec.lobes > 1) add(shape, of, "G shared by the lobes");
+      shape.spec.G.per_channel = false;
+      shape.constant_G = true;
+      add(shape, of, "G constant");
+    }
+  }
+  std::ranges::stable_sort(shapes, {}, [](const Shape& shape) {
+    return LayoutOf(shape, TableLayout::Full(shape.spec)).num_numbers(shape.spec);
+  });
+  return shapes;
+}
+
+}  // namespace trilobe

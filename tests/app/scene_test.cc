@@ -1,0 +1,148 @@
+// `trilobe plan`, `fit --scene` and `compare` as a script or a person sees them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_on_terminal.h"
+#include "tests/app/run_program.h"
+#include "trilobe/io/model_file.h"
+
+namespace trilobe {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kScene = R"({
+  "format": "trilobe-scene", "version": 1,
+  "directions": {"theta_i": [0, 30], "theta_o": [0, 30]},
+  "budget": {"relative_rise": 0.05},
+  "materials": [
+    {"name": "wall", "source": "synth:rubber"},
+    {"name": "curtain", "source": "synth:felt", "channels": "luminance"}
+  ]
+})";
+
+std::string MakeScene(const TemporaryFolder& folder, const std::string& text = kScene) {
+  std::ofstream(folder / "scene.json") << text;
+  return folder / "scene.json";
+}
+
+// A command with a cache of the test's own and a quick solver.
+ProgramResult RunQuickly(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--solver=awls", "--max_iterations=2", "--lobes=1",
+                                     "--cache=" + (folder / "cache")});
+  return RunProgram(arguments);
+}
+
+TEST(Scene, IsPlannedFittedAndCompared) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder), out = folder / "out";
+  const ProgramResult plan = RunQuickly(folder, {"plan", scene});
+  ASSERT_EQ(plan.status, 0) << plan.err;
+  EXPECT_EQ(plan.err, "");
+  EXPECT_THAT(plan.out, HasSubstr("\nwall: synth:rubber; E may rise by 5 %\n"));
+  EXPECT_THAT(plan.out, HasSubstr("in directions that the scene does not use"));
+
+  const ProgramResult fit = RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("from the cache"));
+  EXPECT_THAT(fit.out, HasSubstr(Contents(out + "/plan.txt")));
+  const auto json = nlohmann::json::parse(Contents(out + "/plan.json"));
+  EXPECT_EQ(json["reused"], 2);
+  EXPECT_EQ(json["flags"]["solver"], "awls");
+  ASSERT_EQ(json["materials"].size(), 2U);
+  for (const auto& material : json["materials"]) {
+    const std::string name = material["name"];
+    const FactorModel model = ReadModel(out + "/" + name + ".json").model;
+    EXPECT_EQ(model.spec().lobes, material["lobes"].get<int>());
+    EXPECT_LT(material["numbers"]["pruned"].get<int>(), material["numbers"]["full"].get<int>());
+    EXPECT_LT(material["samples"]["used"].get<int>(), material["samples"]["valid"].get<int>());
+    EXPECT_LE(material["relative_rise"].get<double>(), 0.05 + 1e-12);
+  }
+
+  const ProgramResult of_scene = RunQuickly(folder, {"compare", scene, "--json"});
+  ASSERT_EQ(of_scene.status, 0) << of_scene.err;
+  const ProgramResult of_folder = RunProgram(
+      {"compare", out, "--json", "--cache=" + (folder / "cache")});  // the other flags are kept
+  ASSERT_EQ(of_folder.status, 0) << of_folder.err;
+  EXPECT_EQ(of_folder.out, of_scene.out);
+  const auto compared = nlohmann::json::parse(of_scene.out);
+  ASSERT_EQ(compared["materials"].size(), 2U);
+  for (size_t k = 0; k < 2; ++k) {
+    const auto& row = compared["materials"][k];
+    EXPECT_EQ(row["full"]["numbers"], ModelSpec::SharedFactors(1).num_parameters());
+    EXPECT_EQ(row["pruned"]["numbers"], json["materials"][k]["numbers"]["pruned"]);
+    const double planned = json["materials"][k]["objective"]["pruned"];
+    EXPECT_NEAR(row["pruned"]["objective"].get<double>(), planned, 1e-10 * planned);
+  }
+  EXPECT_EQ(compared["all"]["seconds"]["pruned_reckoned"], true);
+
+  const ProgramResult table = RunProgram(
+      {"compare", out, "--cache=" + (folder / "cache"), "--out=" + (folder / "trade_off.png")});
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("\ncurtain "));
+  EXPECT_THAT(table.out, HasSubstr("\nall "));
+  EXPECT_TRUE(std::filesystem::exists(folder / "trade_off.png"));
+}
+
+TEST(Scene, AnInterruptKeepsWhatIsFinished) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
+      "materials": [
+        {"name": "quick", "source": "synth:rubber", "budget": {"seconds": 1},
+         "directions": {"theta_i": [0, 10], "theta_o": [0, 10]}},
+        {"name": "slow", "source": "synth:felt"}]})");
+  const std::string out = folder / "out";
+  const TerminalResult result =
+      RunOnTerminal({"fit", "--scene=" + scene, "--out=" + out, "--threads=1", "--solver=awls",
+                     "--max_iterations=100000", "--tolerance=0", "--optimality_tolerance=0",
+                     "--max_seconds=60", "--lobes=1", "--nocache"},
+                    "1 of 2 materials finished", SIGINT);
+  if (result.status == 0) GTEST_SKIP() << "it was faster than the signal";
+  EXPECT_EQ(result.status, 128 + SIGINT) << result.text;
+  EXPECT_TRUE(std::filesystem::exists(out + "/quick.json"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/slow.json"));
+  EXPECT_THAT(result.text, HasSubstr("interrupted"));
+  EXPECT_EQ(nlohmann::json::parse(Contents(out + "/plan.json"))["materials"].size(), 1U);
+}
+
+TEST(Scene, BadUseIsAnError) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder), bad = folder / "bad.json";
+  std::ofstream(bad) << R"({"format": "trilobe-scene", "version": 1, "materials": 3})";
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string error;
+  };
+  const std::vector<Case> cases = {
+      {{"plan"}, "takes SCENE"},
+      {{"plan", folder / "none.json"}, "none.json"},
+      {{"plan", bad}, "bad.json: /materials: must be an array"},
+      {{"plan", scene, "--out=x"}, "no flag --out"},
+      {{"plan", scene, "--nocache", "--cache=x"}, "contradict"},
+      {{"fit"}, "needs a SOURCE, or --scene"},
+      {{"fit", "--scene=" + scene}, "needs --out=DIR"},
+      {{"fit", "synth:felt", "--scene=" + scene}, "leave out synth:felt"},
+      {{"fit", "synth:felt", "--nocache"}, "--nocache goes with --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--plots"}, "not for --scene"},
+      {{"fit", "--scene=" + bad, "--out=" + (folder / "o")}, "/materials"},
+      {{"compare", folder / "none"}, "none"},
+      {{"compare", folder / "."}, "plan.json"},
+  };
+  for (const Case& bad_case : cases) {
+    const ProgramResult result = RunProgram(bad_case.arguments, {"XDG_CACHE_HOME=/nowhere"});
+    EXPECT_EQ(result.status, 1) << bad_case.error;
+    EXPECT_THAT(result.err, HasSubstr(bad_case.error));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "o"));
+}
+
+}  // namespace
+}  // namespace trilobe

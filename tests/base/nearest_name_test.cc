@@ -1,0 +1,22 @@
+#include "trilobe/base/nearest_name.h"
+
+#include <gtest/gtest.h>
+
+namespace trilobe {
+namespace {
+
+TEST(NearestName, TakesTheFewestEdits) {
+  const std::vector<std::string_view> known = {"source", "name", "budget"};
+  EXPECT_EQ(NearestName("sorce", known), "source");
+  EXPECT_EQ(NearestName("budgets", known), "budget");
+  EXPECT_EQ(NearestName("game", known), "name");
+  EXPECT_EQ(NearestName("name", known), "name");
+}
+
+TEST(NearestName, TakesTheFirstOfSeveral) {
+  EXPECT_EQ(NearestName("", {"ab", "cd"}), "ab");
+  EXPECT_EQ(NearestName("xx", {"ab", "cd"}), "ab");
+}
+
+}  // namespace
+}  // namespace trilobe

@@ -1,0 +1,161 @@
+#include "trilobe/scene/scene_fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/io/test_directory.h"
+
+namespace trilobe {
+namespace {
+
+// Few steps of a fast solver with one lobe: this is not about how well it fits.
+SceneFitSettings Settings(const FitCache& cache = {}) {
+  SceneFitSettings settings;
+  settings.solver = "awls";
+  settings.options.max_iterations = 2;
+  settings.options.diagnose = false;
+  settings.init = "analytic";
+  settings.weighting = "compressive";
+  settings.lobes = 1;
+  settings.noise = 0.02;
+  settings.program = "test";
+  settings.cache = cache;
+  return settings;
+}
+
+// The directions that a floor seen from above uses; few, for speed.
+SceneMaterial Material(const std::string& synth) {
+  SceneMaterial material;
+  material.name = synth;
+  material.source = "synth:" + synth;
+  material.directions = DirectionRanges{{0, 0.4}, {0, 0.4}};
+  return material;
+}
+
+void ExpectSame(const MaterialFit& a, const MaterialFit& b) {
+  EXPECT_THAT(a.file.model.parameters(), testing::ElementsAreArray(b.file.model.parameters()));
+  EXPECT_EQ(a.file.layout, b.file.layout);
+  EXPECT_EQ(a.file.dead, b.file.dead);
+  EXPECT_EQ(a.numbers, b.numbers);
+  EXPECT_EQ(a.full_numbers, b.full_numbers);
+  EXPECT_EQ(a.valid_samples, b.valid_samples);
+  EXPECT_EQ(a.used_samples, b.used_samples);
+  EXPECT_EQ(a.full.objective, b.full.objective);
+  EXPECT_EQ(a.pruned.objective, b.pruned.objective);
+  EXPECT_EQ(a.pruned.psnr_db, b.pruned.psnr_db);
+  ASSERT_EQ(a.decisions.size(), b.decisions.size());
+  for (size_t k = 0; k < a.decisions.size(); ++k) {
+    EXPECT_EQ(a.decisions[k].what, b.decisions[k].what);
+    EXPECT_EQ(a.decisions[k].why, b.decisions[k].why);
+    EXPECT_EQ(a.decisions[k].taken, b.decisions[k].taken);
+    EXPECT_EQ(a.decisions[k].E_after, b.decisions[k].E_after);
+  }
+}
+
+TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
+  const auto fit = FitMaterial(Material("felt"), Settings(), 1);
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->name, "felt");
+  EXPECT_EQ(fit->full_numbers, ModelSpec::SharedFactors(1).num_parameters());
+  EXPECT_LT(fit->numbers, fit->full_numbers);
+  EXPECT_LT(fit->used_samples, fit->valid_samples);
+  EXPECT_LE(fit->pruned.objective, 1.01 * fit->full.objective * (1 + 1e-12));
+  EXPECT_FALSE(fit->decisions.empty());
+  EXPECT_FALSE(fit->fit_from_cache || fit->prune_from_cache);
+  const SceneScore again = ScoreOnScene(fit->file.model, Material("felt"), Settings(), 2);
+  EXPECT_EQ(again.objective, fit->pruned.objective);
+  EXPECT_EQ(again.psnr_db, fit->pruned.psnr_db);
+}
+
+TEST(FitMaterial, TakesFromTheCacheWhatItWouldMake) {
+  const TestDirectory directory;
+  const FitCache cache(directory.path());
+  const SceneMaterial material = Material("felt");
+  const auto made = FitMaterial(material, Settings(cache), 1);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(directory.Names().size(), 2U);  // the full fit, and what is left of it
+  const auto found = FitMaterial(material, Settings(cache), 2);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->fit_from_cache && found->prune_from_cache);
+  ExpectSame(*made, *found);
+  EXPECT_EQ(found->fit_seconds, made->fit_seconds);
+  // Another name changes nothing, another budget reuses the full fit.
+  SceneMaterial other = material;
+  other.name = "other";
+  EXPECT_EQ(FitMaterial(other, Settings(cache), 1)->name, "other");
+  EXPECT_EQ(directory.Names().size(), 2U);
+  other.budget.amount = 0.05;
+  const auto reused = FitMaterial(other, Settings(cache), 1);
+  EXPECT_TRUE(reused->fit_from_cache);
+  EXPECT_FALSE(reused->prune_from_cache);
+  EXPECT_EQ(reused->fit_seconds, made->fit_seconds);
+  EXPECT_EQ(directory.Names().size(), 3U);
+  // Torn entries are made again, to the same bits.
+  for (const std::string& name : directory.Names()) {
+    std::filesystem::resize_file(directory.Path(name), 100);
+  }
+  const auto remade = FitMaterial(material, Settings(cache), 1);
+  EXPECT_FALSE(remade->fit_from_cache || remade->prune_from_cache);
+  ExpectSame(*made, *remade);
+}
+
+TEST(FitMaterial, AnythingThatMattersMakesAnotherEntry) {
+  const TestDirectory directory;
+  const FitCache cache(directory.path());
+  ASSERT_TRUE(FitMaterial(Material("felt"), Settings(cache), 1));
+  const auto expect_new = [&](const SceneMaterial& material, const SceneFitSettings& settings,
+                              const char* what) {
+    EXPECT_FALSE(FitMaterial(material, settings, 1)->prune_from_cache) << what;
+  };
+  SceneMaterial material = Material("felt");
+  material.directions = DirectionRanges{{0, 0.4}, {0, 0.3}};
+  expect_new(material, Settings(cache), "directions");
+  material = Material("felt");
+  material.reductions.tables = false;
+  expect_new(material, Settings(cache), "reductions");
+  SceneFitSettings settings = Settings(cache);
+  settings.options.max_iterations = 3;
+  expect_new(Material("felt"), settings, "options");
+  settings = Settings(cache);
+  settings.program = "newer";
+  expect_new(Material("felt"), settings, "program");
+}
+
+TEST(FitMaterial, InLuminanceIsGrey) {
+  SceneMaterial material = Material("felt");
+  material.channels = SceneChannels::kLuminance;
+  const auto fit = FitMaterial(material, Settings(), 1);
+  ASSERT_TRUE(fit);
+  const FactorModel& model = fit->file.model;
+  EXPECT_EQ(model.d()[0], model.d()[1]);
+  EXPECT_EQ(model.d()[0], model.d()[2]);
+  EXPECT_FALSE(model.spec().F.per_channel);
+}
+
+TEST(FitMaterial, ThatIsStoppedKeepsNothing) {
+  const TestDirectory directory;
+  SceneFitSettings settings = Settings(FitCache(directory.path()));
+  settings.stop = [] { return true; };
+  EXPECT_EQ(FitMaterial(Material("felt"), settings, 1), std::nullopt);
+  EXPECT_TRUE(directory.Names().empty());
+}
+
+TEST(FitScene, IsTheSameForAnyNumberOfThreads) {
+  const Scene scene{"scene.json", {Material("felt"), Material("rubber"), Material("plastic")}};
+  std::vector<std::string> done;
+  const auto one =
+      FitScene(scene, Settings(), 1, [&](const MaterialFit& fit) { done.push_back(fit.name); });
+  EXPECT_EQ(done, (std::vector<std::string>{"felt", "rubber", "plastic"}));
+  const auto four = FitScene(scene, Settings(), 4, [](const MaterialFit&) {});
+  ASSERT_EQ(one.size(), 3U);
+  ASSERT_EQ(four.size(), 3U);
+  for (size_t k = 0; k < one.size(); ++k) {
+    ASSERT_TRUE(one[k] && four[k]);
+    ExpectSame(*one[k], *four[k]);
+  }
+}
+
+}  // namespace
+}  // namespace trilobe
