@@ -1,7 +1,5 @@
 #include "trilobe/scene/node_elimination.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,16 +35,18 @@ struct Constraint {
 // Z that is let go.
 class Tableau {
  public:
-  // All free. A: positive definite, column by column; it is taken over.
+  // All free. A: positive definite, column by column; it is taken over. Of no use if it is not.
   Tableau(std::vector<double> A, std::vector<double> z)
       : stride_(z.size()),
         size_(static_cast<int>(z.size())),
         T_(std::move(A)),
         h_(std::move(z)),
         free_(stride_, true) {
-    CHECK(FactorCholesky(size_, T_.data())) << "a damped J'J is positive definite";
-    InvertFactored(size_, T_.data());
+    valid_ = FactorCholesky(size_, T_.data());
+    if (valid_) InvertFactored(size_, T_.data());
   }
+
+  bool valid() const { return valid_; }
 
   int size() const { return size_; }
   bool free(int k) const { return free_[k]; }
@@ -159,6 +159,7 @@ class Tableau {
 
   const size_t stride_;
   int size_;
+  bool valid_ = false;
   std::vector<double> T_, h_;
   std::vector<bool> free_;
   std::vector<double> t_;
@@ -191,6 +192,7 @@ class Eliminator {
 
   std::vector<Elimination> Run() {
     std::vector<Elimination> order;
+    if (!tableau_.valid()) return order;  // numbers so large that H overflows
     double rise = 0;
     while (static_cast<int>(order.size()) < limits_.max_count) {
       int best = -1;
@@ -233,6 +235,7 @@ class Eliminator {
       A_at(j, j) += kQuadraticDamping;
     }
     Tableau tableau(std::move(A), z);
+    if (!tableau.valid()) return tableau;
     for (int j = 0; j < n; ++j) {
       if (y[j] == 0 && at.gradient[j] > 0) tableau.Pivot(j);
     }

@@ -176,9 +176,13 @@ class Pruner {
   std::string Against(double E, bool within) const {
     std::ostringstream out;
     out.precision(3);
-    const double rise = 100 * (E / E_full_ - 1);
-    out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
-        << " the full model's";
+    if (E_full_ > 0) {
+      const double rise = 100 * (E / E_full_ - 1);
+      out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
+          << " the full model's";
+    } else {
+      out << "E is " << E << ", and of the full model 0";
+    }
     if (!by_numbers_) out << "; " << (within ? "within" : "beyond") << " the budget";
     return out.str();
   }

@@ -286,6 +286,26 @@ TEST(Prune, OtherSharingAndScatteredSamples) {
   EXPECT_LT(pruned.numbers, model.spec().num_parameters());
 }
 
+TEST(Prune, DegenerateMeasurements) {
+  BrdfTable black = RandomTable(kGrid, 1);
+  for (int bin = 0; bin < kGrid.size(); ++bin) {
+    for (int c = 0; c < kChannels; ++c) {
+      if (black.Value(c, bin) >= 0) black.SetValue(c, bin, 0);
+    }
+  }
+  const BrdfTable spiky = RandomTable(kGrid, 1, /*lost=*/0.6, /*sigma=*/10);
+  for (const BrdfTable& measured : {black, spiky}) {
+    const Fit fit = MakeFit(measured, 2, 5);
+    const double E = fit.objective.Value(fit.model);
+    const PrunedModel pruned = Prune(fit.objective, fit.model, {});
+    EXPECT_LE(pruned.E, 1.01 * E);
+    EXPECT_LE(Prune(fit.objective, fit.model, {.max_numbers = 10}).numbers, 10);
+    // Not a fit at all.
+    FactorModel far = RandomModel(fit.model.spec(), 1, 3);
+    EXPECT_LE(Prune(fit.objective, far, {}).E, 1.01 * fit.objective.Value(far));
+  }
+}
+
 TEST(Prune, BadBudgets) {
   const Fit fit = MakeFit(Material(0, false));
   for (const PruneOptions& options : {PruneOptions{.max_relative_rise = std::nan("")},
