@@ -53,7 +53,7 @@ def _solver_row(result, fit):
 
 def _curve_rows(result, fit, best):
     """Iterations that grow by a constant factor; the decrease is the mean of an iteration since
-    the row before."""
+    the row before. No decrease and no step where the step was taken back."""
     trace = fit.trace
     chosen = sorted({0, len(trace) - 1} | {
         round(k) for k in numpy.geomspace(1, max(1, len(trace) - 1), POINTS)})
@@ -65,12 +65,12 @@ def _curve_rows(result, fit, best):
         decrease = None
         if before is not None and trace[before]["objective"] > 0:
             ratio = now["objective"] / trace[before]["objective"]
-            decrease = 1 - ratio ** (1 / (k - before))
+            decrease = 1 - ratio ** (1 / (k - before)) if ratio != 1 else None
         rows.append({"material": result.labels["material"], "solver": result.labels["solver"],
                      "iteration": k,
                      "excess": float(f"{stats.excess(now['objective'], best):.4g}"),
                      "decrease": None if decrease is None else float(f"{decrease:.4g}"),
-                     "step": float(f"{now['step']:.4g}"),
+                     "step": float(f"{now['step']:.4g}") if now["accepted"] else None,
                      "optimality": None if math.isnan(now["optimality"])
                      else float(f"{now['optimality']:.4g}")})
         before = k
@@ -78,7 +78,7 @@ def _curve_rows(result, fit, best):
 
 
 def _roughness(fit):
-    """Root mean square second difference of the G tables, each over its mean, from 1 to 89 degrees."""
+    """Root mean square second difference of the G tables, each over its mean; of whole ones."""
     model = json.loads((fit.folder / "model.json").read_text())
     values = []
     for table, dead in zip(model["G"], model.get("dead", {}).get("G", [[]] * len(model["G"]))):
@@ -176,7 +176,7 @@ def _elements_figure(elements):
                   color="#555555")
     axes.set(yscale="log", ylim=(1e-17, 1e-9), xlabel="materials, sorted",
              ylabel="worst relative rise of E in one update",
-             title="No single update raises E beyond rounding; 1e-17: no rise at all")
+             title="The worst rise of each material, a dot each (1e-17: none at all)")
     plots.label_ends(axes)
     return figure
 
@@ -197,7 +197,8 @@ def _filter_figure(rows):
             axes.plot(shown, [at[name, w][column] / base for w in shown], marker="o", label=name,
                       color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
                       linestyle="-" if k < len(plots.SERIES) else "--")
-        axes.set(yscale="log", xlabel="standard deviation of the filter on G (degrees)", title=label)
+        axes.set(yscale="log", title=label,
+                 xlabel="standard deviation of the filter on G (degrees)")
         axes.set_xticks(widths)
         plots.plain_numbers(axes.yaxis)
         plots.label_ends(axes, spacing=0.06)

@@ -6,7 +6,7 @@ import numpy
 from lab import fits, stats, tables
 from lab.fits import Fit
 
-POINTS = 40  # of a curve, at times that grow by a constant factor
+POINTS = 32  # of a curve, at times that grow by a constant factor
 TARGETS = (0.1, 0.01, 0.001)
 DEFAULT_START = "analytic"
 
@@ -19,7 +19,8 @@ def units(setting):
 
 
 def _labels(result):
-    return {key: result.labels[key] for key in ("material", "solver", "start", "seed", "threads")}
+    return {key: result.labels[key] for key in ("material", "solver", "start", "seed", "threads",
+                                                  "repeat")}
 
 
 def _best_objectives(fit_of):
@@ -57,8 +58,12 @@ def _on_grid(rows, column, grid):
 
 
 def _curves(fit_of, best, grid):
-    """A row a time of each fit from the default start: excess, loss of PSNR, mean log error over
-    that of the fit with the lowest E of the material."""
+    """A row a time of each fit from the default start, of the materials that most solvers fitted:
+    excess, loss of PSNR, mean log error over that of the fit with the lowest E of the material."""
+    solvers = {}
+    for result, _ in fit_of:
+        solvers.setdefault(result.labels["material"], set()).add(result.labels["solver"])
+    most = max(map(len, solvers.values()), default=0)
     final = {}
     for result, fit in fit_of:
         name = result.labels["material"]
@@ -66,9 +71,11 @@ def _curves(fit_of, best, grid):
             final[name] = fit.report
     rows = []
     for result, fit in fit_of:
-        if result.labels["start"] != DEFAULT_START:
+        if (result.labels["start"] != DEFAULT_START or result.labels["repeat"] > 1
+                or len(solvers[result.labels["material"]]) < most):
             continue
         reference = final[result.labels["material"]]
+        lowest = best[result.labels["material"]]
         objective = _on_grid(fit.trace, "objective", grid)
         psnr = _on_grid(fit.course, "psnr_db", grid)
         log_error = _on_grid(fit.course, "mean_log_error", grid)
@@ -79,7 +86,7 @@ def _curves(fit_of, best, grid):
             rows.append({
                 **{key: result.labels[key] for key in ("material", "solver", "threads")},
                 "seconds": float(f"{seconds:.4g}"),
-                "excess": float(f"{stats.excess(objective[k], best[result.labels['material']]):.4g}"),
+                "excess": float(f"{stats.excess(objective[k], lowest):.4g}"),
                 "psnr_loss_db": float(f"{reference['psnr_db'] - psnr[k]:.4g}") if known else None,
                 "log_error_ratio": float(f"{log_error[k] / reference['mean_log_error']:.4g}")
                 if known and reference["mean_log_error"] > 0 else None})
@@ -170,6 +177,7 @@ def _median_figure(curves, rows, solvers, threads):
     columns = (("excess", "excess of E over the best (%)", 100),
                ("psnr_loss_db", "PSNR below that of the best fit (dB)", 1),
                ("log_error_ratio", "mean log error over that of the best fit", 1))
+    last = 1.05 * max(row["seconds"] for row in rows if row.get("seconds"))
     by_time = tables.groups(curves, "solver", "seconds")
     for axes, (column, label, factor) in zip(panels, columns):
         for solver in solvers:
@@ -185,7 +193,7 @@ def _median_figure(curves, rows, solvers, threads):
             axes.plot(seconds, middle, label=solver, **style)
             if solver in ("auto", "awls"):
                 axes.fill_between(seconds, low, high, color=style["color"], alpha=0.12, linewidth=0)
-        axes.set(xscale="log", ylabel=label)
+        axes.set(xscale="log", ylabel=label, xlim=(None, last))
         if column == "excess":
             axes.set_yscale("symlog", linthresh=0.1)
             axes.set_ylim(bottom=0)
@@ -196,8 +204,8 @@ def _median_figure(curves, rows, solvers, threads):
         plots.plain_numbers(axes.yaxis)
         plots.plain_numbers(axes.xaxis)
         plots.label_ends(axes)
-    panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} threads; "
-                        "bands: quartiles of auto and awls")
+    panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} "
+                        "threads; bands: quartiles of auto and awls")
     panels[-1].set_xlabel("seconds on the clock, reading and preparing included")
     return figure
 
@@ -206,6 +214,7 @@ def _material_figure(curves, rows, solvers, threads):
     """A small picture for each material: excess over time."""
     from lab import plots
     names = sorted({row["material"] for row in rows})
+    last = 1.05 * max(row["seconds"] for row in rows if row.get("seconds"))
     columns = min(4, len(names))
     lines = math.ceil(len(names) / columns)
     figure, panels = plots.plt.subplots(lines, columns, figsize=(3 * columns + 1, 2.3 * lines + 1),
@@ -219,13 +228,14 @@ def _material_figure(curves, rows, solvers, threads):
                       [max(100 * row["excess"], 0.01) for row in points], label=solver,
                       **{**plots.solver_style(solver, solvers), "linewidth": 1.3})
         axes.set_title(name, fontsize=9)
-        axes.set(xscale="log", yscale="log", ylim=(0.009, 1e3))
+        axes.set(xscale="log", yscale="log", xlim=(None, last), ylim=(0.009, 1e3))
         plots.plain_numbers(axes.xaxis)
         plots.plain_numbers(axes.yaxis)
+        axes.minorticks_off()
     for axes in panels.flat[len(names):]:
         axes.set_axis_off()
     figure.supxlabel("seconds on the clock")
-    figure.supylabel("excess of E over the best (%), 0.01 or less at the bottom")
+    figure.supylabel("excess of E over the best (%)")
     plots.legend_above(figure, panels.flat[0])
     return figure
 
@@ -271,25 +281,30 @@ def _quartiles(values, format_spec=".3g", unit=""):
 
 
 def _summary(rows, solvers):
-    """A Markdown table: a column a solver."""
+    """Two Markdown tables, a row a solver: what it reaches, and how soon."""
     of = tables.groups(rows, "solver")
-    lines = [[f"within {100 * target:g} % at the end",
-              *(_percent(sum(row["excess"] <= target for row in of[s]) / len(of[s]))
-                for s in solvers)] for target in TARGETS]
-    lines.append(["excess at the end, %",
-                  *(_quartiles([100 * row["excess"] for row in of[s]]) for s in solvers)])
-    lines.append(["largest excess, %",
-                  *(f"{100 * max(row['excess'] for row in of[s]):.3g}" for s in solvers)])
-    for target in TARGETS:
-        column = f"seconds_to_{100 * target:g}_percent"
-        lines.append([f"seconds to {100 * target:g} %",
-                      *(_quartiles([row[column] for row in of[s]]) for s in solvers)])
-    for label, column, factor in (("iterations made", "iterations", 1),
-                                  ("trace, % of solving", "trace_share", 100)):
-        lines.append([label, *(_quartiles([factor * row[column] for row in of[s]
-                                           if row.get(column) is not None] or [math.inf])
-                               for s in solvers)])
-    return tables.markdown(["", *solvers], lines)
+    reached, times = [], []
+    for solver in solvers:
+        mine = of[solver]
+
+        def column(name, factor=1, rows_of=mine):
+            return _quartiles([factor * row[name] for row in rows_of
+                               if row.get(name) is not None] or [math.inf])
+        missing = sum(math.isinf(row["excess"]) for row in mine)
+        largest = max(row["excess"] for row in mine)
+        reached.append([solver, f"{len(mine)}, {missing} missing" if missing else str(len(mine)),
+                        *(_percent(sum(row["excess"] <= target for row in mine) / len(mine))
+                          for target in TARGETS),
+                        column("excess", 100),
+                        f"{100 * largest:.3g}" if math.isfinite(largest) else "–"])
+        times.append([solver, *(column(f"seconds_to_{100 * target:g}_percent")
+                                for target in TARGETS),
+                      column("iterations"), column("trace_share", 100)])
+    names = [f"{100 * target:g} %" for target in TARGETS]
+    return (tables.markdown(["solver", "materials", *(f"ends within {name}" for name in names),
+                             "excess at the end, %", "largest, %"], reached) + "\n"
+            + tables.markdown(["solver", *(f"seconds to {name}" for name in names), "iterations",
+                               "trace, % of solving"], times))
 
 
 def _thread_table(runs):
@@ -315,6 +330,23 @@ def _thread_table(runs):
                               for t in TARGETS[:2])], lines)
 
 
+def _repeat_table(runs):
+    """The same fit made again: the longer time to 10 % over the shorter one."""
+    times = {}
+    for (name, solver, threads), of in tables.groups(
+            [row for row in runs if row["start"] == DEFAULT_START],
+            "material", "solver", "threads").items():
+        of_fit = [row["seconds_to_10_percent"] for row in of]
+        if len(of_fit) > 1 and all(map(math.isfinite, of_fit)):
+            times.setdefault((solver, threads), []).append(max(of_fit) / min(of_fit))
+    if not times:
+        return ""
+    return tables.markdown(["solver", "threads", "fits", "longest over shortest", "worst"],
+                           [[solver, str(threads), str(len(ratios)), _quartiles(ratios),
+                             f"{max(ratios):.3g}"]
+                            for (solver, threads), ratios in times.items()])
+
+
 def _halves(runs, solvers, threads):
     """Summaries for the half on which `auto` was developed, and for the other one."""
     from lab import materials
@@ -330,7 +362,8 @@ def _halves(runs, solvers, threads):
 
 
 def draw(drawn, _):
-    runs, curves = drawn["runs"], drawn["curves"]
+    curves = drawn["curves"]
+    runs = [row for row in drawn["runs"] if row["repeat"] == 1]
     rows, solvers, threads = _complete(runs)
     everywhere = [row for row in runs if row["start"] == DEFAULT_START
                   and row["threads"] == threads]
@@ -343,14 +376,15 @@ def draw(drawn, _):
         wide = [row for row in everywhere if row["solver"] in widest]
         summary += f"\nAll {count} materials:\n\n{_summary(wide, widest)}\n"
     products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads),
-                "threads.md": _thread_table(runs)}
+                "threads.md": _thread_table(runs), "repeats.md": _repeat_table(drawn["runs"])}
     if curves:
         products["median"] = _median_figure(curves, rows, solvers, threads)
         products["materials"] = _material_figure(curves, rows, solvers, threads)
     products["profiles"] = _profile_figure(rows, solvers, threads, "all solvers")
     if count > names:
         products["profiles_all"] = _profile_figure(
-            [row for row in everywhere if row["solver"] in widest], widest, threads, "two solvers")
+            [row for row in everywhere if row["solver"] in widest], widest, threads,
+            ", ".join(widest))
     if (figure := _start_figure(runs, threads)) is not None:
         products["starts"] = figure
     return products

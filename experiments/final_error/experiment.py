@@ -274,7 +274,7 @@ def _spread_figure(rows):
             axes.set_xscale("log")
             plots.plain_numbers(axes.xaxis)
     panels[0].set_ylabel("share of materials (%) at or below")
-    panels[0].legend(loc="lower right")
+    panels[0].legend(loc="best")
     figure.suptitle("How well the defaults fit, over all materials", x=0.01, ha="left")
     return figure
 
@@ -284,8 +284,8 @@ def _worst_text(worst, folder):
     for place, row in enumerate(worst, start=1):
         text += (f"{place}. {row['material']}: mean log error {row['mean_log_error']:.4g}, "
                  f"PSNR {row['psnr_db']:.1f} dB, mean relative error "
-                 f"{100 * row['mean_relative_error']:.1f} %, E {100 * row['relative_objective']:.3g} "
-                 "% of that of a black model\n\n")
+                 f"{100 * row['mean_relative_error']:.1f} %, E "
+                 f"{100 * row['relative_objective']:.3g} % of that of a black model\n\n")
         name = f"slices-{row['material']}.png"
         if (folder / name).exists():
             text += f"![Measured and fitted values of {row['material']}]({name})\n\n"
@@ -312,7 +312,7 @@ def draw(drawn, folder):
         products["weighting_psnr.md"] = _table(weightings, "psnr_db", "{:.2f}".format, True)
         products["weighting_relative_error.md"] = _table(weightings, "mean_relative_error",
                                                          "{:.2%}".format)
-    if fitted:
+    if fitted:  # none if only other fits were asked for
         products["spread"] = _spread_figure(fitted)
     if drawn.get("below"):
         everywhere = _published_rows(rows)

@@ -52,8 +52,8 @@ class _TimeLeft:
 def run(store, units, again=False, out=sys.stderr):
     """Makes the units. Returns the lines of those that failed.
 
-    Progress and an estimate of the time left go to `out`. It can be stopped at any time, and goes on
-    where it was when it is run again.
+    Progress and an estimate of the time left go to `out`. It can be stopped at any time, and goes
+    on where it was when it is run again.
     """
     units = distinct(units)
     left = [unit for unit in units if again or not store.is_done(unit)]

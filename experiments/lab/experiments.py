@@ -7,8 +7,8 @@ pictures can be drawn again anywhere from the tables alone.
     tabulate(setting, results) -> {name: rows or bytes}
                                          rows, a list of dicts, become NAME.csv; bytes the file NAME
     draw(tables, folder) -> {name: Figure or text}
-                                         tables: {name: rows} as read back; folder holds all files of
-                                         tabulate; a Figure becomes NAME.svg, a text NAME as it is
+                                         tables: {name: rows} as read back; folder: of all files
+                                         of tabulate; a Figure becomes NAME.svg, a text NAME
 """
 import dataclasses
 import importlib.util

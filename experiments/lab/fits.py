@@ -15,40 +15,45 @@ def _flag(name, value):
 
 
 def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2,
-        weighting="compressive", noise=0, **labels):
+        weighting="compressive", noise=0, repeat=1, **labels):
     """The unit of one fit.
 
-    solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program. flags:
-    more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
+    solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program.
+    flags: more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
+    repeat: the same fit is made once for each number, where its times are the question.
     """
     flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
              "weighting": weighting, "noise": noise, **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
     words = [_flag(name, flags[name]) for name in sorted(flags)]
-    return Unit(path=f"fit/{source.name}/{solver}-{start}-{weighting}-{threads}t",
+    again = f"-repeat{repeat}" if repeat > 1 else ""
+    return Unit(path=f"fit/{source.name}/{solver}-{start}-{weighting}-{threads}t{again}",
                 program=setting.program(),
                 arguments=("fit", source.path, f"--out={FOLDER}", *words), product="report.json",
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
-                        "threads": threads, "weighting": weighting, "noise": noise, **labels})
+                        "threads": threads, "weighting": weighting, "noise": noise,
+                        "repeat": repeat, **labels})
 
 
 def planned(setting):
     """The fits of the manifest's "runs", without repetitions within runs of one name.
 
-    A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...], "threads":
-    [...], "weightings": [...], "noises": [...], "flags": {...}}, all but the first with a default. It
-    stands for every combination on every 4th material of each list; its flags come on top of the
-    manifest's "flags". Its "name", if it has one, is a label of its fits.
+    A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...],
+    "threads": [...], "weightings": [...], "noises": [...], "repeats": 2, "flags": {...}}, all but
+    the first with a default. It stands for every combination on every 4th material of each list;
+    its flags come on top of the manifest's "flags". Its "name", if it has one, is a label of its
+    fits.
     """
     units = {}
     for run in setting.manifest["runs"]:
         flags = {**setting.manifest.get("flags", {}), **run.get("flags", {})}
-        for source, solver, start, seed, threads, weighting, noise in itertools.product(
+        for source, solver, start, seed, threads, weighting, noise, repeat in itertools.product(
                 setting.every(run.get("every", 1)), run["solvers"],
                 run.get("starts", ["analytic"]), run.get("seeds", [1]), run.get("threads", [2]),
-                run.get("weightings", ["compressive"]), run.get("noises", [0])):
+                run.get("weightings", ["compressive"]), run.get("noises", [0]),
+                range(1, 1 + run.get("repeats", 1))):
             unit = fit(setting, source, solver, flags, start, seed, threads, weighting, noise,
-                       run=run.get("name", ""))
+                       repeat, run=run.get("name", ""))
             units.setdefault((unit.key, unit.labels["run"]), unit)
     return list(units.values())
 
@@ -83,7 +88,8 @@ class Fit:
 
     @functools.cached_property
     def course(self):
-        """Rows of course.csv, of a fit with the flag "course": scores of models on the way; `clock` as in the trace."""
+        """Rows of course.csv, of a fit with the flag "course": scores of models on the way;
+        `clock` as in the trace."""
         clock = {row["iteration"]: row["clock"] for row in self.trace}
         rows = self._rows("course.csv")
         for row in rows:

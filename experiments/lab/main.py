@@ -16,6 +16,10 @@ report   all pages with their tables and pictures in one file, OUT/report.html
 """
 
 
+def _numbers(text):
+    return [int(number) for number in text.split(",")]
+
+
 def parse(arguments):
     """The command line."""
     parser = argparse.ArgumentParser(
@@ -32,13 +36,17 @@ def parse(arguments):
     parser.add_argument("--program", type=pathlib.Path, help="default: BUILD/bin/trilobe")
     parser.add_argument("--solvers", help="comma-separated: these of the manifest's, and "
                         "others that the program has")
-    parser.add_argument("--threads", help="comma-separated, instead of the manifest's")
+    parser.add_argument("--threads", type=_numbers, metavar="N,...",
+                        help="instead of the manifest's")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         help="another value in the manifest, --set=flags.max_seconds=5")
     parser.add_argument("--shard", metavar="i/n", help="make only the i-th of n parts, i from 1; "
                         "tables come when all are there")
     parser.add_argument("--again", action="store_true", help="make units anew that are there")
-    parser.add_argument("--count", action="store_true", help="only print how many units are to make")
+    parser.add_argument("--count", action="store_true",
+                        help="only print how many units are to make")
+    parser.add_argument("--no-run", action="store_true",
+                        help="make nothing; tables and pictures of what is there")
     parser.add_argument("--draw", action="store_true", help="only draw, from the tables in OUT")
     parser.add_argument("--publish", action="store_true",
                         help="copy tables and pictures into experiments/NAME/results")
@@ -61,7 +69,7 @@ def setting_of(experiment, options):
     settings = experiment.settings(options.quick, options.set)
     for run_of in settings.get("runs", []):
         if options.threads:
-            run_of["threads"] = [int(number) for number in options.threads.split(",")]
+            run_of["threads"] = options.threads
         if options.solvers:
             known = settings.get("solvers", {})
             run_of["solvers"] = [name for name in options.solvers.split(",")
@@ -125,7 +133,7 @@ def run(experiment, options):
         if options.count:
             print(sum(not store.is_done(unit) for unit in campaign.distinct(part)))
             return 0
-        failures = campaign.run(store, part, options.again)
+        failures = [] if options.no_run else campaign.run(store, part, options.again)
         if options.shard and not all(store.is_done(unit) for unit in units):
             print("the other shards are still to come; run it without --shard for tables and "
                   "pictures", file=sys.stderr)
@@ -133,8 +141,8 @@ def run(experiment, options):
         tabulate(experiment, setting, store, units, folder)
         draw(experiment, folder)
         if failures:
-            print(f"missing: {len(failures)} units; the same command tries them again\n  "
-                  + "\n  ".join(failures), file=sys.stderr)
+            print("\n  ".join([f"missing: {len(failures)} units; the same command tries them again",
+                              *failures]), file=sys.stderr)
             return 1
     if options.publish:
         publish(experiment, folder)
@@ -158,7 +166,8 @@ def write_report(options):
                                            else None)
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "report.html"
-    report.write(path, [experiments.load(name) for name in experiments.names()], results_of)
+    everything = [experiments.load(name) for name in experiments.names()]
+    report.write(path, report.in_order(everything, experiments.FOLDER / "README.md"), results_of)
     print(f"wrote {path}")
 
 

@@ -70,7 +70,8 @@ def find(places):
         elif path.exists():
             paths.append(place)
         else:
-            raise UsageError(f"{place} does not exist; give BRDF files, folders of them, or synth:NAME")
+            raise UsageError(f"{place} does not exist; give BRDF files, folders of them, or "
+                             "synth:NAME")
     sources = sorted((Source(name_of(path), path) for path in dict.fromkeys(paths)),
                      key=lambda source: source.name)
     for before, after in zip(sources, sources[1:]):
@@ -80,7 +81,10 @@ def find(places):
 
 
 def every(sources, n):
-    """Every n-th name of each list, from the first; of other names every n-th of those given."""
+    """Every n-th name of each list, from the first; of other names every n-th of those given.
+
+    An odd n takes materials of both halves.
+    """
     own = sorted(source.name for source in sources if source.database == "own")
     chosen = {name for names in (MERL, RGL, own) for name in names[::n]}
     return [source for source in sources if source.name in chosen]

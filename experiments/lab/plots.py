@@ -20,12 +20,14 @@ SOLVERS = {
     "varpro": (BLUE, "-"),
     "newton": (ORANGE, "-"),
     "lm": (PURPLE, "-"),
+    "lm_squares": (PURPLE, ":"),
     "lm_plain": (PURPLE, "--"),
     "awls": (VERMILION, "-"),
     "awls_literal": (VERMILION, "--"),
     "awls_block": (SKY, "-"),
     "awls_accelerated": (GREY, "-"),
 }
+# Of your own, in the order of their names.
 OTHER_SOLVERS = [(YELLOW, "-"), (YELLOW, "--"), (GREEN, "--"), (BLUE, "--")]
 
 plt.rcParams.update({
@@ -37,7 +39,7 @@ plt.rcParams.update({
 
 
 def solver_style(solver, solvers=()):
-    """Colour and dashes of a solver; one of your own has its own as long as the list is the same."""
+    """Colour and dashes of a solver; one of your own keeps its own while the list is the same."""
     if solver not in SOLVERS:
         own = sorted(name for name in {*solvers, solver} if name not in SOLVERS)
         colour, dashes = OTHER_SOLVERS[own.index(solver) % len(OTHER_SOLVERS)]
@@ -54,8 +56,8 @@ def label_ends(axes, x=1.01, spacing=0.05):
     """
     lines = [line for line in axes.get_lines() if not line.get_label().startswith("_")
              and len(line.get_xdata())]
-    axes.figure.canvas.draw()  # limits are final only then
-    to_axes = axes.transData + axes.transAxes.inverted()
+    axes.get_xlim(), axes.get_ylim()  # matplotlib scales the axes to the data when it is asked
+    to_axes = axes.transScale + axes.transLimits  # of data; fractions of the axes
     wanted = []
     for line in lines:
         height = to_axes.transform((line.get_xdata()[-1], line.get_ydata()[-1]))[1]

@@ -10,11 +10,13 @@ import markdown
 from lab import tables
 
 STYLE = """
-body { font: 16px/1.5 sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+body { font: 16px/1.5 sans-serif; color: #222; max-width: 62rem; margin: 2rem auto;
+       padding: 0 1rem; }
 h1 { border-top: 3px solid #0072B2; padding-top: .6rem; margin-top: 4rem; }
 header h1 { border: 0; margin-top: 0; }
 table { border-collapse: collapse; font-size: 13px; margin: 1rem 0; }
-th, td { border-bottom: 1px solid #ddd; padding: .15rem .6rem; text-align: right; white-space: nowrap; }
+th, td { border-bottom: 1px solid #ddd; padding: .15rem .6rem; text-align: right;
+         white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 .table { overflow-x: auto; max-height: 32rem; overflow-y: auto; }
 img { max-width: 100%; }
@@ -45,17 +47,22 @@ def _csv_table(path):
                                            for row in rows])
 
 
+def _inline(text):
+    """A line of Markdown as HTML without a paragraph around it."""
+    return markdown.markdown(text).removeprefix("<p>").removesuffix("</p>")
+
+
 def _inlined(page, results):
-    """The page with each link that stands alone in its line and leads into results/ replaced by what
-    it leads to: a picture with its caption, a table, a text."""
+    """The page with each link that stands alone in its line and leads into results/ replaced by
+    what it leads to: a picture with its caption, a table, a text."""
     def content(match):
         picture, caption, name = match.groups()
         path = results / name if results else None
         if path is None or not path.exists():
-            return f'<p class="missing">{html.escape(caption)}: not there yet.</p>'
+            return f'<p class="missing">Not there yet: {_inline(caption)}</p>'
         if picture:
             return (f'<figure><img alt="" src="{_data_uri(path)}"/>'
-                    f"<figcaption>{html.escape(caption)}</figcaption></figure>")
+                    f"<figcaption>{_inline(caption)}</figcaption></figure>")
         text = _csv_table(path) if path.suffix == ".csv" else path.read_text()
         return f"{caption}:\n\n{text}"
     return _LINK_ALONE.sub(content, page)
@@ -87,6 +94,13 @@ def _section(experiment, results):
                  f"units, {record['seconds'] / 3600:.2f} h)</summary>"
                  f"<pre>{html.escape(json.dumps(record, indent=1))}</pre></details>")
     return f"<section>{body}</section>"
+
+
+def in_order(experiments, index):
+    """The experiments in the order in which a page links to theirs, others after."""
+    text = index.read_text()
+    places = {e.name: text.find(f"({e.name}/README.md)") for e in experiments}
+    return sorted(experiments, key=lambda e: (places[e.name] < 0, places[e.name], e.name))
 
 
 def write(path, experiments, results_of):

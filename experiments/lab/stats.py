@@ -71,8 +71,8 @@ def linear_rate(decreases, last=20):
     """The factor by which the decrease an iteration shrinks near the end: exp of the least-squares
     slope of the logarithm of the last positive decreases; nan with fewer than three.
 
-    Where E - limit falls by a constant factor, its decreases fall by the same, and the limit need not
-    be known.
+    Where E - limit falls by a constant factor, its decreases fall by the same, and the limit need
+    not be known.
     """
     logs = [math.log(value) for value in decreases if value > 0][-last:]
     if len(logs) < 3:
@@ -81,8 +81,8 @@ def linear_rate(decreases, last=20):
 
 
 def order(decreases):
-    """Order of convergence near the end: the median of log(c/b) / log(b/a) over the last five triples
-    of strictly falling decreases; nan if there is none. 1: linear, 2: quadratic."""
+    """Order of convergence near the end: the median of log(c/b) / log(b/a) over the last five
+    triples of strictly falling decreases; nan if there is none. 1: linear, 2: quadratic."""
     orders = [math.log(c / b) / math.log(b / a)
               for a, b, c in zip(decreases, decreases[1:], decreases[2:]) if a > b > c > 0]
     return statistics.median(orders[-5:]) if orders else math.nan

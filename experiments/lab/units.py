@@ -1,9 +1,10 @@
 """Units of work: one command that fills one folder, made once whoever asks for it.
 
 A unit's folder carries a hash of the exact command and of the program's bytes, so results of other
-settings or other programs never mix, and experiments that ask for the same command share its folder. A
-command works in a temporary folder beside it, which is renamed when all of it is there: a folder
-that exists is whole. Folders of several machines can be copied together: there is nothing to merge.
+settings or other programs never mix, and experiments that ask for the same command share its
+folder. A command works in a temporary folder beside it, which is renamed when all of it is there: a
+folder that exists is whole. Folders of several machines can be copied together: there is nothing
+to merge.
 """
 import dataclasses
 import datetime

@@ -63,7 +63,6 @@ def _matrix(rows, weightings):
 
 
 def _draw_matrix(axes, matrix, weightings, small=False):
-    from lab import plots
     shown = numpy.log10(numpy.clip(matrix, 1, 1e3))
     # cividis: even in brightness, and the same for colour-blind eyes; dark is good.
     axes.imshow(shown, cmap="cividis", vmin=0, vmax=2)
@@ -73,11 +72,11 @@ def _draw_matrix(axes, matrix, weightings, small=False):
                       va="center", fontsize=6 if small else 10,
                       color="black" if shown[i, j] > 1 else "white")
     axes.grid(visible=False)
-    axes.set_xticks(range(len(weightings)), [] if small else weightings, rotation=20)
-    axes.set_yticks(range(len(weightings)), [] if small else weightings)
+    size = {"fontsize": 6} if small else {}
+    axes.set_xticks(range(len(weightings)), weightings, rotation=30 if small else 20, **size)
+    axes.set_yticks(range(len(weightings)), weightings, **size)
     if not small:
         axes.set(xlabel="E by this weighting", ylabel="fitted by this weighting")
-    return plots
 
 
 def draw(drawn, _):
@@ -100,7 +99,8 @@ def draw(drawn, _):
         panel.set_title(name, fontsize=9)
     for panel in panels.flat[len(by_material):]:
         panel.set_axis_off()
-    each.suptitle("Rows: fitted by, columns: scored by " + ", ".join(weightings), fontsize=9)
+    each.suptitle("E over the lowest E: rows are fitted by a weighting, columns scored by one",
+                  fontsize=10)
 
     own = [row for row in rows if row["fitted_by"] == row["scored_by"]]
     lines = []

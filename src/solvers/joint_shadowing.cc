@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "trilobe/base/add_to.h"
 #include "trilobe/base/multiversion.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/solvers/node_lanes.h"
 #include "trilobe/solvers/spline_moments.h"
 
 namespace trilobe {
@@ -20,12 +22,6 @@ using Cubic = CatmullRom::Cubic;
 // A polynomial of degree 6 in terms t^k (1 - t)^(6 - k).
 using Degree6 = std::array<double, kStride>;
 
-// Four polynomials, of the nodes of one interval, term by term. Aligned, as the vectors alone are
-// only where the machine has them.
-template <int kTerms>
-struct alignas(sizeof(Lanes4)) OfNodes {
-  Lanes4 term[kTerms] = {};
-};
 using Cubics = OfNodes<4>;
 using Degree6s = OfNodes<kSecond>;
 
@@ -54,12 +50,6 @@ void AddProduct(int size, const double* x, const double* y, double* __restrict s
 TRILOBE_MULTIVERSION
 void Multiply(int size, const double* x, const double* y, double* __restrict product) {
   for (int n = 0; n < size; ++n) product[n] = x[n] * y[n];
-}
-
-// sum += x
-TRILOBE_MULTIVERSION
-void Add(size_t size, const double* __restrict x, double* __restrict sum) {
-  for (size_t n = 0; n < size; ++n) sum[n] += x[n];
 }
 
 // Products of two cubics in terms t^k (1 - t)^(3 - k).
@@ -208,10 +198,10 @@ std::vector<JointShadowing::Side> JointShadowing::MakeSides(const FactorModel& m
   for (int interval = 0; interval < spec_.g_nodes - 1; ++interval) {
     Side& side = sides[interval];
     const auto B = spline_.WeightPolynomials(interval);
+    side.B = WeightsOfNodes(spline_, interval);
     std::vector<Cubic> G(tables, Cubic{});
     for (int a = 0; a < 4; ++a) {
       const int node = interval - 1 + a;
-      for (int k = 0; k < 4; ++k) side.B.term[k][a] = B[a][k];
       for (int b = 0; b < 4; ++b) set(Product(B[a], B[b]), b, &side.BB[a]);
       if (node < 0 || node >= spec_.g_nodes) continue;
       for (int t = 0; t < tables; ++t) {
@@ -315,9 +305,9 @@ void JointShadowing::SetPair(size_t pair, const Pass& pass, QuadraticModel* resu
   double* const along = &shares_[0]->along[pair * nodes * kStride];
   double* const curvature_sums = &shares_[0]->curvature[t * size];
   for (size_t s = 1; s < shares_.size(); ++s) {
-    Add(size, &shares_[s]->across[pair * size], across);
-    Add(nodes * kStride, &shares_[s]->along[pair * nodes * kStride], along);
-    if (curvature) Add(size, &shares_[s]->curvature[t * size], curvature_sums);
+    AddTo(size, &shares_[s]->across[pair * size], across);
+    AddTo(nodes * kStride, &shares_[s]->along[pair * nodes * kStride], along);
+    if (curvature) AddTo(size, &shares_[s]->curvature[t * size], curvature_sums);
   }
   for (size_t interval = 0; interval < pass.sides.size(); ++interval) {
     for (int a = 0; a < 4; ++a) {

@@ -18,8 +18,10 @@ namespace trilobe {
 namespace {
 
 // A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
-// a little: a lobe that grew out of another starts where it is needed.
-FactorModel Grow(const Objective& objective, uint64_t seed, const std::function<bool()>& stop) {
+// a little, each time by so many sweeps and a few joint steps: a lobe that grew out of another
+// starts where it is needed.
+FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
+                 const std::function<bool()>& stop) {
   constexpr int kTries = 5;
   ModelSpec spec = objective.spec();
   FactorModel model;
@@ -28,7 +30,8 @@ FactorModel Grow(const Objective& objective, uint64_t seed, const std::function<
     const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
     StartRace race(smaller, stop);
     if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
-    race.Enter("", [&] { return model; });
+    race.Enter(
+        "", [&] { return model; }, sweeps);
     race.Advance(kTries);
     if (race.leader() != nullptr) model = *race.leader();
     Canonicalize(smaller.coverage(), &model);
@@ -54,19 +57,26 @@ class Starts {
     if (number == 0) {
       race_->Enter("given", [this] { return given_; });
     } else if (number == 1) {
-      race_->Enter("grown", [this]() -> std::optional<FactorModel> {
-        const ModelSpec& spec = objective_.spec();
-        if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
-        return WithDeadBins(Grow(race_->thinned(), seed_, stop_));
-      });
+      EnterGrown(5, "grown");
     } else if (number == 2) {
       EnterInitial("highlight", seed_, "highlight");
     } else if (number == 3) {
+      EnterGrown(3, "grown/3");
+    } else if (number == 4) {
       EnterInitial("analytic", seed_, "analytic");
     } else {
-      const uint64_t seed = seed_ + static_cast<uint64_t>(number - 4);
+      const uint64_t seed = seed_ + static_cast<uint64_t>(number - 5);
       EnterInitial("roughness", seed, "roughness/" + std::to_string(seed));
     }
+  }
+
+  void EnterGrown(int sweeps, const char* name) {
+    const auto grow = [this, sweeps]() -> std::optional<FactorModel> {
+      const ModelSpec& spec = objective_.spec();
+      if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
+      return WithDeadBins(Grow(race_->thinned(), sweeps, seed_, stop_));
+    };
+    race_->Enter(name, grow, sweeps);
   }
 
   void EnterInitial(const char* init, uint64_t seed, std::string name) {
@@ -120,7 +130,10 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
       race.Keep(leg.keep);
       if (race.leader() == nullptr) continue;
       // On all samples a leader may be behind its predecessor.
-      const double E = objective.Value(*race.leader());
+      const double E = [&] {
+        const ScopedTimer timer = run->Time(&PhaseSeconds::evaluating);
+        return objective.Value(*race.leader());
+      }();
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
       if (E > (1 + kLargeMismatch) * race.Results().front().objective) race.ThinLess();
@@ -143,12 +156,13 @@ class Auto : public Solver {
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("auto", objective, options, model);
-    RunLegs({{.starts = 2, .tries = 12, .keep = 2},
+    RunLegs({{.starts = 2, .tries = 6, .keep = 2},
+             {.starts = 2, .tries = 12, .keep = 2},
              {.starts = 2, .tries = 25, .keep = 2},
-             {.starts = 8, .tries = 10, .keep = 5},
-             {.starts = 8, .tries = 25, .keep = 3},
-             {.starts = 8, .tries = 60, .keep = 1},
-             {.starts = 8, .tries = 150, .keep = 1}},
+             {.starts = 9, .tries = 10, .keep = 5},
+             {.starts = 9, .tries = 25, .keep = 3},
+             {.starts = 9, .tries = 60, .keep = 1},
+             {.starts = 9, .tries = 150, .keep = 1}},
             objective, FactorModel(*model), &run);
     return run.Finish();
   }

@@ -14,9 +14,6 @@ namespace {
 constexpr int kSamplesPerParameter = 100;
 constexpr int kMaxStride = 8;
 
-// Of AWLS, before the joint steps: they bring a start's magnitudes in order.
-constexpr int kSweeps = 5;
-
 // A step that lowers E by less than this fraction ends an entrant's run.
 constexpr double kSmallDecrease = 1e-5;
 
@@ -30,8 +27,11 @@ int StrideFor(const Objective& objective) {
 
 class StartRace::Entrant {
  public:
-  Entrant(std::string name, MakeStart make_start, const Objective* objective)
-      : name_(std::move(name)), make_start_(std::move(make_start)), objective_(objective) {}
+  Entrant(std::string name, MakeStart make_start, int sweeps, const Objective* objective)
+      : name_(std::move(name)),
+        make_start_(std::move(make_start)),
+        sweeps_(sweeps),
+        objective_(objective) {}
 
   // Goes on with other samples.
   void MoveTo(const Objective* objective) {
@@ -83,7 +83,7 @@ class StartRace::Entrant {
     E_ = Evaluate();
     if (objective_->folded() == nullptr) return;
     GridSweep sweep(name_, *objective_, &phases_);
-    for (int k = 0; k < kSweeps && !stop(); ++k) {
+    for (int k = 0; k < sweeps_ && !stop(); ++k) {
       sweep.InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
       E_ = Evaluate();
     }
@@ -96,6 +96,7 @@ class StartRace::Entrant {
 
   const std::string name_;
   MakeStart make_start_;  // until it has been asked
+  const int sweeps_;
   const Objective* objective_;
   std::optional<FactorModel> model_;
   double E_ = 0;
@@ -126,9 +127,9 @@ void StartRace::ThinLess() {
 
 StartRace::~StartRace() = default;
 
-void StartRace::Enter(std::string name, MakeStart make_start) {
+void StartRace::Enter(std::string name, MakeStart make_start, int sweeps) {
   entrants_.push_back(
-      std::make_unique<Entrant>(std::move(name), std::move(make_start), thinned_.get()));
+      std::make_unique<Entrant>(std::move(name), std::move(make_start), sweeps, thinned_.get()));
 }
 
 void StartRace::Advance(int tries) {

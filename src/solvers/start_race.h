@@ -31,11 +31,14 @@ class StartRace {
   // The selection of samples, for one thread.
   const Objective& thinned() const { return *thinned_; }
 
-  void Enter(std::string name, MakeStart make_start);
+  // First of all a start is to get so many sweeps of block AWLS, where samples are on a grid: they
+  // bring its magnitudes in order.
+  static constexpr int kSweeps = 5;
+  void Enter(std::string name, MakeStart make_start, int sweeps = kSweeps);
 
-  // Those in the race go on until they have made a few sweeps of block AWLS, where samples are on a
-  // grid, and then tried so many joint steps. One that has converged, or is to stop, makes
-  // no more; one that has not begun by then never does.
+  // Those in the race go on until they have made their sweeps and then tried so many joint steps.
+  // One that has converged, or is to stop, makes no more; one that has not begun by then never
+  // does.
   void Advance(int tries);
 
   // All but the best `count` leave the race.

@@ -14,7 +14,7 @@ from lab import campaign
 from lab.units import FOLDER, Product, Store, Unit, UnitFailed
 
 PROGRAM = """#!/bin/sh
-# work FOLDER TEXT [FILE]: appends a line to $COUNT, writes TEXT (and FILE's text) into FOLDER/result
+# work FOLDER TEXT [FILE]: counts itself, writes TEXT (and FILE's text) into FOLDER/result
 echo x >> "{count}"
 case $2 in
   fail) echo broken >&2; exit 3 ;;
@@ -61,8 +61,8 @@ class UnitsTest(unittest.TestCase):
     def test_another_command_or_program_is_another_unit(self):
         unit = self.unit("a")
         folder = self.store.make(unit)
-        self.assertNotEqual(self.store.folder(Unit(unit.path, self.program, (FOLDER, "b"), "result")),
-                            folder)
+        other = Unit(unit.path, self.program, (FOLDER, "b"), "result")
+        self.assertNotEqual(self.store.folder(other), folder)
         self.program.write_text(self.program.read_text() + "# rebuilt\n")
         self.program.chmod(0o755)
         self.assertFalse(self.store.is_done(self.unit("a")))

@@ -1,0 +1,66 @@
+"""How fits are planned, and what is read of them."""
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+from lab import fits
+from lab.experiments import Setting
+from lab.materials import Source
+
+REPORT = {"seconds": {"read": 1, "prepare": 2, "init": 0.5}, "phases": {"tracing": 0.3}}
+TRACE = "iteration,seconds,objective,optimality\n0,0.1,9,\n1,1.1,4,0.5\n2,2.1,3,0.1\n"
+COURSE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
+
+
+class FitsTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "trilobe").touch()
+
+    def setting(self, runs, **more):
+        return Setting("x", False, {"runs": runs, **more}, [Source("a", "a"), Source("b", "b")],
+                       self.folder, self.folder / "trilobe")
+
+    def test_plan_is_every_combination_once(self):
+        planned = fits.planned(self.setting([
+            {"solvers": ["awls", "lm"], "threads": [1, 2]},
+            {"solvers": ["awls"], "every": 2},
+            {"solvers": ["awls"], "every": 2, "name": "again"}]))
+        self.assertEqual(len(planned), 2 * 2 * 2 + 1)
+        self.assertEqual(len({unit.key for unit in planned}), 8)  # the last is made already
+        self.assertEqual(planned[-1].labels["run"], "again")
+
+    def test_a_repeat_is_another_fit(self):
+        first, second = fits.planned(self.setting(
+            [{"solvers": ["awls"], "every": 2, "repeats": 2}]))
+        self.assertEqual(first.arguments, second.arguments)
+        self.assertNotEqual(first.key, second.key)
+        self.assertEqual(second.labels["repeat"], 2)
+
+    def test_flags_of_a_solver_come_last(self):
+        unit, = fits.planned(self.setting(
+            [{"solvers": ["mine"], "every": 2, "flags": {"tolerance": 0, "course": True}}],
+            flags={"tolerance": 1, "max_iterations": 7},
+            solvers={"mine": {"solver": "lm", "max_iterations": 9}}))
+        for word in ("--solver=lm", "--tolerance=0", "--max_iterations=9", "--course"):
+            self.assertIn(word, unit.arguments)
+        self.assertEqual(unit.labels["solver"], "mine")
+
+    def test_the_clock_starts_with_reading_and_leaves_out_the_trace(self):
+        (self.folder / "report.json").write_text(json.dumps(REPORT))
+        (self.folder / "trace.csv").write_text(TRACE)
+        (self.folder / "course.csv").write_text(COURSE)
+        fit = fits.Fit(self.folder)
+        for clock, expected in zip((row["clock"] for row in fit.trace), (3.5, 4.4, 5.3)):
+            self.assertAlmostEqual(clock, expected)
+        self.assertAlmostEqual(fit.course[1]["clock"], 5.3)
+        self.assertEqual(fit.course[1]["psnr_db"], math.inf)
+        self.assertTrue(math.isnan(fit.trace[0]["optimality"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

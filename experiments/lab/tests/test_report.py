@@ -1,0 +1,65 @@
+"""The report is one file that holds what the pages lead to, and says what is missing."""
+import pathlib
+import tempfile
+import types
+import unittest
+
+from lab import report, tables
+
+PAGE = """# A question?
+
+See [another page](../other/README.md) and [results as such](results/t.md) in a sentence.
+
+![A picture of E\\*](results/p.svg)
+
+[A table](results/t.csv)
+
+[A text](results/t.md)
+
+![Another picture](results/none.svg)
+"""
+
+
+class ReportTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "page.md").write_text(PAGE)
+        self.results = self.folder / "results"
+        self.results.mkdir()
+        (self.results / "p.svg").write_text("<svg/>")
+        (self.results / "q.png").write_bytes(b"png")
+        tables.write(self.results / "t.csv", [{"solver": "awls", "seconds": 1.25}])
+        (self.results / "t.md").write_text("Text with ![a picture](q.png)\n")
+        self.experiment = types.SimpleNamespace(name="a", title="A question?",
+                                                page=self.folder / "page.md")
+
+    def written(self, results):
+        path = self.folder / "report.html"
+        report.write(path, [self.experiment], lambda _: results)
+        return path.read_text()
+
+    def test_holds_pictures_tables_and_texts(self):
+        page = self.written(self.results)
+        self.assertIn('<a href="#a">A question?</a>', page)
+        self.assertIn('<h1 id="a">', page)
+        self.assertIn('src="data:image/svg+xml;base64,PHN2Zy8+"', page)
+        self.assertIn('src="data:image/png;base64,cG5n"', page)
+        self.assertIn("A picture of E*", page)
+        self.assertIn("<td>1.25</td>", page)
+        self.assertIn("Not there yet: Another picture", page)
+        self.assertNotIn("README.md", page)  # nothing outside of the file
+
+    def test_without_results_everything_is_missing(self):
+        self.assertEqual(self.written(None).count("Not there yet"), 4)
+
+    def test_order_is_that_of_the_index(self):
+        index = self.folder / "README.md"
+        index.write_text("[x](b/README.md) [y](a/README.md)")
+        named = [types.SimpleNamespace(name=name) for name in ("a", "b", "c")]
+        self.assertEqual([e.name for e in report.in_order(named, index)], ["b", "a", "c"])
+
+
+if __name__ == "__main__":
+    unittest.main()
