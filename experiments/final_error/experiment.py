@@ -274,7 +274,7 @@ def _spread_figure(rows):
             axes.set_xscale("log")
             plots.plain_numbers(axes.xaxis)
     panels[0].set_ylabel("share of materials (%) at or below")
-    panels[0].legend(loc="lower right")
+    panels[0].legend(loc="best")
     figure.suptitle("How well the defaults fit, over all materials", x=0.01, ha="left")
     return figure
 

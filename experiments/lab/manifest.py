@@ -6,6 +6,7 @@ time.
 """
 import datetime
 import json
+import pathlib
 
 from lab import UsageError, machine
 
@@ -35,13 +36,19 @@ def load(path, quick, changes=()):
     return settings
 
 
+def _without_folders(settings):
+    """Settings for others to read: of a path of this machine the name of the file."""
+    return {name: pathlib.PurePath(value).name if isinstance(value, str) and value.startswith("/")
+            else value for name, value in settings.items()}
+
+
 def write_run(path, setting, store, units, build):
     """Writes what a run used, how much of it is there, and how long that took."""
     records = [record for unit in units if (record := store.record(unit))]
     machines = {json.dumps(record["machine"]): record["machine"] for record in records}
     run = {"experiment": setting.name,
            "form": "quick" if setting.quick else "full",
-           "settings": setting.manifest,
+           "settings": _without_folders(setting.manifest),
            "sources": [source.name for source in setting.sources],
            "units": {"all": len(units), "made": len(records)},
            "seconds": round(sum(record["seconds"] for record in records), 1),

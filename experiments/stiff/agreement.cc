@@ -27,7 +27,7 @@ FactorModel Reordered(const FactorModel& model, const std::vector<int>& order) {
 
 // What is less than this share of a table, or of the largest d or s, is 0: its errors are relative
 // to that.
-constexpr double kNothing = 1e-15;
+constexpr double kNothing = 1e-12;
 
 // Largest right value of d and s.
 double LargestValue(const FactorModel& right) {

@@ -8,7 +8,7 @@ from lab.units import FOLDER, Unit
 
 ANSWERS = pathlib.Path(__file__).with_name("certified.json")
 # What a cell says besides its digits, by how the run ended.
-MARKS = {"certified": "", "other": "*", "elsewhere": "", "below": "!"}
+MARKS = {"certified": "", "other": "*", "elsewhere": "", "below": " below"}
 
 
 def _certificates():
@@ -76,7 +76,8 @@ def _matrix(rows, answers, column, title):
                 continue
             axes.add_patch(plots.plt.Rectangle((j - 0.5, i - 0.5), 1, 1,
                                                color=colours(digits / 15)))
-            axes.text(j, i, f"{digits:.1f}{MARKS[row['end']]}", ha="center", va="center",
+            mark = MARKS[row["end"]] if column == "digits_objective" else ""
+            axes.text(j, i, f"{digits:.1f}{mark}", ha="center", va="center",
                       fontsize=8, color="black" if digits > 8 else "white")
     axes.set(xlim=(-0.5, len(solvers) - 0.5), ylim=(len(cases) - 0.5, -0.5))
     axes.set_xticks(range(len(solvers)), solvers, rotation=35, ha="left")

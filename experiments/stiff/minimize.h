@@ -62,7 +62,7 @@ void ReferenceMinimizer<Real>::SetMetric() {
   const VectorOf<Real> squares = at_.JtJ.diagonal();
   metric_ = VectorOf<Real>::Zero(squares.size());
   for (const auto [begin, size] : FactorModel(problem_.spec()).Parts()) {
-    const Real floor = squares.segment(begin, size).mean() * Real(1e-6);
+    const Real floor = squares.segment(begin, size).mean() * Real{1e-6};
     for (int k = begin; k < begin + size; ++k) {
       if (squares(k) > 0) metric_(k) = sqrt(squares(k) > floor ? squares(k) : floor);
     }
@@ -110,19 +110,19 @@ std::optional<typename ReferenceMinimizer<Real>::Step> ReferenceMinimizer<Real>:
     }
   }
   const VectorOf<Real> H_step = H * step;
-  return Step{(x + step).cwiseMax(Real(0)), -(at_.gradient + H_step / Real(2)).dot(step)};
+  return Step{(x + step).cwiseMax(Real{0}), -(at_.gradient + H_step / Real{2}).dot(step)};
 }
 
 template <typename Real>
 Real ReferenceMinimizer<Real>::Optimality(const VectorOf<Real>& x) const {
   using std::sqrt;
-  if (!(at_.objective > 0)) return Real(0);
+  if (!(at_.objective > 0)) return Real{0};
   Real largest(0);
   for (int k = 0; k < x.size(); ++k) {
     const Real length = sqrt(at_.JtJ(k, k));
     if (!(length > 0)) continue;
     const Real g = at_.gradient(k) / length, z = x(k) * length;
-    const Real step = g > 0 ? (g < z ? g : z) : Real(-g);
+    const Real step = g > 0 ? (g < z ? g : z) : static_cast<Real>(-g);
     if (step > largest) largest = step;
   }
   return largest / sqrt(at_.objective);
@@ -131,10 +131,10 @@ Real ReferenceMinimizer<Real>::Optimality(const VectorOf<Real>& x) const {
 template <typename Real>
 Minimum<Real> ReferenceMinimizer<Real>::Minimize(VectorOf<Real> x, int max_iterations) {
   using std::pow;
-  const Real min_lambda = pow(precision_, Real(0.6)), max_lambda(1e20);
-  const Real enough = pow(precision_, Real(0.65));  // relative decrease of E
+  const Real min_lambda = pow(precision_, Real{0.6}), max_lambda(1e20);
+  const Real enough = pow(precision_, Real{0.65});  // relative decrease of E
   // E of values that are off by a hundred rounding errors.
-  const Real zero = Real(1e4) * precision_ * precision_ * measured_energy_;
+  const Real zero = Real{1e4} * precision_ * precision_ * measured_energy_;
   Minimum<Real> minimum;
   Real lambda(1e-3), growth(2);
   at_ = problem_.Evaluate(x);
@@ -145,21 +145,21 @@ Minimum<Real> ReferenceMinimizer<Real>::Minimize(VectorOf<Real> x, int max_itera
     const std::optional<Step> step = SolveStep(x, lambda);
     if (!step || !(step->predicted_decrease > 0)) {
       minimum.converged = step && step->x == x;  // nothing wants to move
-      lambda = std::max<Real>(4 * lambda, Real(1e-8));
+      lambda = std::max<Real>(4 * lambda, Real{1e-8});
       continue;
     }
     ++minimum.iterations;
     minimum.relative_decrease = 2 * step->predicted_decrease / at_.objective;
     const Real E = problem_.Value(step->x);
     const Real gain = (at_.objective - E) / (2 * step->predicted_decrease);
-    if (minimum.relative_decrease <= enough && lambda <= Real(1e-3)) minimum.converged = true;
-    if (!(E < at_.objective && gain > Real(1e-4))) {
+    if (minimum.relative_decrease <= enough && lambda <= Real{1e-3}) minimum.converged = true;
+    if (!(E < at_.objective && gain > Real{1e-4})) {
       lambda *= growth;
       growth *= 2;
       continue;
     }
     const Real f = 2 * gain - 1;
-    lambda = std::max<Real>(min_lambda, lambda * std::max<Real>(Real(0.1), 1 - f * f * f));
+    lambda = std::max<Real>(min_lambda, lambda * std::max<Real>(Real{0.1}, 1 - f * f * f));
     growth = 2;
     x = step->x;
     at_ = problem_.Evaluate(x);
@@ -172,7 +172,7 @@ Minimum<Real> ReferenceMinimizer<Real>::Minimize(VectorOf<Real> x, int max_itera
   // While the gradient is not 0, neither is the curvature along the gauge: it may be negative.
   for (bool better = minimum.converged; better;) {
     std::optional<Step> step;
-    for (lambda = min_lambda; !step && lambda < Real(1e-3); lambda *= 100) {
+    for (lambda = min_lambda; !step && lambda < Real{1e-3}; lambda *= 100) {
       step = SolveStep(x, lambda);
     }
     if (!step) break;

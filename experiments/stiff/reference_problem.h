@@ -88,7 +88,7 @@ class ReferenceProblem {
   static Real Weight(const std::string& name, const Real& rho, const Real& cos_i);
   void ReadSpline(const Real& theta, Real Node::*weight, Sample* sample) const;
   Real NodeAngle(int k) const {
-    return (k + Real(0.5)) / spec_.g_nodes * boost::math::constants::half_pi<Real>();
+    return (k + Real{0.5}) / spec_.g_nodes * boost::math::constants::half_pi<Real>();
   }
   Lobe LobeAt(const VectorOf<Real>& x, const Sample& sample, int m, int c) const;
   Real Residual(const VectorOf<Real>& x, const Sample& sample, int c) const;
@@ -111,7 +111,8 @@ ReferenceProblem<Real>::ReferenceProblem(const BrdfSamples& samples, const Model
     throw Error(samples.source + ": the reference works on samples of a grid only");
   }
   const MerlGrid& grid = samples.grid;
-  const Real right_angle = boost::math::constants::half_pi<Real>(), half(0.5);
+  const Real& right_angle = boost::math::constants::half_pi<Real>();
+  const Real half{0.5};
   for (int j = 0; j < samples.size(); ++j) {
     const int bin = samples.bins[j];
     Sample sample;
@@ -146,10 +147,10 @@ template <typename Real>
 Real ReferenceProblem<Real>::Weight(const std::string& name, const Real& rho, const Real& cos_i) {
   using std::log1p;
   const Real b = rho * cos_i;
-  if (name == "uniform") return Real(1);
+  if (name == "uniform") return Real{1};
   if (name == "cosine") return cos_i * cos_i;
   if (name == "percentage") {
-    const Real floor = Real(1e-3);  // the double that the library adds
+    const Real floor = Real{1e-3};  // the double that the library adds
     return 1 / ((rho + floor) * (rho + floor));
   }
   if (name == "log") return cos_i * cos_i / ((1 + b) * (1 + b));
@@ -167,7 +168,7 @@ template <typename Real>
 void ReferenceProblem<Real>::ReadSpline(const Real& theta, Real Node::*weight,
                                         Sample* sample) const {
   const int last = spec_.g_nodes - 1;
-  const Real place = theta / boost::math::constants::half_pi<Real>() * spec_.g_nodes - Real(0.5);
+  const Real place = theta / boost::math::constants::half_pi<Real>() * spec_.g_nodes - Real{0.5};
   const auto add = [&](int index, const Real& amount) {
     for (Node& node : sample->nodes) {
       if (node.index != index) continue;
@@ -177,8 +178,8 @@ void ReferenceProblem<Real>::ReadSpline(const Real& theta, Real Node::*weight,
     sample->nodes.push_back({.index = index});
     sample->nodes.back().*weight = amount;
   };
-  if (place <= 0) return add(0, Real(1));
-  if (place >= last) return add(last, Real(1));
+  if (place <= 0) return add(0, Real{1});
+  if (place >= last) return add(last, Real{1});
   const int k = static_cast<int>(place);
   const Real t = place - k;
   const auto add_slope = [&](int at, const Real& amount) {
@@ -253,7 +254,7 @@ Real ReferenceProblem<Real>::Residual(const VectorOf<Real>& x, const Sample& sam
 
 template <typename Real>
 Real ReferenceProblem<Real>::Value(const VectorOf<Real>& x) const {
-  Real sum(0);
+  Real sum{0};
   for (const Sample& sample : samples_) {
     for (int c = 0; c < kChannels; ++c) {
       const Real residual = Residual(x, sample, c);
@@ -283,7 +284,7 @@ Derivatives<Real> ReferenceProblem<Real>::Evaluate(const VectorOf<Real>& x) cons
     for (int c = 0; c < kChannels; ++c) {
       const Real& w = sample.weight[c];
       const Real residual = Residual(x, sample, c), w_r = w * residual;
-      row.assign(1, {c, Real(1)});
+      row.assign(1, {c, Real{1}});
       for (int m = 0; m < spec_.lobes; ++m) {
         const Lobe l = LobeAt(x, sample, m, c);
         const Real K = l.G_i * l.G_o * sample.inverse_cosines;
@@ -344,7 +345,7 @@ VectorOf<Real> ReferenceProblem<Real>::Canonical(VectorOf<Real> x) const {
       } else if (after == size) {
         x(begin + k) = x(begin + before);
       } else {
-        const Real t = Real(k - before) / (after - before);
+        const Real t = static_cast<Real>(k - before) / (after - before);
         x(begin + k) = (1 - t) * x(begin + before) + t * x(begin + after);
       }
     }
@@ -361,15 +362,15 @@ VectorOf<Real> ReferenceProblem<Real>::Canonical(VectorOf<Real> x) const {
         wanted = 1;
         for (int k = 0; k < size; ++k) {
           const auto sin2_edge = [&](int edge) {
-            const Real root = Real(edge) / size;
+            const Real root = static_cast<Real>(edge) / size;
             const Real sine = sin(root * root * boost::math::constants::half_pi<Real>());
-            return Real(sine * sine);
+            return static_cast<Real>(sine * sine);
           };
           measure(k) = boost::math::constants::pi<Real>() * (sin2_edge(k + 1) - sin2_edge(k));
         }
       }
       const Real norm = measure.dot(x.segment(begin, size)) / wanted;
-      Real gain = factor == Factor::kG ? Real(norm * norm) : norm;
+      Real gain = factor == Factor::kG ? static_cast<Real>(norm * norm) : norm;
       if (norm > 0) {
         x.segment(begin, size) /= norm;
       } else {

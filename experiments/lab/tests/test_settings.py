@@ -2,6 +2,7 @@
 import json
 import pathlib
 import tempfile
+import types
 import unittest
 
 from lab import UsageError, main, manifest, materials, tables
@@ -48,6 +49,18 @@ class SettingsTest(unittest.TestCase):
         for wrong in ("limits.s", "unknown=1", "starts.s=1", "runs.1.every=1", "question.s.t=1"):
             with self.assertRaisesRegex(UsageError, "--set="):
                 manifest.load(path, False, [wrong])
+
+    def test_solvers_and_threads_of_the_command_line(self):
+        experiment = types.SimpleNamespace(name="x", settings=lambda quick, changes: {
+            "solvers": {"auto": {}, "awls": {}}, "sources": ["synth:plastic"],
+            "runs": [{"solvers": ["auto", "awls"]}, {"solvers": ["awls"]}]})
+        setting = main.setting_of(experiment, main.parse(
+            ["x", "--solvers=auto,mine", "--threads=1,2"]))
+        self.assertEqual(setting.manifest["runs"],
+                         [{"solvers": ["auto", "mine"], "threads": [1, 2]},
+                          {"solvers": ["mine"], "threads": [1, 2]}])
+        with self.assertRaisesRegex(UsageError, "no program"):
+            setting.program("none")
 
     def test_shard(self):
         self.assertEqual(main.shard("2/3"), (2, 3))
