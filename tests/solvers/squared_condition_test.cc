@@ -141,7 +141,7 @@ TEST(SquaredCondition, ErrorOfStepsIsThatOfRoundingOverLambda) {
     EXPECT_LT((g - J.transpose() * at.r).cwiseAbs().maxCoeff(), 1e-12 * std::sqrt(E));
     EXPECT_LT((H - J.transpose() * J).cwiseAbs().maxCoeff(), 1e-12);
 
-    const VectorXd singular = J.bdcSvd().singularValues();
+    const VectorXd singular = Eigen::JacobiSVD<MatrixXd>(J).singularValues();
     const double condition = singular(0) / singular(n - 1 - kGaugeDimensions);
     largest_condition = std::max(largest_condition, condition);
     for (const double lambda : {1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
