@@ -157,12 +157,15 @@ def _figure(rows, budgets, value, label):
     rises = [100 * row["relative_rise"] for row in rows]
     values = [value(row) for row in rows]
     ticks = [0, *(100 * budget for budget in budgets)]
+    if min(rises) < -FINEST:
+        ticks.insert(0, float(f"{min(rises):.1g}"))
     for axes, (name, of) in zip(panels.flat, by_material.items()):
         axes.set_xscale("log")
         axes.set_yscale("symlog", linthresh=FINEST, linscale=0.5)
         axes.set_xlim(0.7 * min(values), 2.2 * max(values))
         axes.set_ylim(min(-0.5 * FINEST, 1.5 * min(rises)), 1.8 * max(*rises, *ticks))
         axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_yticks([], minor=True)
         plots.plain_numbers(axes.xaxis)
         points = [(value(row), 100 * row["relative_rise"]) for row in of]
         axes.plot(*zip(*points[1:]), "o-", color=plots.BLUE, markersize=4.5)
