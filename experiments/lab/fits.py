@@ -14,6 +14,11 @@ def _flag(name, value):
     return f"--{name}={value}"
 
 
+def words(flags):
+    """Flags of the program, {"max_iterations": 500, "course": True}, as its words."""
+    return [_flag(name, flags[name]) for name in sorted(flags)]
+
+
 def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2,
         weighting="compressive", noise=0, repeat=1, **labels):
     """The unit of one fit.
@@ -25,11 +30,10 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
     flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
              "weighting": weighting, "noise": noise, **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
-    words = [_flag(name, flags[name]) for name in sorted(flags)]
     again = f"-repeat{repeat}" if repeat > 1 else ""
     return Unit(path=f"fit/{source.name}/{solver}-{start}-{weighting}-{threads}t{again}",
                 program=setting.program(),
-                arguments=("fit", source.path, f"--out={FOLDER}", *words), product="report.json",
+                arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)), product="report.json",
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
                         "threads": threads, "weighting": weighting, "noise": noise,
                         "repeat": repeat, **labels})
