@@ -33,7 +33,8 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
     again = f"-repeat{repeat}" if repeat > 1 else ""
     return Unit(path=f"fit/{source.name}/{solver}-{start}-{weighting}-{threads}t{again}",
                 program=setting.program(),
-                arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)), product="report.json",
+                arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)),
+                product="report.json",
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
                         "threads": threads, "weighting": weighting, "noise": noise,
                         "repeat": repeat, **labels})
