@@ -235,11 +235,13 @@ def _bands_figure(rows, title):
                 axes.set(xscale="log", yscale="log", ylim=(1e-6 * top, 2 * top))
                 plots.plain_numbers(axes.xaxis)
                 axes.set_ylabel(material, fontsize=10)
+            elif factor == "F":
+                top = max(row["high"] for row in of_factor)
+                axes.set(yscale="log", ylim=(1e-4 * top, 2 * top))
             else:
                 axes.set_ylim(bottom=0)
             axes.set_xlabel(label)
-            if line is panels[0]:
-                axes.legend(fontsize=8)
+            axes.legend(fontsize=8)
     runs = {row["runs"] for row in rows}
     figure.suptitle(f"{title}: 5 to 95 % of {min(runs)} runs (band), median (line), reference "
                     "(dotted)", x=0.01, ha="left")
@@ -271,7 +273,8 @@ def _shares_figure(rows):
         axes.grid(visible=False, axis="x")
         plots.plain_numbers(axes.yaxis)
     panels[0, 0].set_ylabel("share of the reflected light (%)")
-    panels[0, 0].annotate("collapsed", (-0.45, 115 * COLLAPSED), fontsize=8, color="#555555")
+    panels[0, 0].text(0.02, 70 * COLLAPSED, "collapsed", fontsize=8, color="#555555",
+                      transform=panels[0, 0].get_yaxis_transform(), va="top")
     plots.legend_above(figure, panels[0, 0])
     return figure
 
@@ -287,21 +290,21 @@ def _lobes_figure(rows):
         most = best[min(best)]
         style = {"color": plots.SERIES[k % len(plots.SERIES)], "marker": "o", "label": material}
         panels[0].plot(list(best), [100 * value / most for value in best.values()], **style)
-        for axes, column, factor in ((panels[1], "objective", 1), (panels[2], "least_match", 1)):
+        for axes, column in ((panels[1], "objective"), (panels[2], "least_match")):
             middles = []
             for count, of in of_count.items():
                 values = ([100 * stats.excess(row["objective"], best[count]) for row in of]
                           if column == "objective" else [row[column] for row in of])
                 others = [value for value, row in zip(values, of) if not row["reference"]]
-                middles.append(factor * stats.median(others) if others else math.nan)
+                middles.append(stats.median(others) if others else math.nan)
                 axes.plot([count + 0.06 * (k - len(by_material) / 2)] * len(others), others, "o",
                           markersize=3, alpha=0.5, color=style["color"], label="_")
             axes.plot(list(of_count), middles, **{**style, "marker": ""})
     panels[0].set(yscale="log", title="lowest E over that of one lobe (%)")
-    panels[1].set(yscale="symlog", title="E of the runs above the lowest (%)")
+    panels[1].set(title="E of the other runs above the lowest (%)")
     panels[1].set_yscale("symlog", linthresh=0.1)
-    panels[1].set_ylim(bottom=-0.01)
-    panels[2].set(title="least match score of a run's lobes", ylim=(-0.03, 1.03))
+    panels[1].set_ylim(-0.01, max(1, 2 * panels[1].get_ylim()[1]))
+    panels[2].set(title="least match score of the lobes of another run", ylim=(-0.03, 1.03))
     for axes in panels:
         axes.set_xlabel("lobes")
         axes.set_xticks(sorted({row["lobes"] for row in rows}))
@@ -380,7 +383,7 @@ def _lobes_table(rows):
                 if (material, count - 1) in before else "–")
         before[material, count] = best
         lines.append([material, str(count), str(len(of)), f"{best:.6g}", gain,
-                      _percent(of, lambda row: row["excess"] <= SUCCESS),
+                      _percent(of, lambda row, best=best: row["objective"] <= (1 + SUCCESS) * best),
                       _range([row["least_match"] for row in of]),
                       _percent(of, lambda row: row["least_match"] >= AGREEING),
                       _percent(of, lambda row: row["collapsed"]),
