@@ -5,12 +5,36 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace trilobe {
+namespace {
 
-void ParallelFor(int count, int num_threads, const std::function<void(int)>& work) {
-  num_threads = std::min(num_threads, count);
+// Threads that have nothing to do, shared by the jobs that run side by side.
+class IdleThreads {
+ public:
+  explicit IdleThreads(int count) : count_(count) {}
+
+  void Add(int count) { count_ += count; }
+
+  // Takes as many of `wanted` as there are.
+  int Take(int wanted) {
+    int there = count_, taken = 0;
+    do {
+      taken = std::clamp(wanted, 0, there);
+    } while (taken > 0 && !count_.compare_exchange_weak(there, there - taken));
+    return taken;
+  }
+
+ private:
+  std::atomic<int> count_;
+};
+
+// Those that may help this thread; null if it does not run a job.
+thread_local IdleThreads* helpers = nullptr;
+
+void RunOnThreads(int count, int num_threads, const std::function<void(int)>& work) {
   if (num_threads <= 1) {
     for (int i = 0; i < count; ++i) work(i);
     return;
@@ -33,6 +57,50 @@ void ParallelFor(int count, int num_threads, const std::function<void(int)>& wor
     run();
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+// Calls something at the end of a scope.
+template <typename F>
+class AtExit {
+ public:
+  explicit AtExit(F call) : call_(std::move(call)) {}
+  ~AtExit() { call_(); }
+  AtExit(const AtExit&) = delete;
+  AtExit& operator=(const AtExit&) = delete;
+
+ private:
+  const F call_;
+};
+
+}  // namespace
+
+void ParallelFor(int count, int num_threads, const std::function<void(int)>& work) {
+  const int own = std::clamp(count, 0, std::max(num_threads, 1));
+  const int lent = helpers != nullptr ? helpers->Take(count - own) : 0;
+  const AtExit give_back([lent] {
+    if (lent > 0) helpers->Add(lent);
+  });
+  RunOnThreads(count, own + lent, work);
+}
+
+void ParallelJobs(int count, int num_threads, const std::function<void(int)>& work) {
+  const int own = std::clamp(count, 0, std::max(num_threads, 1));
+  // A job on one thread within another one shares its helpers. Otherwise there are but those that
+  // get no item.
+  IdleThreads spare(std::max(num_threads - own, 0));
+  IdleThreads* const pool = helpers != nullptr && num_threads <= 1 ? helpers : &spare;
+  const int threads = own + pool->Take(count - own);
+  std::atomic<int> left{count};
+  RunOnThreads(count, threads, [&](int i) {
+    const AtExit done([&, outer = std::exchange(helpers, pool)] {
+      helpers = outer;
+      // With fewer items left than threads, there is none for this one. The last to end is the one
+      // that the caller goes on with.
+      const int now = --left;
+      if (now > 0 && now < threads) pool->Add(1);
+    });
+    work(i);
+  });
 }
 
 }  // namespace trilobe

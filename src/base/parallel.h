@@ -11,6 +11,10 @@ namespace trilobe {
 // The first exception thrown by an item is rethrown here, after all threads have stopped.
 void ParallelFor(int count, int num_threads, const std::function<void(int)>& work);
 
+// The same for few and long items: threads that have no item, or none left, help in the ParallelFor
+// and ParallelJobs that other items call, in addition to the num_threads that these ask for.
+void ParallelJobs(int count, int num_threads, const std::function<void(int)>& work);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_BASE_PARALLEL_H_

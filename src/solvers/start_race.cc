@@ -137,8 +137,8 @@ void StartRace::Advance(int tries) {
   for (const auto& entrant : entrants_) {
     if (entrant->racing()) racing.push_back(entrant.get());
   }
-  ParallelFor(static_cast<int>(racing.size()), objective_.num_threads(),
-              [&](int k) { racing[k]->Advance(tries, stop_); });
+  ParallelJobs(static_cast<int>(racing.size()), objective_.num_threads(),
+               [&](int k) { racing[k]->Advance(tries, stop_); });
 }
 
 void StartRace::Keep(int count) {

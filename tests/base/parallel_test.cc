@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
-#include <limits>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -50,6 +51,79 @@ TEST(ParallelFor, RethrowsAndStopsHandingOut) {
                  std::out_of_range);
     EXPECT_LE(calls, threads);
   }
+}
+
+TEST(ParallelJobs, CallsEveryItemOnce) {
+  for (const int threads : {-1, 0, 1, 2, 7, 1000}) {
+    for (const int count : {-1, 0, 1, 2, 100}) {
+      std::vector<int> calls(std::max(count, 0), 0);
+      ParallelJobs(count, threads, [&](int i) { ++calls[i]; });
+      EXPECT_THAT(calls, testing::Each(1)) << count << " items, " << threads << " threads";
+    }
+  }
+}
+
+// Two items, each of which waits until the other has begun; with one thread alone it would hang.
+void TwoAtOnce() {
+  std::atomic<int> begun{0};
+  ParallelFor(2, 1, [&](int) {
+    ++begun;
+    while (begun < 2) std::this_thread::yield();
+  });
+}
+
+TEST(ParallelJobs, ThreadsWithoutAnItemHelpTheOthers) {
+  ParallelJobs(1, 2, [](int) {
+    TwoAtOnce();
+    TwoAtOnce();  // the helper has come back
+    EXPECT_THROW(ParallelFor(2, 1, [](int) { throw std::out_of_range("item"); }),
+                 std::out_of_range);
+    TwoAtOnce();
+  });
+  std::set<std::thread::id> ids;
+  ParallelFor(100, 1, [&](int) { ids.insert(std::this_thread::get_id()); });  // no job any more
+  EXPECT_EQ(ids.size(), 1U);
+}
+
+TEST(ParallelJobs, ThreadsThatHaveEndedHelpTheOthers) {
+  std::atomic<bool> ended{false};
+  ParallelJobs(2, 2, [&](int i) {
+    if (i == 0) {
+      ended = true;
+      return;
+    }
+    while (!ended) std::this_thread::yield();
+    // The other thread has ended its item, and is idle soon.
+    std::set<std::thread::id> ids;
+    std::mutex mutex;
+    while (ids.size() < 2) {
+      ParallelFor(2, 1, [&](int) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        ids.insert(std::this_thread::get_id());
+      });
+    }
+  });
+}
+
+TEST(ParallelJobs, JobsWithinAJobShareItsHelpers) {
+  ParallelJobs(1, 3, [](int) {
+    std::atomic<int> begun{0};
+    ParallelJobs(2, 1, [&](int i) {
+      ++begun;
+      while (begun < 2) std::this_thread::yield();
+      if (i == 0) TwoAtOnce();  // with the third thread
+    });
+    TwoAtOnce();
+  });
+}
+
+TEST(ParallelJobs, RethrowsAndGoesOnLendingAfterwards) {
+  EXPECT_THROW(ParallelJobs(3, 2,
+                            [](int i) {
+                              if (i == 1) throw std::out_of_range("item");
+                            }),
+               std::out_of_range);
+  ParallelJobs(1, 2, [](int) { TwoAtOnce(); });
 }
 
 }  // namespace
