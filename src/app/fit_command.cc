@@ -128,7 +128,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
-  for (const char* const flag : {"init", "model", "reconstruction", "plots", "diagnose"}) {
+  for (const char* const flag :
+       {"init", "model", "course", "reconstruction", "plots", "diagnose"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }
