@@ -99,6 +99,14 @@ inline BrdfTable RandomTable(const MerlGrid& grid, uint64_t seed, double lost = 
   return table;
 }
 
+// Makes all bins of a theta_h invalid, so that no data touch D there.
+inline void InvalidateThetaH(int theta_h, BrdfTable* table) {
+  const MerlGrid& grid = table->grid;
+  for (int d = 0; d < grid.theta_d; ++d) {
+    for (int p = 0; p < grid.phi_d; ++p) table->stored[0][grid.Index(theta_h, d, p)] = -1;
+  }
+}
+
 // A measurement without error of a material that is of the model's own form.
 inline BrdfTable TableOf(const FactorModel& model, const MerlGrid& grid) {
   BrdfTable table = MakeInvalidTable("model", grid);

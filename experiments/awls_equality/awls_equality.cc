@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <string>
 
-#include "trilobe/base/error.h"
+#include "experiments/program.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/solvers/initial_model.h"
@@ -70,13 +69,6 @@ int Main(const std::string& source) {
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
-  gflags::SetUsageMessage("awls_equality SOURCE");
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  try {
-    if (argc != 2) throw trilobe::Error("give one source");
-    return trilobe::Main(argv[1]);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "awls_equality: error: %s\n", error.what());
-    return 1;
-  }
+  return trilobe::ProgramMain(argc, argv, "awls_equality SOURCE", 1,
+                              [](auto words) { return trilobe::Main(words[0]); });
 }

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
-#include <limits>
 #include <string>
 
+#include "experiments/program.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
 DEFINE_string(solver, "awls", "a solver that moves single elements, or blocks of them");
@@ -41,10 +41,7 @@ int Main(const std::string& source) {
   const BrdfSamples samples =
       Thinned(ValidSamples(LoadSource(source, {.noise = FLAGS_noise})), FLAGS_stride);
   const Objective objective(samples, ModelSpec::SharedFactors(3), Weightings().front());
-  // The rounding error of E where the fit is exact: every residual off by a few roundings of the
-  // measured value. Below it E says nothing.
-  constexpr double kError = 4 * std::numeric_limits<double>::epsilon();
-  const double floor = kError * kError * objective.MeasuredEnergy();
+  const double floor = ExactObjective(objective);  // below it E says nothing
 
   FactorModel model = InitialModels().front().make(objective, 1);
   const double start = objective.Value(model);
@@ -73,13 +70,6 @@ int Main(const std::string& source) {
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
-  gflags::SetUsageMessage("monotone [--solver=awls] SOURCE");
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  try {
-    if (argc != 2) throw trilobe::Error("give one source");
-    return trilobe::Main(argv[1]);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "monotone: error: %s\n", error.what());
-    return 1;
-  }
+  return trilobe::ProgramMain(argc, argv, "monotone [--solver=awls] SOURCE", 1,
+                              [](auto words) { return trilobe::Main(words[0]); });
 }

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "experiments/program.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
@@ -131,25 +131,18 @@ Json Spectrum(const Objective& objective, const FactorModel& model) {
           {"weakest", weakest}};
 }
 
-void Main(const std::string& model_path, const std::string& source) {
+int Main(const std::string& model_path, const std::string& source) {
   const FactorModel model = ReadModel(model_path).model;
   const Objective objective(ValidSamples(LoadSource(source, {.num_threads = FLAGS_threads})),
                             model.spec(), FindWeighting(FLAGS_weighting), FLAGS_threads);
   std::printf("%s\n", Spectrum(objective, model).dump().c_str());
+  return 0;
 }
 
 }  // namespace
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
-  gflags::SetUsageMessage("spectrum MODEL SOURCE");
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  try {
-    if (argc != 3) throw trilobe::Error("give a model file and the source that it was fitted to");
-    trilobe::Main(argv[1], argv[2]);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spectrum: error: %s\n", error.what());
-    return 1;
-  }
+  return trilobe::ProgramMain(argc, argv, "spectrum MODEL SOURCE", 2,
+                              [](auto words) { return trilobe::Main(words[0], words[1]); });
 }

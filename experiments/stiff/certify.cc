@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "experiments/program.h"
 #include "experiments/stiff/certificate.h"
 
 DEFINE_string(case, "all", "name of a case, or all; other answers in the file are kept");
@@ -28,7 +28,7 @@ void Put(const Certificate& certificate, std::vector<Certificate>* all) {
   });
 }
 
-void Main() {
+int Main() {
   std::vector<StiffCase> cases = StiffCases();
   if (FLAGS_case != "all") cases = {FindStiffCase(FLAGS_case)};
   std::vector<Certificate> all;
@@ -46,19 +46,13 @@ void Main() {
     Put(of, &all);
     WriteCertificates(all, FLAGS_out);
   }
+  return 0;
 }
 
 }  // namespace
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
-  gflags::SetUsageMessage("certify [--case=NAME] [--random_starts=N] [--out=FILE]");
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  try {
-    trilobe::Main();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "certify: error: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return trilobe::ProgramMain(argc, argv, "certify [--case=NAME] [--random_starts=N] [--out=FILE]",
+                              0, [](auto /*words*/) { return trilobe::Main(); });
 }

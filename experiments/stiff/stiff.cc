@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "experiments/program.h"
 #include "experiments/stiff/agreement.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/reference_problem.h"
@@ -132,13 +132,13 @@ void Print(const Json& result) {
   std::fflush(stdout);
 }
 
-// True if no run left a number that is none, or raised E.
-bool Main() {
+// 0 if no run left a number that is none, or raised E.
+int Main() {
   if (FLAGS_list) {
     for (const StiffCase& of : StiffCases()) {
       std::printf("%-20s %s\n", of.name.c_str(), of.description.c_str());
     }
-    return true;
+    return 0;
   }
   const std::vector<Certificate> certificates = ReadCertificates(FLAGS_answers);
   Json results = Json::array();
@@ -158,20 +158,16 @@ bool Main() {
   if (!FLAGS_out.empty()) {
     WriteFile(FLAGS_out, [&](std::ostream& out) { out << results.dump(1) << "\n"; });
   }
-  return sound;
+  if (sound) return 0;
+  std::fprintf(stderr, "stiff: a run ended with no valid model, or above its start\n");
+  return 1;
 }
 
 }  // namespace
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
-  gflags::SetUsageMessage("stiff [--case=NAME] [--solver=NAME] [--out=FILE] | --list");
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  try {
-    if (trilobe::Main()) return 0;
-    std::fprintf(stderr, "stiff: a run ended with no valid model, or above its start\n");
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "stiff: error: %s\n", error.what());
-  }
-  return 1;
+  return trilobe::ProgramMain(argc, argv,
+                              "stiff [--case=NAME] [--solver=NAME] [--out=FILE] | --list", 0,
+                              [](auto /*words*/) { return trilobe::Main(); });
 }

@@ -34,9 +34,7 @@ struct Row {
   std::string name;
   Side full, pruned;
 
-  double Rise() const {
-    return full.score.objective > 0 ? pruned.score.objective / full.score.objective - 1 : 0;
-  }
+  double Rise() const { return RelativeRise(full.score, pruned.score); }
 };
 
 struct Comparison {
@@ -60,7 +58,7 @@ struct PrunedScene {
 
 PrunedScene FromRun(const std::string& path) {
   PrunedScene pruned{.settings = SceneSettingsFromFlags()};
-  SceneRun run = RunScene(path, pruned.settings, [](const MaterialFit&) {});
+  SceneRun run = RunScene(ReadScene(path), pruned.settings, [](const MaterialFit&) {});
   if (run.interrupted != 0) throw Error("interrupted; the same command goes on from the cache");
   pruned.scene = std::move(run.scene);
   for (MaterialFit& fit : run.fits) {
@@ -117,17 +115,17 @@ Comparison Compare(const PrunedScene& pruned) {
   const InterruptGuard guard;
   for (size_t k = 0; k < pruned.scene.materials.size(); ++k) {
     const SceneMaterial& material = pruned.scene.materials[k];
-    const auto score = [&](const FactorModel& model) {
-      return ScoreOnScene(model, material, pruned.settings, comparison.threads);
-    };
     const std::optional<FullFit> full = FitWhole(material, pruned.settings, comparison.threads);
     if (!full) throw Error("interrupted; the same command goes on from the cache");
     comparison.full_seconds += full->seconds;
-    comparison.rows.push_back({material.name,
-                               {full->file.model.spec().num_parameters(), full->file.fit.threads,
-                                full->seconds, score(full->file.model)},
-                               {pruned.numbers[k], pruned.files[k].fit.threads,
-                                pruned.material_seconds[k], score(pruned.files[k].model)}});
+    const std::vector<SceneScore> scores =
+        ScoreOnScene(std::vector{full->file.model, pruned.files[k].model}, material,
+                     pruned.settings, comparison.threads);
+    comparison.rows.push_back(
+        {material.name,
+         {full->file.model.spec().num_parameters(), full->file.fit.threads, full->seconds,
+          scores[0]},
+         {pruned.numbers[k], pruned.files[k].fit.threads, pruned.material_seconds[k], scores[1]}});
   }
   return comparison;
 }

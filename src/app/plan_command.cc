@@ -11,7 +11,8 @@ namespace trilobe {
 namespace {
 
 int RunPlan(std::span<const std::string> arguments) {
-  const SceneRun run = RunScene(arguments[0], SceneSettingsFromFlags(), [](const MaterialFit&) {});
+  const SceneFitSettings settings = SceneSettingsFromFlags();
+  const SceneRun run = RunScene(ReadScene(arguments[0]), settings, [](const MaterialFit&) {});
   if (FLAGS_json) {
     PrintJson(PlanToJson(run));
   } else {

@@ -13,10 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double Rise(const MaterialFit& fit) {
-  return fit.full.objective > 0 ? fit.pruned.objective / fit.full.objective - 1 : 0;
-}
-
 std::string BudgetText(const SceneBudget& budget) {
   const std::string amount = Text(budget.amount);
   switch (budget.unit) {
@@ -87,7 +83,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
           {"numbers", {{"full", fit.full_numbers}, {"pruned", fit.numbers}}},
           {"bytes", {{"full", BytesOf(fit.full_numbers)}, {"pruned", BytesOf(fit.numbers)}}},
           {"objective", {{"full", fit.full.objective}, {"pruned", fit.pruned.objective}}},
-          {"relative_rise", Rise(fit)},
+          {"relative_rise", RelativeRise(fit.full, fit.pruned)},
           {"psnr_db", {{"full", fit.full.psnr_db}, {"pruned", fit.pruned.psnr_db}}},
           {"seconds", {{"fit", fit.fit_seconds}, {"prune", fit.prune_seconds}}},
           {"from_cache", {{"fit", fit.fit_from_cache}, {"prune", fit.prune_from_cache}}},
@@ -113,7 +109,7 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
     out << name(fit.name) << Right(std::to_string(fit.file.model.spec().lobes), 6)
         << Right(std::to_string(fit.numbers), 9) << Right(std::to_string(fit.full_numbers), 9)
         << Right(std::to_string(BytesOf(fit.numbers)), 9)
-        << Right(Text(100 * Rise(fit), 3) + " %", 12)
+        << Right(Text(100 * RelativeRise(fit.full, fit.pruned), 3) + " %", 12)
         << Right(Text(fit.full.psnr_db - fit.pruned.psnr_db, 3) + " dB", 15)
         << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
         << (fit.prune_from_cache ? "  from the cache"

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
@@ -113,9 +114,9 @@ SceneFitSettings SceneSettingsFromFlags() {
   return settings;
 }
 
-SceneRun RunScene(const std::string& path, const SceneFitSettings& settings,
+SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done) {
-  SceneRun run{.scene = ReadScene(path), .threads = ThreadsFromFlags()};
+  SceneRun run{.scene = std::move(scene), .threads = ThreadsFromFlags()};
   const InterruptGuard guard;
   SceneProgress progress(run.scene.materials.size());
   Stopwatch stopwatch;
@@ -141,9 +142,9 @@ SceneRun RunScene(const std::string& path, const SceneFitSettings& settings,
 int RunSceneFit(const std::string& path) {
   const std::string folder = RequiredOut("fit --scene", "DIR");
   const SceneFitSettings settings = SceneSettingsFromFlags();
-  ReadScene(path);  // for its errors, before anything is made
+  Scene scene = ReadScene(path);  // its errors come before anything is made
   MakeDirectories(folder);
-  const SceneRun run = RunScene(path, settings, [&](const MaterialFit& fit) {
+  const SceneRun run = RunScene(std::move(scene), settings, [&](const MaterialFit& fit) {
     WriteModel(fit.file, folder + "/" + fit.name + ".json");
   });
   std::ostringstream text;

@@ -33,7 +33,7 @@ struct SceneRun {
 
 // Fits the scene. With a terminal it shows how far it is; Ctrl-C keeps what is finished. `on_done`
 // sees each material when it is finished, one at a time.
-SceneRun RunScene(const std::string& path, const SceneFitSettings& settings,
+SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done);
 
 // `trilobe fit --scene=SCENE --out=DIR`: a model file a material, plan.json and plan.txt. Returns

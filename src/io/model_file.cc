@@ -16,7 +16,8 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// The inverse: tables by their numbers, nested.
+// Tables in the order of their numbers, nested as the file has them: a list a lobe, or a list of
+// lists where channels differ.
 OrderedJson Nest(const std::vector<OrderedJson>& tables, const TableSharing& sharing, int lobes) {
   if (lobes == 0) return OrderedJson::array();
   OrderedJson nest = OrderedJson::array();

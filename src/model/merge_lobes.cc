@@ -1,18 +1,13 @@
 #include "trilobe/model/merge_lobes.h"
 
-#include <algorithm>
-#include <string>
+#include <numeric>
+#include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/model/with_lobes.h"
 
 namespace trilobe {
 namespace {
-
-void CheckLobe(const FactorModel& model, int lobe) {
-  if (lobe >= 0 && lobe < model.spec().lobes) return;
-  throw Error("there is no lobe " + std::to_string(lobe) + ": the model has " +
-              std::to_string(model.spec().lobes));
-}
 
 // Sum of s in the channels of a table.
 double Size(const FactorModel& model, int lobe, ModelSpec::ChannelRange channels) {
@@ -25,21 +20,10 @@ double Size(const FactorModel& model, int lobe, ModelSpec::ChannelRange channels
 
 FactorModel WithoutLobe(const FactorModel& model, int lobe) {
   CheckLobe(model, lobe);
-  ModelSpec spec = model.spec();
-  --spec.lobes;
-  FactorModel result(spec);
-  std::ranges::copy(model.d(), result.d().begin());
-  for (int m = 0; m < spec.lobes; ++m) {
-    const int from = m < lobe ? m : m + 1;
-    std::ranges::copy(model.s(from), result.s(m).begin());
-    for (const Factor factor : kFactors) {
-      for (int c = 0; c < kChannels; ++c) {
-        std::ranges::copy(model.table(factor, model.spec().table(factor, from, c)),
-                          result.table(factor, spec.table(factor, m, c)).begin());
-      }
-    }
-  }
-  return result;
+  std::vector<int> others(model.spec().lobes);
+  std::iota(others.begin(), others.end(), 0);
+  others.erase(others.begin() + lobe);
+  return WithLobes(model, others);
 }
 
 FactorModel WithLobesMerged(const FactorModel& model, int lobe, int other) {

@@ -1,12 +1,11 @@
 #include "trilobe/model/split_lobe.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/model/with_lobes.h"
 
 namespace trilobe {
 namespace {
@@ -35,25 +34,13 @@ std::vector<double> NarrowShare(std::span<const double> D) {
 }  // namespace
 
 FactorModel SplitLobe(const FactorModel& model, int lobe) {
-  ModelSpec spec = model.spec();
-  if (!spec.D.per_lobe) throw Error("lobes that share D cannot be split");
-  if (lobe < 0 || lobe >= spec.lobes) {
-    throw Error("there is no lobe " + std::to_string(lobe) + " to split: the model has " +
-                std::to_string(spec.lobes));
-  }
-  const int added = spec.lobes++;
-  FactorModel result(spec);
-  std::ranges::copy(model.d(), result.d().begin());
-  for (int m = 0; m < spec.lobes; ++m) {
-    const int from = m == added ? lobe : m;
-    std::ranges::copy(model.s(from), result.s(m).begin());
-    for (const Factor factor : kFactors) {
-      for (int c = 0; c < kChannels; ++c) {
-        std::ranges::copy(model.table(factor, model.spec().table(factor, from, c)),
-                          result.table(factor, spec.table(factor, m, c)).begin());
-      }
-    }
-  }
+  if (!model.spec().D.per_lobe) throw Error("lobes that share D cannot be split");
+  const int added = model.spec().lobes;
+  std::vector<int> lobes(added);
+  std::iota(lobes.begin(), lobes.end(), 0);
+  lobes.push_back(lobe);
+  FactorModel result = WithLobes(model, lobes);
+  const ModelSpec& spec = result.spec();
   for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
     for (int c = 0; c < kChannels; ++c) {
       if (spec.table(Factor::kD, lobe, c) != t) continue;

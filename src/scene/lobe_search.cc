@@ -42,21 +42,23 @@ std::vector<FactorModel> WithOneLobeMore(const FactorModel& canonical) {
 }
 
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
-                    double wanted) {
+                    double wanted, const std::function<bool()>& stop) {
+  const auto stopped = [&stop] { return stop && stop(); };
   PhaseSeconds phases;
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kProjected, &phases);
   {
-    StartRace race(objective, [] { return false; });
+    StartRace race(objective, stopped);
     for (const FactorModel& start : starts) {
       race.Enter("", [&start] { return std::optional(start); });
     }
     race.Advance(kFirstTries);
     race.Keep(2);
     race.Advance(kNextTries);
-    stepper.Restart(*race.leader());
+    const FactorModel* const leader = race.leader();  // none if it was stopped at once
+    stepper.Restart(leader != nullptr ? *leader : starts.front());
   }
-  for (int tries = 0; tries < kMaxTries && !stepper.exhausted(); ++tries) {
+  for (int tries = 0; tries < kMaxTries && !stepper.exhausted() && !stopped(); ++tries) {
     const double before = stepper.E();
     if (!stepper.Step()) continue;
     const double decrease = before - stepper.E();

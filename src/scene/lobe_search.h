@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SCENE_LOBE_SEARCH_H_
 #define TRILOBE_SCENE_LOBE_SEARCH_H_
 
+#include <functional>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
@@ -22,9 +23,9 @@ struct FittedModel {
 
 // Fits a model with the objective's spec from the starting points: first on thinned samples, side
 // by side, then the best on all. Ends when E falls by little, or so slowly that it will not come
-// down to `wanted`.
+// down to `wanted`, or when `stop`, if any, says so.
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
-                    double wanted);
+                    double wanted, const std::function<bool()>& stop);
 
 }  // namespace trilobe
 

@@ -5,6 +5,7 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/scene/needed_layout.h"
 #include "trilobe/solvers/normal_equations.h"
 
 namespace trilobe {
@@ -19,7 +20,7 @@ struct Elimination {
 struct EliminationLimits {
   double max_rise = 0;  // of E, predicted
   int max_count = 0;
-  bool may_thin[3] = {true, true, true};  // D, F, G
+  ThinnedFactors may_thin = {true, true, true};
 };
 
 // In which order to give up nodes of a model that was fitted in the numbers of its layout: the next

@@ -13,6 +13,7 @@
 #include "trilobe/model/merge_lobes.h"
 #include "trilobe/model/score.h"
 #include "trilobe/scene/lobe_search.h"
+#include "trilobe/scene/needed_layout.h"
 #include "trilobe/scene/node_elimination.h"
 #include "trilobe/scene/reduced_quadratic.h"
 #include "trilobe/scene/shapes.h"
@@ -65,31 +66,12 @@ std::string LobesText(int lobes) {
   return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
 }
 
-// The entries of a table that the layout need not store: no data touch them, or they lie within a
-// run of equal values. At least one is kept.
-std::vector<int> NeededEntries(std::span<const double> table, std::span<const double> coverage,
-                               bool drop_equal) {
-  std::vector<int> live;
-  for (int k = 0; k < static_cast<int>(table.size()); ++k) {
-    if (coverage[k] > 0) live.push_back(k);
-  }
-  if (live.empty()) live.push_back(0);
-  if (!drop_equal) return live;
-  std::vector<int> needed;
-  for (size_t i = 0; i < live.size(); ++i) {
-    const bool like_previous = i == 0 || table[live[i]] == table[live[i - 1]];
-    const bool like_next = i + 1 == live.size() || table[live[i]] == table[live[i + 1]];
-    // At an end of the table the inner end of the run serves all of it.
-    if (!like_previous || !like_next) needed.push_back(live[i]);
-  }
-  if (needed.empty()) needed.push_back(live.front());
-  return needed;
-}
-
 class Pruner {
  public:
   Pruner(const Objective& objective, const FactorModel& full, const PruneOptions& options)
-      : objective_(objective), options_(options) {
+      : objective_(objective),
+        options_(options),
+        may_thin_{options.tables, options.tables, options.shadowing} {
     state_ = MakeState(objective.spec(), full);
     E_full_ = state_.E;
     by_numbers_ = options.max_numbers < std::numeric_limits<int>::max();
@@ -117,10 +99,6 @@ class Pruner {
   }
 
  private:
-  bool MayThin(Factor factor) const {
-    return factor == Factor::kG ? options_.shadowing : options_.tables;
-  }
-
   std::shared_ptr<const Objective> ObjectiveFor(const ModelSpec& spec) const {
     if (spec == objective_.spec()) return {std::shared_ptr<const Objective>(), &objective_};
     return std::make_shared<Objective>(objective_.samples(), spec, objective_.weighting(),
@@ -134,20 +112,7 @@ class Pruner {
     return state;
   }
 
-  TableLayout NeededLayout(const FactorModel& model, std::span<const double> coverage,
-                           bool drop_equal) const {
-    const ModelSpec& spec = model.spec();
-    TableLayout layout = TableLayout::Full(spec);
-    for (const Factor factor : kFactors) {
-      if (!MayThin(factor)) continue;
-      for (int t = 0; t < spec.num_tables(factor); ++t) {
-        const auto table = model.table(factor, t);
-        layout.of(factor, t) = NeededEntries(
-            table, coverage.subspan(model.TableOffset(factor, t), table.size()), drop_equal);
-      }
-    }
-    return layout;
-  }
+  bool Stopped() const { return options_.stop && options_.stop(); }
 
   // The true test.
   bool Keeps(const State& state) const {
@@ -204,7 +169,7 @@ class Pruner {
     ShareWhatIsEqual();
     State to = state_;
     const TableLayout needed =
-        NeededLayout(to.model, to.objective->coverage(), /*drop_equal=*/true);
+        NeededLayout(to.model, to.objective->coverage(), may_thin_, /*drop_equal=*/true);
     for (int f = 0; f < 3; ++f) to.layout.nodes[f] = needed.nodes[f];
     if (to.numbers() == state_.numbers()) return;
     ExpandStored(to.layout, &to.model);
@@ -245,9 +210,7 @@ class Pruner {
     EliminationLimits limits;
     limits.max_rise = by_numbers_ ? kInfinity : guide_ - E;
     limits.max_count = by_numbers_ ? std::max(numbers - options_.max_numbers, 0) : numbers;
-    for (const Factor factor : kFactors) {
-      limits.may_thin[static_cast<int>(factor)] = MayThin(factor);
-    }
+    limits.may_thin = may_thin_;
     return limits;
   }
 
@@ -259,7 +222,7 @@ class Pruner {
                          JointStepper::Trial::kAsItIs, &phases, &reduction);
     stepper.Restart(state->model);
     const double small = by_numbers_ ? kSmallDecrease * state->E : kSmallGain * (guide_ - E_full_);
-    for (int step = 0; step < kMaxPolish && !stepper.exhausted(); ++step) {
+    for (int step = 0; step < kMaxPolish && !stepper.exhausted() && !Stopped(); ++step) {
       const double before = stepper.E();
       if (stepper.Step() && before - stepper.E() < small) break;
     }
@@ -287,7 +250,8 @@ class Pruner {
       const bool as_it_is = shape.name.empty();
       if (as_it_is && options.empty()) return;  // it has the most numbers, and comes last
       const TableLayout layout = LayoutOf(
-          shape, as_it_is ? state_.layout : NeededLayout(model, coverage, /*drop_equal=*/false));
+          shape, as_it_is ? state_.layout
+                          : NeededLayout(model, coverage, may_thin_, /*drop_equal=*/false));
       double rise = 0;
       if (as_it_is) {
         model = state_.model;
@@ -320,7 +284,7 @@ class Pruner {
       return std::pair(excess_a, a.E) < std::pair(excess_b, b.E);
     });
     for (const Option& option : options) {
-      if (option.shape.name.empty()) return;
+      if (option.shape.name.empty() || Stopped()) return;
       State to{.objective = ObjectiveFor(option.shape.spec),
                .model = option.model,
                .layout = option.layout};
@@ -365,7 +329,7 @@ class Pruner {
   void ThinTables() {
     const State before = state_;
     double share = 1;  // of what is left, to be spent next: less where predictions are too low
-    for (int attempt = 0; attempt < kMaxAttempts;) {
+    for (int attempt = 0; attempt < kMaxAttempts && !Stopped();) {
       const int numbers = state_.numbers();
       const QuadraticModel at = Linearize(state_);
       const std::vector<Elimination> order =
@@ -404,17 +368,17 @@ class Pruner {
   bool TryLobes(const std::vector<FactorModel>& starts, double wanted) {
     const ModelSpec& spec = starts.front().spec();
     State to{.objective = ObjectiveFor(spec), .model = {}, .layout = {}};
-    FittedModel fitted = FitFrom(starts, *to.objective, wanted);
+    FittedModel fitted = FitFrom(starts, *to.objective, wanted, options_.stop);
     to.model = std::move(fitted.model);
     Canonicalize(to.objective->coverage(), &to.model);
-    to.E = to.objective->Value(to.model);
-    to.layout = NeededLayout(to.model, to.objective->coverage(), /*drop_equal=*/true);
+    to.layout = NeededLayout(to.model, to.objective->coverage(), may_thin_, /*drop_equal=*/true);
     ExpandStored(to.layout, &to.model);
     to.E = to.objective->Value(to.model);
-    const bool more = spec.lobes > Lobes(state_);
-    const bool taken = more ? to.E < state_.E : to.E <= wanted && Keeps(to);
+    if (Stopped()) return false;
+    const bool within = to.E <= wanted && Keeps(to);
+    const bool taken = spec.lobes > Lobes(state_) ? to.E < state_.E : within;
     const std::string what = LobesText(spec.lobes) + " instead of " + LobesText(Lobes(state_));
-    const std::string why = Against(to.E, to.E <= wanted && Keeps(to));
+    const std::string why = Against(to.E, within);
     return Decide(what, std::move(to), taken, why);
   }
 
@@ -507,6 +471,7 @@ class Pruner {
 
   const Objective& objective_;
   const PruneOptions& options_;
+  const ThinnedFactors may_thin_;
   State state_;
   double E_full_ = 0;
   std::optional<double> lowest_psnr_;

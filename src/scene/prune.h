@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SCENE_PRUNE_H_
 #define TRILOBE_SCENE_PRUNE_H_
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,6 +30,9 @@ struct PruneOptions {
   bool tables = true;     // entries of D and F: dropped where no data are, and thinned
   // More lobes than the full model's, where the budget asks for a lower E. 0: none.
   int max_lobes = 0;
+
+  // Asked after each step; true to stop, after which what comes back is of no use.
+  std::function<bool()> stop = nullptr;
 };
 
 // One thing that was tried.

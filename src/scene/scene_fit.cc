@@ -184,6 +184,11 @@ BrdfSamples InChannels(BrdfSamples samples, SceneChannels channels) {
   return samples;
 }
 
+SceneScore ScoreOn(const Objective& objective, const FactorModel& model) {
+  const ScoreReport report = ScoreModel(objective, model);
+  return {report.objective, report.psnr_db};
+}
+
 // One material, of which nothing is read more than once, or without need.
 class MaterialFitter {
  public:
@@ -214,10 +219,18 @@ class MaterialFitter {
     return fit;
   }
 
-  SceneScore Score(const FactorModel& model) {
-    const BrdfSamples used = UsedSamples(ValidSamples(Table()), material_.directions);
+  std::vector<SceneScore> Score(std::span<const FactorModel> models) const {
     const bool grey = material_.channels == SceneChannels::kLuminance;
-    return ScoreOn(InChannels(used, material_.channels), grey ? LuminanceOf(model) : model);
+    const BrdfSamples samples =
+        InChannels(UsedSamples(ValidSamples(Table()), material_.directions), material_.channels);
+    std::vector<SceneScore> scores;
+    for (const FactorModel& model : models) {
+      const FactorModel judged = grey ? LuminanceOf(model) : model;
+      const Objective objective(samples, judged.spec(), FindWeighting(settings_.weighting),
+                                num_threads_);
+      scores.push_back(ScoreOn(objective, judged));
+    }
+    return scores;
   }
 
  private:
@@ -325,7 +338,10 @@ class MaterialFitter {
     if (!full || (settings_.stop && settings_.stop())) return std::nullopt;
     const Objective& objective = FitObjective();
     Stopwatch stopwatch;
-    PrunedModel pruned = Prune(objective, full->file.model, PruneOptionsOf(material_));
+    PruneOptions prune_options = PruneOptionsOf(material_);
+    prune_options.stop = settings_.stop;
+    PrunedModel pruned = Prune(objective, full->file.model, prune_options);
+    if (settings_.stop && settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;
@@ -333,10 +349,10 @@ class MaterialFitter {
     fit.valid_samples = valid_samples_;
     fit.used_samples = objective.samples().size();
     fit.full_numbers = full->file.model.spec().num_parameters();
-    fit.full = ScoreOn(objective.samples(), full->file.model);
-    fit.pruned = ScoreOn(objective.samples(), pruned.model);
+    fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective.samples(), pruned.model.spec(), objective.weighting(),
                               num_threads_);
+    fit.pruned = ScoreOn(of_pruned, pruned.model);
     fit.file = {.model = std::move(pruned.model),
                 .dead = DeadParameters(of_pruned.coverage()),
                 .fit = full->file.fit,
@@ -345,13 +361,6 @@ class MaterialFitter {
     fit.numbers = pruned.numbers;
     fit.decisions = std::move(pruned.decisions);
     return fit;
-  }
-
-  SceneScore ScoreOn(BrdfSamples samples, const FactorModel& model) const {
-    const Objective objective(std::move(samples), model.spec(), FindWeighting(settings_.weighting),
-                              num_threads_);
-    const ScoreReport report = ScoreModel(objective, model);
-    return {report.objective, report.psnr_db};
   }
 
   const SceneMaterial& material_;
@@ -376,9 +385,9 @@ std::vector<std::optional<MaterialFit>> FitScene(
   const int count = static_cast<int>(scene.materials.size());
   std::vector<std::optional<MaterialFit>> fits(count);
   std::mutex mutex;
-  ParallelFor(count, num_threads, [&](int k) {
+  ParallelJobs(count, num_threads, [&](int k) {
     if (settings.stop && settings.stop()) return;
-    fits[k] = FitMaterial(scene.materials[k], settings, std::max(1, num_threads / count));
+    fits[k] = FitMaterial(scene.materials[k], settings, 1);
     const std::lock_guard<std::mutex> lock(mutex);
     if (fits[k]) on_done(*fits[k]);
   });
@@ -396,9 +405,10 @@ std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSet
       .Fit("alone on " + std::to_string(num_threads) + " threads");
 }
 
-SceneScore ScoreOnScene(const FactorModel& model, const SceneMaterial& material,
-                        const SceneFitSettings& settings, int num_threads) {
-  return MaterialFitter(material, settings, num_threads).Score(model);
+std::vector<SceneScore> ScoreOnScene(std::span<const FactorModel> models,
+                                     const SceneMaterial& material,
+                                     const SceneFitSettings& settings, int num_threads) {
+  return MaterialFitter(material, settings, num_threads).Score(models);
 }
 
 }  // namespace trilobe

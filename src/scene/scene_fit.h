@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,11 @@ struct SceneScore {
   double psnr_db = 0;
 };
 
+// By how much of it E is higher, 0.01 for 1 %; 0 where there is nothing to be relative to.
+inline double RelativeRise(const SceneScore& full, const SceneScore& pruned) {
+  return full.objective > 0 ? pruned.objective / full.objective - 1 : 0;
+}
+
 // A fit with nothing left out.
 struct FullFit {
   ModelFile file;
@@ -67,7 +73,7 @@ struct MaterialFit {
 std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
                                        const SceneFitSettings& settings, int num_threads);
 
-// All materials side by side, a thread each, or more where there are fewer materials than threads.
+// All materials side by side, a thread each, to which come the threads that have no material left.
 // `on_done` sees each when it is finished, one at a time. Those that were stopped are missing.
 std::vector<std::optional<MaterialFit>> FitScene(
     const Scene& scene, const SceneFitSettings& settings, int num_threads,
@@ -79,9 +85,10 @@ std::vector<std::optional<MaterialFit>> FitScene(
 std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,
                                 int num_threads);
 
-// How well any model does on the samples that the scene uses of the material.
-SceneScore ScoreOnScene(const FactorModel& model, const SceneMaterial& material,
-                        const SceneFitSettings& settings, int num_threads);
+// How well any models do on the samples that the scene uses of the material, which is read once.
+std::vector<SceneScore> ScoreOnScene(std::span<const FactorModel> models,
+                                     const SceneMaterial& material,
+                                     const SceneFitSettings& settings, int num_threads);
 
 }  // namespace trilobe
 

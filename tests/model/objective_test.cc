@@ -139,9 +139,7 @@ std::vector<double> BruteForceCoverage(const Objective& objective) {
 
 TEST(Objective, CoverageCountsTheWeightOfTheReaders) {
   BrdfTable table = RandomTable(kOdd, 12);
-  for (int d = 0; d < kOdd.theta_d; ++d) {  // nothing reads D at bin 3
-    for (int p = 0; p < kOdd.phi_d; ++p) table.stored[1][kOdd.Index(3, d, p)] = -1;
-  }
+  InvalidateThetaH(3, &table);
   for (const auto& [name, spec] : TestSpecs(kOdd)) {
     for (const bool scattered : {false, true}) {
       BrdfSamples samples = ValidSamples(table);

@@ -92,7 +92,7 @@ void ExpectConsistent(const Fit& fit, const PrunedModel& pruned) {
 // With N = 2000 values and p numbers the E of a fit is about 1 - p / N times that of the truth. So
 // what the 86 numbers of three lobes more than needed gain of the noise is 4 %: with 10 % to spend
 // they go, and what the material has and one number more or less is not enough for stays.
-constexpr PruneOptions kGenerous{.max_relative_rise = 0.1};
+const PruneOptions kGenerous{.max_relative_rise = 0.1};
 
 TEST(Prune, OneLobeStaysOne) {
   const Fit fit = MakeFit(Material(1, false));

@@ -64,7 +64,7 @@ TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
   EXPECT_LE(fit->pruned.objective, 1.01 * fit->full.objective * (1 + 1e-12));
   EXPECT_FALSE(fit->decisions.empty());
   EXPECT_FALSE(fit->fit_from_cache || fit->prune_from_cache);
-  const SceneScore again = ScoreOnScene(fit->file.model, Material("felt"), Settings(), 2);
+  const SceneScore again = ScoreOnScene({&fit->file.model, 1}, Material("felt"), Settings(), 2)[0];
   EXPECT_EQ(again.objective, fit->pruned.objective);
   EXPECT_EQ(again.psnr_db, fit->pruned.psnr_db);
 }

@@ -149,9 +149,7 @@ TEST_P(Multistart, GivesTheSameBitsForAnyThreads) {
 // Whichever start wins, what no sample reads is the caller's.
 TEST_P(Multistart, LeavesDeadBinsToTheCaller) {
   BrdfTable table = RandomTable(kGrid, 2);
-  for (int d = 0; d < kGrid.theta_d; ++d) {
-    for (int p = 0; p < kGrid.phi_d; ++p) table.stored[2][kGrid.Index(4, d, p)] = -1;
-  }
+  InvalidateThetaH(4, &table);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(table, spec);
   const std::vector<bool> dead = DeadParameters(objective.coverage());

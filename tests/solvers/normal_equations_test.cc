@@ -104,9 +104,7 @@ TEST(NormalEquations, SameBitsForAnyNumberOfThreads) {
 
 TEST(NormalEquations, DeadBinsAreZero) {
   BrdfTable table = RandomTable(kGrid, 3);
-  for (int d = 0; d < kGrid.theta_d; ++d) {
-    for (int p = 0; p < kGrid.phi_d; ++p) table.stored[0][kGrid.Index(2, d, p)] = -1;
-  }
+  InvalidateThetaH(2, &table);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(table, spec);
   QuadraticModel result;
