@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <sstream>
 #include <utility>
 
@@ -97,64 +98,103 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
 
 }  // namespace
 
-Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
-                     int num_threads)
-    : samples_(std::move(samples)), spec_(spec), weighting_(weighting), num_threads_(num_threads) {
-  CheckGrid(spec_, samples_.grid);
-  CheckRange(samples_);
-  CoverageByChannel coverage;
-  if (samples_.on_grid()) {
-    folded_ = std::make_unique<FoldedGrid>(Fold(samples_, spec_.g_nodes, weighting_, num_threads_));
-    measured_energy_ = folded_->measured_energy;
-    coverage = FoldedCoverage(*folded_);
-  } else {
-    coverage = ScatteredCoverage(weighted_samples(), spec_);
-    for (const WeightedSample& sample : weighted_samples()) {
-      for (int c = 0; c < kChannels; ++c) {
-        measured_energy_ += sample.weight[c] * sample.rho[c] * sample.rho[c];
+struct Objective::Prepared {
+  Prepared(BrdfSamples all, const ModelSpec& of, const Weighting& weights, int num_threads)
+      : samples(std::move(all)), spec(of), weighting(weights) {
+    CheckGrid(spec, samples.grid);
+    CheckRange(samples);
+    if (samples.on_grid()) {
+      folded = std::make_unique<FoldedGrid>(Fold(samples, spec.g_nodes, weighting, num_threads));
+      measured_energy = folded->measured_energy;
+      coverage = FoldedCoverage(*folded);
+    } else {
+      const std::vector<WeightedSample>& weighted = WeightedSamples(num_threads);
+      coverage = ScatteredCoverage(weighted, spec);
+      for (const WeightedSample& sample : weighted) {
+        for (int c = 0; c < kChannels; ++c) {
+          measured_energy += sample.weight[c] * sample.rho[c] * sample.rho[c];
+        }
       }
     }
   }
-  coverage_ = CoverageOfParameters(coverage, spec_);
+
+  WeightedSample Sample(int j) const {
+    const HalfDiffAngles angles = samples.Angles(j);
+    WeightedSample sample;
+    sample.stencils = samples.on_grid() ? GridStencils(spec, samples.grid, samples.bins[j])
+                                        : ScatteredStencils(spec, angles);
+    sample.rho = samples.rho[j];
+    for (int c = 0; c < kChannels; ++c) {
+      sample.weight[c] =
+          samples.Multiplicity(j) * weighting.weight(sample.rho[c], ToCosines(angles).i);
+    }
+    return sample;
+  }
+
+  const std::vector<WeightedSample>& WeightedSamples(int num_threads) const {
+    std::call_once(weighted_samples_once, [&] {
+      weighted_samples.resize(samples.size());
+      constexpr int kChunk = 4096;
+      ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+        const int end = std::min((chunk + 1) * kChunk, samples.size());
+        for (int j = chunk * kChunk; j < end; ++j) weighted_samples[j] = Sample(j);
+      });
+    });
+    return weighted_samples;
+  }
+
+  const BrdfSamples samples;
+  const ModelSpec spec;  // of which the sizes of the tables count
+  const Weighting weighting;
+  double measured_energy = 0;
+  CoverageByChannel coverage;
+  std::unique_ptr<const FoldedGrid> folded;
+  mutable std::once_flag spline_cells_once;
+  mutable std::unique_ptr<const SplineCells> spline_cells;
+  mutable std::once_flag weighted_samples_once;
+  mutable std::vector<WeightedSample> weighted_samples;
+};
+
+Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
+                     int num_threads)
+    : prepared_(std::make_shared<Prepared>(std::move(samples), spec, weighting, num_threads)),
+      spec_(spec),
+      num_threads_(num_threads),
+      coverage_(CoverageOfParameters(prepared_->coverage, spec)) {}
+
+Objective::Objective(const Objective& other, const ModelSpec& spec)
+    : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
+  CheckGrid(spec, samples().grid);
+  if (spec.g_nodes != other.spec_.g_nodes) {
+    prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
+  }
+  coverage_ = CoverageOfParameters(prepared_->coverage, spec);
 }
+
+const BrdfSamples& Objective::samples() const { return prepared_->samples; }
+
+const Weighting& Objective::weighting() const { return prepared_->weighting; }
+
+double Objective::MeasuredEnergy() const { return prepared_->measured_energy; }
+
+const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 
 double Objective::Value(const FactorModel& model) const {
   CHECK(model.spec() == spec_) << "a model of another spec";
-  return folded_ ? FoldedValue(*folded_, model, num_threads_)
-                 : ScatteredValue(weighted_samples(), model);
+  return folded() != nullptr ? FoldedValue(*folded(), model, num_threads_)
+                             : ScatteredValue(weighted_samples(), model);
 }
 
 const SplineCells& Objective::spline_cells() const {
-  std::call_once(spline_cells_once_,
-                 [this] { spline_cells_ = std::make_unique<SplineCells>(*folded_); });
-  return *spline_cells_;
+  std::call_once(prepared_->spline_cells_once,
+                 [this] { prepared_->spline_cells = std::make_unique<SplineCells>(*folded()); });
+  return *prepared_->spline_cells;
 }
 
-WeightedSample Objective::Sample(int j) const {
-  const HalfDiffAngles angles = samples_.Angles(j);
-  WeightedSample sample;
-  sample.stencils = samples_.on_grid() ? GridStencils(spec_, samples_.grid, samples_.bins[j])
-                                       : ScatteredStencils(spec_, angles);
-  sample.rho = samples_.rho[j];
-  for (int c = 0; c < kChannels; ++c) {
-    sample.weight[c] =
-        samples_.Multiplicity(j) * weighting_.weight(sample.rho[c], ToCosines(angles).i);
-  }
-  return sample;
-}
+WeightedSample Objective::Sample(int j) const { return prepared_->Sample(j); }
 
 const std::vector<WeightedSample>& Objective::weighted_samples() const {
-  std::call_once(weighted_samples_once_, [this] {
-    weighted_samples_.resize(samples_.size());
-    constexpr int kChunk = 4096;
-    ParallelFor((samples_.size() + kChunk - 1) / kChunk, num_threads_, [&](int chunk) {
-      const int end = std::min((chunk + 1) * kChunk, samples_.size());
-      for (int j = chunk * kChunk; j < end; ++j) {
-        weighted_samples_[j] = Sample(j);
-      }
-    });
-  });
-  return weighted_samples_;
+  return prepared_->WeightedSamples(num_threads_);
 }
 
 }  // namespace trilobe

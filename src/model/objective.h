@@ -2,7 +2,6 @@
 #define TRILOBE_MODEL_OBJECTIVE_H_
 
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "trilobe/model/brdf_samples.h"
@@ -29,9 +28,13 @@ class Objective {
   Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
             int num_threads = 1);
 
-  const BrdfSamples& samples() const { return samples_; }
+  // The same samples for models of another spec. Where G has as many nodes, all that was prepared
+  // is shared, and this costs next to nothing. Throws Error as above.
+  Objective(const Objective& other, const ModelSpec& spec);
+
+  const BrdfSamples& samples() const;
   const ModelSpec& spec() const { return spec_; }
-  const Weighting& weighting() const { return weighting_; }
+  const Weighting& weighting() const;
   int num_threads() const { return num_threads_; }
 
   // E of a model with this spec: the one scorer, that every trace and table quotes. The same bits
@@ -39,7 +42,7 @@ class Objective {
   double Value(const FactorModel& model) const;
 
   // sum w rho*^2: E of the black model, the scale against which E is small or large.
-  double MeasuredEnergy() const { return measured_energy_; }
+  double MeasuredEnergy() const;
 
   // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
   // order of FactorModel::parameters(). 0 marks a dead bin: not a parameter at all
@@ -53,24 +56,19 @@ class Objective {
   const std::vector<WeightedSample>& weighted_samples() const;
 
   // The samples folded by symmetry, or null when they are not on a grid.
-  const FoldedGrid* folded() const { return folded_.get(); }
+  const FoldedGrid* folded() const;
 
   // The folded samples by knot intervals of G, which must exist. Made at the first call (64 bytes a
   // sample).
   const SplineCells& spline_cells() const;
 
  private:
-  BrdfSamples samples_;
+  struct Prepared;  // what depends on no more of the spec than the sizes of its tables
+
+  std::shared_ptr<const Prepared> prepared_;
   ModelSpec spec_;
-  Weighting weighting_;
   int num_threads_;
-  double measured_energy_ = 0;
   std::vector<double> coverage_;
-  std::unique_ptr<FoldedGrid> folded_;
-  mutable std::once_flag spline_cells_once_;
-  mutable std::unique_ptr<SplineCells> spline_cells_;
-  mutable std::once_flag weighted_samples_once_;
-  mutable std::vector<WeightedSample> weighted_samples_;
 };
 
 }  // namespace trilobe

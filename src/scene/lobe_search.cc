@@ -1,6 +1,7 @@
 #include "trilobe/scene/lobe_search.h"
 
 #include <optional>
+#include <utility>
 
 #include "trilobe/model/merge_lobes.h"
 #include "trilobe/model/split_lobe.h"
@@ -10,8 +11,8 @@
 namespace trilobe {
 namespace {
 
-// Steps of each start on thinned samples, and of the best two.
-constexpr int kFirstTries = 3, kNextTries = 12;
+// Steps of each start on thinned samples, and of the best two, so many at a time.
+constexpr int kFirstTries = 3, kLeg = 3, kLastTries = 12;
 // On all samples.
 constexpr int kMaxTries = 40;
 // A fit is given up when at its present pace it needs more steps than this to come down to what is
@@ -53,10 +54,17 @@ FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& obj
       race.Enter("", [&start] { return std::optional(start); });
     }
     race.Advance(kFirstTries);
+    if (race.leader() == nullptr) return {starts.front(), objective.Value(starts.front())};
     race.Keep(2);
-    race.Advance(kNextTries);
-    const FactorModel* const leader = race.leader();  // none if it was stopped at once
-    stepper.Restart(leader != nullptr ? *leader : starts.front());
+    double E = race.Results().front().objective;
+    for (int tries = kFirstTries + kLeg; tries <= kLastTries; tries += kLeg) {
+      race.Advance(tries);
+      const double before = std::exchange(E, race.Results().front().objective);
+      if (E > wanted + kPatience * (before - E) / kLeg) {
+        return {*race.leader(), objective.Value(*race.leader())};
+      }
+    }
+    stepper.Restart(*race.leader());
   }
   for (int tries = 0; tries < kMaxTries && !stepper.exhausted() && !stopped(); ++tries) {
     const double before = stepper.E();

@@ -40,6 +40,9 @@ constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
 constexpr double kFewNumbers = 0.02;
 
+// Where lobes that went took more than this share of the budget, it may be better spent on nodes.
+constexpr double kDear = 0.5;
+
 // Towards a budget of numbers: this part of those in excess goes at once, if they are more than
 // few.
 constexpr double kExcessAtOnce = 0.75;
@@ -101,8 +104,7 @@ class Pruner {
  private:
   std::shared_ptr<const Objective> ObjectiveFor(const ModelSpec& spec) const {
     if (spec == objective_.spec()) return {std::shared_ptr<const Objective>(), &objective_};
-    return std::make_shared<Objective>(objective_.samples(), spec, objective_.weighting(),
-                                       objective_.num_threads());
+    return std::make_shared<Objective>(objective_, spec);
   }
 
   State MakeState(const ModelSpec& spec, const FactorModel& model) const {
@@ -382,17 +384,48 @@ class Pruner {
     return Decide(what, std::move(to), taken, why);
   }
 
+  // With as few lobes as the budget allows; and with one more where that took most of it.
   void SpendBudget() {
     // The guide says nothing about a PSNR far away, so that E may rise beyond it here.
-    const double wanted = lowest_psnr_ ? limit_ : guide_;
-    while (options_.lobes && Lobes(state_) > 0 && TryLobes(WithOneLobeLess(state_.model), wanted)) {
+    const double guide = guide_, wanted = lowest_psnr_ ? limit_ : guide_;
+    std::optional<State> with_one_more;
+    size_t last_lobe = 0;
+    while (options_.lobes && Lobes(state_) > 0) {
+      State before = state_;
+      if (!TryLobes(WithOneLobeLess(state_.model), wanted)) break;
+      last_lobe = decisions_.size() - 1;
+      with_one_more.reset();
+      if (state_.E - E_full_ > kDear * (wanted - E_full_)) with_one_more = std::move(before);
     }
-    guide_ = std::max(guide_, state_.E);
+    ThinWithin(guide);
+    if (!with_one_more || Stopped()) return;
+    State fewer = std::exchange(state_, std::move(*with_one_more));
+    const size_t end = decisions_.size();
+    ThinWithin(guide);
+    if (state_.numbers() < fewer.numbers()) {
+      Withdraw(last_lobe, end, "with one lobe more fewer numbers are enough");
+    } else {
+      state_ = std::move(fewer);
+      Withdraw(end, decisions_.size(), "with one lobe less fewer numbers are enough");
+    }
+  }
+
+  // Shape and nodes.
+  void ThinWithin(double guide) {
+    guide_ = std::max(guide, state_.E);
     ChooseShape();
     ThinTables();
     for (int round = 0; round < kStretches && SparesPsnr(); ++round) {
       guide_ = std::min(limit_, E_full_ + kStretch * (guide_ - E_full_));
       ThinTables();
+    }
+  }
+
+  // What was decided led to nothing better.
+  void Withdraw(size_t begin, size_t end, const std::string& why) {
+    for (size_t k = begin; k < end; ++k) {
+      if (decisions_[k].taken) decisions_[k].why += "; " + why;
+      decisions_[k].taken = false;
     }
   }
 
@@ -434,10 +467,7 @@ class Pruner {
       const bool met = best.numbers() <= options_.max_numbers;
       const auto back_to_best = [&] {
         state_ = std::move(best);
-        for (size_t k = decided; k < decisions_.size(); ++k) {
-          if (decisions_[k].taken) decisions_[k].why += "; with more lobes it ends lower";
-          decisions_[k].taken = false;
-        }
+        Withdraw(decided, decisions_.size(), "with more lobes it ends lower");
       };
       if (!TryLobes(WithOneLobeLess(state_.model), met ? best.E : kInfinity)) {
         back_to_best();

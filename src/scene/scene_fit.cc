@@ -221,14 +221,13 @@ class MaterialFitter {
 
   std::vector<SceneScore> Score(std::span<const FactorModel> models) const {
     const bool grey = material_.channels == SceneChannels::kLuminance;
-    const BrdfSamples samples =
-        InChannels(UsedSamples(ValidSamples(Table()), material_.directions), material_.channels);
+    const BrdfSamples used = UsedSamples(ValidSamples(Table()), material_.directions);
+    const Objective objective(InChannels(used, material_.channels), models.front().spec(),
+                              FindWeighting(settings_.weighting), num_threads_);
     std::vector<SceneScore> scores;
     for (const FactorModel& model : models) {
       const FactorModel judged = grey ? LuminanceOf(model) : model;
-      const Objective objective(samples, judged.spec(), FindWeighting(settings_.weighting),
-                                num_threads_);
-      scores.push_back(ScoreOn(objective, judged));
+      scores.push_back(ScoreOn(Objective(objective, judged.spec()), judged));
     }
     return scores;
   }
@@ -350,8 +349,7 @@ class MaterialFitter {
     fit.used_samples = objective.samples().size();
     fit.full_numbers = full->file.model.spec().num_parameters();
     fit.full = ScoreOn(objective, full->file.model);
-    const Objective of_pruned(objective.samples(), pruned.model.spec(), objective.weighting(),
-                              num_threads_);
+    const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
     fit.file = {.model = std::move(pruned.model),
                 .dead = DeadParameters(of_pruned.coverage()),

@@ -78,6 +78,25 @@ TEST(Objective, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+TEST(Objective, IsTheSameMadeFromOneOfAnotherSpec) {
+  const BrdfTable table = RandomTable(kOdd, 5);
+  const Objective first = MakeObjective(table, ModelSpec::SharedFactors(2, kOdd));
+  const auto expect_same = [&](const ModelSpec& spec, const std::string& name) {
+    const Objective anew = MakeObjective(table, spec), made(first, spec);
+    const FactorModel model = RandomModel(spec, 6);
+    EXPECT_EQ(made.Value(model), anew.Value(model)) << name;
+    EXPECT_EQ(made.MeasuredEnergy(), anew.MeasuredEnergy()) << name;
+    EXPECT_EQ(made.coverage(), anew.coverage()) << name;
+    return made.folded() == first.folded();
+  };
+  for (const auto& [name, spec] : TestSpecs(kOdd)) EXPECT_TRUE(expect_same(spec, name));
+  ModelSpec finer = first.spec();
+  finer.g_nodes += 3;
+  EXPECT_FALSE(expect_same(finer, "finer G"));
+  ++finer.d_bins;
+  EXPECT_THROW(Objective(first, finer), Error);
+}
+
 TEST(Objective, ScatteredSamples) {
   for (const auto& [name, spec] : TestSpecs(kOdd)) {
     BrdfSamples samples = Scattered(ValidSamples(RandomTable(kOdd, 7)));
