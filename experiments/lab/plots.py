@@ -21,6 +21,7 @@ SOLVERS = {
     "newton": (ORANGE, "-"),
     "lm": (PURPLE, "-"),
     "lm_squares": (PURPLE, ":"),
+    "lm_bounds": (PURPLE, "--"),
     "lm_plain": (PURPLE, "--"),
     "awls": (VERMILION, "-"),
     "awls_literal": (VERMILION, "--"),
