@@ -7,18 +7,18 @@
 
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
-#include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/solvers/initial_model.h"
@@ -148,7 +148,6 @@ void BM_Fit(benchmark::State& state, const std::vector<std::string>& flags) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  rusage usage{};
   for (auto _ : state) {
     const pid_t pid = fork();
     if (pid == 0) {
@@ -158,11 +157,12 @@ void BM_Fit(benchmark::State& state, const std::vector<std::string>& flags) {
       _exit(127);
     }
     int status = 0;
-    wait4(pid, &status, 0, &usage);
+    waitpid(pid, &status, 0);
     if (status != 0) state.SkipWithError("trilobe fit failed");
   }
-  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
-  state.counters["E"] = ReadModel(folder / "model.json").fit.objective;
+  const auto report = nlohmann::json::parse(ReadFile(folder / "report.json"));
+  state.counters["peak_MB"] = report.at("peak_memory_bytes").get<double>() / 1e6;
+  state.counters["E"] = report.at("objective");
   std::filesystem::remove_all(folder);
 }
 

@@ -251,7 +251,7 @@ def _start_figure(runs, threads):
                if {row["start"] for row in of} == set(starts)]
     if not solvers:
         return None
-    figure, axes = plots.plt.subplots(figsize=(1.4 * len(solvers) + 2.5, 5))
+    figure, axes = plots.plt.subplots(figsize=(max(1.4 * len(solvers) + 2.5, 6.5), 5))
     for i, solver in enumerate(solvers):
         for j, start in enumerate(starts):
             values = [max(100 * row["excess"], 0.01) for row in rows

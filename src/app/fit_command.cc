@@ -14,6 +14,7 @@
 #include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/peak_memory.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/base/utc_time.h"
 #include "trilobe/io/file.h"
@@ -174,6 +175,7 @@ int RunFit(std::span<const std::string> arguments) {
   Canonicalize(objective.coverage(), &model);
   report.score = ScoreModel(objective, model);
   report.seconds.score = stopwatch.Lap();
+  report.peak_memory = PeakMemory();
 
   report.fit = {.solver = solver.name,
                 .init = FLAGS_init,

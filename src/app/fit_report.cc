@@ -97,6 +97,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
             {"solve", seconds.solve},
             {"score", seconds.score}}},
           {"phases", ToJson(summary.phases)},
+          {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
           {"program", fit.program},
           {"date", fit.date}};
 }
@@ -116,6 +117,10 @@ void Print(const FitReport& report) {
             << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
             << " prepare, " << Text(seconds.init, 3) << " init, " << Text(seconds.solve, 3)
             << " solve, " << Text(seconds.score, 3) << " score\n";
+  if (report.peak_memory) {
+    std::cout << "memory       " << Text(static_cast<double>(*report.peak_memory) / 1e6, 3)
+              << " MB at most\n";
+  }
 }
 
 }  // namespace trilobe

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/model_spec.h"
@@ -25,6 +26,7 @@ struct FitReport {
   SolverSummary summary;
   ScoreReport score;
   Seconds seconds;
+  std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
 };
 
 // A table on standard output.

@@ -65,6 +65,7 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_TRUE(report["starts"].is_array());
   EXPECT_EQ(report["phases"]["reading"], report["seconds"]["read"]);
   EXPECT_GT(report["phases"]["evaluating"], 0);
+  EXPECT_GT(report["peak_memory_bytes"], 35e6);  // the values alone
   ASSERT_TRUE(report.contains("diagnosis"));
   EXPECT_FALSE(report["diagnosis"].contains("gradient"));
   for (const char* const line : {"solver       awls: 3 iterations", "options      max_iterations 3",

@@ -1,0 +1,19 @@
+#include "trilobe/base/peak_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace trilobe {
+namespace {
+
+TEST(PeakMemory, CountsWhatWasTouchedAndKeepsIt) {
+  const auto before = PeakMemory();
+  if (!before) GTEST_SKIP() << "this system does not say";
+  constexpr int64_t kBytes = 64 << 20;
+  { const std::vector<char> touched(*before + kBytes, 1); }
+  EXPECT_GE(*PeakMemory(), *before + kBytes);
+}
+
+}  // namespace
+}  // namespace trilobe
