@@ -168,7 +168,8 @@ TEST(Fit, HonoursItsTimeLimit) {
   ASSERT_EQ(result.status, 0) << result.err;
   const auto trace = ReadTrace(folder / "out/trace.csv");
   EXPECT_GE(trace.back().seconds, 0.5);
-  EXPECT_LT(trace[trace.size() - 2].seconds, 0.5);
+  // On a slow machine the start alone may take that long.
+  for (size_t k = 0; k + 1 < trace.size(); ++k) EXPECT_LT(trace[k].seconds, 0.5);
 }
 
 // Every common flag arrives where it should; in nodes of 1 degree, --g_filter is its own number.
