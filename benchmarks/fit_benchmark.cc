@@ -121,6 +121,10 @@ void Iteration(benchmark::State& state, const char* solver, int iterations) {
       if (!summary.trace[k].accepted) continue;
       seconds.push_back(summary.trace[k].seconds - summary.trace[k - 1].seconds);
     }
+    if (seconds.empty()) {
+      state.SkipWithError("no iteration was accepted");
+      break;
+    }
     const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
     std::ranges::nth_element(seconds, middle);
     state.SetIterationTime(*middle);
@@ -166,49 +170,33 @@ void BM_Fit(benchmark::State& state, const std::vector<std::string>& flags) {
   std::filesystem::remove_all(folder);
 }
 
-BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(BM_ValueLiteral)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(BM_NormalEquations)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(BM_NewtonEquations)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(BM_NormalEquationsLiteral)
-    ->Arg(1)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->Iterations(1);
-BENCHMARK(BM_AwlsSweep)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseManualTime();
-BENCHMARK(BM_AwlsLiteralSweep)
-    ->Arg(1)
-    ->Unit(benchmark::kMillisecond)
-    ->UseManualTime()
-    ->Iterations(1);
-BENCHMARK(BM_LmIteration)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseManualTime();
-BENCHMARK(BM_LmPlainIteration)
-    ->Arg(2)
-    ->Unit(benchmark::kMillisecond)
-    ->UseManualTime()
-    ->Iterations(1);
-BENCHMARK_CAPTURE(BM_Fit, default, {})
-    ->Arg(1)
-    ->Arg(2)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->Iterations(1);
+using benchmark::internal::Benchmark;
+void OnTheClock(Benchmark* of) { of->Unit(benchmark::kMillisecond)->UseRealTime(); }
+void ByTheTrace(Benchmark* of) { of->Unit(benchmark::kMillisecond)->UseManualTime(); }
+
+BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Apply(OnTheClock);
+BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Apply(OnTheClock);
+BENCHMARK(BM_ValueLiteral)->Arg(1)->Apply(OnTheClock);
+BENCHMARK(BM_NormalEquations)->Arg(1)->Arg(2)->Apply(OnTheClock);
+BENCHMARK(BM_NewtonEquations)->Arg(1)->Arg(2)->Apply(OnTheClock);
+BENCHMARK(BM_NormalEquationsLiteral)->Arg(1)->Apply(OnTheClock)->Iterations(1);
+BENCHMARK(BM_AwlsSweep)->Arg(1)->Arg(2)->Apply(ByTheTrace);
+BENCHMARK(BM_AwlsLiteralSweep)->Arg(1)->Apply(ByTheTrace)->Iterations(1);
+BENCHMARK(BM_LmIteration)->Arg(1)->Arg(2)->Apply(ByTheTrace);
+BENCHMARK(BM_LmPlainIteration)->Arg(2)->Apply(ByTheTrace)->Iterations(1);
+BENCHMARK_CAPTURE(BM_Fit, default, {})->Arg(1)->Arg(2)->Apply(OnTheClock)->Iterations(1);
 BENCHMARK_CAPTURE(BM_Fit, awls, {"--solver=awls"})
     ->Arg(1)
     ->Arg(2)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
+    ->Apply(OnTheClock)
     ->Iterations(1);
 BENCHMARK_CAPTURE(BM_Fit, lm, {"--solver=lm", "--max_iterations=20"})
     ->Arg(2)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
+    ->Apply(OnTheClock)
     ->Iterations(1);
 BENCHMARK_CAPTURE(BM_Fit, lm_plain, {"--solver=lm_plain", "--max_iterations=1"})
     ->Arg(2)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
+    ->Apply(OnTheClock)
     ->Iterations(1);
 
 }  // namespace

@@ -99,11 +99,11 @@ inline BrdfTable RandomTable(const MerlGrid& grid, uint64_t seed, double lost = 
   return table;
 }
 
-// Makes all bins of a theta_h invalid, so that no data touch D there.
-inline void InvalidateThetaH(int theta_h, BrdfTable* table) {
+// Makes all bins of a theta_h invalid, by one channel, so that no data touch D there.
+inline void InvalidateThetaH(int theta_h, int channel, BrdfTable* table) {
   const MerlGrid& grid = table->grid;
   for (int d = 0; d < grid.theta_d; ++d) {
-    for (int p = 0; p < grid.phi_d; ++p) table->stored[0][grid.Index(theta_h, d, p)] = -1;
+    for (int p = 0; p < grid.phi_d; ++p) table->stored[channel][grid.Index(theta_h, d, p)] = -1;
   }
 }
 

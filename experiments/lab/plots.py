@@ -22,7 +22,7 @@ SOLVERS = {
     "lm": (PURPLE, "-"),
     "lm_squares": (PURPLE, ":"),
     "lm_bounds": (PURPLE, "--"),
-    "lm_plain": (PURPLE, "--"),
+    "lm_plain": (PURPLE, "-."),
     "awls": (VERMILION, "-"),
     "awls_literal": (VERMILION, "--"),
     "awls_block": (SKY, "-"),

@@ -44,12 +44,11 @@ std::vector<FactorModel> WithOneLobeMore(const FactorModel& canonical) {
 
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
                     double wanted, const std::function<bool()>& stop) {
-  const auto stopped = [&stop] { return stop && stop(); };
   PhaseSeconds phases;
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kProjected, &phases);
   {
-    StartRace race(objective, stopped);
+    StartRace race(objective, stop);
     for (const FactorModel& start : starts) {
       race.Enter("", [&start] { return std::optional(start); });
     }
@@ -66,7 +65,7 @@ FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& obj
     }
     stepper.Restart(*race.leader());
   }
-  for (int tries = 0; tries < kMaxTries && !stepper.exhausted() && !stopped(); ++tries) {
+  for (int tries = 0; tries < kMaxTries && !stepper.exhausted() && !stop(); ++tries) {
     const double before = stepper.E();
     if (!stepper.Step()) continue;
     const double decrease = before - stepper.E();

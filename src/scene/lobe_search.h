@@ -23,7 +23,7 @@ struct FittedModel {
 
 // Fits a model with the objective's spec from the starting points: first on thinned samples, side
 // by side, then the best on all. Ends when E falls by little, or so slowly that it will not come
-// down to `wanted`, or when `stop`, if any, says so.
+// down to `wanted`, or when `stop` says so.
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
                     double wanted, const std::function<bool()>& stop);
 

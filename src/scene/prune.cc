@@ -114,8 +114,6 @@ class Pruner {
     return state;
   }
 
-  bool Stopped() const { return options_.stop && options_.stop(); }
-
   // The true test.
   bool Keeps(const State& state) const {
     if (by_numbers_) return true;
@@ -224,7 +222,7 @@ class Pruner {
                          JointStepper::Trial::kAsItIs, &phases, &reduction);
     stepper.Restart(state->model);
     const double small = by_numbers_ ? kSmallDecrease * state->E : kSmallGain * (guide_ - E_full_);
-    for (int step = 0; step < kMaxPolish && !stepper.exhausted() && !Stopped(); ++step) {
+    for (int step = 0; step < kMaxPolish && !stepper.exhausted() && !options_.stop(); ++step) {
       const double before = stepper.E();
       if (stepper.Step() && before - stepper.E() < small) break;
     }
@@ -286,7 +284,7 @@ class Pruner {
       return std::pair(excess_a, a.E) < std::pair(excess_b, b.E);
     });
     for (const Option& option : options) {
-      if (option.shape.name.empty() || Stopped()) return;
+      if (option.shape.name.empty() || options_.stop()) return;
       State to{.objective = ObjectiveFor(option.shape.spec),
                .model = option.model,
                .layout = option.layout};
@@ -331,7 +329,7 @@ class Pruner {
   void ThinTables() {
     const State before = state_;
     double share = 1;  // of what is left, to be spent next: less where predictions are too low
-    for (int attempt = 0; attempt < kMaxAttempts && !Stopped();) {
+    for (int attempt = 0; attempt < kMaxAttempts && !options_.stop();) {
       const int numbers = state_.numbers();
       const QuadraticModel at = Linearize(state_);
       const std::vector<Elimination> order =
@@ -376,7 +374,7 @@ class Pruner {
     to.layout = NeededLayout(to.model, to.objective->coverage(), may_thin_, /*drop_equal=*/true);
     ExpandStored(to.layout, &to.model);
     to.E = to.objective->Value(to.model);
-    if (Stopped()) return false;
+    if (options_.stop()) return false;
     const bool within = to.E <= wanted && Keeps(to);
     const bool taken = spec.lobes > Lobes(state_) ? to.E < state_.E : within;
     const std::string what = LobesText(spec.lobes) + " instead of " + LobesText(Lobes(state_));
@@ -398,7 +396,7 @@ class Pruner {
       if (state_.E - E_full_ > kDear * (wanted - E_full_)) with_one_more = std::move(before);
     }
     ThinWithin(guide);
-    if (!with_one_more || Stopped()) return;
+    if (!with_one_more || options_.stop()) return;
     State fewer = std::exchange(state_, std::move(*with_one_more));
     const size_t end = decisions_.size();
     ThinWithin(guide);

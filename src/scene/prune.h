@@ -32,7 +32,7 @@ struct PruneOptions {
   int max_lobes = 0;
 
   // Asked after each step; true to stop, after which what comes back is of no use.
-  std::function<bool()> stop = nullptr;
+  std::function<bool()> stop = [] { return false; };
 };
 
 // One thing that was tried.

@@ -263,7 +263,7 @@ class MaterialFitter {
 
   std::string PruneKey() const {
     Key key = FitKey("scene");
-    key.Add("then", "prune 1");
+    key.Add("then", "prune 2");
     key.Add("unit", static_cast<int>(material_.budget.unit));
     key.Add("amount", material_.budget.amount);
     const SceneReductions& reductions = material_.reductions;
@@ -304,7 +304,7 @@ class MaterialFitter {
     model = FindInitialModel(settings_.init).make(objective, settings_.seed);
     SolverOptions options = settings_.options;
     options.on_iteration = [this](const IterationRecord&, const FactorModel&) {
-      return !settings_.stop || !settings_.stop();
+      return !settings_.stop();
     };
     fit.seconds = stopwatch.Lap();
     if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
@@ -334,13 +334,13 @@ class MaterialFitter {
 
   std::optional<MaterialFit> PruneAnew() {
     const std::optional<FullFit> full = Fit("scene");
-    if (!full || (settings_.stop && settings_.stop())) return std::nullopt;
+    if (!full || settings_.stop()) return std::nullopt;
     const Objective& objective = FitObjective();
     Stopwatch stopwatch;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
     PrunedModel pruned = Prune(objective, full->file.model, prune_options);
-    if (settings_.stop && settings_.stop()) return std::nullopt;
+    if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;
@@ -384,7 +384,7 @@ std::vector<std::optional<MaterialFit>> FitScene(
   std::vector<std::optional<MaterialFit>> fits(count);
   std::mutex mutex;
   ParallelJobs(count, num_threads, [&](int k) {
-    if (settings.stop && settings.stop()) return;
+    if (settings.stop()) return;
     fits[k] = FitMaterial(scene.materials[k], settings, 1);
     const std::lock_guard<std::mutex> lock(mutex);
     if (fits[k]) on_done(*fits[k]);

@@ -29,7 +29,7 @@ struct SceneFitSettings {
   std::string program;  // "trilobe 0.1.0": fits of another version are not reused
   FitCache cache;
   // Asked after each iteration, from several threads; true to stop and keep nothing.
-  std::function<bool()> stop = nullptr;
+  std::function<bool()> stop = [] { return false; };
 };
 
 // What a fit reaches on the samples that a scene uses.

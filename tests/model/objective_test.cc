@@ -158,7 +158,7 @@ std::vector<double> BruteForceCoverage(const Objective& objective) {
 
 TEST(Objective, CoverageCountsTheWeightOfTheReaders) {
   BrdfTable table = RandomTable(kOdd, 12);
-  InvalidateThetaH(3, &table);
+  InvalidateThetaH(3, 1, &table);
   for (const auto& [name, spec] : TestSpecs(kOdd)) {
     for (const bool scattered : {false, true}) {
       BrdfSamples samples = ValidSamples(table);

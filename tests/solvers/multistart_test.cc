@@ -149,7 +149,7 @@ TEST_P(Multistart, GivesTheSameBitsForAnyThreads) {
 // Whichever start wins, what no sample reads is the caller's.
 TEST_P(Multistart, LeavesDeadBinsToTheCaller) {
   BrdfTable table = RandomTable(kGrid, 2);
-  InvalidateThetaH(4, &table);
+  InvalidateThetaH(4, 2, &table);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(table, spec);
   const std::vector<bool> dead = DeadParameters(objective.coverage());

@@ -104,7 +104,7 @@ TEST(NormalEquations, SameBitsForAnyNumberOfThreads) {
 
 TEST(NormalEquations, DeadBinsAreZero) {
   BrdfTable table = RandomTable(kGrid, 3);
-  InvalidateThetaH(2, &table);
+  InvalidateThetaH(2, 0, &table);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(table, spec);
   QuadraticModel result;
