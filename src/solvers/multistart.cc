@@ -30,8 +30,7 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
     const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
     StartRace race(smaller, stop);
     if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
-    race.Enter(
-        "", [&] { return model; }, sweeps);
+    race.Enter("", [&] { return model; }, {.count = sweeps});
     race.Advance(kTries);
     if (race.leader() != nullptr) model = *race.leader();
     Canonicalize(smaller.coverage(), &model);
@@ -59,15 +58,26 @@ class Starts {
     } else if (number == 1) {
       EnterGrown(5, "grown");
     } else if (number == 2) {
-      EnterInitial("highlight", seed_, "highlight");
+      EnterSwept();
     } else if (number == 3) {
-      EnterGrown(3, "grown/3");
+      EnterInitial("highlight", seed_, "highlight");
     } else if (number == 4) {
+      EnterGrown(3, "grown/3");
+    } else if (number == 5) {
       EnterInitial("analytic", seed_, "analytic");
     } else {
-      const uint64_t seed = seed_ + static_cast<uint64_t>(number - 5);
+      const uint64_t seed = seed_ + static_cast<uint64_t>(number - 6);
       EnterInitial("roughness", seed, "roughness/" + std::to_string(seed));
     }
+  }
+
+  // As `awls` would go on from the given one: it creeps past minima that longer steps fall into.
+  void EnterSwept() {
+    const auto given = [this]() -> std::optional<FactorModel> {
+      if (objective_.folded() == nullptr) return std::nullopt;
+      return given_;
+    };
+    race_->Enter("swept", given, {.count = 60, .in_blocks = false});
   }
 
   void EnterGrown(int sweeps, const char* name) {
@@ -76,7 +86,7 @@ class Starts {
       if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
       return WithDeadBins(Grow(race_->thinned(), sweeps, seed_, stop_));
     };
-    race_->Enter(name, grow, sweeps);
+    race_->Enter(name, grow, {.count = sweeps});
   }
 
   void EnterInitial(const char* init, uint64_t seed, std::string name) {
@@ -102,9 +112,10 @@ class Starts {
 };
 
 // A part of the race: so many starts have entered, each that is in it goes on until it has tried so
-// many joint steps, and then the best stay.
+// many joint steps, and then the best stay. The leader may show what a few steps on all samples
+// make of it; it goes on racing as it was.
 struct Leg {
-  int starts, tries, keep;
+  int starts, tries, keep, steps_on_all = 0;
 };
 
 // E on all samples may be above the estimate from the thinned ones by this fraction.
@@ -120,6 +131,13 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
   if (!go_on) return;
   const auto stop = [run] { return run->seconds() >= run->options().max_seconds; };
   FactorModel best = given;
+  const auto record = [&best, run](const FactorModel& model, double E) {
+    const bool better = E < run->best_objective();
+    if (better) best = model;
+    return run->Record(best, {.accepted = better,
+                              .may_converge = false,
+                              .objective = better ? E : run->best_objective()});
+  };
   {
     StartRace race(objective, stop);
     Starts starts(objective, given, run->options().seed, &race, stop);
@@ -129,19 +147,21 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
       race.Advance(leg.tries);
       race.Keep(leg.keep);
       if (race.leader() == nullptr) continue;
+      const FactorModel leader = *race.leader();
       // On all samples a leader may be behind its predecessor.
       const double E = [&] {
         const ScopedTimer timer = run->Time(&PhaseSeconds::evaluating);
-        return objective.Value(*race.leader());
+        return objective.Value(leader);
       }();
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
       if (E > (1 + kLargeMismatch) * race.Results().front().objective) race.ThinLess();
-      const bool better = E < run->best_objective();
-      if (better) best = *race.leader();
-      go_on = run->Record(best, {.accepted = better,
-                                 .may_converge = false,
-                                 .objective = better ? E : run->best_objective()});
+      go_on = record(leader, E);
+      if (leg.steps_on_all > 0) stepper.Restart(leader);
+      for (int k = 0; k < leg.steps_on_all && go_on; ++k) {
+        stepper.Step();
+        go_on = record(stepper.current(), stepper.E());
+      }
     }
     run->summary().starts = race.Results();
     run->summary().phases += race.phases();
@@ -156,13 +176,14 @@ class Auto : public Solver {
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const override {
     Run run("auto", objective, options, model);
-    RunLegs({{.starts = 2, .tries = 6, .keep = 2},
+    RunLegs({{.starts = 1, .tries = 3, .keep = 1},
+             {.starts = 2, .tries = 6, .keep = 2},
              {.starts = 2, .tries = 12, .keep = 2},
-             {.starts = 2, .tries = 25, .keep = 2},
-             {.starts = 9, .tries = 10, .keep = 5},
-             {.starts = 9, .tries = 25, .keep = 3},
-             {.starts = 9, .tries = 60, .keep = 1},
-             {.starts = 9, .tries = 150, .keep = 1}},
+             {.starts = 2, .tries = 25, .keep = 2, .steps_on_all = 2},
+             {.starts = 10, .tries = 10, .keep = 10},
+             {.starts = 10, .tries = 25, .keep = 4},
+             {.starts = 10, .tries = 60, .keep = 2},
+             {.starts = 10, .tries = 150, .keep = 1, .steps_on_all = 2}},
             objective, FactorModel(*model), &run);
     return run.Finish();
   }
@@ -177,7 +198,7 @@ class Multistart : public Solver {
     const int n = options.starts, half = (n + 1) / 2;
     RunLegs({{.starts = n, .tries = 10, .keep = half},
              {.starts = n, .tries = 30, .keep = half},
-             {.starts = n, .tries = 100, .keep = half}},
+             {.starts = n, .tries = 100, .keep = half, .steps_on_all = 2}},
             objective, FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     if (!tried.empty()) run.summary().notes.push_back(Agreement(tried));

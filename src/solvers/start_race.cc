@@ -10,9 +10,10 @@
 namespace trilobe {
 namespace {
 
-// As many samples a parameter tell the minima apart; more cost time only.
-constexpr int kSamplesPerParameter = 100;
-constexpr int kMaxStride = 8;
+// As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
+// takes, however few its samples, rules the time.
+constexpr int kSamplesPerParameter = 25;
+constexpr int kMaxStride = 24;
 
 // A step that lowers E by less than this fraction ends an entrant's run.
 constexpr double kSmallDecrease = 1e-5;
@@ -27,7 +28,7 @@ int StrideFor(const Objective& objective) {
 
 class StartRace::Entrant {
  public:
-  Entrant(std::string name, MakeStart make_start, int sweeps, const Objective* objective)
+  Entrant(std::string name, MakeStart make_start, Sweeps sweeps, const Objective* objective)
       : name_(std::move(name)),
         make_start_(std::move(make_start)),
         sweeps_(sweeps),
@@ -83,8 +84,12 @@ class StartRace::Entrant {
     E_ = Evaluate();
     if (objective_->folded() == nullptr) return;
     GridSweep sweep(name_, *objective_, &phases_);
-    for (int k = 0; k < sweeps_ && !stop(); ++k) {
-      sweep.InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
+    for (int k = 0; k < sweeps_.count && !stop(); ++k) {
+      if (sweeps_.in_blocks) {
+        sweep.InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
+      } else {
+        sweep(nullptr, &*model_);
+      }
       E_ = Evaluate();
     }
   }
@@ -96,7 +101,7 @@ class StartRace::Entrant {
 
   const std::string name_;
   MakeStart make_start_;  // until it has been asked
-  const int sweeps_;
+  const Sweeps sweeps_;
   const Objective* objective_;
   std::optional<FactorModel> model_;
   double E_ = 0;
@@ -127,7 +132,7 @@ void StartRace::ThinLess() {
 
 StartRace::~StartRace() = default;
 
-void StartRace::Enter(std::string name, MakeStart make_start, int sweeps) {
+void StartRace::Enter(std::string name, MakeStart make_start, Sweeps sweeps) {
   entrants_.push_back(
       std::make_unique<Entrant>(std::move(name), std::move(make_start), sweeps, thinned_.get()));
 }

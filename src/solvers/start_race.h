@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
@@ -31,10 +32,16 @@ class StartRace {
   // The selection of samples, for one thread.
   const Objective& thinned() const { return *thinned_; }
 
-  // First of all a start is to get so many sweeps of block AWLS, where samples are on a grid: they
-  // bring its magnitudes in order.
-  static constexpr int kSweeps = 5;
-  void Enter(std::string name, MakeStart make_start, int sweeps = kSweeps);
+  // What a start gets first of all, where samples are on a grid: sweeps of AWLS, which bring its
+  // magnitudes in order.
+  struct Sweeps {
+    int count = 5;
+    bool in_blocks = true;
+  };
+  void Enter(std::string name, MakeStart make_start, Sweeps sweeps);
+  void Enter(std::string name, MakeStart make_start) {
+    Enter(std::move(name), std::move(make_start), Sweeps());
+  }
 
   // Those in the race go on until they have made their sweeps and then tried so many joint steps.
   // One that has converged, or is to stop, makes no more; one that has not begun by then never
