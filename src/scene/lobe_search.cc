@@ -11,6 +11,8 @@
 namespace trilobe {
 namespace {
 
+// A lobe less may cost hardly more than the budget, so the samples are less thin than in `auto`.
+constexpr StartRace::Thinning kThinning{.samples_per_parameter = 100, .max_stride = 8};
 // Steps of each start on thinned samples, and of the best two, so many at a time.
 constexpr int kFirstTries = 3, kLeg = 3, kLastTries = 12;
 // On all samples.
@@ -48,7 +50,7 @@ FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& obj
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kProjected, &phases);
   {
-    StartRace race(objective, stop);
+    StartRace race(objective, kThinning, stop);
     for (const FactorModel& start : starts) {
       race.Enter("", [&start] { return std::optional(start); });
     }

@@ -17,6 +17,11 @@
 namespace trilobe {
 namespace {
 
+// As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
+// takes, however few its samples, rules the time.
+constexpr StartRace::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
+constexpr StartRace::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
+
 // A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
 // a little, each time by so many sweeps and a few joint steps: a lobe that grew out of another
 // starts where it is needed.
@@ -28,7 +33,7 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
   for (int lobes = 1; lobes < objective.spec().lobes; ++lobes) {
     spec.lobes = lobes;
     const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
-    StartRace race(smaller, stop);
+    StartRace race(smaller, kAsTheyAre, stop);
     if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
     race.Enter("", [&] { return model; }, {.count = sweeps});
     race.Advance(kTries);
@@ -118,57 +123,75 @@ struct Leg {
   int starts, tries, keep, steps_on_all = 0;
 };
 
-// E on all samples may be above the estimate from the thinned ones by this fraction.
+// By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
+// beyond what follows from a fit of p numbers to n values: (1 + p / n) / (1 - p / n).
 constexpr double kLargeMismatch = 0.03;
+
+// The winner of the race has not been fitted to all samples; with so many steps it must have come
+// below a former leader who has.
+constexpr int kMaxCatchUp = 6;
+
+double ExpectedMismatch(const Objective& thinned) {
+  // Mirrored values are of the same model values.
+  const double values = 3.0 * thinned.samples().size() / 2;
+  return 2 * thinned.spec().num_parameters() / std::max(values, 1.0);
+}
 
 // The legs one by one, then joint steps on all samples from the best point.
 void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
              Run* run) {
-  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
-                       JointStepper::Trial::kProjected, &run->summary().phases);
-  stepper.Restart(given);
-  bool go_on = run->Start(stepper.Optimality());
+  // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
+  std::optional<JointStepper> stepper;
+  const auto begin_at = [&](const FactorModel& model) {
+    stepper.emplace(objective, JointStepper::Curvature::kByProgress,
+                    JointStepper::Trial::kProjected, &run->summary().phases);
+    stepper->Restart(model);
+  };
+  begin_at(given);
+  bool go_on = run->Start(stepper->Optimality());
   if (!go_on) return;
   const auto stop = [run] { return run->seconds() >= run->options().max_seconds; };
   FactorModel best = given;
-  const auto record = [&best, run](const FactorModel& model, double E) {
-    const bool better = E < run->best_objective();
-    if (better) best = model;
+  // Where the stepper stands, if that is the best point so far.
+  const auto record = [&] {
+    const bool better = stepper->E() < run->best_objective();
+    if (better) best = stepper->current();
     return run->Record(best, {.accepted = better,
                               .may_converge = false,
-                              .objective = better ? E : run->best_objective()});
+                              .objective = better ? stepper->E() : run->best_objective()});
   };
   {
-    StartRace race(objective, stop);
+    StartRace race(objective, kThinned, stop);
     Starts starts(objective, given, run->options().seed, &race, stop);
     for (const Leg& leg : legs) {
-      if (!go_on) break;
       starts.EnterUpTo(leg.starts);
       race.Advance(leg.tries);
       race.Keep(leg.keep);
       if (race.leader() == nullptr) continue;
-      const FactorModel leader = *race.leader();
       // On all samples a leader may be behind its predecessor.
-      const double E = [&] {
-        const ScopedTimer timer = run->Time(&PhaseSeconds::evaluating);
-        return objective.Value(leader);
-      }();
+      begin_at(*race.leader());
+      const double mismatch = stepper->E() / race.Results().front().objective - 1;
+      go_on = record();
+      for (int k = 0; k < leg.steps_on_all && go_on; ++k) {
+        stepper->Step();
+        go_on = record();
+      }
+      if (!go_on) break;
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
-      if (E > (1 + kLargeMismatch) * race.Results().front().objective) race.ThinLess();
-      go_on = record(leader, E);
-      if (leg.steps_on_all > 0) stepper.Restart(leader);
-      for (int k = 0; k < leg.steps_on_all && go_on; ++k) {
-        stepper.Step();
-        go_on = record(stepper.current(), stepper.E());
-      }
+      const bool large = mismatch > kLargeMismatch + ExpectedMismatch(race.thinned());
+      if (large && &leg != &legs.back()) race.ThinLess();
     }
     run->summary().starts = race.Results();
     run->summary().phases += race.phases();
   }
+  for (int k = 0; k < kMaxCatchUp && go_on && stepper->E() > run->best_objective(); ++k) {
+    stepper->Step();
+    go_on = record();
+  }
   if (!go_on) return;
-  stepper.Restart(best);
-  RepeatJointSteps(&stepper, run);
+  if (stepper->E() > run->best_objective()) begin_at(best);
+  RepeatJointSteps(&*stepper, run);
 }
 
 class Auto : public Solver {
@@ -183,7 +206,7 @@ class Auto : public Solver {
              {.starts = 10, .tries = 10, .keep = 10},
              {.starts = 10, .tries = 25, .keep = 4},
              {.starts = 10, .tries = 60, .keep = 2},
-             {.starts = 10, .tries = 150, .keep = 1, .steps_on_all = 2}},
+             {.starts = 10, .tries = 150, .keep = 1}},
             objective, FactorModel(*model), &run);
     return run.Finish();
   }
@@ -196,9 +219,9 @@ class Multistart : public Solver {
     if (options.starts < 1) throw Error("starts is below 1; give 1 or more starting points");
     Run run("multistart", objective, options, model);
     const int n = options.starts, half = (n + 1) / 2;
-    RunLegs({{.starts = n, .tries = 10, .keep = half},
-             {.starts = n, .tries = 30, .keep = half},
-             {.starts = n, .tries = 100, .keep = half, .steps_on_all = 2}},
+    RunLegs({{.starts = n, .tries = 10, .keep = n},
+             {.starts = n, .tries = 25, .keep = half},
+             {.starts = n, .tries = 100, .keep = half}},
             objective, FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     if (!tried.empty()) run.summary().notes.push_back(Agreement(tried));

@@ -73,7 +73,7 @@ struct SolverOptions {
   int memory = 5;
 
   // Starting points to try, the given one among them, and the seed of the random ones.
-  int starts = 6;
+  int starts = 8;
   uint64_t seed = 1;
 };
 

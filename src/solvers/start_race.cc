@@ -10,18 +10,13 @@
 namespace trilobe {
 namespace {
 
-// As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
-// takes, however few its samples, rules the time.
-constexpr int kSamplesPerParameter = 25;
-constexpr int kMaxStride = 24;
-
 // A step that lowers E by less than this fraction ends an entrant's run.
 constexpr double kSmallDecrease = 1e-5;
 
-int StrideFor(const Objective& objective) {
+int StrideFor(const Objective& objective, const StartRace::Thinning& thinning) {
   // Folded samples are half as many.
-  const int wanted = 2 * kSamplesPerParameter * objective.spec().num_parameters();
-  return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, kMaxStride);
+  const int wanted = 2 * thinning.samples_per_parameter * objective.spec().num_parameters();
+  return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
 }
 
 }  // namespace
@@ -87,11 +82,12 @@ class StartRace::Entrant {
     for (int k = 0; k < sweeps_.count && !stop(); ++k) {
       if (sweeps_.in_blocks) {
         sweep.InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
+        E_ = Evaluate();  // which blocks need to know
       } else {
         sweep(nullptr, &*model_);
       }
-      E_ = Evaluate();
     }
+    if (!sweeps_.in_blocks) E_ = Evaluate();
   }
 
   double Evaluate() {
@@ -111,8 +107,9 @@ class StartRace::Entrant {
   std::unique_ptr<JointStepper> stepper_;
 };
 
-StartRace::StartRace(const Objective& objective, std::function<bool()> stop)
-    : objective_(objective), stop_(std::move(stop)), stride_(StrideFor(objective)) {
+StartRace::StartRace(const Objective& objective, const Thinning& thinning,
+                     std::function<bool()> stop)
+    : objective_(objective), stop_(std::move(stop)), stride_(StrideFor(objective, thinning)) {
   Thin();
 }
 

@@ -22,8 +22,14 @@ class StartRace {
   // Makes a starting point; asked once, from any thread. Nothing if there is none, or no new one.
   using MakeStart = std::function<std::optional<FactorModel>()>;
 
+  // Samples are left out by a stride (Thinned) of at most `max_stride`, as long as so many folded
+  // ones are left for each number of the model.
+  struct Thinning {
+    int samples_per_parameter, max_stride;
+  };
+
   // `stop` may be asked from several threads.
-  StartRace(const Objective& objective, std::function<bool()> stop);
+  StartRace(const Objective& objective, const Thinning& thinning, std::function<bool()> stop);
   ~StartRace();
 
   // Goes on with about twice as many samples, if these are not all.
@@ -67,7 +73,7 @@ class StartRace {
 
   const Objective& objective_;
   const std::function<bool()> stop_;
-  int stride_;
+  int stride_;  // that samples are thinned by
   std::unique_ptr<const Objective> thinned_;
   std::vector<std::unique_ptr<Entrant>> entrants_;
 };

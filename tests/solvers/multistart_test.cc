@@ -15,12 +15,14 @@
 #include "trilobe/model/gauge.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start_race.h"
 
 namespace trilobe {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
+
+// As many iterations at least has `auto` raced with all its starts, and gone on with the best.
+constexpr int kWholeRace = 14;
 
 // Three lobes of a GGX-like width each, with noise: data with more than one minimum.
 Objective NoisyObjective(const ModelSpec& spec, int num_threads = 1) {
@@ -50,7 +52,7 @@ class Multistart : public testing::TestWithParam<const char*> {
 TEST_P(Multistart, NamesTheStartsBestFirst) {
   const Objective objective = NoisyObjective(ModelSpec::SharedFactors(3, kGrid));
   FactorModel model = FindInitialModel("constant").make(objective, 1);
-  SolverOptions options = Iterations(12);
+  SolverOptions options = Iterations(kWholeRace);
   options.starts = 10;
   options.seed = 7;
   const SolverSummary summary = Solve(objective, options, &model);
@@ -67,7 +69,7 @@ TEST_P(Multistart, NamesTheStartsBestFirst) {
 
 // A start that there is not, or that is the given one, does not run.
 TEST_P(Multistart, LeavesOutWhatIsNoStartOfItsOwn) {
-  SolverOptions options = Iterations(12);
+  SolverOptions options = Iterations(kWholeRace);
   const Objective one_lobe = NoisyObjective(ModelSpec::SharedFactors(1, kGrid));
   FactorModel model = FindInitialModel("analytic").make(one_lobe, 1);
   EXPECT_THAT(Names(Solve(one_lobe, options, &model)),
@@ -88,8 +90,8 @@ TEST_P(Multistart, IsNeverWorseThanAnyStart) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     const Objective objective = NoisyObjective(spec);
     FactorModel model = RandomModel(spec, 4);
-    SolverOptions options = Iterations(4);
-    options.starts = 7;
+    SolverOptions options = Iterations(kWholeRace);
+    options.starts = 9;
     const SolverSummary summary = Solve(objective, options, &model);
     const double E = objective.Value(model);
     EXPECT_EQ(E, summary.final_objective) << name;
@@ -136,7 +138,7 @@ TEST_P(Multistart, GivesTheSameBitsForAnyThreads) {
   for (const int threads : {1, 2}) {
     const Objective objective = NoisyObjective(spec, threads);
     FactorModel model = FindInitialModel("random").make(objective, 3);
-    const SolverSummary summary = Solve(objective, Iterations(8), &model);
+    const SolverSummary summary = Solve(objective, Iterations(kWholeRace), &model);
     if (threads == 1) {
       one = summary;
       model_of_one = model;
@@ -160,11 +162,56 @@ TEST_P(Multistart, LeavesDeadBinsToTheCaller) {
   ASSERT_GE(std::ranges::count(dead, true), spec.lobes);
   const FactorModel start = RandomModel(spec, 3, 2);  // so bad that another one wins
   FactorModel model = start;
-  const SolverSummary summary = Solve(objective, Iterations(6), &model);
+  const SolverSummary summary = Solve(objective, Iterations(kWholeRace), &model);
   EXPECT_NE(summary.starts.front().name, "given");
   for (int k = 0; k < spec.num_parameters(); ++k) {
     if (!dead[k]) continue;
     EXPECT_EQ(model.parameters()[k], start.parameters()[k]) << "parameter " << k;
+  }
+}
+
+// With so many samples that the race leaves most of them out; a few of these hold most of E, so
+// that it has to look at more.
+TEST_P(Multistart, FitsWhatItRacedWithoutAsWell) {
+  constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 8, .phi_d = 96};
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kFine);
+  for (const bool spiky : {false, true}) {
+    BrdfTable table = RandomTable(kFine, 5, 0, 0.3);
+    for (int bin = 0; spiky && bin < kFine.size(); bin += 97) table.stored[1][bin] *= 1e4;
+    FactorModel one;
+    for (const int threads : {1, 2, 3}) {
+      const Objective objective = MakeObjective(table, spec, "uniform", threads);
+      FactorModel model = FindInitialModel("analytic").make(objective, 1);
+      const SolverSummary summary = Solve(objective, Iterations(30), &model);
+      EXPECT_TRUE(std::ranges::is_sorted(summary.trace, std::ranges::greater(),
+                                         &IterationRecord::objective));
+      EXPECT_EQ(summary.final_objective, objective.Value(model));
+      EXPECT_LT(summary.final_objective, summary.initial_objective);
+      if (threads == 1) one = model;
+      EXPECT_TRUE(std::ranges::equal(model.parameters(), one.parameters())) << threads;
+    }
+  }
+}
+
+TEST_P(Multistart, EndsAtAnyIteration) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid));
+  FactorModel whole = RandomModel(objective.spec(), 1);
+  const int most = Solve(objective, Iterations(kWholeRace), &whole).iterations;
+  EXPECT_GT(most, 4);
+  for (int count = 1; count <= most; ++count) {
+    FactorModel model = RandomModel(objective.spec(), 1);
+    const SolverSummary summary = Solve(objective, Iterations(count), &model);
+    EXPECT_EQ(summary.iterations, count);
+    EXPECT_EQ(summary.final_objective, objective.Value(model));
+
+    // An interrupt after as many does the same.
+    SolverOptions interrupted = Iterations(100);
+    interrupted.on_iteration = [count](const IterationRecord& record, const FactorModel&) {
+      return record.iteration < count;
+    };
+    FactorModel other = RandomModel(objective.spec(), 1);
+    EXPECT_EQ(Solve(objective, interrupted, &other).iterations, count);
+    EXPECT_TRUE(std::ranges::equal(model.parameters(), other.parameters()));
   }
 }
 
@@ -189,10 +236,11 @@ TEST_P(Multistart, FitsScatteredSamples) {
   const Objective objective(Scattered(ValidSamples(RandomTable(kSmall, 1))), spec,
                             FindWeighting("compressive"));
   FactorModel model = RandomModel(spec, 1);
-  SolverOptions options = Iterations(4);
-  options.starts = 3;
+  SolverOptions options = Iterations(kWholeRace);
+  options.starts = 5;
   const SolverSummary summary = Solve(objective, options, &model);
-  EXPECT_EQ(summary.iterations, 4);
+  EXPECT_THAT(Names(summary), testing::AllOf(testing::Contains("given"), testing::Contains("grown"),
+                                             testing::Not(testing::Contains("swept"))));
   EXPECT_LT(summary.final_objective, summary.initial_objective);
   EXPECT_EQ(objective.Value(model), summary.final_objective);
 }
@@ -233,43 +281,5 @@ TEST(MultistartOnly, SaysHowManyStartsAgree) {
 }
 
 // Entrants that begin, and go on, only while there is time.
-TEST(StartRace, MakesNoStartOnceTimeIsUp) {
-  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid), 2);
-  bool stop = false;
-  StartRace race(objective, [&] { return stop; });
-  race.Enter("first", [&] { return RandomModel(objective.spec(), 1); });
-  EXPECT_EQ(race.leader(), nullptr);
-  race.Advance(3);
-  ASSERT_NE(race.leader(), nullptr);
-  const double E = race.thinned().Value(*race.leader());
-  stop = true;
-  int made = 0;
-  race.Enter("second", [&] {
-    ++made;
-    return RandomModel(objective.spec(), 2);
-  });
-  race.Advance(100);
-  race.Keep(1);
-  EXPECT_EQ(made, 0);
-  EXPECT_EQ(race.thinned().Value(*race.leader()), E);
-  ASSERT_EQ(race.Results().size(), 1U);
-  EXPECT_EQ(race.Results().front().name, "first");
-}
-
-// E of all samples is estimated from every stride-th: the same data twice as fine in phi_d.
-TEST(StartRace, RanksByAFewOfManySamples) {
-  constexpr MerlGrid kFine{.theta_h = 24, .theta_d = 24, .phi_d = 96};
-  const ModelSpec spec = ModelSpec::SharedFactors(0, kFine);
-  const Objective objective = MakeObjective(RandomTable(kFine, 1, 0.2, 0.3), spec);
-  StartRace race(objective, [] { return false; });
-  EXPECT_LT(race.thinned().samples().size(), objective.samples().size() / 6);
-  const FactorModel start = RandomModel(spec, 1);
-  race.Enter("start", [&]() -> std::optional<FactorModel> { return start; });
-  race.Advance(20);
-  // Noise of 0.3 in thousands of samples: the two means of E differ by some 5 %.
-  EXPECT_NEAR(race.Results().front().objective, objective.Value(*race.leader()),
-              0.05 * objective.Value(*race.leader()));
-}
-
 }  // namespace
 }  // namespace trilobe
