@@ -43,7 +43,8 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
     int phase = j;
     if (samples.on_grid()) {
       const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
-      // Primes, which have no common factor with a smaller stride, so that neighbouring rows differ.
+      // Primes, which have no common factor with a smaller stride, so that neighbouring rows
+      // differ.
       phase =
           std::min(p, grid.phi_d - 1 - p) + 29 * (row / grid.theta_d) + 37 * (row % grid.theta_d);
     }
