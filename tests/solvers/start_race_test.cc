@@ -82,7 +82,7 @@ TEST(StartRace, ThinsLess) {
   for (const int stride : {4, 2, 1}) {
     const FactorModel before = *race.leader();
     race.ThinLess();
-    EXPECT_NEAR(race.thinned().samples().size(), all / stride, 0.02 * all);
+    EXPECT_NEAR(race.thinned().samples().size(), 1.0 * all / stride, 0.02 * all);
     EXPECT_TRUE(std::ranges::equal(race.leader()->parameters(), before.parameters()));
     EXPECT_EQ(race.Results().front().objective,
               race.thinned().Value(before) *
