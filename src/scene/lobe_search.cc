@@ -51,8 +51,9 @@ FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& obj
                        JointStepper::Trial::kProjected, &phases);
   {
     StartRace race(objective, kThinning, stop);
+    // They come from fits, so their magnitudes need no sweeps.
     for (const FactorModel& start : starts) {
-      race.Enter("", [&start] { return std::optional(start); });
+      race.Enter("", [&start] { return std::optional(start); }, {.count = 0});
     }
     race.Advance(kFirstTries);
     if (race.leader() == nullptr) return {starts.front(), objective.Value(starts.front())};

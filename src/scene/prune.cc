@@ -29,7 +29,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-12;  // of E
 
 // Of the fit in the numbers that are left: it ends when a step gains less than this fraction of the
-// budget, or of E where E is what counts.
+// budget, or of E where E is what counts; and when it will not come down to the budget, as long as
+// each step gains less than the one before.
 constexpr int kMaxPolish = 8;
 constexpr double kSmallGain = 0.02, kSmallDecrease = 1e-4;
 
@@ -38,7 +39,7 @@ constexpr double kSmallGain = 0.02, kSmallDecrease = 1e-4;
 // tried, which grows again. It ends when few numbers went.
 constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
-constexpr double kFewNumbers = 0.02;
+constexpr double kFewNumbers = 0.04;
 
 // Where lobes that went took more than this share of the budget, it may be better spent on nodes.
 constexpr double kDear = 0.5;
@@ -200,10 +201,14 @@ class Pruner {
     return ShapesWithin(state_.spec(), state_.layout, options_.colour, options_.shadowing);
   }
 
-  QuadraticModel Linearize(const State& state) const {
-    QuadraticModel at;
-    NormalEquations(*state.objective).Evaluate(state.model, Hessian::kGaussNewton, &at);
-    return at;
+  // Of state_, made once for each model.
+  const QuadraticModel& Linearized() {
+    if (!linearized_ || linearized_->spec() != state_.spec() ||
+        !std::ranges::equal(linearized_->parameters(), state_.model.parameters())) {
+      NormalEquations(*state_.objective).Evaluate(state_.model, Hessian::kGaussNewton, &quadratic_);
+      linearized_ = state_.model;
+    }
+    return quadratic_;
   }
 
   EliminationLimits LimitsFor(double E, int numbers) const {
@@ -224,7 +229,9 @@ class Pruner {
     const double small = by_numbers_ ? kSmallDecrease * state->E : kSmallGain * (guide_ - E_full_);
     for (int step = 0; step < kMaxPolish && !stepper.exhausted() && !options_.stop(); ++step) {
       const double before = stepper.E();
-      if (stepper.Step() && before - stepper.E() < small) break;
+      if (!stepper.Step()) continue;
+      const double decrease = before - stepper.E();
+      if (decrease < small || (!by_numbers_ && stepper.E() - decrease > guide_)) break;
     }
     state->model = stepper.current();
     state->E = stepper.E();
@@ -233,7 +240,7 @@ class Pruner {
   // Goes on with the shape that promises the fewest numbers, or the lowest E, once nodes are given
   // up too.
   void ChooseShape() {
-    const QuadraticModel at = Linearize(state_);
+    const QuadraticModel& at = Linearized();
     const std::span<const double> x = state_.model.parameters();
     struct Option {
       Shape shape;
@@ -331,7 +338,7 @@ class Pruner {
     double share = 1;  // of what is left, to be spent next: less where predictions are too low
     for (int attempt = 0; attempt < kMaxAttempts && !options_.stop();) {
       const int numbers = state_.numbers();
-      const QuadraticModel at = Linearize(state_);
+      const QuadraticModel& at = Linearized();
       const std::vector<Elimination> order =
           OrderOfElimination(at, state_.model, state_.layout, LimitsFor(state_.E, numbers));
       int count = static_cast<int>(order.size());
@@ -506,6 +513,8 @@ class Pruner {
   bool by_numbers_ = false;
   double limit_ = kInfinity;  // of E
   double guide_ = kInfinity;  // where E is to go, limit_ or less
+  QuadraticModel quadratic_;
+  std::optional<FactorModel> linearized_;  // where quadratic_ was made
   std::vector<PruneDecision> decisions_;
 };
 

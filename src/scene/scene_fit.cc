@@ -235,7 +235,7 @@ class MaterialFitter {
  private:
   // All that the fit with nothing left out depends on.
   Key FitKey(const std::string& purpose) const {
-    Key key("fit 1, " + purpose);
+    Key key("fit 2, " + purpose);
     key.Add("program", settings_.program);
     key.Add("source", bytes_hash_);
     if (IsSynthetic(material_.source)) {
@@ -263,7 +263,7 @@ class MaterialFitter {
 
   std::string PruneKey() const {
     Key key = FitKey("scene");
-    key.Add("then", "prune 2");
+    key.Add("then", "prune 3");
     key.Add("unit", static_cast<int>(material_.budget.unit));
     key.Add("amount", material_.budget.amount);
     const SceneReductions& reductions = material_.reductions;
