@@ -29,14 +29,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-12;  // of E
 
 // Of the fit in the numbers that are left: it ends when a step gains less than this fraction of the
-// budget, or of E where E is what counts; and when it will not come down to the budget, as long as
-// each step gains less than the one before.
-constexpr int kMaxPolish = 8;
+// budget, or of E where E is what counts; and when so many times what the last step gained would
+// not bring it down to the budget.
+constexpr int kMaxPolish = 8, kHope = 4;
 constexpr double kSmallGain = 0.02, kSmallDecrease = 1e-4;
 
 // Giving up nodes and refitting, again and again from where that led: what the errors of the
 // quadratic left of the budget is spent the next time. Where they were too large, a part of it is
-// tried, which grows again. It ends when few numbers went.
+// tried, which grows again. It ends when few numbers went for all that was left.
 constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
 constexpr double kFewNumbers = 0.04;
@@ -231,7 +231,7 @@ class Pruner {
       const double before = stepper.E();
       if (!stepper.Step()) continue;
       const double decrease = before - stepper.E();
-      if (decrease < small || (!by_numbers_ && stepper.E() - decrease > guide_)) break;
+      if (decrease < small || (!by_numbers_ && stepper.E() - kHope * decrease > guide_)) break;
     }
     state->model = stepper.current();
     state->E = stepper.E();
@@ -343,7 +343,10 @@ class Pruner {
           OrderOfElimination(at, state_.model, state_.layout, LimitsFor(state_.E, numbers));
       int count = static_cast<int>(order.size());
       if (by_numbers_ && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
-      for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
+      bool taken = false;
+      double spent = share;
+      for (; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
+        spent = share;
         if (share < 1) count = std::min(count, CountWithin(order, share * (guide_ - state_.E)));
         State to = Without(order, count, at);
         taken = by_numbers_ || (to.E <= guide_ && Keeps(to));
@@ -354,7 +357,8 @@ class Pruner {
           share *= std::clamp((guide_ - state_.E) / (to.E - state_.E), kMinCut, kMaxCut);
         }
       }
-      if (state_.numbers() > (by_numbers_ ? numbers - 1 : (1 - kFewNumbers) * numbers)) break;
+      const bool few = state_.numbers() > (by_numbers_ ? numbers - 1 : (1 - kFewNumbers) * numbers);
+      if (!taken || (few && spent >= 1)) break;
     }
     if (state_.numbers() == before.numbers()) return;
     std::ostringstream what;
