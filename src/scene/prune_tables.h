@@ -1,0 +1,17 @@
+#ifndef TRILOBE_SCENE_PRUNE_TABLES_H_
+#define TRILOBE_SCENE_PRUNE_TABLES_H_
+
+#include "trilobe/scene/pruning.h"
+
+namespace trilobe {
+
+// Goes on with the shape (what lobes and channels share) that promises the fewest numbers, or the
+// lowest E where the budget is one of numbers, once nodes are given up too.
+void ChooseShape(Pruning* pruning);
+
+// Gives up nodes of the tables until the budget is spent.
+void ThinTables(Pruning* pruning);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SCENE_PRUNE_TABLES_H_
