@@ -150,7 +150,7 @@ std::string GnuplotNumber(double x) {
 }
 
 std::string GnuplotData(std::string_view name, std::span<const std::vector<double>> rows) {
-  std::string block = "$" + std::string(name) + " << EOD\n";
+  std::string block = '$' + std::string(name) + " << EOD\n";
   for (const std::vector<double>& row : rows) {
     for (const double x : row) block += GnuplotNumber(x) + ' ';
     block += '\n';
@@ -168,7 +168,7 @@ std::string GnuplotLogRange(std::span<const double> values, double decades) {
   if (high == 0) low = high = 1;
   low = std::max(low, high * std::pow(10, -decades));
   const double margin = std::max(std::pow(high / low, 0.05), 1.25);
-  return "[" + GnuplotNumber(low / margin) + ":" + GnuplotNumber(high * margin) + "]";
+  return '[' + GnuplotNumber(low / margin) + ':' + GnuplotNumber(high * margin) + ']';
 }
 
 void DrawPng(const std::string& path, int width, int height, const std::string& script) {

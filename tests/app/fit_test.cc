@@ -28,7 +28,8 @@ nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Cont
 
 std::vector<std::string> Fit(const std::string& out, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = {"fit",           "synth:plastic",      "--noise=0.02",
-                                        "--solver=awls", "--max_iterations=3", "--out=" + out};
+                                        "--solver=awls", "--max_iterations=3", "--nodiagnose",
+                                        "--out=" + out};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -36,7 +37,7 @@ std::vector<std::string> Fit(const std::string& out, const std::vector<std::stri
 TEST(Fit, WritesModelTraceAndReport) {
   const TemporaryFolder folder;
   const std::string out = folder / "a/b";  // parents are made
-  const ProgramResult result = RunProgram(Fit(out, {"--reconstruction"}));
+  const ProgramResult result = RunProgram(Fit(out, {"--reconstruction", "--diagnose"}));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");  // no progress line in a pipe
 
@@ -175,12 +176,11 @@ TEST(Fit, HonoursItsTimeLimit) {
 // Every common flag arrives where it should; in nodes of 1 degree, --g_filter is its own number.
 TEST(Fit, HandsItsFlagsToTheSolver) {
   const TemporaryFolder folder;
-  ASSERT_EQ(
-      RunProgram(Fit(folder / "out",
-                     {"--solver=awls", "--max_iterations=0", "--max_seconds=7", "--tolerance=0.5",
-                      "--optimality_tolerance=1e-3", "--nodiagnose", "--g_filter=2"}))
-          .status,
-      0);
+  ASSERT_EQ(RunProgram(Fit(folder / "out",
+                           {"--solver=awls", "--max_iterations=0", "--max_seconds=7",
+                            "--tolerance=0.5", "--optimality_tolerance=1e-3", "--g_filter=2"}))
+                .status,
+            0);
   const nlohmann::json report = Json(folder / "out/report.json");
   EXPECT_EQ(report["options"]["given"], nlohmann::json({{"max_iterations", 0},
                                                         {"max_seconds", 7.0},
