@@ -1,4 +1,6 @@
 """Fast and literal AWLS: see README.md beside this file."""
+import math
+
 from lab import tables
 from lab.units import Unit
 
@@ -12,16 +14,19 @@ def units(setting):
 
 
 def tabulate(_, results):
-    return {"sweeps": [{"material": result.labels["material"], **row}
-                       for result in results if result.folder
-                       for row in tables.read(result.folder / "stdout.txt")]}
+    """The program fails where E differs by more than the limit: then the difference is infinite."""
+    return {"sweeps": [{"material": result.labels["material"], **row} for result in results
+                       for row in (tables.read(result.folder / "stdout.txt") if result.folder
+                                   else [{"worst_relative_difference": math.inf}])]}
 
 
 def draw(drawn, _):
     rows = drawn["sweeps"]
     header = ["material", "filter", "sweeps", "first E", "best E", "worst relative difference",
               "literal s/sweep", "awls s/sweep"]
-    body = [[row["material"], f"{row['filter']:g}", str(row["sweeps"]), f"{row['first_E']:.6g}",
+    body = [[row["material"], "failed", *[""] * (len(header) - 2)]
+            if row["filter"] is None else
+            [row["material"], f"{row['filter']:g}", str(row["sweeps"]), f"{row['first_E']:.6g}",
              f"{row['best_E']:.6g}", f"{row['worst_relative_difference']:.1e}",
              f"{row['literal_s_a_sweep']:.2f}", f"{row['awls_s_a_sweep']:.4f}"] for row in rows]
     worst = max(row["worst_relative_difference"] for row in rows)

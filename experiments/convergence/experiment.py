@@ -194,7 +194,7 @@ def _filter_figure(rows):
         for k, name in enumerate(names):
             shown = [w for w in widths if (name, w) in at]
             base = at[name, 0][column]
-            axes.plot(shown, [at[name, w][column] / base for w in shown], marker="o", label=name,
+            axes.plot(shown, [stats.ratio(at[name, w][column], base) for w in shown], marker="o", label=name,
                       color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
                       linestyle="-" if k < len(plots.SERIES) else "--")
         axes.set(yscale="log", title=label,
@@ -205,31 +205,29 @@ def _filter_figure(rows):
     return figure
 
 
-def _quartiles(values):
-    finite = [value for value in values if value is not None and math.isfinite(value)]
-    if not finite:
-        return "–"
-    low, middle, high = (stats.quantile(finite, q) for q in (.25, .5, .75))
-    return f"{middle:.3g} [{low:.3g}, {high:.3g}]"
+def _missing(rows, run, solver):
+    return sum(row["run"] == run and row["solver"] == solver for row in rows)
 
 
-def _solver_table(rows):
+def _solver_table(rows, missing):
     header = ["solver", "n", "iterations", "s an iteration", "factor an iteration", "order",
               "last decrease of E", "optimality at the end", "steps taken back"]
     lines = []
     for solver, of in tables.groups(rows, "solver").items():
-        lines.append([solver, str(len(of)), *(_quartiles([row[column] for row in of])
+        lost = _missing(missing, "solvers", solver)
+        lines.append([solver, tables.count(len(of) + lost, lost), *(tables.quartiles([row[column] for row in of])
                                               for column in ("iterations", "seconds_an_iteration",
                                                              "factor", "order", "last_decrease",
                                                              "optimality", "rejected"))])
     return tables.markdown(header, lines)
 
 
-def _elements_table(rows):
+def _elements_table(rows, missing):
     lines = []
     for solver, of in tables.groups(rows, "solver").items():
         worst = max(of, key=lambda row: row["worst_relative_rise"])
-        lines.append([solver, str(len(of)), f"{sum(row['updates'] for row in of):,}",
+        lost = _missing(missing, "elements", solver)
+        lines.append([solver, tables.count(len(of) + lost, lost), f"{sum(row['updates'] for row in of):,}",
                       f"{sum(row['raised'] for row in of):,}",
                       f"**{worst['worst_relative_rise']:.2g}**", worst["material"]])
     return tables.markdown(["solver", "materials", "updates", "that raised E at all",
@@ -243,13 +241,13 @@ def _filter_table(rows):
         pairs = [(at[name, 0], row) for (name, w), row in at.items()
                  if w == width and (name, 0) in at]
         lines.append([f"{width:g}", str(len(pairs)),
-                      _quartiles([row["sweeps_that_raised_E"] / row["sweeps"] * 100
+                      tables.quartiles([row["sweeps_that_raised_E"] / row["sweeps"] * 100
                                   for _, row in pairs]),
-                      _quartiles([100 * row["worst_rise"] for _, row in pairs]),
-                      _quartiles([row["objective"] / plain["objective"] for plain, row in pairs]),
-                      _quartiles([row["last_objective"] / row["objective"] for _, row in pairs]),
-                      _quartiles([plain["psnr_db"] - row["psnr_db"] for plain, row in pairs]),
-                      _quartiles([row["G_roughness"] / plain["G_roughness"]
+                      tables.quartiles([100 * row["worst_rise"] for _, row in pairs]),
+                      tables.quartiles([stats.ratio(row["objective"], plain["objective"]) for plain, row in pairs]),
+                      tables.quartiles([stats.ratio(row["last_objective"], row["objective"]) for _, row in pairs]),
+                      tables.quartiles([plain["psnr_db"] - row["psnr_db"] for plain, row in pairs]),
+                      tables.quartiles([row["G_roughness"] / plain["G_roughness"]
                                   for plain, row in pairs])])
     return tables.markdown(["filter, degrees", "n", "sweeps that raised E, %", "worst rise, %",
                             "lowest E over that without", "last E over lowest", "PSNR lost, dB",
@@ -259,10 +257,10 @@ def _filter_table(rows):
 def draw(drawn, _):
     products = {}
     if drawn["solvers"]:
-        products["solvers.md"] = _solver_table(drawn["solvers"])
+        products["solvers.md"] = _solver_table(drawn["solvers"], drawn["missing"])
         products["curves"] = _curves_figure(drawn["curves"])
     if drawn["elements"]:
-        products["elements.md"] = _elements_table(drawn["elements"])
+        products["elements.md"] = _elements_table(drawn["elements"], drawn["missing"])
         products["elements"] = _elements_figure(drawn["elements"])
     if drawn["filter"]:
         products["filter.md"] = _filter_table(drawn["filter"])

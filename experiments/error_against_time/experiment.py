@@ -57,11 +57,11 @@ def _on_grid(rows, column, grid):
     return stats.value_at([row["clock"] for row in rows], values, grid)
 
 
-def _curves(fit_of, best, grid):
-    """A row a time of each fit from the default start, of the materials that most solvers fitted:
-    excess, loss of PSNR, mean log error over that of the fit with the lowest E of the material."""
+def _curves(results, fit_of, best, grid):
+    """A row a time of each fit from the default start, of the materials that most solvers were to
+    fit: excess, loss of PSNR, mean log error over that of the fit with the lowest E."""
     solvers = {}
-    for result, _ in fit_of:
+    for result in results:
         solvers.setdefault(result.labels["material"], set()).add(result.labels["solver"])
     most = max(map(len, solvers.values()), default=0)
     final = {}
@@ -109,14 +109,14 @@ def tabulate(setting, results):
                             for target in TARGETS}})
     clocks = [row["clock"] for _, fit in fit_of for row in fit.trace if row["clock"] > 0]
     grid = numpy.geomspace(min(clocks), max(clocks), POINTS) if clocks else []
-    return {"runs": runs, "curves": _curves(fit_of, best, grid)}
+    return {"runs": runs, "curves": _curves(results, fit_of, best, grid)}
 
 
 # --- pictures -------------------------------------------------------------------------------------
 
 
 def _complete(runs):
-    """The rows of the materials that every solver has fitted from the default start with the larger
+    """The rows of the materials that every solver was to fit from the default start with the larger
     number of threads, and all solvers."""
     threads = max(row["threads"] for row in runs)
     rows = [row for row in runs if row["start"] == DEFAULT_START and row["threads"] == threads]
@@ -124,10 +124,6 @@ def _complete(runs):
     names = {name for name, of in tables.groups(rows, "material").items()
              if {row["solver"] for row in of} == set(solvers)}
     return [row for row in rows if row["material"] in names], solvers, threads
-
-
-def _percent(share):
-    return f"{100 * share:.0f} %"
 
 
 def _draw_shares(axes, of_solver, solvers, low, high):
@@ -183,16 +179,22 @@ def _median_figure(curves, rows, solvers, threads):
         for solver in solvers:
             points = []
             for (of, seconds), group in by_time.items():
+                if of != solver:
+                    continue
                 values = [row[column] * factor for row in group if row[column] is not None]
-                if of == solver and len(values) == len(names):
-                    points.append((seconds, *(stats.quantile(values, q) for q in (.25, .5, .75))))
+                values += [math.inf] * (len(names) - len(values))  # not begun, or missing
+                quartiles = [stats.quantile(values, q) for q in (.25, .5, .75)]
+                if math.isfinite(quartiles[1]):
+                    points.append((seconds, *quartiles))
             if not points:
                 continue
             seconds, low, middle, high = zip(*sorted(points))
             style = plots.solver_style(solver, solvers)
             axes.plot(seconds, middle, label=solver, **style)
             if solver in ("auto", "awls"):
-                axes.fill_between(seconds, low, high, color=style["color"], alpha=0.12, linewidth=0)
+                whole = [math.isfinite(value) for value in high]
+                axes.fill_between(seconds, low, high, where=whole, color=style["color"],
+                                  alpha=0.12, linewidth=0)
         axes.set(xscale="log", ylabel=label, xlim=(None, last))
         if column == "excess":
             axes.set_yscale("symlog", linthresh=0.1)
@@ -272,14 +274,6 @@ def _start_figure(runs, threads):
     return figure
 
 
-def _quartiles(values, format_spec=".3g", unit=""):
-    """"median [first, third quartile]", – for what is infinite."""
-    def text(value):
-        return format(value, format_spec) if math.isfinite(value) else "–"
-    low, middle, high = (stats.quantile(values, q) for q in (.25, .5, .75))
-    return f"{text(middle)}{unit} [{text(low)}, {text(high)}]" if math.isfinite(middle) else "–"
-
-
 def _summary(rows, solvers):
     """Two Markdown tables, a row a solver: what it reaches, and how soon."""
     of = tables.groups(rows, "solver")
@@ -288,12 +282,12 @@ def _summary(rows, solvers):
         mine = of[solver]
 
         def column(name, factor=1, rows_of=mine):
-            return _quartiles([factor * row[name] for row in rows_of
-                               if row.get(name) is not None] or [math.inf])
+            return tables.quartiles([None if row.get(name) is None else factor * row[name]
+                                     for row in rows_of])
         missing = sum(math.isinf(row["excess"]) for row in mine)
         largest = max(row["excess"] for row in mine)
-        reached.append([solver, f"{len(mine)}, {missing} missing" if missing else str(len(mine)),
-                        *(_percent(sum(row["excess"] <= target for row in mine) / len(mine))
+        reached.append([solver, tables.count(len(mine), missing),
+                        *(f"{sum(row['excess'] <= target for row in mine) / len(mine):.0%}"
                           for target in TARGETS),
                         column("excess", 100),
                         f"{100 * largest:.3g}" if math.isfinite(largest) else "–"])
@@ -323,7 +317,7 @@ def _thread_table(runs):
             column = f"seconds_to_{100 * target:g}_percent"
             pairs = [(at[m, solver, few][column], at[m, solver, many][column]) for m in names]
             ratios = [a / b for a, b in pairs if math.isfinite(a) and math.isfinite(b)]
-            cells.append(f"{_quartiles(ratios)} (n = {len(ratios)})" if ratios else "–")
+            cells.append(f"{tables.quartiles(ratios)} (n = {len(ratios)})" if ratios else "–")
         lines.append([solver, str(len(names)), *cells])
     return tables.markdown(["solver", "materials",
                             *(f"time to {100 * t:g} %, {few} thread over {many}"
@@ -342,7 +336,7 @@ def _repeat_table(runs):
     if not times:
         return ""
     return tables.markdown(["solver", "threads", "fits", "longest over shortest", "worst"],
-                           [[solver, str(threads), str(len(ratios)), _quartiles(ratios),
+                           [[solver, str(threads), str(len(ratios)), tables.quartiles(ratios),
                              f"{max(ratios):.3g}"]
                             for (solver, threads), ratios in times.items()])
 

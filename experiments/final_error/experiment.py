@@ -10,6 +10,7 @@ from lab import fits, stats, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
+ONE = ("threads", "start")  # of these the tables know one
 MEASURES = ("psnr_db", "mean_relative_error", "mean_log_error")
 COMPRESSIVE = "compressive"
 PUBLISHED = "published, one lobe"
@@ -166,14 +167,16 @@ def _overview(rows):
     lines = []
     by_material = tables.groups(rows, "material")
     for column in _columns(rows):
-        of = [row for row in rows if _name(row) == column and math.isfinite(row["objective"])]
+        planned = [row for row in rows if _name(row) == column]
+        of = [row for row in planned if math.isfinite(row["objective"])]
         ratios = []
         for row in of:
             least = min(other["objective"] for other in by_material[row["material"]]
                         if other["weighting"] == row["weighting"])
-            ratios.append(row["objective"] / least if least > 0 else 1.0)
+            ratios.append(stats.ratio(row["objective"], least))
         if of:
-            lines.append([column, str(len(of)), f"{sum(ratio <= 1.001 for ratio in ratios)}",
+            lines.append([column, tables.count(len(planned), len(planned) - len(of)),
+                          f"{sum(ratio <= 1.001 for ratio in ratios)}",
                           f"{stats.geometric_mean(ratios):.4g}", f"{max(ratios):.4g}",
                           *(f"{stats.median([factor * row[measure] for row in of]):.4g}"
                             for measure, factor in (("psnr_db", 1), ("mean_relative_error", 100),

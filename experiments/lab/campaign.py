@@ -61,12 +61,12 @@ def run(store, units, again=False, out=sys.stderr):
     if known:
         print(f"{known} of {len(units)} units are there already", file=out, flush=True)
     time_left = _TimeLeft(store, units)
-    failures = []
+    failures, failed = [], {}
     for done in range(len(left)):
         unit, begin = left[done], time.monotonic()
         print(f"[{known + done + 1}/{len(units)}] {unit.path}", end=" ", file=out, flush=True)
         try:
-            store.make(unit, again)
+            store.make(unit, again, failed)
             seconds = time.monotonic() - begin
             time_left.add(unit, seconds)
             outcome = f"{seconds:.1f} s"

@@ -4,8 +4,16 @@ import functools
 import itertools
 import json
 import math
+import pathlib
 
+from lab import UsageError
 from lab.units import FOLDER, Unit
+
+# The members of a run, and what they are if they are not given.
+RUN = {"solvers": None, "every": 1, "starts": ["analytic"], "seeds": [1], "threads": [2],
+       "weightings": ["compressive"], "repeats": 1, "flags": {}, "name": ""}
+# A fit with a time limit that takes ten times as long, and this, hangs.
+PATIENCE_S = 600
 
 
 def _flag(name, value):
@@ -23,42 +31,62 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
         weighting="compressive", noise=0, repeat=1, **labels):
     """The unit of one fit.
 
-    solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program.
+    solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program. A
+        flag "program" there is no flag, but another program that knows the solver.
     flags: more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
     repeat: the same fit is made once for each number, where its times are the question.
     """
     flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
              "weighting": weighting, "noise": noise, **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
+    program = flags.pop("program", None)
+    limit = flags.get("max_seconds", 0)
     again = f"-repeat{repeat}" if repeat > 1 else ""
     return Unit(path=f"fit/{source.name}/{solver}-{start}-{weighting}-{threads}t{again}",
-                program=setting.program(),
+                program=pathlib.Path(program).resolve() if program else setting.program(),
                 arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)),
-                product="report.json",
+                product="report.json", timeout_s=10 * limit + PATIENCE_S if limit else None,
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
                         "threads": threads, "weighting": weighting, "noise": noise,
                         "repeat": repeat, **labels})
+
+
+def checked(runs):
+    """A manifest's runs; UsageError if they are none."""
+    if not isinstance(runs, list):
+        raise UsageError("the manifest's \"runs\" are not a list")
+    for place, run in enumerate(runs):
+        if not isinstance(run, dict) or "solvers" not in run:
+            raise UsageError(f"runs.{place} of the manifest has no \"solvers\"")
+        for name, value in run.items():
+            if name not in RUN:
+                raise UsageError(f"runs.{place}.{name} of the manifest: not one of "
+                                 f"{', '.join(RUN)}")
+            kind = list if name == "solvers" else type(RUN[name])
+            if type(value) is not kind or (kind is int and value < 1):
+                what = {list: "a list", dict: "an object", str: "text", int: "1 or more"}[kind]
+                raise UsageError(f"runs.{place}.{name} of the manifest is {value!r}, not {what}")
+    return runs
 
 
 def planned(setting):
     """The fits of the manifest's "runs", without repetitions within runs of one name.
 
     A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...],
-    "threads": [...], "weightings": [...], "noises": [...], "repeats": 2, "flags": {...}}, all but
-    the first with a default. It stands for every combination on every 4th material of each list;
-    its flags come on top of the manifest's "flags". Its "name", if it has one, is a label of its
-    fits.
+    "threads": [...], "weightings": [...], "repeats": 2, "flags": {...}}, all but the first with a
+    default. It stands for every combination on every 4th material of each list; its flags come on
+    top of the manifest's "flags". Its "name", if it has one, is a label of its fits. Raises
+    UsageError for any other member, or one of another type.
     """
     units = {}
-    for run in setting.manifest["runs"]:
-        flags = {**setting.manifest.get("flags", {}), **run.get("flags", {})}
-        for source, solver, start, seed, threads, weighting, noise, repeat in itertools.product(
-                setting.every(run.get("every", 1)), run["solvers"],
-                run.get("starts", ["analytic"]), run.get("seeds", [1]), run.get("threads", [2]),
-                run.get("weightings", ["compressive"]), run.get("noises", [0]),
-                range(1, 1 + run.get("repeats", 1))):
-            unit = fit(setting, source, solver, flags, start, seed, threads, weighting, noise,
-                       repeat, run=run.get("name", ""))
+    for given in checked(setting.manifest["runs"]):
+        run = {**RUN, **given}
+        flags = {**setting.manifest.get("flags", {}), **run["flags"]}
+        for source, solver, start, seed, threads, weighting, repeat in itertools.product(
+                setting.every(run["every"]), run["solvers"], run["starts"], run["seeds"],
+                run["threads"], run["weightings"], range(1, 1 + run["repeats"])):
+            unit = fit(setting, source, solver, flags, start, seed, threads, weighting,
+                       repeat=repeat, run=run["name"])
             units.setdefault((unit.key, unit.labels["run"]), unit)
     return list(units.values())
 
@@ -69,6 +97,10 @@ class Fit:
     def __init__(self, folder):
         self.folder = folder
         self.report = json.loads((folder / "report.json").read_text())
+        lacking = [name for name in ("objective", "seconds", "phases") if name not in self.report]
+        if lacking:
+            raise UsageError(f"{folder / 'report.json'} has no {', '.join(lacking)} "
+                             "(docs/file-formats.md)")
 
     def _rows(self, file):
         with open(self.folder / file, newline="") as text:

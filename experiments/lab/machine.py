@@ -37,8 +37,14 @@ def describe():
             "system": _line_of("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)') or platform.system()}
 
 
+@functools.cache
+def revision():
+    """Of these sources, with "-dirty" where they differ from it; None outside a repository."""
+    return _first_line("git", "-C", str(REPOSITORY), "describe", "--always", "--dirty")
+
+
 def versions(build):
-    """Versions of the sources, the compiler of a CMake build folder, and the libraries linked."""
+    """Versions of the compiler of a CMake build folder, and of the libraries linked."""
     cache = pathlib.Path(build) / "CMakeCache.txt"
     compiler = _line_of(cache, r"^CMAKE_CXX_COMPILER:\w+=(.*)")
     packages = {}
@@ -47,9 +53,7 @@ def versions(build):
         if words and words[0] == "run":
             packages[words[1]] = _first_line("dpkg-query", "--show", "--showformat=${Version}",
                                              words[1])
-    return {"revision": _first_line("git", "-C", str(REPOSITORY), "describe", "--always",
-                                    "--dirty"),
-            "compiler": compiler and _first_line(compiler, "--version"),
+    return {"compiler": compiler and _first_line(compiler, "--version"),
             "build_type": _line_of(cache, r"^CMAKE_BUILD_TYPE:\w+=(.*)"),
             "python": platform.python_version(),
             "packages": packages}

@@ -1,11 +1,13 @@
 """The command `trilobe-experiments`."""
 import argparse
+import json
+import os
 import pathlib
 import shutil
 import signal
 import sys
 
-from lab import UsageError, campaign, experiments, manifest, materials, tables
+from lab import UsageError, campaign, experiments, fits, manifest, materials, tables
 from lab.experiments import Result, Setting
 from lab.units import Store
 
@@ -16,8 +18,14 @@ report   all pages with their tables and pictures in one file, OUT/report.html
 """
 
 
-def _numbers(text):
-    return [int(number) for number in text.split(",")]
+SOME_FAILED = 3  # exit status: everything was tried, and some units have failed
+
+
+def _threads(text):
+    numbers = text.split(",")
+    if not all(number.isdigit() and int(number) > 0 for number in numbers):
+        raise argparse.ArgumentTypeError(f"'{text}': give numbers of threads, 1,2")
+    return [int(number) for number in numbers]
 
 
 def parse(arguments):
@@ -35,8 +43,8 @@ def parse(arguments):
                         help="build folder (%(default)s)")
     parser.add_argument("--program", type=pathlib.Path, help="default: BUILD/bin/trilobe")
     parser.add_argument("--solvers", help="comma-separated: these of the manifest's, and "
-                        "others that the program has")
-    parser.add_argument("--threads", type=_numbers, metavar="N,...",
+                        "others that the program has, in the runs that compare solvers")
+    parser.add_argument("--threads", type=_threads, metavar="N,...",
                         help="instead of the manifest's")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         help="another value in the manifest, --set=flags.max_seconds=5")
@@ -67,19 +75,24 @@ def shard(text):
 def setting_of(experiment, options):
     """What this command line asks for."""
     settings = experiment.settings(options.quick, options.set)
-    for run_of in settings.get("runs", []):
+    if "runs" not in settings and (options.solvers or options.threads):
+        raise UsageError(f"{experiment.name} takes no --solvers and no --threads")
+    runs = fits.checked(settings.get("runs", []))
+    known = {*settings.get("solvers", {}), *(name for of in runs for name in of["solvers"])}
+    compared = any(len(of["solvers"]) > 1 for of in runs)
+    for of in runs:
         if options.threads:
-            run_of["threads"] = options.threads
+            of["threads"] = options.threads
         if options.solvers:
-            known = settings.get("solvers", {})
-            run_of["solvers"] = [name for name in options.solvers.split(",")
-                                 if name in run_of["solvers"] or name not in known]
+            joined = len(of["solvers"]) > 1 or not compared  # by solvers that no run names
+            of["solvers"] = [name for name in options.solvers.split(",")
+                             if name in of["solvers"] or (joined and name not in known)]
     places = options.sources or settings.get("sources", [])
     if not places and settings.get("needs_sources", True):
         raise UsageError("give BRDF files or folders of them, or --quick")
     return Setting(name=experiment.name, quick=options.quick, manifest=settings,
                    sources=materials.find(places), build=options.build,
-                   main_program=options.program or options.build / "bin" / "trilobe")
+                   main_program=(options.program or options.build / "bin" / "trilobe").resolve())
 
 
 def draw(experiment, folder):
@@ -93,14 +106,25 @@ def draw(experiment, folder):
             (folder / name).write_text(content)
         else:
             plots.save(content, folder / f"{name}.svg")
-        print(f"wrote {folder / (name if isinstance(content, str) else name + '.svg')}")
+
+
+def _fill(folder, fill):
+    """Lets `fill` fill a new folder, which then takes the place of this one; all or nothing."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    part = folder.with_name(f".{folder.name}.part-{os.getpid()}")
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        fill(part)
+        shutil.rmtree(folder, ignore_errors=True)
+        part.rename(folder)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
 
 
 def tabulate(experiment, setting, store, units, folder):
     """Writes the tables of what is there."""
     results = [Result(unit, store.folder(unit) if store.is_done(unit) else None) for unit in units]
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    folder.mkdir()
     for name, content in experiment.module.tabulate(setting, results).items():
         if isinstance(content, bytes):
             (folder / name).write_bytes(content)
@@ -112,21 +136,50 @@ def tabulate(experiment, setting, store, units, folder):
 
 def publish(experiment, folder):
     """Copies a run's tables and pictures to where the page looks for them."""
-    shutil.rmtree(experiment.published, ignore_errors=True)
-    shutil.copytree(folder, experiment.published)
+    units = json.loads((folder / "manifest.json").read_text())["units"]
+    if left := units["all"] - units["made"] - units["failed"]:
+        raise UsageError(f"{left} units have not been tried yet; publish when they are")
+    _fill(experiment.published, lambda part: shutil.copytree(folder, part))
     size = sum(path.stat().st_size for path in experiment.published.rglob("*") if path.is_file())
     print(f"copied to {experiment.published}: {size / 1e6:.2f} MB")
+
+
+def _units(experiment, setting):
+    """The units of a manifest that may hold anything."""
+    try:
+        return experiment.module.units(setting)
+    except (AttributeError, LookupError, TypeError, ValueError) as error:
+        raise UsageError(f"the settings of {experiment.name} are not what it takes "
+                         f"({type(error).__name__}: {error}); compare with "
+                         f"{experiment.folder / 'manifest.json'}") from error
+
+
+def _one_each(experiment, units):
+    """Refuses fits by several of what the experiment's tables do not tell apart."""
+    for label in getattr(experiment.module, "ONE", ()):
+        given = sorted({str(unit.labels[label]) for unit in units if label in unit.labels})
+        if len(given) > 1:
+            raise UsageError(f"{experiment.name} takes one of \"{label}\" at a time, not "
+                             f"{', '.join(given)}")
 
 
 def run(experiment, options):
     """Runs one experiment; returns the exit status."""
     folder = options.out / experiment.name
+    if options.publish and options.quick:
+        raise UsageError("the page shows the full form; publish without --quick")
+    failures = []
     if options.draw:
         draw(experiment, folder)
     else:
         setting = setting_of(experiment, options)
         store = Store(options.out / "units")
-        units = experiment.module.units(setting)
+        units = _units(experiment, setting)
+        if not units:
+            raise UsageError(f"none of the {len(setting.sources)} materials given is among those "
+                             "that the manifest takes of the lists (\"every\"); "
+                             "--set=runs.0.every=1 takes all")
+        _one_each(experiment, units)
         part = units
         if options.shard:
             part = campaign.shard_of(units, *shard(options.shard))
@@ -134,19 +187,22 @@ def run(experiment, options):
             print(sum(not store.is_done(unit) for unit in campaign.distinct(part)))
             return 0
         failures = [] if options.no_run else campaign.run(store, part, options.again)
-        if options.shard and not all(store.is_done(unit) for unit in units):
-            print("the other shards are still to come; run it without --shard for tables and "
-                  "pictures", file=sys.stderr)
-            return 1 if failures else 0
-        tabulate(experiment, setting, store, units, folder)
-        draw(experiment, folder)
         if failures:
             print("\n  ".join([f"missing: {len(failures)} units; the same command tries them again",
                               *failures]), file=sys.stderr)
-            return 1
+        if options.shard:
+            print("run it without --shard for tables and pictures, when all shards are made",
+                  file=sys.stderr)
+            return SOME_FAILED if failures else 0
+
+        def fill(part):
+            tabulate(experiment, setting, store, units, part)
+            draw(experiment, part)
+        _fill(folder, fill)
+    print(f"wrote {folder}")
     if options.publish:
         publish(experiment, folder)
-    return 0
+    return SOME_FAILED if failures else 0
 
 
 def list_experiments():
@@ -188,7 +244,7 @@ def main(arguments=None):
         else:
             return run(experiments.load(options.name), options)
         return 0
-    except UsageError as error:
+    except (UsageError, OSError) as error:
         print(f"trilobe-experiments: error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -43,18 +43,28 @@ def _without_folders(settings):
 
 
 def write_run(path, setting, store, units, build):
-    """Writes what a run used, how much of it is there, and how long that took."""
+    """Writes what a run used, how much of it is there, and how long that took.
+
+    The revision of a program is that of the sources when its units were made (null: of units from
+    before that was recorded).
+    """
     records = [record for unit in units if (record := store.record(unit))]
     machines = {json.dumps(record["machine"]): record["machine"] for record in records}
+    failed = sum(not store.is_done(unit) and store.failure(unit) is not None for unit in units)
+    programs = sorted({(pathlib.PurePath(record["command"][0]).name, record["program_sha256"],
+                        record.get("revision")) for record in records}, key=str)
     run = {"experiment": setting.name,
            "form": "quick" if setting.quick else "full",
            "settings": _without_folders(setting.manifest),
            "sources": [source.name for source in setting.sources],
-           "units": {"all": len(units), "made": len(records)},
+           "units": {"all": len(units), "made": len(records), "failed": failed},
            "seconds": round(sum(record["seconds"] for record in records), 1),
            "first_finished": min((record["finished"] for record in records), default=None),
            "last_finished": max((record["finished"] for record in records), default=None),
            "machines": list(machines.values()),
+           "programs": [{"name": name, "sha256": sha256, "revision": revision}
+                        for name, sha256, revision in programs],
+           "tabulated_at": machine.revision(),
            "versions": machine.versions(build),
            "date": datetime.date.today().isoformat()}
     path.write_text(json.dumps(run, indent=1) + "\n")

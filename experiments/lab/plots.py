@@ -8,7 +8,7 @@ import matplotlib.ticker  # noqa: E402
 
 # Okabe and Ito, "Color universal design", 2008.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
+BLUE, VERMILION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"  # yellow is too pale for lines
 GREY = "#808080"
 SERIES = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY]  # for what is no solver
 
@@ -29,7 +29,7 @@ SOLVERS = {
     "awls_accelerated": (GREY, "-"),
 }
 # Of your own, in the order of their names.
-OTHER_SOLVERS = [(YELLOW, "-"), (YELLOW, "--"), (GREEN, "--"), (BLUE, "--")]
+OTHER_SOLVERS = [(GREEN, "--"), (BLUE, "--"), (ORANGE, "--"), (SKY, "--")]
 
 plt.rcParams.update({
     "figure.figsize": (8, 4.8), "figure.constrained_layout.use": True,

@@ -108,7 +108,9 @@ def write(path, experiments, results_of):
     contents = "".join(f'<li><a href="#{e.name}">{html.escape(e.title)}</a></li>'
                        for e in experiments)
     sections = "\n".join(_section(e, results_of(e)) for e in experiments)
-    path.write_text(
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"/><title>Experiments with '
         f"Trilobe</title><style>{STYLE}</style></head><body><header><h1>Experiments with Trilobe"
         f"</h1><ol>{contents}</ol></header>\n{sections}\n</body></html>\n")
+    part.rename(path)

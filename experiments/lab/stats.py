@@ -22,11 +22,16 @@ def geometric_mean(values):
     return math.exp(statistics.fmean(math.log(value) for value in values)) if values else math.nan
 
 
+def ratio(value, least):
+    """value / least; where that is 0, 1 or infinite."""
+    if value == least:
+        return 1.0
+    return value / least if least > 0 else math.inf
+
+
 def excess(objective, best):
     """(E - E*) / E*; where E* is 0, 0 or infinite."""
-    if best == 0:
-        return 0.0 if objective == 0 else math.inf
-    return max(0.0, objective / best - 1)
+    return max(0.0, ratio(objective, best) - 1)
 
 
 def time_to_target(times, objectives, target):

@@ -1,5 +1,8 @@
 """Tables as lists of rows, a row a dict: to and from CSV, and as Markdown."""
 import csv
+import math
+
+from lab import stats
 
 
 def _text(value):
@@ -10,7 +13,14 @@ def _text(value):
     return str(value)
 
 
-def _value(text):
+# Columns of names, which stay text though one may look like a number.
+NAMES = {"material", "solver", "start", "weighting", "fitted_by", "scored_by", "run", "case", "fit",
+         "unit"}
+
+
+def _value(key, text):
+    if key in NAMES:
+        return text
     if text == "":
         return None
     for read in (int, float):
@@ -33,7 +43,7 @@ def write(path, rows):
 def read(path):
     """Rows; numbers as numbers, inf and nan among them, empty cells as None."""
     with open(path, newline="") as file:
-        return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(file)]
+        return [{key: _value(key, text) for key, text in row.items()} for row in csv.DictReader(file)]
 
 
 def groups(rows, *keys):
@@ -43,6 +53,21 @@ def groups(rows, *keys):
         value = tuple(row[key] for key in keys)
         found.setdefault(value if len(keys) > 1 else value[0], []).append(row)
     return found
+
+
+def quartiles(values, form=".3g"):
+    """"median [first, third quartile]" of what is known: None and nan are not, and their number is
+    told; – for what is infinite."""
+    known = [value for value in values if value is not None and not math.isnan(value)]
+    low, middle, high = (format(value, form) if math.isfinite(value) else "–"
+                         for value in (stats.quantile(known, q) for q in (.25, .5, .75)))
+    of = f" (n = {len(known)})" if 0 < len(known) < len(values) else ""
+    return "–" if middle == "–" else f"{middle} [{low}, {high}]{of}"
+
+
+def count(rows, missing):
+    """"12, 1 missing": the number of rows, those of missing fits among them."""
+    return f"{rows}, {missing} missing" if missing else str(rows)
 
 
 def markdown(header, rows):

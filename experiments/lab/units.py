@@ -1,14 +1,15 @@
 """Units of work: one command that fills one folder, made once whoever asks for it.
 
-A unit's folder carries a hash of the exact command and of the program's bytes, so results of other
-settings or other programs never mix, and experiments that ask for the same command share its
-folder. A command works in a temporary folder beside it, which is renamed when all of it is there: a
+A unit's folder carries a hash of the exact command and of the bytes of the program and of the files
+that it is given, so results of other settings, programs or data never mix, and experiments that ask
+for the same command share its folder. A command works in a temporary folder beside it, which is renamed when all of it is there: a
 folder that exists is whole. Folders of several machines can be copied together: there is nothing
 to merge.
 """
 import dataclasses
 import datetime
 import functools
+import glob
 import hashlib
 import json
 import os
@@ -17,6 +18,7 @@ import shutil
 import signal
 import socket
 import subprocess
+import sys
 import time
 
 from lab import machine
@@ -46,15 +48,18 @@ class Unit:
 
     @functools.cached_property
     def program_sha256(self):
-        return program_hash(self.program)
+        return file_hash(self.program)
 
     @functools.cached_property
     def key(self):
-        """Hash of the command and of the program's bytes, those of needed units among them."""
+        """Hash of the command and of the bytes of the program and of the files that the command
+        names, by which these count wherever they lie; those of needed units among them."""
         parts = [self.path, self.program_sha256, self.product]
         for argument in self.arguments:
-            parts.append([argument.unit.key, argument.file] if isinstance(argument, Product)
-                         else argument)
+            if isinstance(argument, Product):
+                parts.append([argument.unit.key, argument.file])
+            else:
+                parts.append(_with_hash(argument))
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
     @property
@@ -74,10 +79,26 @@ def _hash_of_file(path, size, mtime_ns):
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def program_hash(path):
-    """SHA-256 of a program's bytes."""
+def file_hash(path):
+    """SHA-256 of a file's bytes."""
     status = os.stat(path)
     return _hash_of_file(str(path), status.st_size, status.st_mtime_ns)
+
+
+def _with_hash(argument):
+    """FILE and FLAG=FILE with the hash of the file's bytes in its place, others as they are."""
+    before, equals, after = argument.rpartition("=")
+    for start, path in (("", argument), (before + equals, after)):
+        if os.path.isfile(path):
+            return [start, file_hash(path)]
+    return argument
+
+
+def _interpreted(words):
+    """A command with this Python before a Python script, whatever interpreter that names."""
+    with open(words[0], "rb") as program:
+        first = program.readline(200)
+    return [sys.executable, *words] if first.startswith(b"#!") and b"python" in first else words
 
 
 class UnitFailed(Exception):
@@ -111,13 +132,27 @@ class Store:
         except FileNotFoundError:
             return None
 
-    def make(self, unit, again=False):
+    def make(self, unit, again=False, failed=None):
         """Makes a unit and what it needs, unless they are there. Returns its folder.
 
         With `again` the unit itself is made anew. Raises UnitFailed, and leaves a record of that.
+        failed: {key: line} of units that are not tried again; this adds to it.
         """
+        failed = {} if failed is None else failed
+        if unit.key in failed:
+            raise UnitFailed(failed[unit.key])
+        try:
+            return self._make(unit, again, failed)
+        except UnitFailed as failure:
+            failed[unit.key] = str(failure)
+            raise
+
+    def _make(self, unit, again, failed):
         for needed in unit.needs:
-            self.make(needed)
+            try:
+                self.make(needed, failed=failed)
+            except UnitFailed as failure:
+                raise UnitFailed(f"{unit.path} needs {failure}") from None
         folder = self.folder(unit)
         if folder.is_dir() and not again:
             return folder
@@ -151,7 +186,7 @@ class Store:
         return words
 
     def _run(self, unit, folder):
-        if program_hash(unit.program) != unit.program_sha256:
+        if file_hash(unit.program) != unit.program_sha256:
             raise UnitFailed(f"{unit.path}: {unit.program} has changed since this run began")
         words = self.command(unit, folder)
         # Should this process be killed, the kernel ends the command too.
@@ -159,7 +194,7 @@ class Store:
         begin = time.monotonic()
         with open(folder / "stdout.txt", "wb") as out, open(folder / "stderr.txt", "wb") as err:
             # A session of its own: Ctrl-C comes here alone, or the command would end as if done.
-            process = subprocess.Popen(guard + words, stdin=subprocess.DEVNULL, stdout=out,
+            process = subprocess.Popen(guard + _interpreted(words), stdin=subprocess.DEVNULL, stdout=out,
                                        stderr=err, start_new_session=True)
             try:
                 status = process.wait(timeout=unit.timeout_s)
@@ -180,6 +215,7 @@ class Store:
             how = f"exit status {status}" if isinstance(status, int) else status
             raise UnitFailed(f"{unit.path}: {how}" + (f": {said[-1]}" if said else ""))
         return {"command": self.command(unit, FOLDER), "program_sha256": unit.program_sha256,
+                "revision": machine.revision(),
                 "seconds": round(seconds, 3),
                 "finished": datetime.datetime.now(datetime.timezone.utc).isoformat("T", "seconds"),
                 "machine": machine.describe()}
@@ -192,7 +228,8 @@ class Store:
     def _remove_torn(folder):
         """Removes what processes that are no more left of this unit on this machine."""
         prefix = f".{folder.name}.part-{socket.gethostname()}-"
-        for part in folder.parent.glob(prefix + "*"):
-            pid = int(part.name.removeprefix(prefix))
-            if pid == os.getpid() or not pathlib.Path(f"/proc/{pid}").exists():
+        for part in folder.parent.glob(glob.escape(prefix) + "*"):
+            pid = part.name.removeprefix(prefix)
+            if pid == str(os.getpid()) or (pid.isdigit()
+                                           and not pathlib.Path(f"/proc/{pid}").exists()):
                 shutil.rmtree(part, ignore_errors=True)

@@ -8,14 +8,13 @@ import numpy
 
 from lab import fits, lobes, stats, tables
 from lab.fits import Fit
-from lab.units import FOLDER, Product, Unit, program_hash
+from lab.units import FOLDER, Product, Unit, file_hash
 
 SUCCESS = 0.01  # of E above the best: as good
 COLLAPSED = 1e-4  # of the reflected light: less is no lobe
 COPY = 0.99  # match score of two lobes of one model
 BLOWN_UP = 2.0  # times what the reference reflects
 AGREEING = 0.9  # match score of the least alike of a run's lobes
-SEEDED = ("starts", "lobes")
 
 
 def _noisy_fits(setting):
@@ -32,7 +31,7 @@ def _noisy_fits(setting):
             units.append(Unit(
                 f"fit/{source.name}/{asked['solver']}-noisy",
                 pathlib.Path(__file__).with_name("noisy_fit"),
-                (str(setting.program()), program_hash(setting.program()), source.path,
+                (str(setting.program()), file_hash(setting.program()), source.path,
                  str(asked["sigma"]), str(draw), FOLDER, *words), "report.json",
                 labels={**plain.labels, "seed": draw, "noise": asked["sigma"], "run": "noise"}))
     return units
@@ -68,9 +67,9 @@ class _Run:
 
     @property
     def group(self):
-        """Runs that should have the same lobes."""
-        kind = "seeded" if self.labels["run"] in SEEDED else "noise"
-        return self.labels["material"], kind, self.model.lobes
+        """Runs that should have the same lobes, and are compared with one of them."""
+        run = self.labels["run"]
+        return self.labels["material"], run.replace("noise-free", "noise"), self.model.lobes
 
     def compare(self, reference):
         """Sets the order. Returns the match scores, lobe by lobe of the reference's by size."""
@@ -98,17 +97,16 @@ def _row(run, reference):
     matches = run.compare(reference)
     total = float(run.albedos.sum())
     shares = run.albedos / total if total > 0 else run.albedos
-    seeded = labels["run"] in SEEDED
     diagnosis = report["diagnosis"] or {}
     return {
         "run": labels["run"], "material": labels["material"], "solver": labels["solver"],
         "lobes": run.model.lobes, "seed": labels["seed"], "objective": report["objective"],
         # Under noise E is mostly noise, which a model must not follow.
         "excess": (stats.excess(report["objective"], reference.report["objective"])
-                   if seeded else None),
+                   if run.group[1] != "noise" else None),
         "seconds": sum(report["seconds"][phase] for phase in ("read", "prepare", "init", "solve")),
         "stop_reason": report["stop_reason"], "iterations": report["iterations"],
-        "reference": int(run is reference), "least_match": min(matches, default=1.0),
+        "reference": int(run.key == reference.key), "least_match": min(matches, default=1.0),
         "light_match": float(numpy.average(matches, weights=shares[list(run.order)]))
         if sum(shares[list(run.order)]) > 0 else None,
         "swapped": int(run.swapped), "collapsed": int((shares[:-1] < COLLAPSED).any()),
@@ -173,17 +171,14 @@ def tabulate(setting, results):
     compared = [run for run in runs if run.group in references]
     rows = [_row(run, references[run.group]) for run in compared]
     shown = setting.manifest["shown_solver"]
-    at_start = {run.model.lobes for run in compared if run.labels["run"] == "starts"}
     bands = []
     for group, reference in references.items():
-        material, kind, count = group
-        of = [run for run in compared if run.group == group
-              and run.labels["run"] == ("starts" if kind == "seeded" else "noise")
-              and run.labels["solver"] in ((shown,) if kind == "seeded"
-                                           else (run.labels["solver"],))]
-        if of and count in at_start:
+        material, kind, _ = group
+        of = [run for run in compared if run.group == group and run.labels["run"] == kind
+              and (kind == "noise" or run.labels["solver"] == shown)]
+        if of and kind != "lobes":
             bands += [{"run": kind, "material": material, **row} for row in _bands(of, reference)]
-    order_of = {run.key: run.order for run in compared}
+    order_of = {run.key: run.order for run in compared if run.labels["run"] == "lobes"}
     spectra, weakest = [], []
     for result in results:
         if not result.folder or result.labels["run"] != "spectrum":
@@ -339,18 +334,29 @@ def _percent(rows, holds):
 
 
 def _range(values):
+    if not values:
+        return "–"
     low, middle, high = (stats.quantile(values, q) for q in (.05, .5, .95))
     return f"{middle:.3g} [{low:.3g}, {high:.3g}]"
 
 
-def _success_table(rows):
+def _agree(rows):
+    """Of the runs that are not the reference, which agrees with itself, how many do, %."""
+    others = [row for row in rows if not row["reference"]]
+    return _percent(others, lambda row: row["least_match"] >= AGREEING)
+
+
+def _success_table(rows, missing):
+    """A fit that is missing is no success; what it took is not known."""
     lines = []
     for (material, solver), of in tables.groups(rows, "material", "solver").items():
         own_best = min(row["objective"] for row in of)
-        rate = sum(row["excess"] <= SUCCESS for row in of) / len(of)
+        lost = sum((row["run"], row["material"], row["solver"]) == ("starts", material, solver)
+                   for row in missing)
+        rate = sum(row["excess"] <= SUCCESS for row in of) / (len(of) + lost)
         seconds = statistics.fmean(row["seconds"] for row in of)
         second = f"{2 * seconds / rate:.1f}" if rate > 0 else "never"
-        lines.append([material, solver, str(len(of)), f"{100 * rate:.0f}",
+        lines.append([material, solver, tables.count(len(of) + lost, lost), f"{100 * rate:.0f}",
                       _percent(of, lambda row: row["objective"] <= (1 + SUCCESS) * own_best),
                       _range([100 * row["excess"] for row in of]), f"{seconds:.1f}", second])
     return tables.markdown(
@@ -361,10 +367,11 @@ def _success_table(rows):
 def _stability_table(rows):
     lines = []
     for (run, material, solver), of in tables.groups(rows, "run", "material", "solver").items():
+        others = [row for row in of if not row["reference"]]
         lines.append([
-            run, material, solver, str(len(of)), _range([row["least_match"] for row in of]),
-            _range([row["light_match"] for row in of if row["light_match"] is not None]),
-            _percent(of, lambda row: row["least_match"] >= AGREEING),
+            run, material, solver, str(len(of)), _range([row["least_match"] for row in others]),
+            _range([row["light_match"] for row in others if row["light_match"] is not None]),
+            _agree(of),
             _percent(of, lambda row: row["swapped"]), _percent(of, lambda row: row["collapsed"]),
             _percent(of, lambda row: row["likest_pair"] > COPY),
             _percent(of, lambda row: row["albedo_over_reference"] > BLOWN_UP),
@@ -384,8 +391,8 @@ def _lobes_table(rows):
         before[material, count] = best
         lines.append([material, str(count), str(len(of)), f"{best:.6g}", gain,
                       _percent(of, lambda row, best=best: row["objective"] <= (1 + SUCCESS) * best),
-                      _range([row["least_match"] for row in of]),
-                      _percent(of, lambda row: row["least_match"] >= AGREEING),
+                      _range([row["least_match"] for row in of if not row["reference"]]),
+                      _agree(of),
                       _percent(of, lambda row: row["collapsed"]),
                       _percent(of, lambda row: row["likest_pair"] > COPY),
                       f"{stats.median([row['condition'] or math.inf for row in of]):.2g}",
@@ -411,17 +418,18 @@ def draw(drawn, _):
     by_count = [row for row in drawn["runs"] if row["run"] == "lobes"]
     noise = [row for row in drawn["runs"] if row["run"] == "noise"]
     if starts:
-        products["success.md"] = _success_table(starts)
+        products["success.md"] = _success_table(starts, drawn["missing"])
         products["shares"] = _shares_figure(starts)
     if starts or noise:
         products["stability.md"] = _stability_table(starts + noise)
     if by_count:
         products["lobes.md"] = _lobes_table(by_count)
         products["lobes"] = _lobes_figure(by_count)
-    for run, title in (("seeded", "Seeded starts"), ("noise", "Noise draws")):
+    for run, title, name in (("starts", "Seeded starts", "seeded"),
+                             ("noise", "Noise draws", "noise")):
         of = [row for row in drawn["bands"] if row["run"] == run]
         if of:
-            products[f"bands_{run}"] = _bands_figure(of, title)
+            products[f"bands_{name}"] = _bands_figure(of, title)
     if drawn["spectra"]:
         products["spectra"] = _spectra_figure(drawn["spectra"])
         products["weakest.md"] = _weakest_table(drawn["weakest"])

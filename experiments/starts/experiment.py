@@ -1,7 +1,10 @@
 """Starting points: see README.md beside this file."""
+import math
+
 from lab import fits, stats, tables
 from lab.fits import Fit
 
+ONE = ("solver", "threads", "weighting")  # of these the tables know one
 CHECKPOINTS = (5, 10, 20, 40)  # sweeps, and the last one
 
 
@@ -15,12 +18,11 @@ def tabulate(setting, results):
     checkpoints = [sweeps for sweeps in CHECKPOINTS if sweeps < last] + [last]
     rows = []
     for result in results:
-        if result.folder:
-            trace = Fit(result.folder).trace
-            rows += [{"material": result.labels["material"], "start": result.labels["start"],
-                      "seed": result.labels["seed"], "sweeps": sweeps,
-                      "objective": trace[min(sweeps, len(trace) - 1)]["objective"]}
-                     for sweeps in checkpoints]
+        trace = Fit(result.folder).trace if result.folder else [{"objective": math.inf}]
+        rows += [{"material": result.labels["material"], "start": result.labels["start"],
+                  "seed": result.labels["seed"], "sweeps": sweeps,
+                  "objective": trace[min(sweeps, len(trace) - 1)]["objective"]}
+                 for sweeps in checkpoints]
     return {"objectives": rows}
 
 
@@ -30,7 +32,8 @@ def _ratios(rows):
     for of in tables.groups(rows, "material").values():
         best = min(row["objective"] for row in of)
         for row in of:
-            ratios.setdefault((row["start"], row["seed"]), []).append(row["objective"] / best)
+            ratios.setdefault((row["start"], row["seed"]), []).append(
+                stats.ratio(row["objective"], best) if math.isfinite(row["objective"]) else math.inf)
     return ratios
 
 

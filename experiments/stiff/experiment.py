@@ -33,12 +33,15 @@ def tabulate(_, results):
         for row in json.loads((result.folder / "results.json").read_text()):
             row["notes"] = "; ".join(row.get("notes", []))
             rows.append(row)
-    names = {result.labels["case"] for result in made}
+    names = {result.labels["case"] for result in results}
+    solvers = list(dict.fromkeys(row["solver"] for row in rows))
+    rows += [{"case": result.labels["case"], "description": "", "solver": solver,
+              "error": "missing"} for result in results if not result.folder for solver in solvers]
     answers = []
     for of in _certificates():
         if of["name"] not in names:
             continue
-        description = next(row["description"] for row in rows if row["case"] == of["name"])
+        description = next((row["description"] for row in rows if row["case"] == of["name"]), "")
         answers.append({
             "case": of["name"], "description": description, "samples": of["samples"],
             "parameters": of["parameters"], "objective": of["objective"],

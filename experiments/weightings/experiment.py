@@ -8,6 +8,7 @@ from lab import fits, stats, tables
 from lab.fits import Fit
 from lab.units import Product, Unit
 
+ONE = ("solver", "threads", "start")  # of these the tables know one
 # Errors that know no weights, and whether they are better when they are larger.
 MEASURES = {"psnr_db": "PSNR (dB)", "mean_relative_error": "mean relative error",
             "mean_log_error": "mean log error"}
@@ -50,7 +51,7 @@ def tabulate(_, results):
         key = row["material"], row["scored_by"]
         best[key] = min(best.get(key, math.inf), row["objective"])
     for row in rows:
-        row["ratio"] = (row["objective"] / best[row["material"], row["scored_by"]]
+        row["ratio"] = (stats.ratio(row["objective"], best[row["material"], row["scored_by"]])
                         if math.isfinite(row["objective"]) else math.inf)
     return {"scores": sorted(rows, key=lambda row: (row["material"], row["solver"]))}
 
@@ -110,8 +111,7 @@ def draw(drawn, _):
         cells = []
         for measure in MEASURES:
             values = [row[measure] for row in of]
-            low, middle, high = (stats.quantile(values, q) for q in (.25, .5, .75))
-            cells.append(f"{middle:.4g} [{low:.4g}, {high:.4g}]")
+            cells.append(tables.quartiles(values, ".4g"))
         lines.append([weighting, str(len(of)), *cells])
     header = ["E over the best E", *weightings]
     body = [[name, *(f"**{value:.3g}**" if value == column.min() else f"{value:.3g}"

@@ -5,11 +5,11 @@ import pathlib
 import tempfile
 import unittest
 
-from lab import fits
+from lab import UsageError, fits
 from lab.experiments import Setting
 from lab.materials import Source
 
-REPORT = {"seconds": {"read": 1, "prepare": 2, "init": 0.5}, "phases": {"tracing": 0.3}}
+REPORT = {"objective": 3, "seconds": {"read": 1, "prepare": 2, "init": 0.5}, "phases": {"tracing": 0.3}}
 TRACE = "iteration,seconds,objective,optimality\n0,0.1,9,\n1,1.1,4,0.5\n2,2.1,3,0.1\n"
 COURSE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
 
@@ -33,6 +33,25 @@ class FitsTest(unittest.TestCase):
         self.assertEqual(len(planned), 2 * 2 * 2 + 1)
         self.assertEqual(len({unit.key for unit in planned}), 8)  # the last is made already
         self.assertEqual(planned[-1].labels["run"], "again")
+
+    def test_runs_that_are_none_are_refused(self):
+        for wrong in ("text", [{"every": 2}], [{"solvers": "awls"}], [{"solvers": [], "every": 0}],
+                      [{"solvers": [], "solver": []}], [{"solvers": [], "flags": 1}]):
+            with self.subTest(wrong), self.assertRaisesRegex(UsageError, "manifest"):
+                fits.planned(self.setting(wrong))
+
+    def test_a_solver_may_be_of_another_program(self):
+        other = self.folder / "other"
+        other.touch()
+        unit, = fits.planned(self.setting([{"solvers": ["mine"], "every": 2}],
+                                          solvers={"mine": {"program": str(other)}}))
+        self.assertEqual(unit.program, other.resolve())
+        self.assertFalse(any("program" in word for word in unit.arguments))
+
+    def test_a_report_without_what_is_needed_is_refused(self):
+        (self.folder / "report.json").write_text("{}")
+        with self.assertRaisesRegex(UsageError, "report.json has no objective"):
+            fits.Fit(self.folder)
 
     def test_a_repeat_is_another_fit(self):
         first, second = fits.planned(self.setting(

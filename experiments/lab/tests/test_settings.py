@@ -21,7 +21,8 @@ class SettingsTest(unittest.TestCase):
         self.assertEqual([source.name for source in sources],
                          ["chrome", "mine", "satin_purple", "synth-plastic"])
         self.assertEqual([source.database for source in sources], ["MERL", "own", "RGL", "own"])
-        self.assertEqual(sources[0].half, "reporting")
+        self.assertEqual([source.half for source in sources], ["developing", "", "developing", ""])
+        self.assertEqual(materials.Source("aluminium", "").half, "reporting")
         with self.assertRaisesRegex(UsageError, "does not exist"):
             materials.find([str(self.folder / "none.binary")])
         with self.assertRaisesRegex(UsageError, "one material"):
@@ -58,7 +59,10 @@ class SettingsTest(unittest.TestCase):
             ["x", "--solvers=auto,mine", "--threads=1,2"]))
         self.assertEqual(setting.manifest["runs"],
                          [{"solvers": ["auto", "mine"], "threads": [1, 2]},
-                          {"solvers": ["mine"], "threads": [1, 2]}])
+                          {"solvers": [], "threads": [1, 2]}])
+        experiment.settings = lambda quick, changes: {"sources": ["synth:plastic"]}
+        with self.assertRaisesRegex(UsageError, "x takes no --solvers"):
+            main.setting_of(experiment, main.parse(["x", "--solvers=auto"]))
         with self.assertRaisesRegex(UsageError, "no program"):
             setting.program("none")
 
@@ -69,11 +73,12 @@ class SettingsTest(unittest.TestCase):
                 main.shard(wrong)
 
     def test_tables_read_back(self):
-        rows = [{"a": 1, "b": 0.1, "c": "text"}, {"a": None, "b": float("inf"), "d": 2}]
+        rows = [{"a": 1, "b": 0.1, "c": "text", "material": "001"},
+                {"a": None, "b": float("inf"), "d": 2, "material": "nan"}]
         tables.write(self.folder / "t.csv", rows)
         self.assertEqual(tables.read(self.folder / "t.csv"),
-                         [{"a": 1, "b": 0.1, "c": "text", "d": None},
-                          {"a": None, "b": float("inf"), "c": None, "d": 2}])
+                         [{"a": 1, "b": 0.1, "c": "text", "material": "001", "d": None},
+                          {"a": None, "b": float("inf"), "c": None, "material": "nan", "d": 2}])
 
 
 if __name__ == "__main__":

@@ -67,6 +67,16 @@ class UnitsTest(unittest.TestCase):
         self.program.chmod(0o755)
         self.assertFalse(self.store.is_done(self.unit("a")))
 
+    def test_files_count_by_what_is_in_them(self):
+        data, copy = self.folder / "data", self.folder / "copy"
+        for file in (data, copy):
+            file.write_text("1\n")
+        folder = self.store.make(self.unit("a", str(data)))
+        self.assertEqual(self.store.folder(self.unit("a", str(copy))), folder)
+        self.assertEqual(self.unit("a", f"x={data}").key, self.unit("a", f"x={copy}").key)
+        data.write_text("2\n")
+        self.assertFalse(self.store.is_done(self.unit("a", str(data))))
+
     def test_failure_leaves_a_record_and_no_folder(self):
         for text, says in (("fail", "exit status 3: broken"), ("idle", "did not write result")):
             with self.subTest(text):
@@ -117,6 +127,15 @@ class UnitsTest(unittest.TestCase):
         campaign.run(self.store, units, out=said)
         self.assertIn("2 of 3 units are there already", said.getvalue())
         self.assertEqual(self.times_run(), 4)  # only the failure was tried again
+
+    def test_a_failure_that_several_need_is_tried_once(self):
+        first = self.unit("fail")
+        units = [Unit(f"some/{text}", self.program, (FOLDER, text, Product(first, "result")),
+                      "result") for text in "ab"]
+        failures = campaign.run(self.store, [first, *units], out=io.StringIO())
+        self.assertEqual(len(failures), 3)
+        self.assertIn("some/b needs some/fail: exit status 3: broken", failures)
+        self.assertEqual(self.times_run(), 1)
 
     def test_shards_are_disjoint_and_whole(self):
         units = []
