@@ -287,7 +287,7 @@ def _summary(rows, solvers):
         missing = sum(math.isinf(row["excess"]) for row in mine)
         largest = max(row["excess"] for row in mine)
         reached.append([solver, tables.count(len(mine), missing),
-                        *(f"{sum(row['excess'] <= target for row in mine) / len(mine):.0%}"
+                        *(f"{100 * sum(row['excess'] <= target for row in mine) / len(mine):.0f} %"
                           for target in TARGETS),
                         column("excess", 100),
                         f"{100 * largest:.3g}" if math.isfinite(largest) else "–"])
@@ -342,16 +342,16 @@ def _repeat_table(runs):
 
 
 def _halves(runs, solvers, threads):
-    """Summaries for the half on which `auto` was developed, and for the other one."""
+    """Summaries for the materials on which `auto` was developed, and for the others."""
     from lab import materials
     text = ""
-    for half in ("developing", "reporting"):
+    for half, what in (("developing", "on which `auto` was developed"), ("reporting", "others")):
         rows = [row for row in runs if row["start"] == DEFAULT_START and row["threads"] == threads
                 and row["solver"] in solvers
                 and materials.Source(row["material"], "").half == half]
         count = len({row["material"] for row in rows})
         if count:
-            text += f"\nThe {half} half ({count} materials):\n\n{_summary(rows, solvers)}"
+            text += f"\nMaterials {what} ({count}):\n\n{_summary(rows, solvers)}"
     return text
 
 
