@@ -49,12 +49,13 @@ class _TimeLeft:
         return f"; about {duration(left)} left"
 
 
-def run(store, units, again=False, out=sys.stderr):
+def run(store, units, again=False, out=None):
     """Makes the units. Returns the lines of those that failed.
 
-    Progress and an estimate of the time left go to `out`. It can be stopped at any time, and goes
-    on where it was when it is run again.
+    Progress and an estimate of the time left go to `out`, standard error if it is None. It can be
+    stopped at any time, and goes on where it was when it is run again.
     """
+    out = out or sys.stderr
     units = distinct(units)
     left = [unit for unit in units if again or not store.is_done(unit)]
     known = len(units) - len(left)

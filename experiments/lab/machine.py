@@ -43,6 +43,7 @@ def revision():
     return _first_line("git", "-C", str(REPOSITORY), "describe", "--always", "--dirty")
 
 
+@functools.cache
 def versions(build):
     """Versions of the compiler of a CMake build folder, and of the libraries linked."""
     cache = pathlib.Path(build) / "CMakeCache.txt"

@@ -1,0 +1,113 @@
+"""What the command leaves behind: tables and pictures that are whole, and exit statuses."""
+import contextlib
+import io
+import pathlib
+import tempfile
+import types
+import unittest
+
+from lab import UsageError, experiments, main, tables
+from lab.experiments import Experiment
+from lab.units import FOLDER, Unit
+
+MANIFEST = '{"question": "?", "flags": {}, "runs": [], "quick": {"sources": ["synth:plastic"]}}'
+PROGRAM = """#!/bin/sh
+[ "$2" != bad ] || { echo broken >&2; exit 1; }
+echo 1 > "$1/number"
+"""
+
+
+class MainTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "x").mkdir()
+        (self.folder / "x" / "manifest.json").write_text(MANIFEST)
+        self.program = self.folder / "program"
+        self.program.write_text(PROGRAM)
+        self.program.chmod(0o755)
+        self.words = ["good"]
+        self.module = types.SimpleNamespace(units=self.units, tabulate=self.tabulate,
+                                            draw=lambda drawn, _: {"text.md": "drawn"})
+        folder = experiments.FOLDER
+        experiments.FOLDER = self.folder
+        self.addCleanup(setattr, experiments, "FOLDER", folder)
+
+    def units(self, _):
+        return [Unit(f"of/{word}", self.program, (FOLDER, word), "number",
+                     labels={"solver": word}) for word in self.words]
+
+    @staticmethod
+    def tabulate(_, results):
+        return {"results": [{"solver": result.labels["solver"], "there": int(bool(result.folder))}
+                            for result in results]}
+
+    def run_it(self, *options):
+        """(exit status, what was said on standard error)"""
+        options = main.parse(["x", "--quick", f"--out={self.folder / 'out'}", *options])
+        with (contextlib.redirect_stdout(io.StringIO()),
+              contextlib.redirect_stderr(io.StringIO()) as said):
+            return main.run(Experiment("x", self.module), options), said.getvalue()
+
+    def table(self):
+        return tables.read(self.folder / "out" / "x" / "results.csv")
+
+    def test_a_unit_that_fails_is_a_row_and_a_status(self):
+        self.words = ["good", "bad"]
+        status, said = self.run_it()
+        self.assertEqual(status, main.SOME_FAILED)
+        self.assertIn("missing: 1 units", said)
+        self.assertIn("of/bad: exit status 1: broken", said)
+        self.assertEqual([row["there"] for row in self.table()], [1, 0])
+
+    def test_what_fails_in_drawing_leaves_earlier_tables(self):
+        self.assertEqual(self.run_it()[0], 0)
+        before = self.table()
+
+        def broken(drawn, folder):
+            raise RuntimeError("draw")
+        self.module.draw, self.words = broken, ["good", "other"]
+        with self.assertRaises(RuntimeError):
+            self.run_it()
+        self.assertEqual(self.table(), before)
+        self.assertEqual({path.name for path in (self.folder / "out").iterdir()}, {"units", "x"})
+
+    def test_a_shard_makes_no_tables(self):
+        self.words = ["good", "other"]
+        for shard in ("1/2", "2/2"):
+            self.assertEqual(self.run_it(f"--shard={shard}")[0], 0)
+            self.assertFalse((self.folder / "out" / "x").exists())
+        self.assertEqual(self.run_it("--count")[0], 0)
+        self.assertEqual(self.run_it("--no-run")[0], 0)
+        self.assertEqual([row["there"] for row in self.table()], [1, 1])
+
+    def test_only_a_full_run_is_published_whole(self):
+        with self.assertRaisesRegex(UsageError, "full form"):
+            self.run_it("--publish")
+        experiment, out = Experiment("x", self.module), self.folder / "out" / "x"
+        self.run_it("--no-run")
+        with self.assertRaisesRegex(UsageError, "1 units have not been tried"):
+            main.publish(experiment, out)
+        self.words = ["good", "bad"]
+        self.run_it()
+        with contextlib.redirect_stdout(io.StringIO()):
+            main.publish(experiment, out)  # what has failed shows in the tables
+        self.assertTrue((experiment.published / "results.csv").exists())
+
+    def test_units_that_tables_do_not_tell_apart_are_refused(self):
+        self.module.ONE, self.words = ("solver",), ["good", "other"]
+        with self.assertRaisesRegex(UsageError, 'one of "solver" at a time, not good, other'):
+            self.run_it()
+        self.words = []
+        with self.assertRaisesRegex(UsageError, "none of the 1 materials"):
+            self.run_it()
+
+    def test_settings_that_make_no_sense_are_refused(self):
+        self.module.units = lambda setting: setting.manifest["flags"]["none"]
+        with self.assertRaisesRegex(UsageError, "settings of x are not what it takes .KeyError"):
+            self.run_it()
+
+
+if __name__ == "__main__":
+    unittest.main()
