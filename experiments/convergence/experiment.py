@@ -194,8 +194,8 @@ def _filter_figure(rows):
         for k, name in enumerate(names):
             shown = [w for w in widths if (name, w) in at]
             base = at[name, 0][column]
-            axes.plot(shown, [stats.ratio(at[name, w][column], base) for w in shown], marker="o", label=name,
-                      color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
+            axes.plot(shown, [stats.ratio(at[name, w][column], base) for w in shown], marker="o",
+                      label=name, color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
                       linestyle="-" if k < len(plots.SERIES) else "--")
         axes.set(yscale="log", title=label,
                  xlabel="standard deviation of the filter on G (degrees)")
@@ -215,10 +215,10 @@ def _solver_table(rows, missing):
     lines = []
     for solver, of in tables.groups(rows, "solver").items():
         lost = _missing(missing, "solvers", solver)
-        lines.append([solver, tables.count(len(of) + lost, lost), *(tables.quartiles([row[column] for row in of])
-                                              for column in ("iterations", "seconds_an_iteration",
-                                                             "factor", "order", "last_decrease",
-                                                             "optimality", "rejected"))])
+        lines.append([solver, tables.count(len(of) + lost, lost),
+                      *(tables.quartiles([row[column] for row in of])
+                        for column in ("iterations", "seconds_an_iteration", "factor", "order",
+                                       "last_decrease", "optimality", "rejected"))])
     return tables.markdown(header, lines)
 
 
@@ -227,7 +227,8 @@ def _elements_table(rows, missing):
     for solver, of in tables.groups(rows, "solver").items():
         worst = max(of, key=lambda row: row["worst_relative_rise"])
         lost = _missing(missing, "elements", solver)
-        lines.append([solver, tables.count(len(of) + lost, lost), f"{sum(row['updates'] for row in of):,}",
+        lines.append([solver, tables.count(len(of) + lost, lost),
+                      f"{sum(row['updates'] for row in of):,}",
                       f"{sum(row['raised'] for row in of):,}",
                       f"**{worst['worst_relative_rise']:.2g}**", worst["material"]])
     return tables.markdown(["solver", "materials", "updates", "that raised E at all",
@@ -244,8 +245,10 @@ def _filter_table(rows):
                       tables.quartiles([row["sweeps_that_raised_E"] / row["sweeps"] * 100
                                   for _, row in pairs]),
                       tables.quartiles([100 * row["worst_rise"] for _, row in pairs]),
-                      tables.quartiles([stats.ratio(row["objective"], plain["objective"]) for plain, row in pairs]),
-                      tables.quartiles([stats.ratio(row["last_objective"], row["objective"]) for _, row in pairs]),
+                      tables.quartiles([stats.ratio(row["objective"], plain["objective"])
+                                        for plain, row in pairs]),
+                      tables.quartiles([stats.ratio(row["last_objective"], row["objective"])
+                                        for _, row in pairs]),
                       tables.quartiles([plain["psnr_db"] - row["psnr_db"] for plain, row in pairs]),
                       tables.quartiles([row["G_roughness"] / plain["G_roughness"]
                                   for plain, row in pairs])])

@@ -43,7 +43,8 @@ def write(path, rows):
 def read(path):
     """Rows; numbers as numbers, inf and nan among them, empty cells as None."""
     with open(path, newline="") as file:
-        return [{key: _value(key, text) for key, text in row.items()} for row in csv.DictReader(file)]
+        return [{key: _value(key, text) for key, text in row.items()}
+                for row in csv.DictReader(file)]
 
 
 def groups(rows, *keys):

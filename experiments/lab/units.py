@@ -2,9 +2,9 @@
 
 A unit's folder carries a hash of the exact command and of the bytes of the program and of the files
 that it is given, so results of other settings, programs or data never mix, and experiments that ask
-for the same command share its folder. A command works in a temporary folder beside it, which is renamed when all of it is there: a
-folder that exists is whole. Folders of several machines can be copied together: there is nothing
-to merge.
+for the same command share its folder. A command works in a temporary folder beside it, which is
+renamed when all of it is there: a folder that exists is whole. Folders of several machines can be
+copied together: there is nothing to merge.
 """
 import dataclasses
 import datetime
@@ -194,8 +194,8 @@ class Store:
         begin = time.monotonic()
         with open(folder / "stdout.txt", "wb") as out, open(folder / "stderr.txt", "wb") as err:
             # A session of its own: Ctrl-C comes here alone, or the command would end as if done.
-            process = subprocess.Popen(guard + _interpreted(words), stdin=subprocess.DEVNULL, stdout=out,
-                                       stderr=err, start_new_session=True)
+            process = subprocess.Popen(guard + _interpreted(words), stdin=subprocess.DEVNULL,
+                                       stdout=out, stderr=err, start_new_session=True)
             try:
                 status = process.wait(timeout=unit.timeout_s)
             except subprocess.TimeoutExpired:

@@ -349,7 +349,7 @@ def _agree(rows):
 def _success_table(rows, missing):
     """A fit that is missing is no success; what it took is not known."""
     lines = []
-    for (material, solver), of in tables.groups(rows, "material", "solver").items():
+    for (material, solver), of in sorted(tables.groups(rows, "material", "solver").items()):
         own_best = min(row["objective"] for row in of)
         lost = sum((row["run"], row["material"], row["solver"]) == ("starts", material, solver)
                    for row in missing)
@@ -366,6 +366,7 @@ def _success_table(rows, missing):
 
 def _stability_table(rows):
     lines = []
+    rows = sorted(rows, key=lambda row: (row["run"] == "noise", row["material"], row["solver"]))
     for (run, material, solver), of in tables.groups(rows, "run", "material", "solver").items():
         others = [row for row in of if not row["reference"]]
         lines.append([

@@ -9,7 +9,8 @@ from lab import UsageError, fits
 from lab.experiments import Setting
 from lab.materials import Source
 
-REPORT = {"objective": 3, "seconds": {"read": 1, "prepare": 2, "init": 0.5}, "phases": {"tracing": 0.3}}
+REPORT = {"objective": 3, "seconds": {"read": 1, "prepare": 2, "init": 0.5},
+          "phases": {"tracing": 0.3}}
 TRACE = "iteration,seconds,objective,optimality\n0,0.1,9,\n1,1.1,4,0.5\n2,2.1,3,0.1\n"
 COURSE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
 
