@@ -78,7 +78,7 @@ def setting_of(experiment, options):
     if "runs" not in settings and (options.solvers or options.threads):
         raise UsageError(f"{experiment.name} takes no --solvers and no --threads")
     runs = fits.checked(settings.get("runs", []))
-    known = {*settings.get("solvers", {}), *(name for of in runs for name in of["solvers"])}
+    known = {name for of in runs for name in of["solvers"]}
     compared = any(len(of["solvers"]) > 1 for of in runs)
     for of in runs:
         if options.threads:

@@ -53,7 +53,7 @@ class SettingsTest(unittest.TestCase):
 
     def test_solvers_and_threads_of_the_command_line(self):
         experiment = types.SimpleNamespace(name="x", settings=lambda quick, changes: {
-            "solvers": {"auto": {}, "awls": {}}, "sources": ["synth:plastic"],
+            "solvers": {"auto": {}, "awls": {}, "mine": {}}, "sources": ["synth:plastic"],
             "runs": [{"solvers": ["auto", "awls"]}, {"solvers": ["awls"]}]})
         setting = main.setting_of(experiment, main.parse(
             ["x", "--solvers=auto,mine", "--threads=1,2"]))
