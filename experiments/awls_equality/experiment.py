@@ -25,7 +25,7 @@ def draw(drawn, _):
     header = ["material", "filter", "sweeps", "first E", "best E", "worst relative difference",
               "literal s/sweep", "awls s/sweep"]
     body = [[row["material"], "failed", *[""] * (len(header) - 2)]
-            if row["filter"] is None else
+            if row.get("filter") is None else
             [row["material"], f"{row['filter']:g}", str(row["sweeps"]), f"{row['first_E']:.6g}",
              f"{row['best_E']:.6g}", f"{row['worst_relative_difference']:.1e}",
              f"{row['literal_s_a_sweep']:.2f}", f"{row['awls_s_a_sweep']:.4f}"] for row in rows]

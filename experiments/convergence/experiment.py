@@ -205,16 +205,19 @@ def _filter_figure(rows):
     return figure
 
 
-def _missing(rows, run, solver):
-    return sum(row["run"] == run and row["solver"] == solver for row in rows)
+def _by_solver(rows, missing, run):
+    """(solver, its rows, how many of its fits are missing)"""
+    missing = [row for row in missing if row["run"] == run]
+    lost = tables.groups(missing, "solver")
+    return [(solver, of, len(lost.get(solver, [])))
+            for solver, of in tables.with_missing(rows, missing, "solver").items()]
 
 
 def _solver_table(rows, missing):
     header = ["solver", "n", "iterations", "s an iteration", "factor an iteration", "order",
               "last decrease of E", "optimality at the end", "steps taken back"]
     lines = []
-    for solver, of in tables.groups(rows, "solver").items():
-        lost = _missing(missing, "solvers", solver)
+    for solver, of, lost in _by_solver(rows, missing, "solvers"):
         lines.append([solver, tables.count(len(of) + lost, lost),
                       *(tables.quartiles([row[column] for row in of])
                         for column in ("iterations", "seconds_an_iteration", "factor", "order",
@@ -224,9 +227,11 @@ def _solver_table(rows, missing):
 
 def _elements_table(rows, missing):
     lines = []
-    for solver, of in tables.groups(rows, "solver").items():
+    for solver, of, lost in _by_solver(rows, missing, "elements"):
+        if not of:
+            lines.append([solver, tables.count(lost, lost), *["–"] * 4])
+            continue
         worst = max(of, key=lambda row: row["worst_relative_rise"])
-        lost = _missing(missing, "elements", solver)
         lines.append([solver, tables.count(len(of) + lost, lost),
                       f"{sum(row['updates'] for row in of):,}",
                       f"{sum(row['raised'] for row in of):,}",

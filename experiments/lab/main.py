@@ -170,7 +170,13 @@ def run(experiment, options):
         raise UsageError("the page shows the full form; publish without --quick")
     failures = []
     if options.draw:
-        draw(experiment, folder)
+        if not folder.is_dir():
+            raise UsageError(f"{folder} holds no tables; run the experiment first")
+
+        def redraw(part):
+            shutil.copytree(folder, part)
+            draw(experiment, part)
+        _fill(folder, redraw)
     else:
         setting = setting_of(experiment, options)
         store = Store(options.out / "units")

@@ -70,7 +70,7 @@ def find(places):
                 raise UsageError(f"{place} holds no file that ends in {' or '.join(SUFFIXES)}")
             paths += found
         elif path.exists():
-            paths.append(place)
+            paths.append(place if "/" in place else f"./{place}")  # units know files by their "/"
         else:
             raise UsageError(f"{place} does not exist; give BRDF files, folders of them, or "
                              "synth:NAME")

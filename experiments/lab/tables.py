@@ -66,6 +66,14 @@ def quartiles(values, form=".3g"):
     return "–" if middle == "–" else f"{middle} [{low}, {high}]{of}"
 
 
+def with_missing(rows, missing, *keys):
+    """Groups of rows as `groups` makes them, empty ones for what is missing altogether."""
+    found = groups(rows, *keys)
+    for key in groups(missing, *keys):
+        found.setdefault(key, [])
+    return found
+
+
 def count(rows, missing):
     """"12, 1 missing": the number of rows, those of missing fits among them."""
     return f"{rows}, {missing} missing" if missing else str(rows)

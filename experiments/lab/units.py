@@ -86,10 +86,11 @@ def file_hash(path):
 
 
 def _with_hash(argument):
-    """FILE and FLAG=FILE with the hash of the file's bytes in its place, others as they are."""
+    """FILE and FLAG=FILE with the hash of the file's bytes in its place, others as they are. A file
+    has a / in its name: a word that happens to be one, too, is none."""
     before, equals, after = argument.rpartition("=")
     for start, path in (("", argument), (before + equals, after)):
-        if os.path.isfile(path):
+        if os.sep in path and os.path.isfile(path):
             return [start, file_hash(path)]
     return argument
 

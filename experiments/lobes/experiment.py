@@ -349,10 +349,14 @@ def _agree(rows):
 def _success_table(rows, missing):
     """A fit that is missing is no success; what it took is not known."""
     lines = []
-    for (material, solver), of in sorted(tables.groups(rows, "material", "solver").items()):
+    missing = [row for row in missing if row["run"] == "starts"]
+    lost_of = tables.groups(missing, "material", "solver")
+    for key, of in sorted(tables.with_missing(rows, missing, "material", "solver").items()):
+        (material, solver), lost = key, len(lost_of.get(key, []))
+        if not of:
+            lines.append([material, solver, tables.count(lost, lost), "0", *["–"] * 3, "never"])
+            continue
         own_best = min(row["objective"] for row in of)
-        lost = sum((row["run"], row["material"], row["solver"]) == ("starts", material, solver)
-                   for row in missing)
         rate = sum(row["excess"] <= SUCCESS for row in of) / (len(of) + lost)
         seconds = statistics.fmean(row["seconds"] for row in of)
         second = f"{2 * seconds / rate:.1f}" if rate > 0 else "never"

@@ -122,7 +122,7 @@ def draw(drawn, _):
     header = ["solver", "cases", "at the certified E", "at another minimum",
               "digits of E, median", "worst", "digits of tables, median", "not a number",
               "above the start", "worst rise in one iteration", "seconds, all"]
-    certified = [[answer["case"], answer["description"], str(answer["samples"]),
+    certified = [[answer["case"], answer["description"] or "", str(answer["samples"]),
                   f"{answer['objective']:.6g}", f"{answer['measured_energy']:.4g}",
                   f"{answer['agreeing']} of {answer['starts']}", str(answer["others"]),
                   f"{answer['optimality']:.0e}", f"{answer['rank']}",
