@@ -114,7 +114,8 @@ def draw(drawn, _):
             cells.append(tables.quartiles(values, ".4g"))
         lines.append([weighting, str(len(of)), *cells])
     header = ["E over the best E", *weightings]
-    body = [[name, *(f"**{value:.3g}**" if value == column.min() else f"{value:.3g}"
+    body = [[name, *("missing" if math.isinf(value) else
+                     f"**{value:.3g}**" if value == column.min() else f"{value:.3g}"
                      for value, column in zip(row, matrix.T))]
             for name, row in zip(weightings, matrix)]
     return {"mean": mean, "each": each, "matrix.md": tables.markdown(header, body),
