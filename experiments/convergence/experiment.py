@@ -206,18 +206,15 @@ def _filter_figure(rows):
 
 
 def _by_solver(rows, missing, run):
-    """(solver, its rows, how many of its fits are missing)"""
-    missing = [row for row in missing if row["run"] == run]
-    lost = tables.groups(missing, "solver")
-    return [(solver, of, len(lost.get(solver, [])))
-            for solver, of in tables.with_missing(rows, missing, "solver").items()]
+    """{solver: (its rows, how many of its fits are missing)}"""
+    return tables.with_missing(rows, [row for row in missing if row["run"] == run], "solver")
 
 
 def _solver_table(rows, missing):
     header = ["solver", "n", "iterations", "s an iteration", "factor an iteration", "order",
               "last decrease of E", "optimality at the end", "steps taken back"]
     lines = []
-    for solver, of, lost in _by_solver(rows, missing, "solvers"):
+    for solver, (of, lost) in _by_solver(rows, missing, "solvers").items():
         lines.append([solver, tables.count(len(of) + lost, lost),
                       *(tables.quartiles([row[column] for row in of])
                         for column in ("iterations", "seconds_an_iteration", "factor", "order",
@@ -227,7 +224,7 @@ def _solver_table(rows, missing):
 
 def _elements_table(rows, missing):
     lines = []
-    for solver, of, lost in _by_solver(rows, missing, "elements"):
+    for solver, (of, lost) in _by_solver(rows, missing, "elements").items():
         if not of:
             lines.append([solver, tables.count(lost, lost), *["–"] * 4])
             continue

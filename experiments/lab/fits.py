@@ -28,7 +28,7 @@ def words(flags):
 
 
 def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2,
-        weighting="compressive", noise=0, repeat=1, **labels):
+        weighting="compressive", repeat=1, **labels):
     """The unit of one fit.
 
     solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program. A
@@ -37,7 +37,7 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
     repeat: the same fit is made once for each number, where its times are the question.
     """
     flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
-             "weighting": weighting, "noise": noise, **(flags or {}),
+             "weighting": weighting, "noise": 0, **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
     program = flags.pop("program", None)
     limit = flags.get("max_seconds", 0)
@@ -47,8 +47,7 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
                 arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)),
                 product="report.json", timeout_s=10 * limit + PATIENCE_S if limit else None,
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
-                        "threads": threads, "weighting": weighting, "noise": noise,
-                        "repeat": repeat, **labels})
+                        "threads": threads, "weighting": weighting, "repeat": repeat, **labels})
 
 
 def checked(runs):
@@ -86,7 +85,7 @@ def planned(setting):
                 setting.every(run["every"]), run["solvers"], run["starts"], run["seeds"],
                 run["threads"], run["weightings"], range(1, 1 + run["repeats"])):
             unit = fit(setting, source, solver, flags, start, seed, threads, weighting,
-                       repeat=repeat, run=run["name"])
+                       repeat, run=run["name"])
             units.setdefault((unit.key, unit.labels["run"]), unit)
     return list(units.values())
 

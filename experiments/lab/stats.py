@@ -23,7 +23,9 @@ def geometric_mean(values):
 
 
 def ratio(value, least):
-    """value / least; where that is 0, 1 or infinite."""
+    """value / least; where that is 0, 1 or infinite. What is infinite, as missing, stays so."""
+    if math.isinf(value):
+        return math.inf
     if value == least:
         return 1.0
     return value / least if least > 0 else math.inf

@@ -67,11 +67,9 @@ def quartiles(values, form=".3g"):
 
 
 def with_missing(rows, missing, *keys):
-    """Groups of rows as `groups` makes them, empty ones for what is missing altogether."""
-    found = groups(rows, *keys)
-    for key in groups(missing, *keys):
-        found.setdefault(key, [])
-    return found
+    """{key: (rows, how many are missing)}, keys as those of `groups`; no rows where all are."""
+    found, lost = groups(rows, *keys), groups(missing, *keys)
+    return {key: (found.get(key, []), len(lost.get(key, []))) for key in [*found, *lost]}
 
 
 def count(rows, missing):

@@ -8,7 +8,7 @@ import numpy
 
 from lab import fits, lobes, stats, tables
 from lab.fits import Fit
-from lab.units import FOLDER, Product, Unit, file_hash
+from lab.units import FOLDER, Product, Unit
 
 SUCCESS = 0.01  # of E above the best: as good
 COLLAPSED = 1e-4  # of the reflected light: less is no lobe
@@ -31,9 +31,8 @@ def _noisy_fits(setting):
             units.append(Unit(
                 f"fit/{source.name}/{asked['solver']}-noisy",
                 pathlib.Path(__file__).with_name("noisy_fit"),
-                (str(setting.program()), file_hash(setting.program()), source.path,
-                 str(asked["sigma"]), str(draw), FOLDER, *words), "report.json",
-                labels={**plain.labels, "seed": draw, "noise": asked["sigma"], "run": "noise"}))
+                (str(setting.program()), source.path, str(asked["sigma"]), str(draw), FOLDER,
+                 *words), "report.json", labels={**plain.labels, "seed": draw, "run": "noise"}))
     return units
 
 
@@ -350,9 +349,9 @@ def _success_table(rows, missing):
     """A fit that is missing is no success; what it took is not known."""
     lines = []
     missing = [row for row in missing if row["run"] == "starts"]
-    lost_of = tables.groups(missing, "material", "solver")
-    for key, of in sorted(tables.with_missing(rows, missing, "material", "solver").items()):
-        (material, solver), lost = key, len(lost_of.get(key, []))
+    groups = tables.with_missing(rows, missing, "material", "solver")
+    for material, solver in sorted(groups):
+        of, lost = groups[material, solver]
         if not of:
             lines.append([material, solver, tables.count(lost, lost), "0", *["–"] * 3, "never"])
             continue

@@ -32,9 +32,8 @@ def _ratios(rows):
     for of in tables.groups(rows, "material").values():
         best = min(row["objective"] for row in of)
         for row in of:
-            known = math.isfinite(row["objective"])
             ratios.setdefault((row["start"], row["seed"]), []).append(
-                stats.ratio(row["objective"], best) if known else math.inf)
+                stats.ratio(row["objective"], best))
     return ratios
 
 

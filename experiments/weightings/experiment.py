@@ -51,8 +51,7 @@ def tabulate(_, results):
         key = row["material"], row["scored_by"]
         best[key] = min(best.get(key, math.inf), row["objective"])
     for row in rows:
-        row["ratio"] = (stats.ratio(row["objective"], best[row["material"], row["scored_by"]])
-                        if math.isfinite(row["objective"]) else math.inf)
+        row["ratio"] = stats.ratio(row["objective"], best[row["material"], row["scored_by"]])
     return {"scores": sorted(rows, key=lambda row: (row["material"], row["solver"]))}
 
 

@@ -1,7 +1,6 @@
 #include "trilobe/scene/prune_tables.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>

@@ -1,13 +1,12 @@
 """How fits are planned, and what is read of them."""
 import json
 import math
-import pathlib
-import tempfile
 import unittest
 
 from lab import UsageError, fits
 from lab.experiments import Setting
 from lab.materials import Source
+from lab.tests import FolderTest
 
 REPORT = {"objective": 3, "seconds": {"read": 1, "prepare": 2, "init": 0.5},
           "phases": {"tracing": 0.3}}
@@ -15,11 +14,9 @@ TRACE = "iteration,seconds,objective,optimality\n0,0.1,9,\n1,1.1,4,0.5\n2,2.1,3,
 COURSE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
 
 
-class FitsTest(unittest.TestCase):
+class FitsTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
+        super().setUp()
         (self.folder / "trilobe").touch()
 
     def setting(self, runs, **more):

@@ -1,13 +1,12 @@
 """What the command leaves behind: tables and pictures that are whole, and exit statuses."""
 import contextlib
 import io
-import pathlib
-import tempfile
 import types
 import unittest
 
 from lab import UsageError, experiments, main, tables
 from lab.experiments import Experiment
+from lab.tests import FolderTest
 from lab.units import FOLDER, Unit
 
 MANIFEST = '{"question": "?", "flags": {}, "runs": [], "quick": {"sources": ["synth:plastic"]}}'
@@ -17,11 +16,9 @@ echo 1 > "$1/number"
 """
 
 
-class MainTest(unittest.TestCase):
+class MainTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
+        super().setUp()
         (self.folder / "x").mkdir()
         (self.folder / "x" / "manifest.json").write_text(MANIFEST)
         self.program = self.folder / "program"

@@ -1,10 +1,9 @@
 """The report is one file that holds what the pages lead to, and says what is missing."""
-import pathlib
-import tempfile
 import types
 import unittest
 
 from lab import report, tables
+from lab.tests import FolderTest
 
 PAGE = """# A question?
 
@@ -20,11 +19,9 @@ See [another page](../other/README.md) and [results as such](results/t.md) in a 
 """
 
 
-class ReportTest(unittest.TestCase):
+class ReportTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
+        super().setUp()
         (self.folder / "page.md").write_text(PAGE)
         self.results = self.folder / "results"
         self.results.mkdir()

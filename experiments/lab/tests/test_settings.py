@@ -1,19 +1,13 @@
 """Sources, manifests, tables: what the command line and the files say."""
 import json
-import pathlib
-import tempfile
 import types
 import unittest
 
 from lab import UsageError, main, manifest, materials, tables
+from lab.tests import FolderTest
 
 
-class SettingsTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-
+class SettingsTest(FolderTest):
     def test_sources_of_folders_files_and_names(self):
         for name in ("chrome.binary", "satin_purple_rgb.bsdf", "mine.binary", "readme.txt"):
             (self.folder / name).touch()

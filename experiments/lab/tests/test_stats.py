@@ -18,6 +18,7 @@ class StatsTest(unittest.TestCase):
         self.assertAlmostEqual(stats.excess(1.5, 1), 0.5)
         self.assertEqual(stats.excess(0, 0), 0)
         self.assertEqual(stats.excess(1, 0), INF)
+        self.assertEqual(stats.ratio(INF, INF), INF)
 
     def test_time_to_target(self):
         self.assertEqual(stats.time_to_target([1, 2, 4], [9, 5, 3], 5), 2)

@@ -6,11 +6,11 @@ import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 from lab import campaign
+from lab.tests import FolderTest
 from lab.units import FOLDER, Product, Store, Unit, UnitFailed
 
 PROGRAM = """#!/bin/sh
@@ -26,11 +26,9 @@ if [ -n "$3" ]; then cat "$3" >> "$1/result"; fi
 """
 
 
-class UnitsTest(unittest.TestCase):
+class UnitsTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
+        super().setUp()
         self.count = self.folder / "count"
         self.program = self.folder / "work"
         self.program.write_text(PROGRAM.format(count=self.count))
