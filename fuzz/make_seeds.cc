@@ -44,6 +44,10 @@ void WriteSeeds(const std::string& folder) {
   TinyRgl rgl;
   rgl.FillRandom(1);
   WriteSeed(folder + "/rgl", "isotropic", rgl.Bytes());
+  rgl.MaskAll();
+  for (int row = 0; row < rgl.rgb_rows; ++row) rgl.SetMask(0, row, rgl.rgb_columns - 1, false);
+  WriteSeed(folder + "/rgl", "masked", rgl.Bytes());
+  rgl.valid.clear();
   rgl.phi_i = {-3.1415927F, 0, 3.1415927F};
   rgl.FillRandom(2);
   WriteSeed(folder + "/rgl", "anisotropic", rgl.Bytes());
@@ -59,6 +63,14 @@ void WriteSeeds(const std::string& folder) {
       "directions": {"list": [{"theta_i": 1, "theta_o": 2, "phi": 3}]}}]})");
   WriteSeed(folder + "/scene", "histogram",
             std::string("\1\0\0\0\1\0\0\0\1\0\0\0\0\0\0\0\0\0\0\x40", 20));
+
+  const std::string probe = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+  WriteSeed(folder + "/probe", "flat", probe + "-Y 2 +X 4\n" + std::string(32, '\x90'));
+  std::string packed = probe + "-Y 4 +X 8\n";
+  for (int row = 0; row < 4; ++row) {
+    packed += std::string("\2\2\0\x8", 4) + "\x88\x90\x82\x80\6abcdef\x88\x40\x88\x81";
+  }
+  WriteSeed(folder + "/probe", "packed", packed);
 
   const IterationRecord records[] = {{0, 0, 1e6, false},
                                      {1, 0.25, 1.0 / 3, true, true, 0.5, 1e-3},

@@ -16,6 +16,9 @@
 DEFINE_int32(sweeps, 20, "sweeps to compare");
 DEFINE_int32(stride, 1, "of each (theta_h, theta_d) every stride-th phi_d is kept");
 DEFINE_double(noise, 0.02, "relative noise of synth: sources");
+DEFINE_string(weighting, "compressive", "weights of the objective");
+DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
+DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond this, in degrees");
 DEFINE_double(limit, 1e-9, "largest relative difference of E to pass");
 
 namespace trilobe {
@@ -54,9 +57,10 @@ bool Compare(const Objective& objective, double g_filter_sigma) {
 int Main(const std::string& source) {
   std::printf(
       "filter,sweeps,first_E,best_E,worst_relative_difference,literal_s_a_sweep,awls_s_a_sweep\n");
-  const BrdfSamples samples =
-      Thinned(ValidSamples(LoadSource(source, {.noise = FLAGS_noise})), FLAGS_stride);
-  const Objective objective(samples, ModelSpec::SharedFactors(3), Weightings().front());
+  const SourceOptions options = {
+      .noise = FLAGS_noise, .max_angle_deg = FLAGS_max_angle, .extrapolated = FLAGS_extrapolated};
+  const BrdfSamples samples = Thinned(ValidSamples(LoadSource(source, options)), FLAGS_stride);
+  const Objective objective(samples, ModelSpec::SharedFactors(3), FindWeighting(FLAGS_weighting));
   bool passed = true;
   for (const double sigma : {0.0, 1.0}) passed &= Compare(objective, sigma);
   if (!passed) {

@@ -1,14 +1,16 @@
 """Fast and literal AWLS: see README.md beside this file."""
 import math
 
-from lab import tables
+from lab import fits, tables
 from lab.units import Unit
 
 
 def units(setting):
     settings = setting.manifest
     return [Unit(f"awls_equality/{source.name}", setting.program("awls_equality"),
-                 (f"--sweeps={settings['sweeps']}", f"--stride={settings['stride']}", source.path),
+                 (f"--sweeps={settings['sweeps']}", f"--stride={settings['stride']}",
+                  f"--weighting={settings['weighting']}", *fits.words(setting.reading(source)),
+                  source.path),
                  labels={"material": source.name})
             for source in setting.every(settings["every"])]
 

@@ -17,6 +17,7 @@ def units(setting):
     return fits.planned(setting) + [
         Unit(f"monotone/{source.name}/{solver}", program,
              (f"--solver={solver}", f"--stride={look['stride']}", f"--sweeps={look['sweeps']}",
+              f"--weighting={look['weighting']}", *fits.words(setting.reading(source)),
               source.path), labels={"material": source.name, "solver": solver, "run": "elements"})
         for source in setting.every(look["every"]) for solver in look["solvers"]]
 

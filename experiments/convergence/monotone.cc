@@ -19,6 +19,9 @@ DEFINE_string(solver, "awls", "a solver that moves single elements, or blocks of
 DEFINE_int32(stride, 30, "of each (theta_h, theta_d) every stride-th phi_d is kept");
 DEFINE_int32(sweeps, 30, "sweeps to look at");
 DEFINE_double(noise, 0.02, "relative noise of synth: sources");
+DEFINE_string(weighting, "compressive", "weights of the objective");
+DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
+DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond this, in degrees");
 
 namespace trilobe {
 namespace {
@@ -38,9 +41,10 @@ struct Rises {
 };
 
 int Main(const std::string& source) {
-  const BrdfSamples samples =
-      Thinned(ValidSamples(LoadSource(source, {.noise = FLAGS_noise})), FLAGS_stride);
-  const Objective objective(samples, ModelSpec::SharedFactors(3), Weightings().front());
+  const SourceOptions reading = {
+      .noise = FLAGS_noise, .max_angle_deg = FLAGS_max_angle, .extrapolated = FLAGS_extrapolated};
+  const BrdfSamples samples = Thinned(ValidSamples(LoadSource(source, reading)), FLAGS_stride);
+  const Objective objective(samples, ModelSpec::SharedFactors(3), FindWeighting(FLAGS_weighting));
   const double floor = ExactObjective(objective);  // below it E says nothing
 
   FactorModel model = InitialModels().front().make(objective, 1);

@@ -21,25 +21,27 @@ BELOW = 75  # degrees; beyond, the published fits do not follow the measurements
 def _published(setting, judged):
     """The units that score the published one-lobe fits, if their file is given: on all samples, and
     on those below BELOW degrees together with a fit of judged, {material: its unit}."""
-    picture, names = setting.manifest["npf"], setting.manifest["npf_names"]
+    picture, names = setting.place("npf"), setting.place("npf_names")
     if not picture or not names:
         return []
-    known = set(pathlib.Path(names).read_text().split())
+    known = set(names.read_text().split())
     scores = []
     for source in setting.sources:
         if source.name in known:
             model = Unit(f"npf/{source.name}/model", pathlib.Path(__file__).with_name("npf_model"),
-                         (picture, names, source.name, f"{FOLDER}/model.json"), "model.json",
+                         (str(picture), str(names), source.name, f"{FOLDER}/model.json"),
+                         "model.json",
                          labels={"run": "npf model"})
             scores += [model, Unit(
                 f"npf/{source.name}/score", setting.program(),
-                ("score", Product(model, "model.json"), source.path, "--json"),
+                ("score", Product(model, "model.json"), source.path, "--json",
+                 f"--weighting={COMPRESSIVE}", *fits.words(setting.reading(source))),
                 labels={"material": source.name, "solver": PUBLISHED, "run": PUBLISHED,
                         "weighting": COMPRESSIVE})]
             if source.name in judged:
                 scores.append(Unit(
                     f"npf/{source.name}/below", pathlib.Path(__file__).with_name("score_below"),
-                    (str(setting.program()), source.path, str(BELOW), FOLDER,
+                    (str(setting.program()), source.path, str(BELOW), COMPRESSIVE, FOLDER,
                      Product(judged[source.name], "model.json"), Product(model, "model.json")),
                     labels={"material": source.name, "run": "below"}))
     return scores
@@ -48,13 +50,14 @@ def _published(setting, judged):
 def units(setting):
     """The fits, pictures of one solver's, and the scores of the published ones."""
     fitted = fits.planned(setting)
-    path_of = {source.name: source.path for source in setting.sources}
+    source_of = {source.name: source for source in setting.sources}
     chosen = setting.manifest["plots"]
     judged = {unit.labels["material"]: unit for unit in fitted
               if (unit.labels["solver"], unit.labels["run"]) == (chosen["solver"], chosen["run"])}
     pictures = [
         Unit(f"plot/{name}/{unit.path.rsplit('/', 1)[-1]}", setting.program(),
-             ("plot", Product(unit, "model.json"), path_of[name], f"--out={FOLDER}"), "slices.png",
+             ("plot", Product(unit, "model.json"), source_of[name].path, f"--out={FOLDER}",
+              *fits.words(setting.reading(source_of[name]))), "slices.png",
              labels={"run": "pictures", "material": name})
         for name, unit in judged.items()]
     return fitted + pictures + _published(setting, judged)
@@ -297,7 +300,7 @@ def _worst_text(worst, folder):
 
 def draw(drawn, folder):
     rows = drawn["fits"]
-    solvers = [row for row in rows if row["weighting"] == COMPRESSIVE]
+    solvers = [row for row in rows if row["run"] != "weighting"]
     # The weightings' own materials alone, or the column of the default would be of others.
     others = {row["material"] for row in rows if row["run"] == "weighting"}
     weightings = [{**row, "run": "weighting"} for row in rows

@@ -38,6 +38,24 @@ class Setting:
                              "with --program or --build")
         return path
 
+    def reading(self, source):
+        """Flags of all commands that read this source: what the manifest's "reading" has for its
+        database, {"RGL": {"max_angle": 75}}."""
+        return self.manifest.get("reading", {}).get(source.database, {})
+
+    def place(self, name):
+        """The file or folder that a member of the manifest names, None where it names none.
+
+        It may lie anywhere: the absolute path makes units count a file by its bytes alone.
+        """
+        given = self.manifest[name]
+        if given is None:
+            return None
+        path = pathlib.Path(given).resolve()
+        if not path.exists():
+            raise UsageError(f"{name}: {given} does not exist")
+        return path
+
     def every(self, n):
         """Every n-th source of each list of materials."""
         return materials.every(self.sources, n)

@@ -5,13 +5,15 @@ import itertools
 import json
 import math
 import pathlib
+import re
 
 from lab import UsageError
 from lab.units import FOLDER, Unit
 
+DEFAULT = "default"  # the weighting that the program takes if it is told none
 # The members of a run, and what they are if they are not given.
 RUN = {"solvers": None, "every": 1, "starts": ["analytic"], "seeds": [1], "threads": [2],
-       "weightings": ["compressive"], "repeats": 1, "flags": {}, "name": ""}
+       "weightings": [DEFAULT], "repeats": 1, "flags": {}, "name": ""}
 # A fit with a time limit that takes ten times as long, and this, hangs.
 PATIENCE_S = 600
 
@@ -27,22 +29,35 @@ def words(flags):
     return [_flag(name, flags[name]) for name in sorted(flags)]
 
 
+def file_name(text):
+    """A text as part of a file's name: "power:epsilon=1" becomes "power-epsilon-1"."""
+    return re.sub(r"[^\w.+-]+", "-", text)
+
+
+def _of_weighting(setting, weighting):
+    """The flags that stand for a weighting: those that the manifest gives the name, if it does."""
+    own = {} if weighting == DEFAULT else {"weighting": weighting}
+    return setting.manifest.get("weightings", {}).get(weighting, own)
+
+
 def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2,
-        weighting="compressive", repeat=1, **labels):
+        weighting=DEFAULT, repeat=1, **labels):
     """The unit of one fit.
 
     solver: a name in the manifest's "solvers", whose flags it has, or a solver of the program. A
         flag "program" there is no flag, but another program that knows the solver.
+    weighting: a name in the manifest's "weightings", whose flags it has, or a weighting of the
+        program, or DEFAULT.
     flags: more of `trilobe fit`, {"max_iterations": 500}, that the solver's own take precedence of.
     repeat: the same fit is made once for each number, where its times are the question.
     """
-    flags = {"solver": solver, "init": start, "seed": seed, "threads": threads,
-             "weighting": weighting, "noise": 0, **(flags or {}),
+    flags = {"solver": solver, "init": start, "seed": seed, "threads": threads, "noise": 0,
+             **_of_weighting(setting, weighting), **setting.reading(source), **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
     program = flags.pop("program", None)
     limit = flags.get("max_seconds", 0)
     again = f"-repeat{repeat}" if repeat > 1 else ""
-    return Unit(path=f"fit/{source.name}/{solver}-{start}-{weighting}-{threads}t{again}",
+    return Unit(path=f"fit/{source.name}/{solver}-{start}-{file_name(weighting)}-{threads}t{again}",
                 program=pathlib.Path(program).resolve() if program else setting.program(),
                 arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)),
                 product="report.json", timeout_s=10 * limit + PATIENCE_S if limit else None,

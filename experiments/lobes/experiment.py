@@ -23,7 +23,8 @@ def _noisy_fits(setting):
     flags = {**setting.manifest["flags"], **asked["flags"]}
     units = []
     for source in setting.every(asked.get("every", 1)):
-        plain = fits.fit(setting, source, asked["solver"], flags, run="noise-free")
+        plain = fits.fit(setting, source, asked["solver"], flags,
+                         weighting=asked.get("weighting", fits.DEFAULT), run="noise-free")
         units.append(plain)
         words = [word for word in plain.arguments[3:]
                  if not word.startswith(("--noise=", "--seed="))]
@@ -39,11 +40,14 @@ def _noisy_fits(setting):
 def units(setting):
     """The fits, and the spectra of J at those of the first seed."""
     fitted = fits.planned(setting)
-    path_of = {source.name: source.path for source in setting.sources}
+    source_of = {source.name: source for source in setting.sources}
+
+    def arguments(unit):
+        source = source_of[unit.labels["material"]]
+        return (Product(unit, "model.json"), source.path, *fits.words(setting.reading(source)))
     spectra = [
         Unit(f"spectrum/{unit.labels['material']}/{unit.labels['solver']}",
-             setting.program("spectrum"),
-             (Product(unit, "model.json"), path_of[unit.labels["material"]]),
+             setting.program("spectrum"), arguments(unit),
              labels={**unit.labels, "run": "spectrum"})
         for unit in fitted if unit.labels["run"] == "lobes"
         and unit.labels["seed"] == min(of.labels["seed"] for of in fitted)]

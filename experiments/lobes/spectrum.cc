@@ -19,6 +19,8 @@
 #include "trilobe/solvers/normal_equations.h"
 
 DEFINE_string(weighting, "compressive", "weights of the objective");
+DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
+DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond this, in degrees");
 DEFINE_int32(weakest, 5, "how many of the weakest directions to describe");
 DEFINE_int32(threads, 2, "threads to use");
 
@@ -133,8 +135,11 @@ Json Spectrum(const Objective& objective, const FactorModel& model) {
 
 int Main(const std::string& model_path, const std::string& source) {
   const FactorModel model = ReadModel(model_path).model;
-  const Objective objective(ValidSamples(LoadSource(source, {.num_threads = FLAGS_threads})),
-                            model.spec(), FindWeighting(FLAGS_weighting), FLAGS_threads);
+  const SourceOptions options = {.num_threads = FLAGS_threads,
+                                 .max_angle_deg = FLAGS_max_angle,
+                                 .extrapolated = FLAGS_extrapolated};
+  const Objective objective(ValidSamples(LoadSource(source, options)), model.spec(),
+                            FindWeighting(FLAGS_weighting), FLAGS_threads);
   std::printf("%s\n", Spectrum(objective, model).dump().c_str());
   return 0;
 }

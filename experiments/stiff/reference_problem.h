@@ -49,7 +49,7 @@ struct Derivatives {
 template <typename Real>
 class ReferenceProblem {
  public:
-  // Throws Error if the samples are scattered, or the weighting is none of the library's.
+  // Throws Error if the samples are scattered, or the weighting is none that it knows.
   ReferenceProblem(const BrdfSamples& samples, const ModelSpec& spec, const std::string& weighting);
 
   const ModelSpec& spec() const { return spec_; }

@@ -81,7 +81,7 @@ Json Run(const StiffCase& stiff_case, const SolverEntry& solver, const Certifica
     VectorOf<long double> x(problem.spec.num_parameters());
     for (int k = 0; k < x.size(); ++k) x(k) = model.parameters()[k];
     const auto exact_E = static_cast<double>(reference.Value(x));
-    Canonicalize(objective.coverage(), &model);
+    NormalizeScale(objective.coverage(), &model);
     const TableAgreement tables = CompareTables(model, right.model, right.Determined());
     result.update({{"stop_reason", StopReasonName(summary.stop_reason)},
                    {"end", End(E, scale, right)},

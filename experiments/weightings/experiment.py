@@ -1,121 +1,150 @@
 """Weightings: see README.md beside this file."""
-import json
 import math
-
-import numpy
 
 from lab import fits, stats, tables
 from lab.fits import Fit
-from lab.units import Product, Unit
 
 ONE = ("solver", "threads", "start")  # of these the tables know one
-# Errors that know no weights, and whether they are better when they are larger.
-MEASURES = {"psnr_db": "PSNR (dB)", "mean_relative_error": "mean relative error",
-            "mean_log_error": "mean log error"}
+APART = 1.0  # dB: a difference that one may see
+# What is read of the sphere, and of the bins; and what a missing fit has.
+SPHERE = {"psnr_db": -math.inf, "mean_delta_e": math.inf, "mean_color_error": math.inf}
+BINS = {"mean_log_error": math.inf, "mean_relative_error": math.inf}
 
 
 def units(setting):
-    """Each fit, and its E under every other weighting."""
-    fitted = fits.planned(setting)
-    path_of = {source.name: source.path for source in setting.sources}
-    weightings = list(dict.fromkeys(unit.labels["weighting"] for unit in fitted))
-    scores = []
-    for unit in fitted:
-        for scored_by in weightings:
-            if scored_by != unit.labels["weighting"]:
-                material = unit.labels["material"]
-                scores.append(Unit(
-                    f"score/{material}/{unit.path.rsplit('/', 1)[-1]}-by-{scored_by}",
-                    setting.program(), ("score", Product(unit, "model.json"), path_of[material],
-                                        "--json", f"--weighting={scored_by}"),
-                    labels={**unit.labels, "scored_by": scored_by}))
-    return fitted + scores
+    return fits.planned(setting)
 
 
-def tabulate(_, results):
-    rows = []
-    for result in results:
-        labels = result.labels
-        row = {"material": labels["material"], "solver": labels["solver"],
-               "fitted_by": labels["weighting"],
-               "scored_by": labels.get("scored_by", labels["weighting"])}
-        if not result.folder:
-            rows.append({**row, "objective": math.inf})
-            continue
-        score = (json.loads((result.folder / "stdout.txt").read_text()) if "scored_by" in labels
-                 else Fit(result.folder).report)
-        rows.append({**row, "objective": score["objective"],
-                     **{measure: score[measure] for measure in MEASURES}})
-    best = {}
-    for row in rows:
-        key = row["material"], row["scored_by"]
-        best[key] = min(best.get(key, math.inf), row["objective"])
-    for row in rows:
-        row["ratio"] = stats.ratio(row["objective"], best[row["material"], row["scored_by"]])
-    return {"scores": sorted(rows, key=lambda row: (row["material"], row["solver"]))}
+def _row(result, source):
+    labels = result.labels
+    row = {"material": source.name, "database": source.database, "half": source.half or "own",
+           "weighting": labels["weighting"]}
+    if not result.folder:
+        return {**row, **SPHERE, **BINS}
+    report = Fit(result.folder).report
+    row.update({measure: report["appearance"][measure] for measure in SPHERE})
+    if row["psnr_db"] is None:  # equal pictures
+        row["psnr_db"] = math.inf
+    return {**row, **{measure: report[measure] for measure in BINS},
+            "iterations": report["iterations"], "seconds": sum(report["seconds"].values())}
 
 
-def _matrix(rows, weightings):
-    """Geometric mean over the materials of E over the best E. [fitted_by][scored_by]"""
-    groups = tables.groups(rows, "fitted_by", "scored_by")
-    return numpy.array([[stats.geometric_mean([row["ratio"] for row in groups.get((f, s), [])])
-                         for s in weightings] for f in weightings])
+def tabulate(setting, results):
+    """fits: a row for each; weightings: what the manifest's own names stand for."""
+    source_of = {source.name: source for source in setting.sources}
+    rows = [_row(result, source_of[result.labels["material"]]) for result in results]
+    own = setting.manifest.get("weightings", {})
+    used = dict.fromkeys(row["weighting"] for row in rows)
+    return {"fits": sorted(rows, key=lambda row: row["material"]),
+            "weightings": [{"weighting": name, "flags": " ".join(fits.words(own[name]))
+                            if name in own else f"--weighting={name}"} for name in used]}
 
 
-def _draw_matrix(axes, matrix, weightings, small=False):
-    shown = numpy.log10(numpy.clip(matrix, 1, 1e3))
-    # cividis: even in brightness, and the same for colour-blind eyes; dark is good.
-    axes.imshow(shown, cmap="cividis", vmin=0, vmax=2)
-    for i, row in enumerate(matrix):
-        for j, value in enumerate(row):
-            axes.text(j, i, f"{value:.2f}" if value < 9.995 else f"{value:.3g}", ha="center",
-                      va="center", fontsize=6 if small else 10,
-                      color="black" if shown[i, j] > 1 else "white")
-    axes.grid(visible=False)
-    size = {"fontsize": 6} if small else {}
-    axes.set_xticks(range(len(weightings)), weightings, rotation=30 if small else 20, **size)
-    axes.set_yticks(range(len(weightings)), weightings, **size)
-    if not small:
-        axes.set(xlabel="E by this weighting", ylabel="fitted by this weighting")
+# --- texts and pictures ---------------------------------------------------------------------------
+
+
+def _measures_table(rows, weightings):
+    """A line a weighting."""
+    of_weighting = tables.groups(rows, "weighting")
+    lines = []
+    for weighting in weightings:
+        of = of_weighting[weighting]
+        lost = sum(not math.isfinite(row["mean_delta_e"]) for row in of)
+        lines.append([weighting, tables.count(len(of), lost),
+                      tables.quartiles([row["psnr_db"] for row in of], ".1f"),
+                      f"{min(row['psnr_db'] for row in of):.1f}",
+                      tables.quartiles([row["mean_delta_e"] for row in of], ".2f"),
+                      tables.quartiles([100 * row["mean_color_error"] for row in of], ".2f"),
+                      tables.quartiles([row["mean_log_error"] for row in of]),
+                      tables.quartiles([100 * row["mean_relative_error"] for row in of])])
+    return tables.markdown(["fitted by", "n", "PSNR dB", "least PSNR", "mean ΔE",
+                            "mean colour off by, %", "mean log error at bins",
+                            "mean relative error at bins, %"], lines)
+
+
+def _pairs(rows, weighting, first):
+    """[(its row, the row of the first)] of the materials that have both."""
+    at = {(row["material"], row["weighting"]): row for row in rows}
+    return [(row, at[name, first]) for (name, of), row in at.items()
+            if of == weighting and (name, first) in at]
+
+
+def _pairs_table(rows, weightings):
+    """Every weighting against the first, material by material, on each half."""
+    first, *others = weightings
+    halves = {"all": rows, **dict(sorted(tables.groups(rows, "half").items()))}
+    if len(halves) == 2:
+        del halves["all"]
+    lines = []
+    for weighting in others:
+        for half, part in halves.items():
+            pairs = _pairs(part, weighting, first)
+            if not pairs:
+                continue
+            more = [a["psnr_db"] - b["psnr_db"] for a, b in pairs
+                    if math.isfinite(a["psnr_db"] - b["psnr_db"])]
+            lines.append([weighting, half, str(len(pairs)), tables.quartiles(more, "+.2f"),
+                          f"{min(more):+.1f} to {max(more):+.1f}" if more else "–",
+                          str(sum(x > APART for x in more)), str(sum(x < -APART for x in more))])
+    return tables.markdown(["fitted by", "half", "n", f"PSNR dB more than by {first}", "range",
+                            f"more than {APART:g} dB above", f"more than {APART:g} dB below"],
+                           lines)
+
+
+def _databases_table(rows, weightings):
+    databases = sorted(tables.groups(rows, "database"))
+    of = tables.groups(rows, "weighting", "database")
+    return tables.markdown(
+        ["fitted by", *(f"{database}: PSNR dB" for database in databases),
+         *(f"{database}: mean ΔE" for database in databases)],
+        [[weighting, *(tables.quartiles([row[column] for row in of.get((weighting, database), [])],
+                                        form)
+                       for column, form in (("psnr_db", ".1f"), ("mean_delta_e", ".2f"))
+                       for database in databases)] for weighting in weightings])
+
+
+def _figure(rows, weightings):
+    """A line a weighting: dots are materials, the bar is their median; halves apart."""
+    from lab import plots
+    figure, panels = plots.plt.subplots(1, 3, figsize=(14, 0.34 * len(weightings) + 1.6),
+                                        sharey=True)
+    of = tables.groups(rows, "weighting", "half")
+    halves = sorted({row["half"] for row in rows})
+    for axes, (column, factor, label, better) in zip(panels, (
+            ("psnr_db", 1, "PSNR of the sphere (dB)", "more"),
+            ("mean_delta_e", 1, "mean CIELAB difference", "less"),
+            ("mean_color_error", 100, "mean colour off by (%)", "less"))):
+        for k, half in enumerate(halves):
+            colour = (plots.BLUE, plots.VERMILION, plots.GREEN)[k]
+            for y, weighting in enumerate(reversed(weightings)):
+                values = [factor * row[column] for row in of.get((weighting, half), [])
+                          if math.isfinite(row[column])]
+                at = y + 0.34 * ((len(halves) - 1) / 2 - k)
+                axes.plot(values, [at] * len(values), "o", color=colour, markersize=3, alpha=0.45,
+                          label=half if y == 0 else "_")
+                if values:
+                    axes.plot([stats.median(values)] * 2, [at - 0.17, at + 0.17], color=colour,
+                              linewidth=3)
+        axes.set_xlabel(f"{label}, {better} is better")
+        if column != "psnr_db":
+            axes.set_xscale("log")
+            plots.plain_numbers(axes.xaxis)
+    panels[0].set_yticks(range(len(weightings)), list(reversed(weightings)), fontsize=9)
+    panels[0].set_ylim(-0.7, len(weightings) - 0.3)
+    plots.legend_above(figure, panels[0])
+    return figure
 
 
 def draw(drawn, _):
-    rows = drawn["scores"]
-    weightings = list(dict.fromkeys(row["fitted_by"] for row in rows))
-    by_material = tables.groups(rows, "material")
-    from lab import plots
-    matrix = _matrix(rows, weightings)
-    mean, axes = plots.plt.subplots(figsize=(7, 5.6))
-    _draw_matrix(axes, matrix, weightings)
-    axes.set_title(f"E over the lowest E under the same weighting:\ngeometric mean over "
-                   f"{len(by_material)} materials (1: best; dark is good)")
-
-    columns = min(4, len(by_material))
-    lines = math.ceil(len(by_material) / columns)
-    each, panels = plots.plt.subplots(lines, columns, figsize=(2.6 * columns, 2.8 * lines + 0.6),
-                                      squeeze=False)
-    for panel, (name, of) in zip(panels.flat, by_material.items()):
-        _draw_matrix(panel, _matrix(of, weightings), weightings, small=True)
-        panel.set_title(name, fontsize=9)
-    for panel in panels.flat[len(by_material):]:
-        panel.set_axis_off()
-    each.suptitle("E over the lowest E: rows are fitted by a weighting, columns scored by one",
-                  fontsize=10)
-
-    own = [row for row in rows if row["fitted_by"] == row["scored_by"]]
-    lines = []
-    for weighting in weightings:
-        of = [row for row in own if row["fitted_by"] == weighting and "psnr_db" in row
-              and row["psnr_db"] is not None]
-        cells = []
-        for measure in MEASURES:
-            values = [row[measure] for row in of]
-            cells.append(tables.quartiles(values, ".4g"))
-        lines.append([weighting, str(len(of)), *cells])
-    header = ["E over the best E", *weightings]
-    body = [[name, *("missing" if math.isinf(value) else
-                     f"**{value:.3g}**" if value == column.min() else f"{value:.3g}"
-                     for value, column in zip(row, matrix.T))]
-            for name, row in zip(weightings, matrix)]
-    return {"mean": mean, "each": each, "matrix.md": tables.markdown(header, body),
-            "measures.md": tables.markdown(["fitted by", "n", *MEASURES.values()], lines)}
+    rows = drawn["fits"]
+    weightings = [row["weighting"] for row in drawn["weightings"]]
+    products = {
+        "spheres": _figure(rows, weightings),
+        "pairs.md": _pairs_table(rows, weightings),
+        "databases.md": _databases_table(rows, weightings),
+        "weightings.md": tables.markdown(["name", "flags of `trilobe fit`"], [
+            [row["weighting"], f"`{row['flags']}`"] for row in drawn["weightings"]])}
+    for half, part in tables.groups(rows, "half").items():
+        products[f"{half}.md"] = _measures_table(
+            part, [name for name in weightings if any(row["weighting"] == name for row in part)])
+    return products

@@ -7,18 +7,19 @@
 
 namespace trilobe {
 
-AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads) {
+AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads, double max_theta) {
   AlbedoTable table;
-  for (int degrees = 0; degrees < 90; ++degrees) {
+  for (int degrees = 0; degrees < 90 && DegreesToRadians(degrees) <= max_theta; ++degrees) {
     table.theta_i.push_back(DegreesToRadians(degrees));
   }
   table.albedo = DirectionalAlbedos(brdf, table.theta_i, num_threads);
   return table;
 }
 
-void Print(const AlbedoTable& table) {
-  std::cout << "\ndirectional albedo\n  theta_i [deg]       red     green      blue\n";
+void Print(const AlbedoTable& table, const std::string& title) {
+  std::cout << "\n" << title << "\n  theta_i [deg]       red     green      blue\n";
   for (const int degrees : {0, 10, 20, 30, 40, 50, 60, 70, 80, 85, 89}) {
+    if (degrees >= static_cast<int>(table.albedo.size())) break;
     const Rgb& albedo = table.albedo[degrees];
     std::cout << Right(std::to_string(degrees), 15) << Right(Text(albedo[0], 3), 10)
               << Right(Text(albedo[1], 3), 10) << Right(Text(albedo[2], 3), 10) << "\n";

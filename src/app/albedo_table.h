@@ -2,22 +2,24 @@
 #define TRILOBE_APP_ALBEDO_TABLE_H_
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "trilobe/model/albedo.h"
 
 namespace trilobe {
 
-// Directional albedo at every whole degree from 0 to 89.
+// Directional albedo at every whole degree from 0 to 89, or to the last one that was measured.
 struct AlbedoTable {
   std::vector<double> theta_i;  // [rad]
   std::vector<Rgb> albedo;
 };
 
-AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads);
+// `max_theta` [rad] is the largest theta_i of interest.
+AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads, double max_theta = kPi / 2);
 
 // Some of its rows, and where each channel passes 1, on standard output.
-void Print(const AlbedoTable& table);
+void Print(const AlbedoTable& table, const std::string& title = "directional albedo");
 
 // All of it: {"theta_i_deg": [...], "red": [...], ..., "passes_one_deg": {"red": null, ...}}.
 nlohmann::ordered_json ToJson(const AlbedoTable& table);

@@ -15,9 +15,14 @@ namespace {
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
   const std::string out = RequiredOut("convert", "FILE");
-  const BrdfTable table = IsModelFile(source)
-                              ? Reconstruct(ReadModel(source).model, source, {}, ThreadsFromFlags())
-                              : LoadSource(source, SourceOptionsFromFlags());
+  const SourceOptions options = SourceOptionsFromFlags();
+  BrdfTable table;
+  if (IsModelFile(source)) {
+    table = Reconstruct(ReadModel(source).model, source, {}, options.num_threads);
+    DecideMeasured(options, &table);
+  } else {
+    table = LoadSource(source, options);
+  }
   WriteMerl(table, out);
   const BinCounts bins = CountBins(table);
   std::cout << "wrote " << out << ": MERL layout, " << bins.valid << " of " << bins.total
@@ -36,10 +41,14 @@ Command ConvertCommand() {
       .max_arguments = 1,
       .details =
           "Evaluates the input at the bin centres of a MERL .binary file and writes that to "
-          "--out, so that\nevery MERL viewer can show it. A MERL file is copied bit for bit. For "
-          "a model file, all bins with\nboth directions above the surface are filled; elsewhere "
-          "bins are marked invalid (-1).",
-      .flags = {"out", "noise", "seed", "threads"},
+          "--out, so that\nevery MERL viewer can show it. A MERL file is copied bit for bit. Of an "
+          "RGL file, bins that were not\nmeasured are marked invalid (-1), unless --extrapolated "
+          "is given. For a model file, all bins with both\ndirections above the surface are "
+          "filled; "
+          "elsewhere bins are marked invalid. With --max_angle, bins\nbeyond it are marked "
+          "invalid, "
+          "too, whatever the input.",
+      .flags = {"out", "noise", "seed", "max_angle", "extrapolated", "threads"},
       .run = RunConvert};
 }
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -5,11 +7,12 @@
 #include <utility>
 
 #include "trilobe/app/albedo_table.h"
+#include "trilobe/app/bin_counts.h"
 #include "trilobe/app/describe.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/print.h"
 #include "trilobe/io/file.h"
-#include "trilobe/io/merl_file.h"
+#include "trilobe/io/plots.h"
 #include "trilobe/io/rgl_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/measurement_stats.h"
@@ -27,16 +30,47 @@ struct Measurement {
   std::optional<RglBrdf> rgl;
 };
 
-Measurement LoadMeasurement(const std::string& source, int num_threads) {
-  if (source.starts_with("synth:")) {
-    return {"synthetic measurement", LoadSource(source, SourceOptionsFromFlags()), {}};
-  }
+Measurement LoadMeasurement(const std::string& source) {
+  const SourceOptions options = SourceOptionsFromFlags();
+  if (IsSynthetic(source)) return {"synthetic measurement", LoadSource(source, options), {}};
   const std::string bytes = ReadFile(source);
-  if (!LooksLikeRgl(bytes)) return {"MERL measurement", ParseMerl(bytes, source), {}};
+  if (!LooksLikeRgl(bytes)) return {"MERL measurement", ParseSource(bytes, source, options), {}};
   RglBrdf brdf = RglBrdf::Parse(bytes, source);
-  BrdfTable table = TabulateRgl(brdf, source, {}, num_threads);
+  BrdfTable table = TabulateRgl(brdf, source, {}, options.num_threads);
+  DecideMeasured(options, &table);
   return {"RGL measurement, at MERL bins", std::move(table), std::move(brdf)};
 }
+
+// What a measurement says of single directions, and not only at bins: 0 where it was not measured.
+class MeasuredBrdf {
+ public:
+  explicit MeasuredBrdf(const Measurement& measurement) : measurement_(measurement) {
+    if (!measurement.rgl) tabulated_.emplace(measurement.table);
+  }
+
+  Rgb operator()(const DirectionPair& pair) const {
+    if (!WithinAngles(pair)) return {0, 0, 0};
+    if (tabulated_) return (*tabulated_)(pair);
+    const RglBrdf::Value value = measurement_.rgl->LookUp(pair);
+    return value.measured || FLAGS_extrapolated ? value.rho : Rgb{0, 0, 0};
+  }
+
+  bool Measured(const DirectionPair& pair) const {
+    return WithinAngles(pair) &&
+           (tabulated_ || FLAGS_extrapolated || measurement_.rgl->LookUp(pair).measured);
+  }
+
+ private:
+  bool WithinAngles(const DirectionPair& pair) const {
+    return std::min(pair.wi[2], pair.wo[2]) >= min_cosine_;
+  }
+
+  const Measurement& measurement_;
+  // Directions at the limit itself count, whatever the last digit of their cosine.
+  const double min_cosine_ =
+      measurement_.table.max_theta < kPi / 2 ? std::cos(measurement_.table.max_theta) - 1e-12 : 0;
+  std::optional<TabulatedBrdf> tabulated_;
+};
 
 void Print(const std::string& label, const PairError& error) {
   if (error.pairs == 0) {
@@ -58,23 +92,27 @@ Json ToJson(const PairError& error) {
 
 void DescribeMeasurement(const std::string& source) {
   const int num_threads = ThreadsFromFlags();
-  const Measurement measurement = LoadMeasurement(source, num_threads);
+  const Measurement measurement = LoadMeasurement(source);
   const BrdfTable& table = measurement.table;
   const BinCounts bins = CountBins(table);
   const ValueRange range = RangeOfValidBins(table);
   const PairError exchange = ExchangeError(table);
   std::optional<PairError> reciprocity;
   std::optional<AlbedoTable> albedo;
-  if (measurement.rgl) {
-    const BrdfFunction brdf = [&](const DirectionPair& pair) {
-      return measurement.rgl->Evaluate(pair);
-    };
-    // A coarser grid: each value costs two inversions of a warp.
-    reciprocity = ReciprocityError(brdf, {.theta_h = 30, .theta_d = 30, .phi_d = 60}, num_threads);
-    albedo = TabulateAlbedo(brdf, num_threads);
-  } else if (bins.valid > 0) {
-    const TabulatedBrdf brdf(table);
-    albedo = TabulateAlbedo(std::cref(brdf), num_threads);
+  if (bins.valid > 0) {
+    const MeasuredBrdf brdf(measurement);
+    albedo = TabulateAlbedo(std::cref(brdf), num_threads, table.max_theta);
+    if (measurement.rgl) {
+      // A coarser grid: each value costs two inversions of a warp.
+      reciprocity = ReciprocityError(
+          std::cref(brdf), {.theta_h = 30, .theta_d = 30, .phi_d = 60}, num_threads,
+          [&](const DirectionPair& pair) { return brdf.Measured(pair); });
+    }
+  }
+  const std::string picture = FLAGS_out.empty() ? "" : FLAGS_out + "/measured.png";
+  if (!picture.empty()) {
+    MakeDirectories(FLAGS_out);
+    DrawMeasured(table, picture);
   }
 
   if (FLAGS_json) {
@@ -84,12 +122,8 @@ void DescribeMeasurement(const std::string& source) {
                   {{"theta_h", table.grid.theta_h},
                    {"theta_d", table.grid.theta_d},
                    {"phi_d", table.grid.phi_d}}},
-                 {"bins",
-                  {{"total", bins.total},
-                   {"valid", bins.valid},
-                   {"below_surface", bins.below_surface},
-                   {"non_finite", bins.non_finite},
-                   {"negative", bins.negative}}},
+                 {"bins", ToJson(bins)},
+                 {"max_angle", MaxAngleDegrees(table)},
                  {"min", range.min},
                  {"max", range.max},
                  {"exchange_error", ToJson(exchange)},
@@ -105,16 +139,21 @@ void DescribeMeasurement(const std::string& source) {
                         std::to_string(table.grid.phi_d) +
                         " phi_d = " + std::to_string(bins.total));
   PrintLine("  valid", std::to_string(bins.valid));
-  PrintLine("  below the surface", std::to_string(bins.below_surface));
-  PrintLine("  lost (negative)", std::to_string(bins.negative));
-  PrintLine("  NaN or infinite", std::to_string(bins.non_finite));
+  for (const LeftOut& left_out : ReasonsOf(bins)) {
+    PrintLine("  " + left_out.reason, std::to_string(left_out.bins));
+  }
+  PrintLine("measured up to", Text(MaxAngleDegrees(table)) + " deg");
   if (bins.valid > 0) {
     PrintLine("smallest value, RGB", Text(range.min) + " /sr");
     PrintLine("largest value, RGB", Text(range.max) + " /sr");
   }
   Print("exchange error", exchange);
   if (reciprocity) Print("reciprocity error", *reciprocity);
-  if (albedo) Print(*albedo);
+  if (!picture.empty()) PrintLine("written", picture);
+  if (albedo) {
+    const bool whole = bins.extrapolated + bins.beyond_nodes + bins.beyond_max_angle == 0;
+    Print(*albedo, whole ? "directional albedo" : "directional albedo of what was measured");
+  }
 }
 
 }  // namespace trilobe

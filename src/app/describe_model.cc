@@ -4,8 +4,11 @@
 #include "trilobe/app/albedo_table.h"
 #include "trilobe/app/describe.h"
 #include "trilobe/app/flags.h"
+#include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/model/continuous_model.h"
+#include "trilobe/model/gauge.h"
 
 namespace trilobe {
 namespace {
@@ -50,14 +53,16 @@ void DescribeModel(const std::string& path) {
   const FactorModel& model = file.model;
   const ModelSpec& spec = model.spec();
   const FitInfo& fit = file.fit;
-  const AlbedoTable albedo = TabulateAlbedo(
-      [&](const DirectionPair& pair) { return Evaluate(model, pair); }, ThreadsFromFlags());
+  const AlbedoTable albedo = TabulateAlbedo(ContinuousModel(model), ThreadsFromFlags());
+
+  const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), model);
 
   if (FLAGS_json) {
     Json json = {{"file", path},          {"kind", "model"},
                  {"lobes", spec.lobes},   {"parameters", spec.num_parameters()},
                  {"d", ToRgb(model.d())}, {"s", Json::array()}};
     for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(ToRgb(model.s(m)));
+    json["light"] = ToJson(light);
     for (const Factor factor : kFactors) {
       const TableSharing& sharing = spec.sharing(factor);
       json["tables"][FactorName(factor)] = {{"count", spec.num_tables(factor)},
@@ -78,6 +83,7 @@ void DescribeModel(const std::string& path) {
                    {"seconds", fit.seconds},
                    {"stop_reason", fit.stop_reason},
                    {"valid_samples", fit.valid_samples},
+                   {"max_angle", fit.max_angle},
                    {"program", fit.program},
                    {"date", fit.date}};
     json["albedo"] = ToJson(albedo);
@@ -99,10 +105,15 @@ void DescribeModel(const std::string& path) {
             (file.layout ? "; " + std::to_string(CountStored(file, factor)) + " stored" : "") +
             (dead > 0 ? "; " + std::to_string(dead) + " entries without data" : ""));
   }
-  PrintLine("d, RGB", Text(ToRgb(model.d())) + " /sr");
+  PrintLine("d, RGB", Text(ToRgb(model.d())) + " /sr; reflects " +
+                          Text(100 * light.DiffuseShare(), 3) + " % of the light, albedo " +
+                          Text(light.diffuse));
   for (int m = 0; m < spec.lobes; ++m) {
     const Rgb s = ToRgb(model.s(m));
-    PrintLine("s of lobe " + std::to_string(m + 1) + ", RGB", s == Rgb{} ? "0: absent" : Text(s));
+    PrintLine("s of lobe " + std::to_string(m + 1) + ", RGB",
+              s == Rgb{} ? "0: absent"
+                         : Text(s) + "; reflects " + Text(100 * light.Share(m), 3) +
+                               " % of the light, albedo " + Text(light.lobes[m]));
   }
   if (!fit.source.empty()) PrintLine("fitted to", fit.source);
   if (!fit.solver.empty()) {

@@ -5,9 +5,12 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
+#include "trilobe/app/appearance_report.h"
 #include "trilobe/app/command.h"
 #include "trilobe/app/course.h"
+#include "trilobe/app/finish_fit.h"
 #include "trilobe/app/fit_report.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/progress.h"
@@ -23,7 +26,9 @@
 #include "trilobe/io/plots.h"
 #include "trilobe/io/source.h"
 #include "trilobe/io/trace_file.h"
+#include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/model/score.h"
 #include "trilobe/solvers/initial_model.h"
@@ -33,9 +38,16 @@ DEFINE_string(
     init, "analytic",
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
-DEFINE_string(model, "shared",
-              "shared: D and G shared by the channels, F by the lobes (Peng et al.); independent: "
-              "one lobe, nothing shared (Bagher et al.)");
+DEFINE_string(
+    model, "shared",
+    "shared: D and G shared by the channels, F by the lobes (Peng et al.); independent: "
+    "one lobe, nothing shared (Bagher et al.); auto: what looks best within --max_numbers "
+    "(docs/model-choice.md)");
+DEFINE_int32(max_numbers, 822, "with --model=auto: how many numbers the model may store");
+DEFINE_double(
+    robust, 0,
+    "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
+    "by reweighting; 0 for none");
 DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
 DEFINE_bool(reconstruction, false, "also write DIR/reconstruction.binary, the fit in MERL layout");
 DEFINE_bool(
@@ -46,6 +58,17 @@ DEFINE_bool(plots, false, "also draw the pictures of `trilobe plot` into DIR");
 namespace trilobe {
 namespace {
 
+FinishOptions FinishOptionsFromFlags() {
+  if (!(FLAGS_robust >= 0 && FLAGS_robust <= 1e6)) throw Error("--robust must be from 0 to 1e6");
+  if (FLAGS_max_numbers < 1) throw Error("--max_numbers must be at least 1");
+  if (FLAGS_model != "auto" && !IsDefault("max_numbers")) {
+    throw Error("--max_numbers goes with --model=auto");
+  }
+  return {.robust = FLAGS_robust,
+          .max_numbers = FLAGS_model == "auto" ? FLAGS_max_numbers : 0,
+          .appearance = AppearanceOptionsFromFlags()};
+}
+
 ModelSpec SpecFromFlags(const MerlGrid& grid) {
   if (FLAGS_model == "independent") {
     if (!IsDefault("lobes") && FLAGS_lobes != 1) {
@@ -53,8 +76,8 @@ ModelSpec SpecFromFlags(const MerlGrid& grid) {
     }
     return ModelSpec::IndependentG(grid);
   }
-  if (FLAGS_model != "shared") {
-    throw Error("unknown model '" + FLAGS_model + "'; known: shared, independent");
+  if (FLAGS_model != "shared" && FLAGS_model != "auto") {
+    throw Error("unknown model '" + FLAGS_model + "'; known: shared, independent, auto");
   }
   const ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes, grid);
   CheckSpec(spec);
@@ -84,7 +107,6 @@ FactorModel StartFromFile(const MerlGrid& grid) {
 
 SolverSummary Solve(const SolverEntry& solver, const Objective& objective, SolverOptions options,
                     FactorModel* model, Course* course) {
-  const InterruptGuard guard;
   Progress progress(options);
   options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
     progress.Show(record);
@@ -116,8 +138,8 @@ void WriteOutputs(const ModelFile& file, const FitReport& report, const BrdfTabl
     written += ", reconstruction.binary";
   }
   if (FLAGS_plots) {
-    for (const std::string& path :
-         DrawPictures(file, &measured, report.summary.trace, FLAGS_out, threads)) {
+    for (const std::string& path : DrawPictures(file, &measured, report.summary.trace, FLAGS_out,
+                                                AppearanceOptionsFromFlags())) {
       written += ", " + std::filesystem::path(path).filename().string();
     }
   }
@@ -129,8 +151,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
-  for (const char* const flag :
-       {"init", "model", "course", "reconstruction", "plots", "diagnose"}) {
+  for (const char* const flag : {"init", "model", "max_numbers", "robust", "probe", "course",
+                                 "reconstruction", "plots", "diagnose"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }
@@ -145,12 +167,14 @@ int RunFit(std::span<const std::string> arguments) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " goes with --scene");
   }
   const int threads = ThreadsFromFlags();
-  const Weighting& weighting = FindWeighting(FLAGS_weighting);
+  const Weighting weighting = FindWeighting(FLAGS_weighting);
   const SolverEntry& solver = SolverFromFlags();
   const bool init_is_file = InitIsFile();
   const InitialModel* const init = init_is_file ? nullptr : &FindInitialModel(FLAGS_init);
   // Before the long work, for the errors.
+  FinishOptionsFromFlags();
   SolverOptionsFromFlags(solver, SpecFromFlags({}));
+  const SourceOptions source_options = SourceOptionsFromFlags();
   FactorModel model;
   if (init_is_file) model = StartFromFile({});
 
@@ -158,22 +182,34 @@ int RunFit(std::span<const std::string> arguments) {
   report.noise = FLAGS_noise;
   report.seed = FLAGS_seed;
   Stopwatch stopwatch;
-  const BrdfTable measured = LoadSource(arguments[0], SourceOptionsFromFlags());
+  const BrdfTable measured = LoadSource(arguments[0], source_options);
   report.seconds.read = stopwatch.Lap();
   report.spec = init_is_file ? model.spec() : SpecFromFlags(measured.grid);
   const Objective objective(ValidSamples(measured), report.spec, weighting, threads);
   report.seconds.prepare = stopwatch.Lap();
   if (init != nullptr) model = init->make(objective, static_cast<uint64_t>(FLAGS_seed));
   report.seconds.init = stopwatch.Lap();
+  report.bins = CountBins(measured);
   // Now, not later: a fit must not be lost for want of a folder.
   if (!FLAGS_out.empty()) MakeDirectories(FLAGS_out);
+  // From here on a first Ctrl-C ends the work but not before the model is written.
+  const InterruptGuard guard;
   Course course;
   SolverSummary& summary = report.summary;
   summary = Solve(solver, objective, SolverOptionsFromFlags(solver, report.spec), &model, &course);
   summary.phases.reading = report.seconds.read;
   report.seconds.solve = stopwatch.Lap();
-  Canonicalize(objective.coverage(), &model);
-  report.score = ScoreModel(objective, model);
+  FinishOptions finish = FinishOptionsFromFlags();
+  finish.stop = [] { return InterruptGuard::signal() != 0; };
+  const FinishedFit fit = FinishFit(objective, measured, std::move(model), finish);
+  report.finished = {fit.tied, fit.candidates, fit.chosen};
+  report.spec = fit.model.spec();
+  report.stored_numbers =
+      fit.layout ? fit.layout->num_numbers(report.spec) : report.spec.num_parameters();
+  report.seconds.finish = stopwatch.Lap();
+  report.score = ScoreModel(fit.objective, fit.model);
+  report.appearance = CompareAppearance(measured, ContinuousModel(fit.model), finish.appearance);
+  report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
   report.seconds.score = stopwatch.Lap();
   report.peak_memory = PeakMemory();
 
@@ -188,16 +224,17 @@ int RunFit(std::span<const std::string> arguments) {
                 .threads = threads,
                 .source = arguments[0],
                 .valid_samples = report.score.valid_samples,
+                .max_angle = MaxAngleDegrees(measured),
                 .program = std::string("trilobe ") + gflags::VersionString(),
                 .date = UtcNow()};
   Print(report);
-  const bool interrupted = summary.stop_reason == StopReason::kInterrupted;
+  const bool interrupted = InterruptGuard::signal() != 0;
   if (interrupted) std::cout << "interrupted  this is the best model so far\n";
   if (FLAGS_out.empty()) {
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
-    WriteOutputs({model, DeadParameters(objective.coverage()), report.fit}, report, measured,
-                 course, objective);
+    WriteOutputs({fit.model, DeadParameters(fit.objective.coverage()), report.fit, fit.layout},
+                 report, measured, course, fit.objective);
   }
   return interrupted ? 128 + InterruptGuard::signal() : 0;  // as a shell reports such an end
 }
@@ -218,10 +255,12 @@ std::string List(const std::vector<T>& entries) {
 }  // namespace
 
 Command FitCommand() {
-  std::vector<std::string> flags = {"solver", "init", "weighting", "model", "lobes"};
+  std::vector<std::string> flags = {"solver", "init",        "weighting", "model",
+                                    "robust", "max_numbers", "lobes"};
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(), {"threads", "noise", "seed", "out", "reconstruction", "course", "plots",
-                             "scene", "cache", "nocache"});
+  flags.insert(flags.end(),
+               {"threads", "noise", "seed", "max_angle", "extrapolated", "out", "reconstruction",
+                "course", "plots", "probe", "scene", "cache", "nocache"});
   return {.name = "fit",
           .summary = "fit a model to a measurement",
           .arguments = "SOURCE | --scene=SCENE",

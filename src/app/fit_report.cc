@@ -1,9 +1,14 @@
 #include "trilobe/app/fit_report.h"
 
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <variant>
 
+#include "trilobe/app/appearance_report.h"
+#include "trilobe/app/bin_counts.h"
+#include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
 #include "trilobe/solvers/option_values.h"
 
@@ -45,6 +50,36 @@ Json ToJson(const std::vector<StartResult>& starts) {
   return array;
 }
 
+Json ToJson(const std::vector<ModelCandidate>& candidates) {
+  Json array = Json::array();
+  for (const ModelCandidate& candidate : candidates) {
+    array.push_back({{"name", candidate.name},
+                     {"numbers", candidate.numbers},
+                     {"objective", candidate.E},
+                     {"psnr_db", candidate.score},
+                     {"seconds", candidate.seconds}});
+  }
+  return array;
+}
+
+// What was chosen, and what it was chosen from.
+std::string Describe(const FitReport::Finished& finished) {
+  std::string text;
+  if (finished.tied) {
+    // A fit that was stopped early gains more from the steps of the refit than tying costs.
+    text += "data edge    entries read by few samples follow from their neighbours; E " +
+            std::string(*finished.tied < 0 ? "fell" : "rose") + " by " +
+            Text(100 * std::abs(*finished.tied), 2) + " %\n";
+  }
+  for (size_t k = 0; k < finished.candidates.size(); ++k) {
+    const ModelCandidate& candidate = finished.candidates[k];
+    text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
+            Text(candidate.score) + " dB, " + std::to_string(candidate.numbers) + " numbers, E " +
+            Text(candidate.E) + (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
+  }
+  return text;
+}
+
 Json ToJson(const Diagnosis& diagnosis) {
   return {{"optimality", diagnosis.optimality},
           {"live_parameters", diagnosis.live_parameters},
@@ -66,12 +101,17 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"noise", report.noise},
           {"seed", report.seed},
           {"valid_samples", fit.valid_samples},
+          {"max_angle", fit.max_angle},
+          {"bins", ToJson(report.bins)},
           {"solver", fit.solver},
           {"init", fit.init},
           {"weighting", fit.weighting},
           {"model", ModelName(report.spec)},
           {"lobes", report.spec.lobes},
           {"parameters", report.spec.num_parameters()},
+          {"stored_numbers", report.stored_numbers},
+          {"candidates", ToJson(report.finished.candidates)},
+          {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
           {"threads", fit.threads},
           {"options",
            {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
@@ -89,12 +129,15 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"rmse", score.rmse},
           {"mean_relative_error", score.mean_relative_error},
           {"mean_log_error", score.mean_log_error},
+          {"appearance", ToJson(report.appearance)},
+          {"light", ToJson(report.light)},
           {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
           {"seconds",
            {{"read", seconds.read},
             {"prepare", seconds.prepare},
             {"init", seconds.init},
             {"solve", seconds.solve},
+            {"finish", seconds.finish},
             {"score", seconds.score}}},
           {"phases", ToJson(summary.phases)},
           {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
@@ -106,7 +149,9 @@ void Print(const FitReport& report) {
   const FitInfo& fit = report.fit;
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
-  std::cout << "source       " << fit.source << ", " << fit.valid_samples << " valid samples\n"
+  std::cout << "source       " << fit.source << ", " << fit.valid_samples << " valid samples up to "
+            << Text(fit.max_angle) << " deg\n"
+            << "left out     bins " << LeftOutText(report.bins) << "\n"
             << "model        " << report.spec.lobes << " lobes, " << report.spec.num_parameters()
             << " parameters, weighting " << fit.weighting << ", from " << fit.init << "\n"
             << report.summary.FullReport() << "error        E is "
@@ -114,9 +159,12 @@ void Print(const FitReport& report) {
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
+            << Describe(report.finished) << Describe(report.appearance) << "light        "
+            << Describe(report.light) << "\n"
             << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
             << " prepare, " << Text(seconds.init, 3) << " init, " << Text(seconds.solve, 3)
-            << " solve, " << Text(seconds.score, 3) << " score\n";
+            << " solve, " << Text(seconds.finish, 3) << " finish, " << Text(seconds.score, 3)
+            << " score\n";
   if (report.peak_memory) {
     std::cout << "memory       " << Text(static_cast<double>(*report.peak_memory) / 1e6, 3)
               << " MB at most\n";

@@ -4,10 +4,15 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <vector>
 
+#include "trilobe/appearance/appearance.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/model/lobe_light.h"
+#include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/model/score.h"
+#include "trilobe/scene/model_choice.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -16,15 +21,25 @@ namespace trilobe {
 struct FitReport {
   // Where the time of the program went [s]; summary.phases tells more of `solve`.
   struct Seconds {
-    double read = 0, prepare = 0, init = 0, solve = 0, score = 0;
+    double read = 0, prepare = 0, init = 0, solve = 0, finish = 0, score = 0;
   };
 
   FitInfo fit;
   ModelSpec spec;
   double noise = 0;  // of the source
   int64_t seed = 0;
+  BinCounts bins;  // of the source: how many were left out, and why
   SolverSummary summary;
+  // What came after the solver (FinishedFit).
+  struct Finished {
+    std::optional<double> tied;
+    std::vector<ModelCandidate> candidates;
+    int chosen = -1;
+  } finished;
+  int stored_numbers = 0;
   ScoreReport score;
+  AppearanceReport appearance;
+  LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
 };

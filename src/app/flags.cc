@@ -8,6 +8,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/source.h"
+#include "trilobe/model/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
 DEFINE_int64(
@@ -16,9 +17,14 @@ DEFINE_int64(
     "a solver");
 DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
 DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
-DEFINE_string(weighting, "compressive",
-              "weights of the objective: compressive, log, percentage, cosine or uniform");
-DEFINE_string(out, "", "where to write: a file or, for fit and plot, a folder");
+DEFINE_double(max_angle, 90,
+              "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
+DEFINE_bool(extrapolated, false,
+            "of an RGL file, also take what its authors did not measure but extrapolated, and what "
+            "lies beyond its last theta_i");
+DEFINE_string(weighting, trilobe::Weightings().front().name,
+              "weights of the objective: a name, or power:KEY=VALUE,... (docs/method.md)");
+DEFINE_string(out, "", "where to write: a file or, for fit, info and plot, a folder");
 
 namespace trilobe {
 
@@ -48,9 +54,15 @@ int ThreadsFromFlags() {
 }
 
 SourceOptions SourceOptionsFromFlags() {
+  if (!(FLAGS_max_angle > 0 && FLAGS_max_angle <= 90)) {
+    throw Error("--max_angle=" + gflags::GetCommandLineFlagInfoOrDie("max_angle").current_value +
+                " is no largest angle; give degrees above 0, up to 90");
+  }
   return {.noise = FLAGS_noise,
           .seed = static_cast<uint64_t>(FLAGS_seed),
-          .num_threads = ThreadsFromFlags()};
+          .num_threads = ThreadsFromFlags(),
+          .max_angle_deg = FLAGS_max_angle,
+          .extrapolated = FLAGS_extrapolated};
 }
 
 }  // namespace trilobe

@@ -12,6 +12,8 @@ DECLARE_int32(threads);
 DECLARE_int32(lobes);
 DECLARE_int64(seed);
 DECLARE_double(noise);
+DECLARE_double(max_angle);
+DECLARE_bool(extrapolated);
 DECLARE_string(weighting);
 DECLARE_string(out);
 
@@ -31,7 +33,7 @@ std::string FlagHelp(const std::string& flag);
 // --threads, with 0 meaning all cores. Throws Error if negative.
 int ThreadsFromFlags();
 
-// --noise, --seed and --threads for LoadSource.
+// What says how a source is read: for LoadSource. Throws Error for bad values.
 SourceOptions SourceOptionsFromFlags();
 
 }  // namespace trilobe

@@ -1,12 +1,18 @@
 #include "trilobe/app/command.h"
 #include "trilobe/app/describe.h"
+#include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
+#include "trilobe/base/error.h"
 
 namespace trilobe {
 namespace {
 
 int RunInfo(std::span<const std::string> arguments) {
   if (IsModelFile(arguments[0])) {
+    if (!FLAGS_out.empty()) {
+      throw Error("--out is for a picture of what was measured; " + arguments[0] +
+                  " is a model: draw it with trilobe plot");
+    }
     DescribeModel(arguments[0]);
   } else {
     DescribeMeasurement(arguments[0]);
@@ -25,12 +31,15 @@ Command InfoCommand() {
       .max_arguments = 1,
       .details =
           "A measurement: what it is, which bins are valid and why the others are not, the range "
-          "of "
-          "values,\nhow far the bins at phi_d and 180 deg - phi_d differ (0 for a reciprocal, "
+          "of values,\nhow far the bins at phi_d and 180 deg - phi_d differ (0 for a reciprocal, "
           "mirror-symmetric\nmaterial; for RGL files also the plain reciprocity error), and the "
-          "directional albedo over\ntheta_i with the angle where it passes 1. A model file: its "
-          "tables, coefficients, how it was\nfitted, and its albedo.",
-      .flags = {"json", "noise", "seed", "threads"},
+          "directional albedo over\ntheta_i with the angle where it passes 1, all of what was "
+          "measured. With --out=DIR it draws\nDIR/measured.png: how many of the bins are valid, "
+          "over "
+          "theta_i and theta_o. A model file: its tables,\ncoefficients, how it was fitted, and "
+          "its "
+          "albedo.",
+      .flags = {"json", "out", "noise", "seed", "max_angle", "extrapolated", "threads"},
       .run = RunInfo};
 }
 

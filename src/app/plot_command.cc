@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "trilobe/app/appearance_report.h"
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
@@ -26,8 +27,8 @@ int RunPlot(std::span<const std::string> arguments) {
   std::vector<IterationRecord> trace;
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
   MakeDirectories(folder);
-  for (const std::string& path :
-       DrawPictures(file, measured ? &*measured : nullptr, trace, folder, ThreadsFromFlags())) {
+  for (const std::string& path : DrawPictures(file, measured ? &*measured : nullptr, trace, folder,
+                                              AppearanceOptionsFromFlags())) {
     std::cout << "wrote " << path << "\n";
   }
   return 0;
@@ -36,19 +37,20 @@ int RunPlot(std::span<const std::string> arguments) {
 }  // namespace
 
 Command PlotCommand() {
-  return {.name = "plot",
-          .summary = "draw a model's factors, its fit to a measurement, and a trace",
-          .arguments = "MODEL [SOURCE]",
-          .min_arguments = 1,
-          .max_arguments = 2,
-          .details =
-              "Writes PNG pictures into the folder --out, by gnuplot:\n"
-              "  factors.png  D, F, G and the coefficients d, s\n"
-              "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
-              "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
-              "  trace.png    E over iterations and seconds (with --trace)",
-          .flags = {"out", "trace", "noise", "seed", "threads"},
-          .run = RunPlot};
+  return {
+      .name = "plot",
+      .summary = "draw a model's factors, its fit to a measurement, and a trace",
+      .arguments = "MODEL [SOURCE]",
+      .min_arguments = 1,
+      .max_arguments = 2,
+      .details =
+          "Writes PNG pictures into the folder --out, by gnuplot:\n"
+          "  factors.png  D, F, G and the coefficients d, s\n"
+          "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
+          "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
+          "  trace.png    E over iterations and seconds (with --trace)",
+      .flags = {"out", "trace", "probe", "noise", "seed", "max_angle", "extrapolated", "threads"},
+      .run = RunPlot};
 }
 
 }  // namespace trilobe

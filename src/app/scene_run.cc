@@ -18,6 +18,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/source.h"
 #include "trilobe/model/weighting.h"
 #include "trilobe/solvers/initial_model.h"
 
@@ -85,6 +86,8 @@ std::vector<std::string> SceneFlags() {
           "threads",
           "noise",
           "seed",
+          "max_angle",
+          "extrapolated",
           "cache",
           "nocache"};
 }
@@ -100,13 +103,16 @@ SceneFitSettings SceneSettingsFromFlags() {
   const SolverEntry& solver = SolverFromFlags();
   const ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes);
   CheckSpec(spec);
+  const SourceOptions source = SourceOptionsFromFlags();
   SceneFitSettings settings{.solver = solver.name,
                             .options = SolverOptionsFromFlags(solver, spec),
                             .init = InitialModels().front().name,
                             .weighting = FindWeighting(FLAGS_weighting).name,
                             .lobes = FLAGS_lobes,
-                            .noise = FLAGS_noise,
-                            .seed = static_cast<uint64_t>(FLAGS_seed),
+                            .noise = source.noise,
+                            .seed = source.seed,
+                            .max_angle_deg = source.max_angle_deg,
+                            .extrapolated = source.extrapolated,
                             .program = std::string("trilobe ") + gflags::VersionString(),
                             .cache = CacheFromFlags(),
                             .stop = [] { return InterruptGuard::signal() != 0; }};

@@ -1,13 +1,19 @@
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "trilobe/app/appearance_report.h"
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
+#include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/io/plots.h"
 #include "trilobe/io/source.h"
+#include "trilobe/model/continuous_model.h"
 #include "trilobe/model/score.h"
+#include "trilobe/model/tabulated_brdf.h"
 
 namespace trilobe {
 namespace {
@@ -20,8 +26,18 @@ BinPosition PositionOf(const MerlGrid& grid, int bin) {
   return {bin / (grid.theta_d * grid.phi_d), bin / grid.phi_d % grid.theta_d, bin % grid.phi_d};
 }
 
-nlohmann::ordered_json ToJson(const ScoreReport& report, const Objective& objective,
-                              const std::string& model_path) {
+// The values of a function at the samples. [samples.size()]
+std::vector<Rgb> ValuesAt(const AngularBrdf& brdf, const BrdfSamples& samples) {
+  std::vector<Rgb> values;
+  for (int j = 0; j < samples.size(); ++j) {
+    const HalfDiffAngles angles = samples.Angles(j);
+    values.push_back(brdf(angles, ToCosines(angles)));
+  }
+  return values;
+}
+
+nlohmann::ordered_json ToJson(const ScoreReport& report, const AppearanceReport& appearance,
+                              const Objective& objective, const std::string& model_path) {
   const BrdfSamples& samples = objective.samples();
   nlohmann::ordered_json json = {{"model", model_path},
                                  {"source", samples.source},
@@ -38,6 +54,7 @@ nlohmann::ordered_json ToJson(const ScoreReport& report, const Objective& object
                                  {"mean_relative_error", report.mean_relative_error},
                                  {"mean_log_error", report.mean_log_error},
                                  {"max_absolute_error", report.max_absolute_error},
+                                 {"appearance", ToJson(appearance)},
                                  {"worst_bins", nlohmann::ordered_json::array()}};
   for (const WorstSample& worst : report.worst) {
     const auto [h, d, p] = PositionOf(samples.grid, samples.bins[worst.sample]);
@@ -55,8 +72,8 @@ nlohmann::ordered_json ToJson(const ScoreReport& report, const Objective& object
   return json;
 }
 
-void PrintTable(const ScoreReport& report, const Objective& objective,
-                const std::string& model_path) {
+void PrintTable(const ScoreReport& report, const AppearanceReport& appearance,
+                const Objective& objective, const std::string& model_path) {
   const BrdfSamples& samples = objective.samples();
   PrintLine("model", model_path);
   PrintLine("source", samples.source);
@@ -71,7 +88,9 @@ void PrintTable(const ScoreReport& report, const Objective& objective,
   PrintLine("mean relative error", Text(100 * report.mean_relative_error) + " %");
   PrintLine("mean log error", Text(report.mean_log_error));
   PrintLine("largest absolute error", Text(report.max_absolute_error) + " /sr");
-  std::cout << "\nworst bins by share of E\n"
+  std::cout << "\n"
+            << Describe(appearance)
+            << "\nworst bins by share of E\n"
                "  theta_h  theta_d    phi_d  channel  measured    fitted  share of E\n"
                "      deg      deg      deg               1/sr      1/sr           %\n";
   for (const WorstSample& worst : report.worst) {
@@ -84,16 +103,31 @@ void PrintTable(const ScoreReport& report, const Objective& objective,
 }
 
 int RunScore(std::span<const std::string> arguments) {
-  const Weighting& weighting = FindWeighting(FLAGS_weighting);
-  const FactorModel model = ReadModel(arguments[0]).model;
-  const BrdfTable table = LoadSource(arguments[1], SourceOptionsFromFlags());
-  const Objective objective(ValidSamples(table), model.spec(), weighting, ThreadsFromFlags());
-  const ScoreReport report = ScoreModel(objective, model);
-  if (FLAGS_json) {
-    PrintJson(ToJson(report, objective, arguments[0]));
+  const Weighting weighting = FindWeighting(FLAGS_weighting);
+  const AppearanceOptions appearance_options = AppearanceOptionsFromFlags();
+  const int threads = ThreadsFromFlags();
+  FactorModel model;
+  std::optional<BrdfTable> other;
+  if (IsModelFile(arguments[0])) {
+    model = ReadModel(arguments[0]).model;
   } else {
-    PrintTable(report, objective, arguments[0]);
+    other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }
+  const BrdfTable table = LoadSource(arguments[1], SourceOptionsFromFlags());
+  const ModelSpec spec = other ? ModelSpec::SharedFactors(0, table.grid) : model.spec();
+  const Objective objective(ValidSamples(table), spec, weighting, threads);
+  std::optional<TabulatedBrdf> tabulated;
+  if (other) tabulated.emplace(*other);
+  const AngularBrdf fitted = other ? Interpolated(*tabulated) : AngularBrdf(ContinuousModel(model));
+  const ScoreReport report = other ? ScoreValues(objective, ValuesAt(fitted, objective.samples()))
+                                   : ScoreModel(objective, model);
+  const AppearanceReport appearance = CompareAppearance(table, fitted, appearance_options);
+  if (FLAGS_json) {
+    PrintJson(ToJson(report, appearance, objective, arguments[0]));
+  } else {
+    PrintTable(report, appearance, objective, arguments[0]);
+  }
+  if (!FLAGS_out.empty()) WriteSpherePair(table, fitted, FLAGS_out, appearance_options);
   return 0;
 }
 
@@ -103,7 +137,7 @@ Command ScoreCommand() {
   return {
       .name = "score",
       .summary = "compare a model with a measurement",
-      .arguments = "MODEL SOURCE",
+      .arguments = "MODEL|SOURCE SOURCE",
       .min_arguments = 2,
       .max_arguments = 2,
       .details =
@@ -112,7 +146,8 @@ Command ScoreCommand() {
           "rho*|/(rho* + 0.001); the\nmean of |log((1 + rho cos)/(1 + rho* cos))|; and the ten "
           "bins with the largest share of E.\nWith --json, one JSON object; a PSNR that is not "
           "finite (an exact fit) is null there.",
-      .flags = {"json", "weighting", "noise", "seed", "threads"},
+      .flags = {"json", "weighting", "probe", "out", "noise", "seed", "max_angle", "extrapolated",
+                "threads"},
       .run = RunScore};
 }
 

@@ -82,7 +82,10 @@ void WriteMerl(const BrdfTable& table, const std::string& path) {
     std::array<char, kHeaderSize> header{};
     std::memcpy(header.data(), kDimensions.data(), kHeaderSize);
     out.write(header.data(), kHeaderSize);
-    for (const std::vector<double>& plane : table.stored) {
+    for (std::vector<double> plane : table.stored) {
+      for (int bin = 0; bin < kGrid.size(); ++bin) {
+        if (ReasonOf(table, bin) != Unmeasured::kNo) plane[bin] = -1;
+      }
       out.write(reinterpret_cast<const char*>(plane.data()), kPlaneSize);
     }
   });

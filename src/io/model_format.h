@@ -23,6 +23,7 @@ void VisitFitInfo(Info* fit, const Visitor& visit) {
   visit("threads", &fit->threads);
   visit("source", &fit->source);
   visit("valid_samples", &fit->valid_samples);
+  visit("max_angle", &fit->max_angle);
   visit("program", &fit->program);
   visit("date", &fit->date);
 }

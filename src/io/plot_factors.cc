@@ -1,15 +1,23 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
 #include "trilobe/io/gnuplot.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/model/catmull_rom.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/lobe_light.h"
 
 namespace trilobe {
 namespace {
+
+// Of the light through a table, for an entry to be seen on the axis of its picture.
+constexpr double kLightThatCounts = 1e-4;
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kDash[] = {"solid", "'-'", "'.'", "'_.'", "'..-'", "'-_'", "'--.'", "'_'"};
@@ -28,6 +36,13 @@ Owner OwnerOf(const ModelSpec& spec, Factor factor, int index) {
   return {sharing.per_lobe ? index / channels : 0, sharing.per_channel ? index % channels : 0};
 }
 
+// "62 %", "<0.1 %", for gnuplot, which takes the labels of tics for formats.
+std::string Percent(double share) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), share >= 0.0995 ? "%.0f" : "%.1f", 100 * share);
+  return (share > 0 && share < 0.0005 ? "<0.1" : std::string(text.data())) + " %%";
+}
+
 std::string CurveName(const ModelSpec& spec, Factor factor, int index, bool absent) {
   const TableSharing& sharing = spec.sharing(factor);
   const auto [lobe, channel] = OwnerOf(spec, factor, index);
@@ -41,9 +56,10 @@ std::string CurveName(const ModelSpec& spec, Factor factor, int index, bool abse
 }
 
 // Data blocks and the plot command of one panel. `position` gives the abscissa of entry i.
+// The axis holds the entries that light goes through; others may leave it.
 template <typename Position>
-std::string Panel(const ModelFile& file, Factor factor, const Position& position,
-                  bool logarithmic) {
+std::string Panel(const ModelFile& file, const LobeLight& light, Factor factor,
+                  const Position& position, bool logarithmic) {
   const FactorModel& model = file.model;
   const ModelSpec& spec = model.spec();
   std::string data, curves, hollow;
@@ -59,7 +75,12 @@ std::string Panel(const ModelFile& file, Factor factor, const Position& position
       const bool drawn = !absent;
       any_dead = any_dead || (dead && drawn);
       rows.push_back({position(i), drawn ? table[i] : kGap, drawn && dead ? table[i] : kGap});
-      if (!absent) values.push_back(table[i]);
+    }
+    const auto through =
+        std::span(light.through).subspan(model.TableOffset(factor, t), table.size());
+    const double enough = kLightThatCounts * std::accumulate(through.begin(), through.end(), 0.0);
+    for (size_t i = 0; i < table.size() && !absent; ++i) {
+      if (through[i] >= enough) values.push_back(table[i]);
     }
     const bool by_channel = spec.sharing(factor).per_channel;
     const std::string block = std::string(FactorName(factor)) + std::to_string(t);
@@ -93,19 +114,21 @@ std::string Panel(const ModelFile& file, Factor factor, const Position& position
          GnuplotNumber(top > 0 ? top * 1.08 : 1) + "]\n" + curves;
 }
 
-// Bars of d and of each lobe's s, by channel, with their values written above.
-std::string CoefficientPanel(const FactorModel& model) {
-  const int groups = 1 + model.spec().lobes;
+// Bars of the albedos of the diffuse term and of each lobe, by channel, with their values written
+// above.
+std::string AlbedoPanel(const LobeLight& light) {
+  const int groups = 1 + static_cast<int>(light.lobes.size());
   std::string data[kChannels], tics;
   double top = 0;
   for (int g = 0; g < groups; ++g) {
-    const auto values = g == 0 ? model.d() : model.s(g - 1);
+    const Rgb& values = g == 0 ? light.diffuse : light.lobes[g - 1];
     for (int c = 0; c < kChannels; ++c) {
       data[c] += GnuplotNumber(g + 0.28 * (c - 1)) + " " + GnuplotNumber(values[c]) + "\n";
       top = std::max(top, values[c]);
     }
-    const std::string name = g == 0 ? "d" : "s_{" + std::to_string(g) + "}";
-    tics += (g == 0 ? "'" : ", '") + name + "' " + std::to_string(g);
+    const std::string name = g == 0 ? "diffuse" : "lobe " + std::to_string(g);
+    const double share = g == 0 ? light.DiffuseShare() : light.Share(g - 1);
+    tics += (g == 0 ? "\"" : ", \"") + name + "\\n" + Percent(share) + "\" " + std::to_string(g);
   }
   std::string script, plot;
   const std::string font = groups <= 4 ? ",14" : ",11";
@@ -130,6 +153,7 @@ void DrawFactors(const ModelFile& file, const std::string& path) {
   const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
   const CatmullRom spline(spec.g_nodes);
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
+  const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), file.model);
   constexpr double kLeft = 0.085, kRight = 0.975, kBottom = 0.075, kTop = 0.865;  // of the canvas
   constexpr double kColumnGap = 0.11, kRowGap = 0.19;
   std::string script = "set multiplot layout 2,2 margins " + GnuplotNumber(kLeft) + "," +
@@ -156,18 +180,19 @@ void DrawFactors(const ModelFile& file, const std::string& path) {
         "set xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), '60' sqrt(60), "
         "'90' sqrt(90))\n",
         Panel(
-            file, Factor::kD,
+            file, light, Factor::kD,
             [&](int i) { return std::sqrt(RadiansToDegrees(grid.ThetaH(i + 0.5))); }, true));
-  panel(
-      "F, Fresnel factor",
-      "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
-      Panel(
-          file, Factor::kF, [&](int i) { return RadiansToDegrees(grid.ThetaD(i + 0.5)); }, false));
+  panel("F, Fresnel factor",
+        "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
+        Panel(
+            file, light, Factor::kF, [&](int i) { return RadiansToDegrees(grid.ThetaD(i + 0.5)); },
+            false));
   panel("G, shadowing and masking", "set xlabel 'θ_i, θ_o [°]'\nset ylabel 'G, mean 1'\n",
         Panel(
-            file, Factor::kG, [&](int i) { return RadiansToDegrees(spline.NodeAngle(i)); }, false));
-  panel("d [1/sr] and s_m of lobe m", "set xlabel ''\nset ylabel ''\nunset grid\nset grid ytics\n",
-        CoefficientPanel(file.model));
+            file, light, Factor::kG, [&](int i) { return RadiansToDegrees(spline.NodeAngle(i)); },
+            false));
+  panel("albedo, and share of all that is reflected",
+        "set xlabel ''\nset ylabel ''\nunset grid\nset grid ytics\n", AlbedoPanel(light));
   DrawPng(path, 1800, 1300, script);
 }
 

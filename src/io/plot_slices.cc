@@ -33,7 +33,8 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
           const bool known = of_fit ? drawable[bin] : valid[bin];
           const double x = known ? (of_fit ? fitted : measured).Value(c, bin) : 0;
           row.push_back(x > 0 ? x : std::numeric_limits<double>::quiet_NaN());
-          values.push_back(x);
+          // The axis is for what was measured: where nothing was, the fit may be anything.
+          if (valid[bin]) values.push_back(x);
         }
       }
       rows.push_back(row);

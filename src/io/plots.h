@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/appearance/appearance.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/brdf_table.h"
 #include "trilobe/model/iteration_record.h"
@@ -24,9 +25,18 @@ void DrawFactors(const ModelFile& file, const std::string& path);
 // degrees, one panel a channel.
 void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path);
 
-// Measured and fitted material on a sphere under the same lights, and their relative difference.
-void DrawSpheres(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path,
-                 int num_threads);
+// Measured and fitted material on a sphere under the lights of the options (whose size is not
+// used), and how far apart they are to the eye.
+void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
+                 AppearanceOptions options);
+
+// The two spheres alone, side by side, without text.
+void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
+                     const AppearanceOptions& options);
+
+// Which directions were measured: for each degree of theta_i and theta_o the share of the bins
+// above the surface that is valid. Dashed: table.max_theta.
+void DrawMeasured(const BrdfTable& table, const std::string& path);
 
 // E over iterations and over seconds; iterations after which the filter ran, and those whose step
 // was taken back, are marked. Throws Error when the trace is empty.
@@ -50,7 +60,8 @@ void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 // existing folder: slices and spheres need `measured`, trace needs records. Returns their paths.
 std::vector<std::string> DrawPictures(const ModelFile& file, const BrdfTable* measured,
                                       std::span<const IterationRecord> trace,
-                                      const std::string& folder, int num_threads);
+                                      const std::string& folder,
+                                      const AppearanceOptions& appearance);
 
 }  // namespace trilobe
 

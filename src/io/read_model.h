@@ -24,8 +24,9 @@ struct FitInfo {
   int threads = 0;
   std::string source;
   int valid_samples = 0;
-  std::string program;  // "trilobe 0.1.0"
-  std::string date;     // ISO 8601, UTC
+  double max_angle = 0;  // [degrees] up to which theta_i and theta_o the data reach
+  std::string program;   // "trilobe 0.1.0"
+  std::string date;      // ISO 8601, UTC
 };
 
 // A model as it is stored (docs/file-formats.md).

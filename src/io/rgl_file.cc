@@ -10,6 +10,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/io/bilinear_warp.h"
+#include "trilobe/io/rgl_mask.h"
 #include "trilobe/io/tensor_file.h"
 
 namespace trilobe {
@@ -22,6 +23,7 @@ struct RglBrdf::Tables {
   BilinearStack sigma;          // [1]: projected area of the microfacets
   BilinearWarp vndf;            // [p t]: visible normals, to uniform coordinates
   BilinearStack rgb;            // [p t 3]: values in those coordinates
+  RglMask mask;                 // [p t]: which nodes of rgb were measured
 };
 
 namespace {
@@ -107,16 +109,20 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   if (const int slice = BilinearWarp::FirstVanishing(vndf); slice >= 0) {
     file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i");
   }
+  BilinearStack rgb = ReadStack(file, "rgb", {p, t, kChannels});
+  RglMask mask(file, theta_i, p * t, rgb.rows, rgb.columns);
   return RglBrdf(std::make_unique<const Tables>(
       Tables{phi_i, theta_i, ReadNonNegative(file, "ndf", {}), ReadNonNegative(file, "sigma", {}),
-             BilinearWarp(std::move(vndf)), ReadStack(file, "rgb", {p, t, kChannels})}));
+             BilinearWarp(std::move(vndf)), std::move(rgb), std::move(mask)}));
 }
 
 bool RglBrdf::isotropic() const { return tables_->phi_i.size() == 1; }
 
-Rgb RglBrdf::Evaluate(const DirectionPair& directions) const {
+double RglBrdf::max_theta() const { return tables_->mask.max_theta(); }
+
+RglBrdf::Value RglBrdf::LookUp(const DirectionPair& directions) const {
   const auto& [wi, wo] = directions;
-  if (!(wi[2] > 0 && wo[2] > 0)) return {0, 0, 0};
+  if (!(wi[2] > 0 && wo[2] > 0)) return {};
   const Direction half = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
   const double theta_i = Theta(wi), phi_i = Phi(wi);
   const SquarePoint u_i = ToSquare(theta_i, phi_i);
@@ -135,10 +141,10 @@ Rgb RglBrdf::Evaluate(const DirectionPair& directions) const {
 
   // Where the projected area vanishes no microfacet is seen: nothing is reflected.
   const double divisor = 4 * tables_->sigma.At(0, u_i) * wo[2];
-  if (!(divisor > 0)) return {0, 0, 0};
+  if (!(divisor > 0)) return {};
   const SquarePoint x = tables_->vndf.Invert(blend, u_m);
   const double factor = tables_->ndf.At(0, u_m) / divisor;
-  Rgb rho{};
+  Value looked_up{.measured = tables_->mask.Measured(blend, x)};
   for (int channel = 0; channel < kChannels; ++channel) {
     double value = 0;
     for (int k = 0; k < blend.count; ++k) {
@@ -146,9 +152,10 @@ Rgb RglBrdf::Evaluate(const DirectionPair& directions) const {
     }
     // Interpolated colours dip below 0 here and there. The upper limit is for absurd tables, whose
     // product exceeds what a double holds.
-    rho[channel] = value > 0 ? std::min(value * factor, std::numeric_limits<double>::max()) : 0.0;
+    looked_up.rho[channel] =
+        value > 0 ? std::min(value * factor, std::numeric_limits<double>::max()) : 0.0;
   }
-  return rho;
+  return looked_up;
 }
 
 bool LooksLikeRgl(std::string_view bytes) { return TensorFile::HasMagic(bytes); }
@@ -162,13 +169,22 @@ BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const Merl
   }
   BrdfTable table = MakeInvalidTable(source, grid);
   const std::vector<bool> above = BinsAboveSurface(grid);
+  table.max_theta = brdf.max_theta();
+  const double min_cosine = table.max_theta < kPi / 2 ? std::cos(table.max_theta) : 0;
+  table.unmeasured.assign(grid.size(), Unmeasured::kNo);
   const int row_size = grid.theta_d * grid.phi_d;
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     for (int bin = h * row_size; bin < (h + 1) * row_size; ++bin) {
       if (!above[bin]) continue;
-      const Rgb rho = brdf.Evaluate(ToDirections(grid.Center(bin)));
+      const DirectionPair directions = ToDirections(grid.Center(bin));
+      const RglBrdf::Value value = brdf.LookUp(directions);
       for (int channel = 0; channel < kChannels; ++channel) {
-        table.SetValue(channel, bin, rho[channel]);
+        table.SetValue(channel, bin, value.rho[channel]);
+      }
+      if (std::min(directions.wi[2], directions.wo[2]) < min_cosine) {
+        table.unmeasured[bin] = Unmeasured::kBeyondNodes;
+      } else if (!value.measured) {
+        table.unmeasured[bin] = Unmeasured::kExtrapolated;
       }
     }
   });

@@ -23,8 +23,19 @@ class RglBrdf {
 
   bool isotropic() const;  // one phi_i in the file
 
+  // theta_i of the last nodes that were measured, at most 90 degrees [rad]. Beyond it the material
+  // was not measured.
+  double max_theta() const;
+
   // BRDF [1/sr], >= 0 (docs/method.md); 0 where a direction is below the surface.
-  Rgb Evaluate(const DirectionPair& directions) const;
+  Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
+
+  // The same, and whether all nodes of `rgb` that it takes with weight were measured.
+  struct Value {
+    Rgb rho{};
+    bool measured = true;
+  };
+  Value LookUp(const DirectionPair& directions) const;
 
  private:
   struct Tables;
@@ -35,8 +46,8 @@ class RglBrdf {
 // True if the bytes begin with the tensor file's magic.
 bool LooksLikeRgl(std::string_view bytes);
 
-// The BRDF at the centres of all bins above the surface, others invalid.
-// Throws Error for an anisotropic material.
+// The BRDF at the centres of all bins above the surface, others invalid, and which of them were
+// measured (docs/method.md). Throws Error for an anisotropic material.
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},
                       int num_threads = 1);
 

@@ -22,11 +22,21 @@ const SynthMaterial& SynthMaterialOf(std::string_view source) {
   return FindSynthMaterial(source.substr(kSynth.size()));
 }
 
+void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
+  if (options.extrapolated) {
+    table->unmeasured.clear();
+    table->max_theta = kPi / 2;
+  }
+  LimitAngles(DegreesToRadians(options.max_angle_deg), Unmeasured::kBeyondMaxAngle, table);
+}
+
 BrdfTable ParseSource(std::string_view bytes, const std::string& source,
-                      [[maybe_unused]] int num_threads) {
+                      const SourceOptions& options) {
 #ifdef TRILOBE_RGL
   if (LooksLikeRgl(bytes)) {
-    return TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, num_threads);
+    BrdfTable table = TabulateRgl(RglBrdf::Parse(bytes, source), source, {}, options.num_threads);
+    DecideMeasured(options, &table);
+    return table;
   }
 #endif
   if (LooksLikeModel(bytes)) {
@@ -34,14 +44,17 @@ BrdfTable ParseSource(std::string_view bytes, const std::string& source,
                 ": this is a JSON file, as a fitted model is, and not a measurement; give a MERL "
                 ".binary file, an RGL *_rgb.bsdf file, or synth:NAME");
   }
-  return ParseMerl(bytes, source);
+  BrdfTable table = ParseMerl(bytes, source);
+  DecideMeasured(options, &table);
+  return table;
 }
 
 BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
-  if (!IsSynthetic(source)) return ParseSource(ReadFile(source), source, options.num_threads);
+  if (!IsSynthetic(source)) return ParseSource(ReadFile(source), source, options);
   BrdfTable table =
       Synthesize(SynthMaterialOf(source), options.noise, options.seed, {}, options.num_threads);
   table.source = source;
+  DecideMeasured(options, &table);
   return table;
 }
 

@@ -1,5 +1,6 @@
 #include "trilobe/io/tensor_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -131,6 +132,14 @@ Tensor TensorFile::Float32(std::string_view name, int ndim) const {
     }
   }
   return tensor;
+}
+
+bool TensorFile::Has(std::string_view name) const {
+  return std::ranges::find(fields_, name, &Field::name) != fields_.end();
+}
+
+std::string_view TensorFile::Bytes(std::string_view name) const {
+  return Find(name, kUint8, 1).data;
 }
 
 uint8_t TensorFile::Byte(std::string_view name) const {

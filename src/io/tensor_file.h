@@ -30,6 +30,11 @@ class TensorFile {
   // shape, or has an entry that is not finite.
   Tensor Float32(std::string_view name, int ndim) const;
 
+  bool Has(std::string_view name) const;
+
+  // A uint8 array with one dimension, whose bytes are those of the file. Throws Error as above.
+  std::string_view Bytes(std::string_view name) const;
+
   // The single byte of a uint8 array of one entry. Throws Error as above.
   uint8_t Byte(std::string_view name) const;
 

@@ -6,6 +6,12 @@
 
 namespace trilobe {
 
+double BrdfSamples::SolidAngle(int j) const {
+  if (!on_grid()) return 1;
+  const int row = bins[j] / grid.phi_d;
+  return grid.SolidAngle(row / grid.theta_d, row % grid.theta_d);
+}
+
 BrdfSamples ValidSamples(const BrdfTable& table) {
   BrdfSamples samples{table.source, table.grid, {}, {}, {}};
   const std::vector<bool> valid = ValidBins(table);
@@ -17,7 +23,10 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
   if (samples.rho.empty()) {
     throw Error(table.source +
                 ": no valid bin: nowhere are both directions above the surface and all three "
-                "values finite and >= 0; check that the file is a BRDF in MERL layout");
+                "values finite and >= 0" +
+                (table.unmeasured.empty()
+                     ? "; check that the file is a BRDF in MERL layout"
+                     : " where it was measured; --max_angle and --extrapolated say what counts"));
   }
   return samples;
 }

@@ -28,6 +28,9 @@ struct BrdfSamples {
   bool on_grid() const { return angles.empty(); }
   double Multiplicity(int j) const { return multiplicity.empty() ? 1 : multiplicity[j]; }
   HalfDiffAngles Angles(int j) const { return on_grid() ? grid.Center(bins[j]) : angles[j]; }
+  // The measure of the pairs of directions that a sample stands for, in some unit; 1 where
+  // scattered.
+  double SolidAngle(int j) const;
 };
 
 // The valid bins of a table. Throws Error when there is none.

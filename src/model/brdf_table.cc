@@ -1,11 +1,12 @@
 #include "trilobe/model/brdf_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trilobe {
 
 BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid) {
-  BrdfTable table{source, grid, {}};
+  BrdfTable table{source, grid, {}, {}};
   for (auto& plane : table.stored) plane.assign(grid.size(), -1.0);
   return table;
 }
@@ -25,8 +26,28 @@ std::vector<bool> ValidBins(const BrdfTable& table) {
     for (const auto& plane : table.stored) {
       if (!(std::isfinite(plane[bin]) && plane[bin] >= 0)) valid[bin] = false;
     }
+    if (ReasonOf(table, bin) != Unmeasured::kNo) valid[bin] = false;
   }
   return valid;
+}
+
+double MaxAngleDegrees(const BrdfTable& table) {
+  constexpr double kDigits = 1e9;
+  return std::round(RadiansToDegrees(table.max_theta) * kDigits) / kDigits;
+}
+
+void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
+  if (max_theta >= table->max_theta) return;  // 90 degrees, say: nothing more to leave out
+  table->max_theta = max_theta;
+  table->unmeasured.resize(table->grid.size(), Unmeasured::kNo);
+  const double min_cosine = std::cos(max_theta);
+  for (int bin = 0; bin < table->grid.size(); ++bin) {
+    const auto [cos_i, cos_o] = ToCosines(table->grid.Center(bin));
+    const bool above_surface = cos_i > 0 && cos_o > 0;
+    const bool beyond = std::min(cos_i, cos_o) < min_cosine;
+    Unmeasured& why = table->unmeasured[bin];
+    if (above_surface && beyond && why == Unmeasured::kNo) why = reason;
+  }
 }
 
 }  // namespace trilobe

@@ -2,10 +2,12 @@
 #define TRILOBE_MODEL_BRDF_TABLE_H_
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "trilobe/model/channels.h"
+#include "trilobe/model/directions.h"
 #include "trilobe/model/merl_grid.h"
 
 namespace trilobe {
@@ -13,12 +15,23 @@ namespace trilobe {
 // BRDF [1/sr] = stored value x this, for the planes R, G, B of a MERL file.
 inline constexpr Rgb kMerlScale = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
+// Why a bin does not count as measured, whatever value it holds. Of several reasons the first that
+// was found stays.
+enum class Unmeasured : uint8_t {
+  kNo,              // it was measured
+  kExtrapolated,    // filled by the authors of the file, from other directions
+  kBeyondNodes,     // theta_i or theta_o is beyond the last theta_i at which the file has data
+  kBeyondMaxAngle,  // theta_i or theta_o is beyond the angle that the user set
+};
+
 // A measurement in MERL layout. It keeps the numbers as a MERL file stores them, so that reading
 // and writing one changes no bit.
 struct BrdfTable {
   std::string source;  // file name or synth:NAME, for messages and reports
   MerlGrid grid;
   std::array<std::vector<double>, kChannels> stored;  // [kChannels][grid.size()], < 0 is invalid
+  std::vector<Unmeasured> unmeasured = {};  // [grid.size()], or empty where all bins are measured
+  double max_theta = kPi / 2;  // [rad] theta_i and theta_o beyond this are not measured
 
   // BRDF [1/sr] of one bin, whether valid or not.
   double Value(int channel, int bin) const { return stored[channel][bin] * kMerlScale[channel]; }
@@ -35,9 +48,21 @@ BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid);
 // True where both directions are above the surface at the bin's centre. [grid.size()]
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid);
 
-// True where the bin is above the surface and all three stored values are finite and >= 0
-// (docs/method.md). [grid.size()]
+// True where the bin is above the surface, all three stored values are finite and >= 0, and it was
+// measured (docs/method.md). [grid.size()]
 std::vector<bool> ValidBins(const BrdfTable& table);
+
+// What the table says of one bin.
+inline Unmeasured ReasonOf(const BrdfTable& table, int bin) {
+  return table.unmeasured.empty() ? Unmeasured::kNo : table.unmeasured[bin];
+}
+
+// table.max_theta in degrees, to show: 60 where the user said 60, whatever radians made of it.
+double MaxAngleDegrees(const BrdfTable& table);
+
+// From now on nothing is measured where theta_i or theta_o, at the centre of a bin above the
+// surface, is beyond `max_theta` [rad]. Bins that were not measured before keep their reason.
+void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table);
 
 }  // namespace trilobe
 

@@ -71,6 +71,7 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     int n = folded.row_begin[h * grid.theta_d];
     for (int d = 0; d < grid.theta_d; ++d) {
+      const double solid_angle = grid.SolidAngle(h, d);
       for (int p = 0; p < half; ++p) {
         const Pair pair = lookup.At(h, d, p);
         if (pair.empty()) continue;
@@ -85,12 +86,14 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
             1 / (cosine[i.interval](i.t - 0.5) * cosine[o.interval](o.t - 0.5));
         const double multiplicity1 = pair.first < 0 ? 0 : samples.Multiplicity(pair.first);
         const double multiplicity2 = pair.second < 0 ? 0 : samples.Multiplicity(pair.second);
+        // The mirror bin has theta_i and theta_o exchanged, and its own weight.
+        const Rgb first = pair.first < 0 ? Rgb{} : samples.rho[pair.first];
+        const Rgb second = pair.second < 0 ? Rgb{} : samples.rho[pair.second];
+        const Rgb weight1 = weighting({first, {cos_i, cos_o}, solid_angle});
+        const Rgb weight2 = weighting({second, {cos_o, cos_i}, solid_angle});
         for (int c = 0; c < kChannels; ++c) {
-          // The mirror bin has theta_i and theta_o exchanged, and its own weight.
-          const double rho1 = pair.first < 0 ? 0 : samples.rho[pair.first][c];
-          const double rho2 = pair.second < 0 ? 0 : samples.rho[pair.second][c];
-          const double w1 = multiplicity1 * weighting.weight(rho1, cos_i);
-          const double w2 = multiplicity2 * weighting.weight(rho2, cos_o);
+          const double rho1 = first[c], rho2 = second[c];
+          const double w1 = multiplicity1 * weight1[c], w2 = multiplicity2 * weight2[c];
           const double w = w1 + w2;
           // As rho1 plus a share of the difference: exact when the two agree.
           const double share = w > 0 ? w2 / w : 0;

@@ -1,9 +1,14 @@
 #include "trilobe/model/gauge.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
+#include "trilobe/model/catmull_rom.h"
 #include "trilobe/model/directions.h"
+#include "trilobe/model/lobe_light.h"
+#include "trilobe/model/with_lobes.h"
 
 namespace trilobe {
 namespace {
@@ -24,19 +29,42 @@ double WeightedSum(std::span<const double> weights, std::span<const double> valu
   return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0);
 }
 
-void FillDeadBins(std::span<const double> coverage, std::span<double> table) {
+constexpr size_t kLookedAt = 5;
+
+// Linear between two live bins. Beyond the last one the median of the last `looked_at`: one alone,
+// at the edge of the data, may be anything.
+void FillDeadBins(std::span<const double> coverage, size_t looked_at, std::span<double> table) {
   const int size = static_cast<int>(table.size());
-  int left = -1;  // the last live bin before the gap
+  std::vector<double> last;  // live values so far, at most `looked_at`
+  int left = -1;             // the last live bin before the gap
   for (int k = 0; k <= size; ++k) {
     if (k < size && !(coverage[k] > 0)) continue;
+    if (left < 0 && k == size) return;  // no live bin at all
+    double beyond = 0;
+    if (k == size) {
+      std::vector<double> sorted = last;
+      std::ranges::sort(sorted);
+      beyond = sorted[sorted.size() / 2];
+    }
     for (int gap = left + 1; gap < k; ++gap) {
-      if (left < 0 && k == size) return;  // no live bin at all
       const double t = static_cast<double>(gap - left) / (k - left);
-      table[gap] = left < 0    ? table[k]
-                   : k == size ? table[left]
-                               : (1 - t) * table[left] + t * table[k];
+      table[gap] = left < 0 ? table[k] : k == size ? beyond : (1 - t) * table[left] + t * table[k];
     }
     left = k;
+    if (k == size) break;
+    last.push_back(table[k]);
+    if (last.size() > looked_at) last.erase(last.begin());
+  }
+}
+
+// Fills the dead nodes of G from G / cos theta of the live ones.
+void ContinueShadowing(std::span<const double> coverage, const CatmullRom& spline,
+                       std::span<double> G) {
+  std::vector<double> ratio(G.begin(), G.end());
+  for (int k = 0; k < spline.nodes(); ++k) ratio[k] /= std::cos(spline.NodeAngle(k));
+  FillDeadBins(coverage, kLookedAt, ratio);
+  for (int k = 0; k < spline.nodes(); ++k) {
+    if (!(coverage[k] > 0)) G[k] = ratio[k] * std::cos(spline.NodeAngle(k));
   }
 }
 
@@ -46,6 +74,8 @@ void Normalize(Factor factor, int index, std::span<const double> norm_weights, d
                FactorModel* model) {
   const std::span<double> table = model->table(factor, index);
   const double norm = WeightedSum(norm_weights, table) / norm_scale;
+  // But for rounding it is 1: so equal tables stay equal, and a second time changes nothing.
+  if (std::abs(norm - 1) <= 1e-14) return;
   const bool vanished = !(norm > 0);
   if (vanished) {
     const double value =
@@ -75,6 +105,12 @@ std::vector<bool> DeadParameters(std::span<const double> coverage) {
   return dead;
 }
 
+std::vector<double> LiveEntries(const std::vector<bool>& dead) {
+  std::vector<double> live(dead.size());
+  for (size_t k = 0; k < dead.size(); ++k) live[k] = dead[k] ? 0 : 1;
+  return live;
+}
+
 void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from,
                         FactorModel* to) {
   for (size_t k = 0; k < coverage.size(); ++k) {
@@ -82,7 +118,7 @@ void CopyDeadParameters(std::span<const double> coverage, const FactorModel& fro
   }
 }
 
-void Canonicalize(std::span<const double> coverage, FactorModel* model) {
+void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   for (const Factor factor : kFactors) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {
@@ -90,12 +126,54 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model) {
       const auto weights = coverage.subspan(model->TableOffset(factor, t), table.size());
       const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
       if (!(total > 0)) continue;  // no data at all for these channels: nothing to normalise by
-      FillDeadBins(weights, table);
+      FillDeadBins(weights, 1, table);
       if (factor == Factor::kD) {
         Normalize(factor, t, ProjectedBinAngles(spec.d_bins), 1, model);
       } else {
         Normalize(factor, t, weights, total, model);
       }
+    }
+  }
+}
+
+void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrder order) {
+  // Brings numbers into a range in which products neither overflow nor vanish.
+  NormalizeScale(coverage, model);
+  const ModelSpec& spec = model->spec();
+  LobeLight light = ComputeLobeLight(coverage, *model);
+  if (order == LobeOrder::kByLight && spec.lobes > 1) {
+    std::vector<int> lobes(spec.lobes);
+    std::iota(lobes.begin(), lobes.end(), 0);
+    std::ranges::stable_sort(lobes, std::greater(), [&](int m) { return light.Share(m); });
+    if (!std::ranges::is_sorted(lobes)) {
+      *model = WithLobes(*model, lobes);
+      light = ComputeLobeLight(coverage, *model);
+    }
+  }
+  const CatmullRom spline(spec.g_nodes);
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const std::span<double> table = model->table(factor, t);
+      const size_t offset = model->TableOffset(factor, t);
+      const auto covered = coverage.subspan(offset, table.size());
+      const bool any = std::ranges::any_of(covered, [](double w) { return w > 0; });
+      if (!any) continue;
+      if (factor == Factor::kG) {
+        ContinueShadowing(covered, spline, table);
+      } else {
+        FillDeadBins(covered, kLookedAt, table);
+      }
+      if (factor == Factor::kD) {
+        Normalize(factor, t, VisibleSolidAngles(spec.d_bins), 1, model);
+        continue;
+      }
+      std::span<const double> weights = std::span(light.through).subspan(offset, table.size());
+      double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+      if (!(total > 0)) {  // no light at all
+        weights = covered;
+        total = std::accumulate(weights.begin(), weights.end(), 0.0);
+      }
+      Normalize(factor, t, weights, total, model);
     }
   }
 }

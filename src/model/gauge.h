@@ -8,17 +8,27 @@
 
 namespace trilobe {
 
-// Scale can move between s, D, F and G without changing any BRDF value. The canonical form fixes it
-// (docs/method.md), which makes models storable and lobes comparable:
-// - each D integrates to 1 over the projected hemisphere: sum_i D_i pi (sin^2 b_{i+1} - sin^2 b_i)
-//   = 1 with the true edges b_i of the theta_h bins;
-// - each F and each G has mean 1, weighted by `coverage`, over the bins that data touch;
-// - s carries the magnitude. A lobe whose factors vanish gets s = 0, its vanished tables 1
-//   everywhere before normalisation.
-// Dead bins (coverage 0) are filled for display first, from their nearest live neighbours: linearly
-// between two, constant beyond the last.
-// `coverage` is Objective::coverage(), in the order of model->parameters().
-void Canonicalize(std::span<const double> coverage, FactorModel* model);
+// Scale can move between s, D, F and G without changing any BRDF value, and lobes can change
+// places. The canonical form, in which models are stored, fixes both by what a lobe reflects
+// (docs/method.md), so that entries that hardly any light goes through have no say:
+// - each D integrates to 1 over the solid angle of half vectors, weighted by how much of the
+//   directions there is above the surface (VisibleSolidAngles);
+// - each F and each G has mean 1, weighted by the light that goes through its entries
+//   (LobeLight::through);
+// - s carries the magnitude: 4 s is the albedo of a lobe whose F and G are 1. A lobe whose factors
+//   vanish gets s = 0, its vanished tables 1 everywhere before normalisation;
+// - the lobe that reflects most comes first.
+// Dead bins (coverage 0) are filled for display and for directions beyond the data first, from
+// their nearest live neighbours: linearly between two, beyond the last the median of the last five;
+// of G it is G / cos theta that is continued so, since that keeps the BRDF from growing towards the
+// horizon. `coverage` is Objective::coverage(), in the order of model->parameters().
+enum class LobeOrder { kByLight, kAsTheyAre };
+void Canonicalize(std::span<const double> coverage, FactorModel* model,
+                  LobeOrder order = LobeOrder::kByLight);
+
+// The same for work inside a fit, which compares models of one run: cheaper, as F and G are
+// weighted by coverage and D by the projected solid angle; lobes keep their places.
+void NormalizeScale(std::span<const double> coverage, FactorModel* model);
 
 // Integral of D over the projected hemisphere, D constant in each bin.
 double ProjectedIntegral(std::span<const double> D);
@@ -28,6 +38,9 @@ void CopyDeadParameters(std::span<const double> coverage, const FactorModel& fro
 
 // True for the table entries that no data touch, in the order of parameters().
 std::vector<bool> DeadParameters(std::span<const double> coverage);
+
+// A coverage that says no more than that: 0 for the dead, 1 for the others.
+std::vector<double> LiveEntries(const std::vector<bool>& dead);
 
 }  // namespace trilobe
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "trilobe/base/parallel.h"
@@ -44,10 +45,45 @@ BinCounts CountBins(const BrdfTable& table) {
     } else if (std::ranges::any_of(stored, [](double x) { return x < 0; })) {
       ++counts.negative;
     } else {
-      ++counts.valid;
+      switch (ReasonOf(table, bin)) {
+        case Unmeasured::kNo:
+          ++counts.valid;
+          break;
+        case Unmeasured::kExtrapolated:
+          ++counts.extrapolated;
+          break;
+        case Unmeasured::kBeyondNodes:
+          ++counts.beyond_nodes;
+          break;
+        case Unmeasured::kBeyondMaxAngle:
+          ++counts.beyond_max_angle;
+          break;
+      }
     }
   }
   return counts;
+}
+
+std::vector<double> ValidShares(const BrdfTable& table) {
+  constexpr int kCells = 90;
+  std::vector<int> bins(kCells * kCells), valid_bins(kCells * kCells);
+  const std::vector<bool> valid = ValidBins(table);
+  const auto cell_of = [](double cosine) {
+    return std::min(static_cast<int>(RadiansToDegrees(std::acos(std::min(cosine, 1.0)))),
+                    kCells - 1);
+  };
+  for (int bin = 0; bin < table.grid.size(); ++bin) {
+    const auto [cos_i, cos_o] = ToCosines(table.grid.Center(bin));
+    if (!(cos_i > 0 && cos_o > 0)) continue;
+    const int cell = cell_of(cos_i) * kCells + cell_of(cos_o);
+    ++bins[cell];
+    if (valid[bin]) ++valid_bins[cell];
+  }
+  std::vector<double> shares(bins.size(), std::numeric_limits<double>::quiet_NaN());
+  for (size_t cell = 0; cell < bins.size(); ++cell) {
+    if (bins[cell] > 0) shares[cell] = static_cast<double>(valid_bins[cell]) / bins[cell];
+  }
+  return shares;
 }
 
 ValueRange RangeOfValidBins(const BrdfTable& table) {
@@ -83,13 +119,15 @@ PairError ExchangeError(const BrdfTable& table) {
   return Summarize(std::move(differences));
 }
 
-PairError ReciprocityError(const BrdfFunction& brdf, const MerlGrid& grid, int num_threads) {
+PairError ReciprocityError(const BrdfFunction& brdf, const MerlGrid& grid, int num_threads,
+                           const MeasuredFunction& measured) {
   std::vector<std::vector<double>> rows(grid.theta_h);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     const int size = grid.theta_d * grid.phi_d;
     for (int bin = h * size; bin < (h + 1) * size; ++bin) {
       const DirectionPair pair = ToDirections(grid.Center(bin));
       if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) continue;
+      if (!measured(pair) || !measured({pair.wo, pair.wi})) continue;
       const Rgb a = brdf(pair), b = brdf({pair.wo, pair.wi});
       for (int c = 0; c < kChannels; ++c) rows[h].push_back(RelativeDifference(a[c], b[c]));
     }

@@ -1,6 +1,9 @@
 #ifndef TRILOBE_MODEL_MEASUREMENT_STATS_H_
 #define TRILOBE_MODEL_MEASUREMENT_STATS_H_
 
+#include <functional>
+#include <vector>
+
 #include "trilobe/model/albedo.h"
 #include "trilobe/model/brdf_table.h"
 #include "trilobe/model/channels.h"
@@ -14,8 +17,16 @@ struct BinCounts {
   int below_surface = 0;  // a direction is below the surface at the centre
   int non_finite = 0;     // above it, but a channel is NaN or infinite
   int negative = 0;       // above it and finite, but a channel is below 0: marked as lost
+  // None of these, but not measured (Unmeasured).
+  int extrapolated = 0;
+  int beyond_nodes = 0;
+  int beyond_max_angle = 0;
 };
 BinCounts CountBins(const BrdfTable& table);
+
+// What part of the bins above the surface is valid, for each cell of 1 degree x 1 degree of
+// (theta_i, theta_o), [90][90], theta_o fastest; NaN where a cell holds no such bin's centre.
+std::vector<double> ValidShares(const BrdfTable& table);
 
 // Smallest and largest value of the valid bins [1/sr]; 0 where there is none.
 struct ValueRange {
@@ -38,8 +49,11 @@ struct PairError {
 PairError ExchangeError(const BrdfTable& table);
 
 // Reciprocity error of a function: rho(wi, wo) against rho(wo, wi), at the centres of the bins of
-// `grid` that are above the surface.
-PairError ReciprocityError(const BrdfFunction& brdf, const MerlGrid& grid, int num_threads);
+// `grid` that are above the surface and where both orders were measured, as the function says.
+using MeasuredFunction = std::function<bool(const DirectionPair&)>;
+PairError ReciprocityError(
+    const BrdfFunction& brdf, const MerlGrid& grid, int num_threads,
+    const MeasuredFunction& measured = [](const DirectionPair&) { return true; });
 
 }  // namespace trilobe
 

@@ -33,6 +33,13 @@ struct MerlGrid {
     return Center(bin / (theta_d * phi_d), bin / phi_d % theta_d, bin % phi_d);
   }
 
+  // The measure of the pairs of directions in a bin (h, d), of any phi_d, in some unit:
+  // d omega_i d omega_o = 4 cos theta_d d omega_h d omega_d, where d theta_h ~ sqrt(theta_h).
+  double SolidAngle(int h, int d) const {
+    const double a = ThetaH(h + 0.5), b = ThetaD(d + 0.5);
+    return std::sqrt(a) * std::sin(a) * std::sin(b) * std::cos(b);
+  }
+
   // Where an angle lies in index space: bin `i` covers [i, i + 1).
   double ThetaHCoordinate(double angle) const { return theta_h * std::sqrt(angle / (kPi / 2)); }
   double ThetaDCoordinate(double angle) const { return theta_d * (angle / (kPi / 2)); }

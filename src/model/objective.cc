@@ -100,7 +100,7 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
 
 struct Objective::Prepared {
   Prepared(BrdfSamples all, const ModelSpec& of, const Weighting& weights, int num_threads)
-      : samples(std::move(all)), spec(of), weighting(weights) {
+      : samples(std::move(all)), spec(of), weighting(ForSamples(weights, samples)) {
     CheckGrid(spec, samples.grid);
     CheckRange(samples);
     if (samples.on_grid()) {
@@ -124,10 +124,8 @@ struct Objective::Prepared {
     sample.stencils = samples.on_grid() ? GridStencils(spec, samples.grid, samples.bins[j])
                                         : ScatteredStencils(spec, angles);
     sample.rho = samples.rho[j];
-    for (int c = 0; c < kChannels; ++c) {
-      sample.weight[c] =
-          samples.Multiplicity(j) * weighting.weight(sample.rho[c], ToCosines(angles).i);
-    }
+    sample.weight = weighting({sample.rho, ToCosines(angles), samples.SolidAngle(j)});
+    for (double& w : sample.weight) w *= samples.Multiplicity(j);
     return sample;
   }
 

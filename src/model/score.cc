@@ -23,6 +23,7 @@ bool Worse(const WorstSample& a, const WorstSample& b) {
 
 // Sums over some of the samples.
 struct Sums {
+  double objective = 0;
   Rgb squared{};  // of (rho - rho*) / unit
   double relative = 0;
   double log = 0;
@@ -37,6 +38,7 @@ struct Sums {
 
   void Add(const Sums& other) {
     for (int c = 0; c < kChannels; ++c) squared[c] += other.squared[c];
+    objective += other.objective;
     relative += other.relative;
     log += other.log;
     max_absolute = std::max(max_absolute, other.max_absolute);
@@ -50,11 +52,14 @@ Sums SumRange(const Objective& objective, const std::vector<Rgb>& fitted, int be
   Sums sums;
   for (int j = begin; j < end; ++j) {
     const HalfDiffAngles angles = samples.Angles(j);
-    const double cos_i = ToCosines(angles).i;
+    const Cosines cosines = ToCosines(angles);
+    const double cos_i = cosines.i;
+    const Rgb weights = objective.weighting()({samples.rho[j], cosines, samples.SolidAngle(j)});
     for (int c = 0; c < kChannels; ++c) {
       const double rho = fitted[j][c], rho_star = samples.rho[j][c];
       const double difference = std::abs(rho - rho_star);
-      const double weight = samples.Multiplicity(j) * objective.weighting().weight(rho_star, cos_i);
+      const double weight = samples.Multiplicity(j) * weights[c];
+      sums.objective += weight * difference * difference;
       sums.squared[c] += difference / unit * (difference / unit);
       sums.relative += difference / (rho_star + kRelativeErrorFloor);
       sums.log += std::abs(std::log1p(std::max(rho, 0.0) * cos_i) - std::log1p(rho_star * cos_i));
@@ -74,18 +79,23 @@ double Peak(const BrdfSamples& samples) {
 }  // namespace
 
 ScoreReport ScoreModel(const Objective& objective, const FactorModel& model) {
-  const BrdfSamples& samples = objective.samples();
-  ScoreReport report;
-  report.valid_samples = samples.size();
+  ScoreReport report =
+      ScoreValues(objective, EvaluateSamples(model, objective.samples(), objective.num_threads()));
   report.objective = objective.Value(model);
   if (objective.MeasuredEnergy() > 0) {
     report.relative_objective = report.objective / objective.MeasuredEnergy();
   }
+  return report;
+}
+
+ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted) {
+  const BrdfSamples& samples = objective.samples();
+  ScoreReport report;
+  report.valid_samples = samples.size();
   report.psnr_peak = Peak(samples);
   // Squares are summed in units of the peak, which keeps those of huge and tiny data in range.
   const double unit = report.psnr_peak > 0 ? report.psnr_peak : 1;
 
-  const std::vector<Rgb> fitted = EvaluateSamples(model, samples, objective.num_threads());
   std::vector<Sums> parts((samples.size() + kChunk - 1) / kChunk);
   ParallelFor(static_cast<int>(parts.size()), objective.num_threads(), [&](int i) {
     const int end = std::min(samples.size(), (i + 1) * kChunk);
@@ -93,6 +103,10 @@ ScoreReport ScoreModel(const Objective& objective, const FactorModel& model) {
   });
   Sums sums;
   for (const Sums& part : parts) sums.Add(part);
+  report.objective = sums.objective;
+  if (objective.MeasuredEnergy() > 0) {
+    report.relative_objective = report.objective / objective.MeasuredEnergy();
+  }
 
   const double n = samples.size();
   double mean_square = 0;

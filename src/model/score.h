@@ -58,6 +58,9 @@ struct ScoreReport {
 // any number of threads. Throws Error if the model's values overflow.
 ScoreReport ScoreModel(const Objective& objective, const FactorModel& model);
 
+// The same for anything that has a value at each sample. [samples().size()]
+ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_MODEL_SCORE_H_

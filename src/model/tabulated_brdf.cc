@@ -62,8 +62,11 @@ Rgb TabulatedBrdf::operator()(const DirectionPair& directions) const {
 
 Rgb TabulatedBrdf::Interpolate(const DirectionPair& directions) const {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
+  return Interpolate(ToHalfDiff(directions));
+}
+
+Rgb TabulatedBrdf::Interpolate(const HalfDiffAngles& angles) const {
   const MerlGrid& grid = table_.grid;
-  const HalfDiffAngles angles = ToHalfDiff(directions);
   const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
   const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);
   const double p = angles.phi_d / kPi * grid.phi_d - 0.5;

@@ -23,6 +23,7 @@ class TabulatedBrdf {
 
   // The same, linear between bin centres in sqrt(theta_h), theta_d and phi_d.
   Rgb Interpolate(const DirectionPair& directions) const;
+  Rgb Interpolate(const HalfDiffAngles& angles) const;  // of two directions above the surface
 
  private:
   double Value(int channel, int bin) const { return table_.Value(channel, nearest_valid_[bin]); }

@@ -89,7 +89,7 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
   PruneState to{.objective = pruning->ObjectiveFor(spec), .model = {}, .layout = {}};
   FittedModel fitted = FitFrom(starts, *to.objective, wanted, pruning->options().stop);
   to.model = std::move(fitted.model);
-  Canonicalize(to.objective->coverage(), &to.model);
+  NormalizeScale(to.objective->coverage(), &to.model);
   to.layout =
       NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
   ExpandStored(to.layout, &to.model);
@@ -213,7 +213,8 @@ PrunedModel Finish(const Pruning& pruning) {
                      .layout = state.layout,
                      .decisions = pruning.decisions(),
                      .numbers = state.numbers()};
-  Canonicalize(state.objective->coverage(), &result.model);
+  // The layout knows lobes by their places.
+  Canonicalize(state.objective->coverage(), &result.model, LobeOrder::kAsTheyAre);
   ExpandStored(result.layout, &result.model);
   result.E = state.objective->Value(result.model);
   return result;

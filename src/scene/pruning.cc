@@ -39,7 +39,7 @@ std::shared_ptr<const Objective> Pruning::ObjectiveFor(const ModelSpec& spec) co
 PruneState Pruning::MakeState(const ModelSpec& spec, const FactorModel& model) const {
   PruneState state{
       .objective = ObjectiveFor(spec), .model = model, .layout = TableLayout::Full(spec)};
-  Canonicalize(state.objective->coverage(), &state.model);
+  NormalizeScale(state.objective->coverage(), &state.model);
   state.E = state.objective->Value(state.model);
   return state;
 }

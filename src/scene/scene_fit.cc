@@ -242,6 +242,8 @@ class MaterialFitter {
       key.Add("noise", settings_.noise);
       key.Add("synth_seed", settings_.seed);
     }
+    key.Add("max_angle", settings_.max_angle_deg);
+    key.Add("extrapolated", settings_.extrapolated);
     key.Add("directions", material_.reductions.samples
                               ? std::visit(DirectionsText(), material_.directions)
                               : "all");
@@ -275,19 +277,22 @@ class MaterialFitter {
   }
 
   BrdfTable Table() const {
-    if (!IsSynthetic(material_.source)) {
-      return ParseSource(bytes_, material_.source, num_threads_);
-    }
-    return LoadSource(
-        material_.source,
-        {.noise = settings_.noise, .seed = settings_.seed, .num_threads = num_threads_});
+    const SourceOptions options = {.noise = settings_.noise,
+                                   .seed = settings_.seed,
+                                   .num_threads = num_threads_,
+                                   .max_angle_deg = settings_.max_angle_deg,
+                                   .extrapolated = settings_.extrapolated};
+    return IsSynthetic(material_.source) ? LoadSource(material_.source, options)
+                                         : ParseSource(bytes_, material_.source, options);
   }
 
   // What is fitted.
   const Objective& FitObjective() {
     if (!objective_) {
-      BrdfSamples samples = ValidSamples(Table());
+      const BrdfTable table = Table();
+      BrdfSamples samples = ValidSamples(table);
       valid_samples_ = samples.size();
+      max_angle_ = MaxAngleDegrees(table);
       if (material_.reductions.samples) samples = UsedSamples(samples, material_.directions);
       const ModelSpec spec = ModelSpec::SharedFactors(settings_.lobes, samples.grid);
       objective_.emplace(InChannels(std::move(samples), material_.channels), spec,
@@ -326,6 +331,7 @@ class MaterialFitter {
                     .threads = num_threads_,
                     .source = material_.source,
                     .valid_samples = objective.samples().size(),
+                    .max_angle = max_angle_,
                     .program = settings_.program,
                     .date = UtcNow()};
     fit.seconds += stopwatch.Lap();
@@ -368,6 +374,7 @@ class MaterialFitter {
   const std::string bytes_hash_;
   std::optional<Objective> objective_;
   int valid_samples_ = 0;
+  double max_angle_ = 90;  // [degrees] that the measurement reaches
 };
 
 }  // namespace

@@ -26,6 +26,8 @@ struct SceneFitSettings {
   int lobes = 3;
   double noise = 0;  // of synth: sources
   uint64_t seed = 1;
+  double max_angle_deg = 90;  // what counts as measured, as in SourceOptions
+  bool extrapolated = false;
   std::string program;  // "trilobe 0.1.0": fits of another version are not reused
   FitCache cache;
   // Asked after each iteration, from several threads; true to stop and keep nothing.

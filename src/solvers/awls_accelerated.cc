@@ -81,7 +81,7 @@ class Coordinates {
       : coverage_(objective.coverage()), start_(start) {}
 
   VectorXd Of(FactorModel model) const {
-    Canonicalize(coverage_, &model);
+    NormalizeScale(coverage_, &model);
     VectorXd x(model.parameters().size());
     for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = IsLive(k) ? model.parameters()[k] : 0;
     return x;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/run_program.h"
+#include "tests/io/tensor_bytes.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -16,6 +17,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -159,6 +161,35 @@ TEST(ConvertTest, CopiesAMerlFileBitForBit) {
   EXPECT_TRUE(Contents(folder / "felt") == Contents(folder / "copy"));
 }
 
+// An RGL material of which the innermost and the outermost theta_i, and not all theta_m, were
+// measured.
+std::string MaskedRgl() {
+  TinyRgl file;
+  file.theta_i = {0, 1.2F, 1.5707964F};
+  file.FillRandom(1);
+  file.MaskAll();
+  for (int row = 0; row < file.rgb_rows; ++row) file.SetMask(0, row, 3, false);
+  return file.Bytes();
+}
+
+TEST(ConvertTest, MarksWhatWasNotMeasured) {
+  const TemporaryFolder folder;
+  Write(folder / "tiny.bsdf", MaskedRgl());
+  const auto valid_after = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> words = {"convert", folder / "tiny.bsdf",
+                                      "--out=" + (folder / "merl")};
+    words.insert(words.end(), flags.begin(), flags.end());
+    EXPECT_EQ(RunProgram(words).status, 0);
+    const json bins = json::parse(RunProgram({"info", folder / "merl", "--json"}).out)["bins"];
+    EXPECT_EQ(bins["valid"].get<int>() + bins["negative"].get<int>(), 1096216);
+    return bins["valid"].get<int>();
+  };
+  const int measured = valid_after({});
+  EXPECT_LT(measured, 1096216);
+  EXPECT_LT(valid_after({"--max_angle=30"}), measured);
+  EXPECT_EQ(valid_after({"--extrapolated"}), 1096216);
+}
+
 TEST(ConvertTest, WritesAModelsReconstruction) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
@@ -185,13 +216,15 @@ TEST(ScoreTest, PrintsATableOrOneJsonObject) {
   const std::vector<std::string> arguments = {"score", folder / "model.json", "synth:foam"};
   const ProgramResult table = RunProgram(arguments);
   EXPECT_EQ(table.status, 0) << table.err;
-  EXPECT_THAT(table.out, AllOf(HasSubstr("PSNR"), HasSubstr("peak"), HasSubstr("worst bins")));
-  EXPECT_THAT(table.out, Not(HasSubstr("nan")));
+  EXPECT_THAT(table.out, AllOf(HasSubstr("PSNR"), HasSubstr("peak"), HasSubstr("worst bins"),
+                               HasSubstr("appearance   sphere in studio: PSNR ")));
+  EXPECT_THAT(table.out, Not(ContainsRegex("(^|[^a-z])nan")));  // "luminance" is none
 
   std::vector<std::string> with_json = arguments;
   with_json.insert(with_json.end(), {"--json", "--weighting=uniform"});
   const json score = json::parse(RunProgram(with_json).out);
   EXPECT_EQ(score["weighting"], "uniform");
+  EXPECT_TRUE(score["appearance"]["beyond"].is_null());  // all bins have a value
   EXPECT_EQ(score["valid_samples"], 1096216);
   EXPECT_EQ(score["worst_bins"].size(), 10U);
   for (const char* key : {"objective", "relative_objective", "psnr_db", "psnr_peak", "rmse",
@@ -203,13 +236,70 @@ TEST(ScoreTest, PrintsATableOrOneJsonObject) {
   EXPECT_NEAR(score["rmse"].get<double>(), std::sqrt(mean), 1e-9 * std::sqrt(mean));
 }
 
+TEST(ScoreTest, ComparesTwoMeasurements) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"foam", "felt"}) {
+    RunProgram({"synth", name, "--out=" + (folder / name)});
+  }
+  const auto score = [&](const char* a, const char* b) {
+    const ProgramResult result = RunProgram({"score", folder / a, folder / b, "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out);
+  };
+  const json same = score("foam", "foam");
+  EXPECT_LT(same["relative_objective"], 1e-28);
+  EXPECT_GT(same["valid_samples"], 1000000);
+  EXPECT_TRUE(same["appearance"]["psnr_db"].is_null());  // infinite
+  EXPECT_EQ(same["appearance"]["mean_delta_e"], 0);
+  EXPECT_EQ(same["appearance"]["at_centers"]["mean_log_error"], 0);
+  const json other = score("felt", "foam");
+  EXPECT_GT(other["relative_objective"], 1e-3);
+  EXPECT_GT(other["appearance"]["mean_delta_e"], 1);
+  EXPECT_TRUE(other["appearance"]["psnr_db"].is_number());
+}
+
+// By another light, and as a picture.
+TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  // Red light from above.
+  std::string probe = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+  for (int k = 0; k < 8; ++k) {
+    probe += k < 4 ? std::string("\x80\x10\x10\x84", 4) : std::string(4, '\0');
+  }
+  Write(folder / "red.hdr", probe);
+  const std::vector<std::string> arguments = {"score", folder / "model.json", "synth:foam"};
+  std::vector<std::string> lit = arguments;
+  lit.insert(lit.end(),
+             {"--json", "--probe=" + (folder / "red.hdr"), "--out=" + (folder / "pair.png")});
+  const ProgramResult result = RunProgram(lit);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json appearance = json::parse(result.out)["appearance"];
+  EXPECT_EQ(appearance["environment"], folder / "red.hdr");
+  EXPECT_THAT(Contents(folder / "pair.png"), StartsWith("\x89PNG\r\n"));
+  std::vector<std::string> by_default = arguments;
+  by_default.emplace_back("--json");
+  const json studio = json::parse(RunProgram(by_default).out)["appearance"];
+  EXPECT_EQ(studio["environment"], "studio");
+  EXPECT_NE(studio["psnr_db"], appearance["psnr_db"]);
+  EXPECT_EQ(studio["albedo"], appearance["albedo"]);  // which no light changes
+}
+
 TEST(ScoreTest, RejectsBadInput) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
   ExpectError(RunProgram({"score", "nothing.json", "synth:foam"}), "nothing.json");
   ExpectError(RunProgram({"score", folder / "model.json", "nothing.binary"}), "nothing.binary");
   ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=heavy"}),
-              "known: compressive, log");
+              "known: appearance, log_relative, log_relative_channel, cube_root, percentage, "
+              "compressive, log, ");
+  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=power:x=1"}),
+              "unknown key 'x'");
+  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--probe=missing"}),
+              "missing");
+  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam",
+                          "--probe=" + (folder / "model.json")}),
+              "not a Radiance picture");
   ExpectError(RunProgram({"score", folder / "model.json", folder / "model.json"}), "JSON");
 }
 
@@ -223,6 +313,41 @@ TEST(InfoTest, DescribesAMeasurement) {
   EXPECT_EQ(info["bins"]["below_surface"], 1458000 - 1096216);
   EXPECT_LT(info["exchange_error"]["median"], 1e-12);
   EXPECT_TRUE(info["albedo"]["passes_one_deg"]["red"].is_null());
+}
+
+TEST(InfoTest, CountsAndDrawsWhatWasNotMeasured) {
+  const TemporaryFolder folder;
+  Write(folder / "tiny.bsdf", MaskedRgl());
+  const auto info = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> words = {"info", folder / "tiny.bsdf", "--json"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    const ProgramResult result = RunProgram(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    json parsed = json::parse(result.out);
+    int sum = 0;
+    for (const auto& [key, bins] : parsed["bins"].items()) {
+      if (key != "total") sum += bins.get<int>();
+    }
+    EXPECT_EQ(sum, 1458000);
+    return parsed;
+  };
+  const json limited = info({"--max_angle=50", "--out=" + (folder / "pictures")});
+  for (const char* reason : {"extrapolated", "beyond_nodes", "beyond_max_angle"}) {
+    EXPECT_GT(limited["bins"][reason], 0) << reason;
+  }
+  EXPECT_EQ(limited["max_angle"], 50);
+  EXPECT_EQ(limited["albedo"]["theta_i_deg"].size(), 51U);
+  EXPECT_GT(limited["albedo"]["red"][50], 0);
+  ExpectPng(folder / "pictures/measured.png");
+  const json measured = info({}), whole = info({"--extrapolated"});
+  EXPECT_EQ(measured["bins"]["extrapolated"], limited["bins"]["extrapolated"]);
+  EXPECT_EQ(whole["bins"]["valid"], 1096216);
+  EXPECT_EQ(whole["max_angle"], 90);
+  EXPECT_LT(measured["reciprocity_error"]["pairs"], whole["reciprocity_error"]["pairs"]);
+  EXPECT_LT(measured["albedo"]["red"][40], whole["albedo"]["red"][40]);
+  const std::string text = RunProgram({"info", folder / "tiny.bsdf"}).out;
+  EXPECT_THAT(text, AllOf(HasSubstr("measured up to            68.75 deg\n"),
+                          HasSubstr("directional albedo of what was measured")));
 }
 
 TEST(InfoTest, DescribesAFileWithoutAnyValidBin) {
@@ -273,6 +398,15 @@ TEST(InfoTest, RejectsBadInput) {
   ExpectError(RunProgram({"info", folder / "broken.json"}), "broken.json");
   ExpectError(RunProgram({"info", folder / "empty"}), "empty");
   ExpectError(RunProgram({"info", folder / "."}), "directory");
+  ExpectError(RunProgram({"info", "synth:foam", "--max_angle=91"}), "up to 90");
+  Write(folder / "model.json", kLambertianModel);
+  ExpectError(RunProgram({"info", folder / "model.json", "--out=" + (folder / "p")}), "is a model");
+  TinyRgl file;
+  file.FillConstant(1, 1, 1);
+  file.MaskAll();
+  for (int row = 0; row < file.rgb_rows; ++row) file.SetMask(1, row, 0, false);
+  Write(folder / "unclear.bsdf", file.Bytes());
+  ExpectError(RunProgram({"info", folder / "unclear.bsdf"}), "field 'valid' has 3 ones");
 }
 
 TEST(PlotTest, DrawsWhatTheInputsAllow) {

@@ -69,8 +69,26 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_GT(report["peak_memory_bytes"], 35e6);  // the values alone
   ASSERT_TRUE(report.contains("diagnosis"));
   EXPECT_FALSE(report["diagnosis"].contains("gradient"));
-  for (const char* const line : {"solver       awls: 3 iterations", "options      max_iterations 3",
-                                 "phases       ", "error        E is "}) {
+  const nlohmann::json& appearance = report["appearance"];
+  EXPECT_EQ(appearance["environment"], "studio");
+  for (const char* const key : {"lights", "size", "mean_luminance", "psnr_db", "psnr_peak",
+                                "exposure", "mean_delta_e", "delta_e_95", "mean_color_error"}) {
+    ASSERT_TRUE(appearance[key].is_number()) << key;  // null where it is not finite
+    EXPECT_GT(appearance[key], 0) << key;
+  }
+  for (const char* const part : {"at_centers", "between_centers"}) {
+    EXPECT_GT(appearance[part]["mean_log_error"], 0) << part;
+    EXPECT_GT(appearance[part]["mean_relative_error"], 0) << part;
+  }
+  EXPECT_GT(appearance["albedo"]["max_error"], 0);
+  EXPECT_EQ(appearance["albedo"]["values"].size(), 6U);
+  EXPECT_TRUE(appearance["beyond"].is_null());  // all directions were measured
+  double shares = report["light"]["diffuse"]["share"];
+  for (const auto& lobe : report["light"]["lobes"]) shares += lobe["share"].get<double>();
+  EXPECT_NEAR(shares, 1, 1e-12);
+  for (const char* const line :
+       {"appearance   sphere in studio", "solver       awls: 3 iterations",
+        "options      max_iterations 3", "phases       ", "error        E is "}) {
     EXPECT_THAT(result.out, HasSubstr(line));
   }
 
@@ -85,6 +103,29 @@ TEST(Fit, WritesModelTraceAndReport) {
       RunProgram({"score", out + "/model.json", "synth:plastic", "--noise=0.02", "--json"});
   ASSERT_EQ(score.status, 0) << score.err;
   EXPECT_EQ(nlohmann::json::parse(score.out)["objective"].get<double>(), file.fit.objective);
+}
+
+TEST(Fit, SaysWhatItLeftOutAndWhy) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const ProgramResult result = RunProgram(Fit(out, {"--max_angle=60", "--noise=0", "--plots"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json report = Json(out + "/report.json"), bins = report["bins"];
+  const int valid = report["valid_samples"];
+  EXPECT_EQ(bins["valid"], valid);
+  EXPECT_LT(valid, 1096216);
+  EXPECT_EQ(bins["below_surface"], 361784);
+  EXPECT_EQ(bins["beyond_max_angle"], 1096216 - valid);
+  EXPECT_EQ(bins["extrapolated"], 0);
+  EXPECT_EQ(report["max_angle"], 60);
+  for (const char* const key : {"share", "largest", "largest_within", "psnr_db"}) {
+    ASSERT_TRUE(report["appearance"]["beyond"][key].is_number()) << key;
+    EXPECT_GT(report["appearance"]["beyond"][key], 0) << key;
+  }
+  EXPECT_EQ(ReadModel(out + "/model.json").fit.max_angle, report["max_angle"].get<double>());
+  EXPECT_THAT(result.out, HasSubstr(std::to_string(valid) + " valid samples up to 60 deg\n"));
+  EXPECT_THAT(result.out, HasSubstr("left out     bins 361784 below the surface, " +
+                                    std::to_string(1096216 - valid) + " beyond --max_angle\n"));
 }
 
 TEST(Fit, CourseScoresTheModelsOnTheWay) {
@@ -147,6 +188,85 @@ TEST(Fit, FitsTheOneLobeModelThatSharesNothing) {
   EXPECT_EQ(ReadModel(folder / "out/model.json").model.spec().num_parameters(), 816);
 }
 
+TEST(Fit, AutoChoosesAModelWithinTheBudget) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  // So that there is little to do, and an edge of the data.
+  const ProgramResult result = RunProgram(
+      {"fit", "synth:plastic", "--model=auto", "--max_numbers=300", "--solver=awls",
+       "--max_iterations=2", "--lobes=1", "--max_angle=40", "--noise=0.02", "--out=" + out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const ModelFile file = ReadModel(out + "/model.json");
+  ASSERT_TRUE(file.layout.has_value());
+  const int numbers = file.layout->num_numbers(file.model.spec());
+  EXPECT_LE(numbers, 300);
+  EXPECT_LT(numbers, file.model.spec().num_parameters());
+
+  const nlohmann::json report = Json(out + "/report.json");
+  EXPECT_EQ(report["stored_numbers"], numbers);
+  EXPECT_EQ(report["parameters"], file.model.spec().num_parameters());
+  EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
+  EXPECT_GT(report["seconds"]["finish"], 0);
+  EXPECT_TRUE(report["tied_at_data_edge"].is_number());
+  const nlohmann::json& candidates = report["candidates"];
+  ASSERT_GE(candidates.size(), 4U);  // as fitted, thinned, and two forms
+  EXPECT_EQ(candidates[0]["name"], "as fitted");
+  EXPECT_EQ(candidates[0]["numbers"], 456);
+  int like_the_chosen = 0;
+  double best = 0;
+  for (const auto& candidate : candidates) {
+    for (const char* const key : {"objective", "psnr_db"}) {
+      ASSERT_TRUE(candidate[key].is_number()) << key;
+      EXPECT_GT(candidate[key], 0) << key;
+    }
+    EXPECT_GE(candidate["seconds"], 0);
+    if (candidate["numbers"] > 300) continue;
+    best = std::max(best, candidate["psnr_db"].get<double>());
+    like_the_chosen +=
+        candidate["numbers"] == numbers && candidate["objective"] == report["objective"];
+  }
+  EXPECT_EQ(like_the_chosen, 1);
+  EXPECT_EQ(report["appearance"]["psnr_db"].get<double>(), best);  // what the judge saw
+  EXPECT_THAT(result.out, HasSubstr("\ncandidates   as fitted: PSNR "));
+  EXPECT_THAT(result.out, HasSubstr("   <- chosen\n"));
+  EXPECT_THAT(result.out, HasSubstr("\ndata edge    "));
+
+  // What was stored scores as the fit said.
+  const ProgramResult score = RunProgram(
+      {"score", out + "/model.json", "synth:plastic", "--noise=0.02", "--max_angle=40", "--json"});
+  ASSERT_EQ(score.status, 0) << score.err;
+  EXPECT_EQ(nlohmann::json::parse(score.out)["objective"].get<double>(), file.fit.objective);
+}
+
+TEST(Fit, WithoutABudgetThereAreNoCandidates) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(RunProgram(Fit(folder / "out")).status, 0);
+  const nlohmann::json report = Json(folder / "out/report.json");
+  EXPECT_EQ(report["candidates"], nlohmann::json::array());
+  EXPECT_EQ(report["stored_numbers"], 822);
+  EXPECT_TRUE(report["tied_at_data_edge"].is_null());  // all directions were measured
+}
+
+// The loss that is linear for large errors gives up some of E for it, and what comes after, at the
+// edge of the data, does not win it back.
+TEST(Fit, ARobustFitWeighsLargeErrorsLess) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> few = {"--lobes=1", "--solver=varpro", "--max_iterations=15",
+                                        "--noise=0.3", "--max_angle=40"};
+  std::vector<double> E;
+  for (const char* const robust : {"0", "1e6", "0.01"}) {
+    std::vector<std::string> flags = few;
+    flags.push_back(std::string("--robust=") + robust);
+    const ProgramResult result = RunProgram(Fit(folder / robust, flags));
+    ASSERT_EQ(result.status, 0) << result.err;
+    const nlohmann::json report = Json(folder / (std::string(robust) + "/report.json"));
+    EXPECT_TRUE(report["tied_at_data_edge"].is_number()) << robust;
+    E.push_back(report["objective"]);
+  }
+  EXPECT_NEAR(E[1], E[0], 1e-5 * E[0]);  // no error is so large: the same loss
+  EXPECT_GT(E[2], 1.00005 * E[1]);
+}
+
 TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
@@ -160,6 +280,19 @@ TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
   const ModelFile file = ReadModel(out + "/model.json");
   EXPECT_EQ(file.fit.stop_reason, "interrupted");
   EXPECT_NEAR(file.fit.objective, trace.back().objective, 1e-12 * trace.back().objective);
+}
+
+// The solver is through at once; what comes then takes seconds.
+TEST(Fit, CtrlCWhileFinishingKeepsTheModelToo) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const TerminalResult result = RunOnTerminal(
+      Fit(out, {"--model=auto", "--max_numbers=500", "--max_iterations=0"}), "iteration 0", SIGINT);
+  EXPECT_EQ(result.status, 130) << result.text;
+  EXPECT_THAT(result.text, HasSubstr("interrupted"));
+  const nlohmann::json report = Json(out + "/report.json");
+  EXPECT_EQ(ReadModel(out + "/model.json").fit.objective, report["objective"].get<double>());
+  EXPECT_LE(report["candidates"].size(), 4U);  // it did not go on as if nothing had happened
 }
 
 TEST(Fit, HonoursItsTimeLimit) {
@@ -201,10 +334,24 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
   const std::string out = folder / "out";
   const std::vector<BadInput> cases = {
       {{"--solver=x"}, "known: auto, "},
-      {{"--weighting=x"}, "known: compressive, log, percentage, cosine, uniform"},
+      {{"--weighting=x"},
+       "known: appearance, log_relative, log_relative_channel, cube_root, percentage, compressive, "
+       "log, "
+       "cosine, "
+       "uniform"},
+      {{"--weighting=power:exponent=9"}, "exponent must be at most 2"},
+      {{"--probe=missing"}, "missing"},
       {{"--init=x"}, "known: "},
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},
-      {{"--model=x"}, "known: shared, independent"},
+      {{"--model=x"}, "unknown model 'x'; known: shared, independent, auto"},
+      {{"--max_numbers=100"}, "--max_numbers goes with --model=auto"},
+      {{"--model=independent", "--max_numbers=100"}, "--max_numbers goes with --model=auto"},
+      {{"--model=auto", "--max_numbers=0"}, "--max_numbers must be at least 1"},
+      {{"--max_numbers=0"}, "--max_numbers must be at least 1"},
+      {{"--model=auto", "--max_numbers=-5"}, "--max_numbers must be at least 1"},
+      {{"--robust=-1"}, "--robust must be from 0 to 1e6"},
+      {{"--robust=nan"}, "--robust must be from 0 to 1e6"},
+      {{"--robust=inf"}, "--robust must be from 0 to 1e6"},
       {{"--model=independent", "--lobes=2"}, "--lobes"},
       {{"--lobes=-1"}, "lobes is -1"},
       {{"--lobes=9"}, "lobes is 9"},
@@ -220,6 +367,11 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--solver=awls", "--trust_region=dogleg"}, "does not take --trust_region"},
       {{"--threads=-1"}, "--threads"},
       {{"--noise=2"}, "noise"},
+      {{"--max_angle=0"}, "--max_angle=0 is no largest angle"},
+      {{"--max_angle=-5"}, "above 0, up to 90"},
+      {{"--max_angle=90.5"}, "above 0, up to 90"},
+      {{"--max_angle=nan"}, "above 0, up to 90"},
+      {{"--max_angle=0.001"}, "no valid bin"},
       {{"--json"}, "no flag --json"},
       {{"two", "arguments"}, "takes SOURCE"},
   };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -125,6 +126,8 @@ TEST(Scene, BadUseIsAnError) {
       {{"plan", folder / "none.json"}, "none.json"},
       {{"plan", bad}, "bad.json: /materials: must be an array"},
       {{"plan", scene, "--out=x"}, "no flag --out"},
+      {{"plan", scene, "--max_angle=100"}, "--max_angle=100"},
+      {{"compare", scene, "--max_angle=0", "--extrapolated"}, "--max_angle=0"},
       {{"plan", scene, "--nocache", "--cache=x"}, "contradict"},
       {{"fit"}, "needs a SOURCE, or --scene"},
       {{"fit", "--scene=" + scene}, "needs --out=DIR"},
@@ -132,6 +135,14 @@ TEST(Scene, BadUseIsAnError) {
       {{"fit", "synth:felt", "--nocache"}, "--nocache goes with --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--plots"}, "not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--course"}, "not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--robust=0.1"},
+       "--robust is for the fit of one SOURCE, not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--max_numbers=100"},
+       "--max_numbers is for the fit of one SOURCE, not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--model=auto"},
+       "--model is for the fit of one SOURCE, not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--probe=x.hdr"},
+       "--probe is for the fit of one SOURCE, not for --scene"},
       {{"fit", "--scene=" + bad, "--out=" + (folder / "o")}, "/materials"},
       {{"compare", folder / "none"}, "none"},
       {{"compare", folder / "."}, "plan.json"},
@@ -140,6 +151,7 @@ TEST(Scene, BadUseIsAnError) {
     const ProgramResult result = RunProgram(bad_case.arguments, {"XDG_CACHE_HOME=/nowhere"});
     EXPECT_EQ(result.status, 1) << bad_case.error;
     EXPECT_THAT(result.err, HasSubstr(bad_case.error));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "o"));
 }

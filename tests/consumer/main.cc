@@ -8,7 +8,7 @@ int main() {
   using namespace trilobe;
   const BrdfTable measured = LoadSource("synth:plastic", {.noise = 0.02});
   const Objective objective(ValidSamples(measured), ModelSpec::SharedFactors(/*lobes=*/3),
-                            FindWeighting("compressive"));
+                            FindWeighting("appearance"));
   FactorModel model = InitialModels().front().make(objective, /*seed=*/1);
   const SolverSummary summary = MakeSolver("awls")->Solve(objective, {.max_iterations = 5}, &model);
   std::cout << summary.BriefReport() << "\n";

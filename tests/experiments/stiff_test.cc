@@ -127,7 +127,7 @@ TEST_P(Stiff, HasItsAnswer) {
   EXPECT_NEAR(E, right.objective, 1e-11 * right.objective + rounding);
   // And is canonical for the library, too.
   FactorModel canonical = right.model;
-  Canonicalize(objective.coverage(), &canonical);
+  NormalizeScale(objective.coverage(), &canonical);
   const std::vector<bool> all(of.spec.num_parameters(), true);
   EXPECT_GT(CompareTables(canonical, right.model, all).tables, 11);
 }

@@ -41,6 +41,10 @@ class GnuplotTest : public testing::Test {
     return {number(16), number(20)};
   }
 
+  static AppearanceOptions Appearance(int num_threads) {
+    return {.lights = 60, .num_threads = num_threads};
+  }
+
   std::filesystem::path folder_;
 };
 
@@ -106,15 +110,29 @@ TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {
   file.fit.source = "a 'strange_name' {$x}\n";
   const IterationRecord trace[] = {
       {0, 0, 10, false}, {1, 0.5, 10, false, false}, {2, 0.75, 0, true}};  // E = 0 has no logarithm
-  const std::vector<std::string> paths = DrawPictures(file, &measured, trace, folder_.string(), 2);
+  const std::vector<std::string> paths =
+      DrawPictures(file, &measured, trace, folder_.string(), Appearance(2));
   ASSERT_EQ(paths.size(), 4U);
   std::vector<std::string> bytes;
   for (const std::string& path : paths) {
     EXPECT_GE(PngSize(path).first, 1600);
     bytes.push_back(ReadFile(path));
   }
-  DrawPictures(file, &measured, trace, folder_.string(), 1);
+  DrawPictures(file, &measured, trace, folder_.string(), Appearance(1));
   for (size_t i = 0; i < paths.size(); ++i) EXPECT_TRUE(ReadFile(paths[i]) == bytes[i]) << paths[i];
+}
+
+TEST_F(GnuplotTest, DrawsWhatWasMeasured) {
+  const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
+  BrdfTable table = Synthesize(FindSynthMaterial("plastic"), 0.1, 1, grid);
+  table.source = "/a/b/'strange_name' %d {$x}";
+  DrawMeasured(table, Path("whole.png"));
+  LimitAngles(1, Unmeasured::kBeyondMaxAngle, &table);
+  DrawMeasured(table, Path("part.png"));
+  EXPECT_EQ(PngSize(Path("part.png")), std::pair(1200, 1080));
+  EXPECT_NE(ReadFile(Path("part.png")), ReadFile(Path("whole.png")));
+  DrawMeasured(MakeInvalidTable("nothing", grid), Path("nothing.png"));
+  EXPECT_EQ(PngSize(Path("nothing.png")), std::pair(1200, 1080));
 }
 
 // Nothing to scale an axis by: no lobe, a black material, a single record.
@@ -125,11 +143,50 @@ TEST_F(GnuplotTest, DrawsDegenerateInput) {
   ModelFile file;
   file.dead.assign(file.model.parameters().size(), false);
   const IterationRecord trace[] = {{0, 0, 1, false}};
-  EXPECT_EQ(DrawPictures(file, &black, trace, folder_.string(), 1).size(), 4U);
+  EXPECT_EQ(DrawPictures(file, &black, trace, folder_.string(), Appearance(1)).size(), 4U);
   file.model = FactorModel(ModelSpec::IndependentG(grid));
   file.dead.assign(file.model.parameters().size(), true);
-  EXPECT_EQ(DrawPictures(file, nullptr, {}, folder_.string(), 1).size(), 1U);
+  EXPECT_EQ(DrawPictures(file, nullptr, {}, folder_.string(), Appearance(1)).size(), 1U);
   EXPECT_THROW(DrawTrace({}, "", Path("none.png")), Error);
+}
+
+TEST_F(GnuplotTest, WritesTwoSpheresSideBySide) {
+  const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
+  const BrdfTable measured = Synthesize(FindSynthMaterial("plastic"), 0, 1, grid);
+  const AngularBrdf fitted = [](const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) {
+    return Rgb{0.1, 0.1, 0.1};
+  };
+  AppearanceOptions options = Appearance(2);
+  options.size = 40;
+  WriteSpherePair(measured, fitted, Path("pair.png"), options);
+  const auto [width, height] = PngSize(Path("pair.png"));
+  EXPECT_EQ(width, 2 * height);
+  EXPECT_GE(height, 40);
+  // A black measurement has no exposure; the fit is seen all the same.
+  BrdfTable black = measured;
+  for (auto& plane : black.stored) plane.assign(plane.size(), 0);
+  WriteSpherePair(black, fitted, Path("grey.png"), options);
+  WriteSpherePair(
+      black, [](const HalfDiffAngles&, const Cosines&) { return Rgb{}; }, Path("black.png"),
+      options);
+  EXPECT_GT(ReadFile(Path("grey.png")).size(), ReadFile(Path("black.png")).size());
+}
+
+// What was not measured is shown, and its difference left out.
+TEST_F(GnuplotTest, DrawsSpheresThatWereMeasuredInPart) {
+  const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
+  BrdfTable measured = Synthesize(FindSynthMaterial("plastic"), 0, 1, grid);
+  const AngularBrdf fitted = [](const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) {
+    return Rgb{0.1, 0.1, 0.1};
+  };
+  DrawSpheres(measured, fitted, Path("all.png"), Appearance(1));
+  measured.unmeasured.assign(grid.size(), Unmeasured::kNo);
+  for (int bin = 0; bin < grid.size(); ++bin) {
+    if (grid.Center(bin).theta_d > 0.5) measured.unmeasured[bin] = Unmeasured::kExtrapolated;
+  }
+  DrawSpheres(measured, fitted, Path("part.png"), Appearance(1));
+  EXPECT_EQ(PngSize(Path("part.png")), PngSize(Path("all.png")));
+  EXPECT_NE(ReadFile(Path("part.png")), ReadFile(Path("all.png")));
 }
 
 }  // namespace

@@ -107,6 +107,7 @@ TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
               .threads = 2,
               .source = "a \"quoted\"\npath/\xc3\xa9.binary",
               .valid_samples = 1096216,
+              .max_angle = 78.5,
               .program = "trilobe 0.1.0",
               .date = "2024-01-31T12:00:00Z"};
   const ModelFile read = ParseModel(FormatModel(file), "model.json");
@@ -117,6 +118,7 @@ TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
   EXPECT_EQ(read.fit.iterations, 17);
   EXPECT_EQ(read.fit.source, file.fit.source);
   EXPECT_EQ(read.fit.valid_samples, 1096216);
+  EXPECT_EQ(read.fit.max_angle, 78.5);
   EXPECT_EQ(read.fit.date, file.fit.date);
 }
 

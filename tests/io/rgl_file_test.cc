@@ -470,7 +470,8 @@ TEST(TabulateRgl, FillsTheWholeMerlGridFromARealMeasurement) {
   if (paths.empty()) GTEST_SKIP() << "no RGL files in " TRILOBE_TEST_DATA_DIR "/rgl";
   const BrdfTable table =
       TabulateRgl(RglBrdf::Parse(ReadFile(paths[0]), paths[0]), paths[0], {}, 2);
-  EXPECT_EQ(std::ranges::count(ValidBins(table), true), 1096216);
+  EXPECT_EQ(std::ranges::count_if(table.stored[0], [](double x) { return x >= 0; }), 1096216);
+  EXPECT_LT(std::ranges::count(ValidBins(table), true), 1096216);
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ struct TinyRgl {
   std::vector<float> ndf, sigma;      // [2][columns]
   std::vector<float> vndf;            // [phi_i][theta_i][rows][columns]
   std::vector<float> rgb;             // [phi_i][theta_i][3][rgb_rows][rgb_columns]
+  std::vector<bool> valid;            // [phi_i][theta_i][rgb_rows][rgb_columns], or no such field
 
   void FillConstant(float ndf_value, float sigma_value, float rgb_value) {
     const size_t slices = phi_i.size() * theta_i.size();
@@ -69,6 +70,13 @@ struct TinyRgl {
     sigma.assign(2 * columns, sigma_value);
     vndf.assign(slices * rows * columns, 1);
     rgb.assign(slices * 3 * rgb_rows * rgb_columns, rgb_value);
+  }
+
+  // The field `valid`, with 1 for measured, everywhere.
+  void MaskAll() { valid.assign(phi_i.size() * theta_i.size() * rgb_rows * rgb_columns, true); }
+
+  void SetMask(int slice, int row, int column, bool value) {
+    valid[(slice * rgb_rows + row) * rgb_columns + column] = value;
   }
 
   // Uneven numbers in (0, 1), the same on every machine.
@@ -85,7 +93,7 @@ struct TinyRgl {
   std::vector<TensorField> Fields() const {
     const uint64_t p = phi_i.size(), t = theta_i.size();
     const auto r = static_cast<uint64_t>(rows), c = static_cast<uint64_t>(columns);
-    return {
+    std::vector<TensorField> fields = {
         FloatField("phi_i", {p}, phi_i),
         FloatField("theta_i", {t}, theta_i),
         FloatField("ndf", {2, c}, ndf),
@@ -95,6 +103,13 @@ struct TinyRgl {
                    {p, t, 3, static_cast<uint64_t>(rgb_rows), static_cast<uint64_t>(rgb_columns)},
                    rgb),
         TensorField{"jacobian", 1, {1}, "\1", -1}};
+    if (valid.empty()) return fields;
+    std::string bits((valid.size() + 7) / 8, '\0');
+    for (size_t i = 0; i < valid.size(); ++i) {
+      if (valid[i]) bits[i / 8] = static_cast<char>(bits[i / 8] | 0x80 >> i % 8);
+    }
+    fields.push_back({"valid", 1, {bits.size()}, bits, -1});
+    return fields;
   }
 
   std::string Bytes() const { return TensorBytes(Fields()); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
@@ -74,6 +75,38 @@ TEST(BrdfTable, ValidBinsAreFiniteNonNegativeAndAboveTheSurface) {
       fine.stored[c][bin] = good;
       EXPECT_EQ(ValidBins(fine), above) << "channel " << c << ", " << good;
     }
+  }
+}
+
+TEST(BrdfTable, LimitAnglesLeavesOutWhatIsBeyondAndKeepsEarlierReasons) {
+  BrdfTable table = MakeInvalidTable("t", kSmall);
+  for (auto& plane : table.stored) std::ranges::fill(plane, 1.0);
+  LimitAngles(kPi / 2, Unmeasured::kBeyondMaxAngle, &table);
+  EXPECT_TRUE(table.unmeasured.empty());  // no limit
+  const auto largest = [](int bin) {
+    const auto [cos_i, cos_o] = ToCosines(kSmall.Center(bin));
+    return std::acos(std::min(cos_i, cos_o));
+  };
+  const std::vector<bool> above = BinsAboveSurface(kSmall);
+  LimitAngles(1.2, Unmeasured::kBeyondNodes, &table);
+  LimitAngles(0.8, Unmeasured::kBeyondMaxAngle, &table);
+  LimitAngles(1.0, Unmeasured::kExtrapolated, &table);  // nothing new
+  EXPECT_EQ(table.max_theta, 0.8);
+  const std::vector<bool> valid = ValidBins(table);
+  for (int bin = 0; bin < kSmall.size(); ++bin) {
+    const Unmeasured expected = !above[bin] || largest(bin) <= 0.8 ? Unmeasured::kNo
+                                : largest(bin) > 1.2               ? Unmeasured::kBeyondNodes
+                                                                   : Unmeasured::kBeyondMaxAngle;
+    EXPECT_EQ(ReasonOf(table, bin), expected) << bin;
+    EXPECT_EQ(valid[bin], above[bin] && expected == Unmeasured::kNo) << bin;
+    EXPECT_EQ(table.stored[0][bin], 1.0);  // values stay
+  }
+  LimitAngles(0.001, Unmeasured::kBeyondMaxAngle, &table);
+  try {
+    ValidSamples(table);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("--max_angle"), std::string::npos) << error.what();
   }
 }
 

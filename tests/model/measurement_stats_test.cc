@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 namespace trilobe {
 namespace {
@@ -29,6 +32,44 @@ TEST(CountBinsTest, GivesEachBinOneReason) {
   EXPECT_EQ(bins.non_finite, 2);
   EXPECT_GT(bins.below_surface, 0);
   EXPECT_EQ(bins.valid + bins.below_surface + 3, bins.total);
+}
+
+TEST(CountBinsTest, CountsWhatWasNotMeasured) {
+  BrdfTable table = ConstantTable(0.5);
+  const int above = CountBins(table).valid;
+  table.unmeasured.assign(kGrid.size(), Unmeasured::kNo);
+  table.unmeasured[kGrid.Index(0, 0, 0)] = Unmeasured::kExtrapolated;
+  table.unmeasured[kGrid.Index(0, 0, 1)] = Unmeasured::kExtrapolated;
+  table.unmeasured[kGrid.Index(0, 0, 2)] = Unmeasured::kBeyondNodes;
+  table.unmeasured[kGrid.Index(0, 0, 3)] = Unmeasured::kBeyondMaxAngle;
+  table.stored[1][kGrid.Index(0, 0, 0)] = -1;  // lost comes first
+  const BinCounts bins = CountBins(table);
+  EXPECT_EQ(bins.negative, 1);
+  EXPECT_EQ(bins.extrapolated, 1);
+  EXPECT_EQ(bins.beyond_nodes, 1);
+  EXPECT_EQ(bins.beyond_max_angle, 1);
+  EXPECT_EQ(bins.valid, above - 4);
+  EXPECT_EQ(bins.below_surface, bins.total - above);
+  EXPECT_EQ(2 * ExchangeError(table).pairs, above - 8);  // the partners of the four, too
+}
+
+TEST(ValidSharesTest, CountsByAngles) {
+  BrdfTable table = ConstantTable(0.5);
+  table.grid = {};
+  for (auto& plane : table.stored) plane.assign(table.grid.size(), 0.5);
+  LimitAngles(DegreesToRadians(60), Unmeasured::kBeyondMaxAngle, &table);
+  const std::vector<double> shares = ValidShares(table);
+  ASSERT_EQ(shares.size(), 8100U);
+  for (int i = 0; i < 90; ++i) {
+    for (int o = 0; o < 90; ++o) {
+      const double share = shares[i * 90 + o];
+      if (std::isnan(share)) continue;  // a cell without a bin
+      EXPECT_EQ(share, i < 60 && o < 60 ? 1 : 0) << i << ", " << o;
+    }
+  }
+  // Exchanged directions have a bin each, so what is left out for one of them shows.
+  EXPECT_EQ(std::isnan(shares[20]), std::isnan(shares[20 * 90]));
+  EXPECT_LT(std::ranges::count_if(shares, [](double x) { return std::isnan(x); }), 100);
 }
 
 TEST(CountBinsTest, MerlGridHasTheKnownNumberAboveTheSurface) {
@@ -77,6 +118,10 @@ TEST(ReciprocityErrorTest, ComparesSwappedDirections) {
     return Rgb{x, x, x};
   };
   EXPECT_NEAR(ReciprocityError(lopsided, kGrid, 2).median, 1, 1e-12);
+  // Where one order was not measured there is no pair.
+  const auto measured = [](const DirectionPair& pair) { return pair.wi[0] <= pair.wo[0]; };
+  EXPECT_LT(ReciprocityError(lopsided, kGrid, 2, measured).pairs, none.pairs / 2);
+  EXPECT_EQ(ReciprocityError(lopsided, kGrid, 2, measured).median, 0);
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
 namespace {
@@ -62,6 +64,35 @@ TEST(ScoreTest, MatchesHandComputedNumbers) {
   EXPECT_EQ(report.worst[2].channel, 2);
 }
 
+// The same numbers for whatever has a value at each sample.
+TEST(ScoreTest, ValuesScoreAsTheModelThatHasThem) {
+  const BrdfTable table = RandomTable(kGrid, 1);
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const FactorModel model = RandomModel(spec, 2);
+  for (const Weighting& weighting : Weightings()) {
+    for (BrdfSamples samples : {ValidSamples(table), Scattered(ValidSamples(table))}) {
+      samples.multiplicity.assign(samples.size(), 1);
+      samples.multiplicity[1] = 3;
+      const Objective objective(samples, spec, weighting);
+      const ScoreReport a = ScoreModel(objective, model);
+      const ScoreReport b = ScoreValues(objective, EvaluateSamples(model, samples, 1));
+      EXPECT_NEAR(b.objective, a.objective, 1e-12 * a.objective) << weighting.name;
+      EXPECT_NEAR(b.relative_objective, a.relative_objective, 1e-12 * a.relative_objective);
+      EXPECT_EQ(b.rmse, a.rmse);
+      EXPECT_EQ(b.psnr_db, a.psnr_db);
+      EXPECT_EQ(b.mean_relative_error, a.mean_relative_error);
+      EXPECT_EQ(b.worst[0].error, a.worst[0].error);
+    }
+  }
+  const Objective objective(ThreeSamples(), spec, FindWeighting("uniform"));
+  const ScoreReport exact = ScoreValues(objective, objective.samples().rho);
+  EXPECT_EQ(exact.objective, 0);
+  EXPECT_EQ(exact.psnr_db, std::numeric_limits<double>::infinity());
+  std::vector<Rgb> huge = objective.samples().rho;
+  huge[1][2] = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(ScoreValues(objective, huge), Error);
+}
+
 // Weights decide which samples are worst: percentage weighs the dim ones up.
 TEST(ScoreTest, WorstSamplesAreWeighted) {
   const FactorModel model = Lambertian(0, 0, 0.1);
@@ -115,7 +146,7 @@ TEST(ScoreTest, IsTheSameForAnyNumberOfThreads) {
   }
   FactorModel model(ModelSpec::SharedFactors(2, grid));
   for (double& x : model.parameters()) x = 0.3;
-  const Weighting& weighting = FindWeighting("compressive");
+  const Weighting weighting = FindWeighting("compressive");
   const ScoreReport one =
       ScoreModel(Objective(ValidSamples(table), model.spec(), weighting, 1), model);
   const ScoreReport three =

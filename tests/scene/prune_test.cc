@@ -66,7 +66,7 @@ struct Fit {
         model(InitialModels().front().make(objective, 1)) {
     MakeSolver("varpro")->Solve(objective, {.max_iterations = iterations, .diagnose = false},
                                 &model);
-    Canonicalize(objective.coverage(), &model);
+    Canonicalize(objective.coverage(), &model, LobeOrder::kAsTheyAre);
   }
   const Objective objective;
   FactorModel model;
@@ -192,6 +192,8 @@ TEST(Prune, WhatIsFreeGoesAtABudgetOfZero) {
     for (int c = 0; c < kChannels; ++c) measured.SetValue(c, bin, all.Value(c, bin));
   }
   Fit fit = MakeFit(measured, 2, 2);
+  // So that scales are as Prune will have them, and channels that are equal stay equal to the bit.
+  NormalizeScale(fit.objective.coverage(), &fit.model);
   for (const Factor factor : {Factor::kF}) {
     for (int c = 1; c < kChannels; ++c) {
       std::ranges::copy(fit.model.table(factor, 0), fit.model.table(factor, c).begin());

@@ -121,6 +121,20 @@ TEST(FitMaterial, AnythingThatMattersMakesAnotherEntry) {
   settings = Settings(cache);
   settings.program = "newer";
   expect_new(Material("felt"), settings, "program");
+  settings = Settings(cache);
+  settings.extrapolated = true;
+  expect_new(Material("felt"), settings, "extrapolated");
+  settings = Settings(cache);
+  settings.max_angle_deg = 15;
+  const auto whole = FitMaterial(Material("felt"), Settings(cache), 1);
+  const auto part = FitMaterial(Material("felt"), settings, 1);
+  EXPECT_TRUE(whole->prune_from_cache);
+  EXPECT_FALSE(part->fit_from_cache || part->prune_from_cache);
+  EXPECT_LT(part->valid_samples, whole->valid_samples);
+  EXPECT_LT(part->used_samples, whole->used_samples);
+  EXPECT_EQ(whole->file.fit.max_angle, 90);
+  EXPECT_EQ(part->file.fit.max_angle, 15);
+  EXPECT_TRUE(FitMaterial(Material("felt"), settings, 1)->prune_from_cache);
 }
 
 TEST(FitMaterial, InLuminanceIsGrey) {

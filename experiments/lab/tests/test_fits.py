@@ -67,6 +67,25 @@ class FitsTest(FolderTest):
             self.assertIn(word, unit.arguments)
         self.assertEqual(unit.labels["solver"], "mine")
 
+    def test_a_weighting_is_a_name_of_the_manifest_or_the_program_or_left_to_it(self):
+        units = fits.planned(self.setting(
+            [{"solvers": ["awls"], "every": 2, "weightings": ["log", "mine", "power:epsilon=1"]},
+             {"solvers": ["awls"], "every": 2}],
+            weightings={"mine": {"weighting": "uniform", "robust": 0.1}}))
+        words = [[word for word in unit.arguments if word.startswith(("--w", "--ro"))]
+                 for unit in units]
+        self.assertEqual(words, [["--weighting=log"], ["--robust=0.1", "--weighting=uniform"],
+                                 ["--weighting=power:epsilon=1"], []])
+        self.assertEqual([unit.labels["weighting"] for unit in units],
+                         ["log", "mine", "power:epsilon=1", fits.DEFAULT])
+        self.assertEqual(units[2].path, "fit/a/awls-analytic-power-epsilon-1-2t")
+
+    def test_a_database_is_read_with_its_own_flags(self):
+        setting = self.setting([{"solvers": ["awls"]}], reading={"RGL": {"max_angle": 75}})
+        setting.sources[:] = [Source("chrome", "chrome"), Source("paper_white", "paper_white")]
+        read = ["--max_angle=75" in unit.arguments for unit in fits.planned(setting)]
+        self.assertEqual(read, [False, True])
+
     def test_the_clock_starts_with_reading_and_leaves_out_the_trace(self):
         (self.folder / "report.json").write_text(json.dumps(REPORT))
         (self.folder / "trace.csv").write_text(TRACE)

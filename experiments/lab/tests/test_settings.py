@@ -4,6 +4,7 @@ import types
 import unittest
 
 from lab import UsageError, main, manifest, materials, tables
+from lab.experiments import Setting
 from lab.tests import FolderTest
 
 
@@ -59,6 +60,15 @@ class SettingsTest(FolderTest):
             main.setting_of(experiment, main.parse(["x", "--solvers=auto"]))
         with self.assertRaisesRegex(UsageError, "no program"):
             setting.program("none")
+
+    def test_a_place_may_be_anywhere_but_must_be_there(self):
+        (self.folder / "probe.hdr").touch()
+        setting = Setting("x", False, {"probe": f"{self.folder}/../{self.folder.name}/probe.hdr",
+                                       "peers": None, "none": "none/of/it"}, [], None, None)
+        self.assertEqual(setting.place("probe"), (self.folder / "probe.hdr").resolve())
+        self.assertIsNone(setting.place("peers"))
+        with self.assertRaisesRegex(UsageError, "none: none/of/it does not exist"):
+            setting.place("none")
 
     def test_shard(self):
         self.assertEqual(main.shard("2/3"), (2, 3))

@@ -1,0 +1,87 @@
+#include "trilobe/app/appearance_report.h"
+
+#include <gflags/gflags.h>
+
+#include <nlohmann/json.hpp>
+
+#include "trilobe/app/flags.h"
+#include "trilobe/app/print.h"
+#include "trilobe/io/image_file.h"
+
+DEFINE_string(
+    probe, "",
+    "light probe for the spheres, a lat-long Radiance .hdr file; without it a built-in sky "
+    "with a sun and area lights");
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const PointErrors& errors) {
+  return {{"mean_log_error", errors.log}, {"mean_relative_error", errors.relative}};
+}
+
+}  // namespace
+
+AppearanceOptions AppearanceOptionsFromFlags() {
+  static const Environment probe =
+      FLAGS_probe.empty() ? StudioEnvironment() : ReadProbe(FLAGS_probe);
+  return {.environment = &probe, .num_threads = ThreadsFromFlags()};
+}
+
+std::string Describe(const AppearanceReport& report) {
+  const SphereError& sphere = report.sphere;
+  std::string text = "appearance   sphere in " + report.environment + ": PSNR " +
+                     Text(sphere.psnr_db) + " dB (peak 1, mean luminance " + Text(kMeanLuminance) +
+                     ", sRGB curve, clipped), CIELAB difference " + Text(sphere.mean_delta_e, 3) +
+                     " mean, " + Text(sphere.delta_e_95, 3) + " at 95 %, mean colour off by " +
+                     Text(100 * sphere.mean_color_error, 2) + " %\n" +
+                     "             albedo off by " + Text(report.albedo.mean, 2) + " mean, " +
+                     Text(report.albedo.max, 2) + " at most; mean log error " +
+                     Text(report.at_centers.log, 3) + " at bin centres, " +
+                     Text(report.between_centers.log, 3) + " between them\n";
+  if (report.beyond) {
+    const BeyondData& beyond = *report.beyond;
+    text += "             beyond the data (" + Text(100 * beyond.share, 2) +
+            " % of the bins above the surface) rho cos is at most " + Text(beyond.largest, 3) +
+            " /sr, within at most " + Text(beyond.largest_within, 3) + "; the whole sphere PSNR " +
+            Text(beyond.psnr_db) + " dB\n";
+  }
+  return text;
+}
+
+Json ToJson(const AppearanceReport& report) {
+  const SphereError& sphere = report.sphere;
+  Json albedo = Json::array();
+  for (size_t k = 0; k < report.albedo.theta_i.size(); ++k) {
+    albedo.push_back({{"theta_i_deg", RadiansToDegrees(report.albedo.theta_i[k])},
+                      {"measured", report.albedo.measured[k]},
+                      {"fitted", report.albedo.fitted[k]}});
+  }
+  Json beyond;
+  if (report.beyond) {
+    beyond = {{"share", report.beyond->share},
+              {"largest", report.beyond->largest},
+              {"largest_within", report.beyond->largest_within},
+              {"psnr_db", report.beyond->psnr_db}};
+  }
+  return {
+      {"environment", report.environment},
+      {"lights", report.lights},
+      {"size", report.size},
+      {"mean_luminance", kMeanLuminance},
+      {"psnr_db", sphere.psnr_db},
+      {"psnr_peak", 1},
+      {"exposure", sphere.exposure},
+      {"mean_delta_e", sphere.mean_delta_e},
+      {"delta_e_95", sphere.delta_e_95},
+      {"mean_color_error", sphere.mean_color_error},
+      {"albedo",
+       {{"mean_error", report.albedo.mean}, {"max_error", report.albedo.max}, {"values", albedo}}},
+      {"at_centers", ToJson(report.at_centers)},
+      {"between_centers", ToJson(report.between_centers)},
+      {"beyond", beyond}};
+}
+
+}  // namespace trilobe

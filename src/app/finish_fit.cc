@@ -1,0 +1,60 @@
+#include "trilobe/app/finish_fit.h"
+
+#include <utility>
+
+#include "trilobe/model/continuous_model.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/robust.h"
+#include "trilobe/solvers/data_edge.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// From a fit, so that few passes and steps are enough. Returns the objective of the last pass.
+Objective FitRobustly(const Objective& objective, const FinishOptions& options,
+                      FactorModel* model) {
+  constexpr int kPasses = 2, kSteps = 10;
+  SolverOptions steps;
+  steps.max_iterations = kSteps;
+  steps.diagnose = false;
+  steps.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !options.stop(); };
+  Objective reweighted = objective;
+  for (int pass = 0; pass < kPasses && !options.stop(); ++pass) {
+    reweighted = Objective(Reweighted(objective, *model, options.robust), objective.spec(),
+                           objective.weighting(), objective.num_threads());
+    MakeSolver("varpro")->Solve(reweighted, steps, model);
+  }
+  return reweighted;
+}
+
+}  // namespace
+
+FinishedFit FinishFit(const Objective& objective, const BrdfTable& measured, FactorModel model,
+                      const FinishOptions& options) {
+  // What follows fits numbers anew, and must not lose what the weights of a robust fit have won.
+  const Objective of =
+      options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
+  std::optional<double> tied;
+  if (!options.stop()) {
+    const double before = of.Value(model);
+    if (TieEntriesAtDataEdge(of, &model) && before > 0) tied = of.Value(model) / before - 1;
+  }
+  Canonicalize(objective.coverage(), &model);
+  FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
+  if (options.max_numbers > 0 && !options.stop()) {
+    const auto judge = [&](const FactorModel& candidate) {
+      return CompareOnSphere(measured, ContinuousModel(candidate), options.appearance).psnr_db;
+    };
+    ChosenModel chosen = ChooseModel(
+        of, fit.model, {.max_numbers = options.max_numbers, .judge = judge, .stop = options.stop});
+    fit.objective = Objective(objective, chosen.model.spec());
+    fit.model = std::move(chosen.model);
+    fit.layout = std::move(chosen.layout);
+    fit.candidates = std::move(chosen.candidates);
+    fit.chosen = chosen.chosen;
+  }
+  return fit;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,43 @@
+#ifndef TRILOBE_APP_FINISH_FIT_H_
+#define TRILOBE_APP_FINISH_FIT_H_
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "trilobe/appearance/appearance.h"
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
+#include "trilobe/model/table_layout.h"
+#include "trilobe/scene/model_choice.h"
+
+namespace trilobe {
+
+// What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
+// no budget of numbers unless it has begun to choose.
+struct FinishOptions {
+  double robust = 0;    // above 0: passes of reweighting with this delta (Reweighted)
+  int max_numbers = 0;  // above 0: the form that looks best within so many (ChooseModel)
+  AppearanceOptions appearance;
+  std::function<bool()> stop = [] { return false; };
+};
+
+struct FinishedFit {
+  Objective objective;  // for models of the spec that was chosen
+  FactorModel model;    // in canonical form
+  std::optional<TableLayout> layout = std::nullopt;
+  // By how much tying entries at the edge of the data raised E, as a fraction; nothing if it was
+  // not done (TieEntriesAtDataEdge). After a robust fit E, here and of candidates, is that of the
+  // reweighted samples.
+  std::optional<double> tied = std::nullopt;
+  std::vector<ModelCandidate> candidates = {};  // empty if none was asked for
+  int chosen = -1;                              // which of them
+};
+
+FinishedFit FinishFit(const Objective& objective, const BrdfTable& measured, FactorModel model,
+                      const FinishOptions& options);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_FINISH_FIT_H_

@@ -1,0 +1,291 @@
+#include "trilobe/appearance/appearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "trilobe/appearance/color.h"
+#include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
+#include "trilobe/model/albedo.h"
+#include "trilobe/model/tabulated_brdf.h"
+
+namespace trilobe {
+namespace {
+
+// The directions that a measurement speaks about. A bin whose centre is below the surface has no
+// sample of its own; the part of it that is above belongs to its neighbours.
+class MeasuredDirections {
+ public:
+  explicit MeasuredDirections(const BrdfTable& table)
+      : grid_(table.grid), max_theta_(table.max_theta), min_cosine_(std::cos(table.max_theta)) {
+    const std::vector<bool> above = BinsAboveSurface(grid_), valid = ValidBins(table);
+    left_out_.resize(grid_.size());
+    for (int bin = 0; bin < grid_.size(); ++bin) {
+      left_out_[bin] = above[bin] && !valid[bin] ? 1 : 0;
+      num_left_out_ += left_out_[bin];
+    }
+  }
+
+  bool everything() const { return num_left_out_ == 0 && max_theta_ >= kPi / 2; }
+  bool LeftOut(int bin) const { return left_out_[bin] != 0; }
+
+  bool operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
+    if (everything()) return true;
+    return cosines.i >= min_cosine_ && cosines.o >= min_cosine_ && !LeftOut(grid_.Bin(angles));
+  }
+
+ private:
+  MerlGrid grid_;
+  double max_theta_, min_cosine_;
+  std::vector<uint8_t> left_out_;  // [grid.size()]
+  int num_left_out_ = 0;
+};
+
+// As a renderer would have it: the spline through G may undershoot.
+AngularBrdf Clamped(const AngularBrdf& brdf) {
+  return [&brdf](const HalfDiffAngles& angles, const Cosines& cosines) {
+    Rgb rho = brdf(angles, cosines);
+    for (double& x : rho) x = std::max(x, 0.0);
+    return rho;
+  };
+}
+
+const Environment& EnvironmentOf(const AppearanceOptions& options) {
+  return options.environment != nullptr ? *options.environment : StudioEnvironment();
+}
+
+AlbedoError CompareAlbedos(const AngularBrdf& measured, const AngularBrdf& fitted,
+                           const MeasuredDirections& counts, int num_threads) {
+  AlbedoError error;
+  for (const int degrees : {0, 15, 30, 45, 60, 75}) {
+    error.theta_i.push_back(DegreesToRadians(degrees));
+  }
+  const auto albedos = [&](const AngularBrdf& brdf) {
+    const BrdfFunction function = [&](const DirectionPair& pair) {
+      const HalfDiffAngles angles = ToHalfDiff(pair);
+      const Cosines cosines{pair.wi[2], std::min(pair.wo[2], 1.0)};
+      return counts(angles, cosines) ? brdf(angles, cosines) : Rgb{};
+    };
+    return DirectionalAlbedos(function, error.theta_i, num_threads);
+  };
+  error.measured = albedos(measured);
+  error.fitted = albedos(fitted);
+  for (size_t k = 0; k < error.theta_i.size(); ++k) {
+    for (int c = 0; c < kChannels; ++c) {
+      const double difference = std::abs(error.fitted[k][c] - error.measured[k][c]);
+      error.mean += difference / static_cast<double>(kChannels * error.theta_i.size());
+      error.max = std::max(error.max, difference);
+    }
+  }
+  return error;
+}
+
+// At the centres of every few valid bins (offset 1/2), or at their upper corners (offset 1), where
+// all bins around them are valid.
+PointErrors CompareAtPoints(const BrdfTable& table, const std::vector<bool>& valid, double offset,
+                            const AngularBrdf& measured, const AngularBrdf& fitted,
+                            int num_threads) {
+  constexpr int kStrideD = 3, kStrideP = 5;
+  const MerlGrid& grid = table.grid;
+  struct Sum {
+    double log = 0, relative = 0;
+    int values = 0;
+  };
+  std::vector<Sum> sums(grid.theta_h - 1);
+  ParallelFor(static_cast<int>(sums.size()), num_threads, [&](int h) {
+    for (int d = h % kStrideD; d + 1 < grid.theta_d; d += kStrideD) {
+      for (int p = (h + d) % kStrideP; p + 1 < grid.phi_d; p += kStrideP) {
+        bool inside = true;
+        for (int corner = 0; corner < 8; ++corner) {
+          inside = inside &&
+                   valid[grid.Index(h + (corner & 1), d + (corner >> 1 & 1), p + (corner >> 2))];
+        }
+        const HalfDiffAngles angles = {grid.ThetaH(h + offset), grid.ThetaD(d + offset),
+                                       grid.PhiD(p + offset)};
+        const Cosines cosines = ToCosines(angles);
+        if (!inside || !(cosines.i > 0 && cosines.o > 0)) continue;
+        const Rgb a = measured(angles, cosines), b = fitted(angles, cosines);
+        for (int c = 0; c < kChannels; ++c) {
+          sums[h].log += std::abs(std::log1p(b[c] * cosines.i) - std::log1p(a[c] * cosines.i));
+          sums[h].relative += std::abs(b[c] - a[c]) / (a[c] + 1e-3);
+        }
+        sums[h].values += kChannels;
+      }
+    }
+  });
+  Sum total;
+  for (const Sum& sum : sums) {
+    total.log += sum.log;
+    total.relative += sum.relative;
+    total.values += sum.values;
+  }
+  const double n = std::max(total.values, 1);
+  return {total.log / n, total.relative / n};
+}
+
+BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
+                      const AngularBrdf& fitted, int num_threads) {
+  constexpr int kStride = 5;  // of phi_d
+  const MerlGrid& grid = table.grid;
+  const std::vector<bool> above = BinsAboveSurface(grid);
+  struct Row {
+    double largest_within = 0, largest = 0;
+    int within = 0, beyond = 0;
+  };
+  std::vector<Row> rows(grid.theta_h);
+  ParallelFor(grid.theta_h, num_threads, [&](int h) {
+    for (int d = 0; d < grid.theta_d; ++d) {
+      for (int p = 0; p < grid.phi_d; ++p) {
+        const int bin = grid.Index(h, d, p);
+        const bool beyond = above[bin] && ReasonOf(table, bin) != Unmeasured::kNo;
+        if (!beyond && !valid[bin]) continue;
+        ++(beyond ? rows[h].beyond : rows[h].within);
+        if ((h + d + p) % kStride != 0) continue;
+        const HalfDiffAngles angles = grid.Center(bin);
+        const Cosines cosines = ToCosines(angles);
+        const Rgb rho = fitted(angles, cosines);
+        double& most = beyond ? rows[h].largest : rows[h].largest_within;
+        most = std::max(most, std::ranges::max(rho) * std::max(cosines.i, cosines.o));
+      }
+    }
+  });
+  BeyondData data;
+  int within = 0, beyond = 0;
+  for (const Row& row : rows) {
+    data.largest_within = std::max(data.largest_within, row.largest_within);
+    data.largest = std::max(data.largest, row.largest);
+    within += row.within;
+    beyond += row.beyond;
+  }
+  data.share = static_cast<double>(beyond) / std::max(within + beyond, 1);
+  return data;
+}
+
+// Everything, measured or not; for `measured` what its table is filled with.
+SpherePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
+                            const AppearanceOptions& options) {
+  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
+  BrdfTable all = measured;
+  all.unmeasured.clear();
+  const TabulatedBrdf table(all);
+  const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
+  const auto everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
+  std::vector<SphereImage> spheres =
+      RenderSpheres(brdfs, lights, options.size, everything, options.num_threads);
+  return {std::move(spheres[0]), std::move(spheres[1])};
+}
+
+}  // namespace
+
+SphereError CompareSpheres(const SphereImage& measured, const SphereImage& fitted) {
+  std::vector<size_t> pixels;
+  Rgb mean_measured{}, mean_fitted{};
+  for (size_t k = 0; k < measured.radiance.size(); ++k) {
+    if (!(measured.coverage[k] > 0)) continue;
+    pixels.push_back(k);
+    for (int c = 0; c < kChannels; ++c) {
+      mean_measured[c] += measured.radiance[k][c];
+      mean_fitted[c] += fitted.radiance[k][c];
+    }
+  }
+  const auto n = static_cast<double>(std::max<size_t>(pixels.size(), 1));
+  SphereError error;
+  const double exposure = kMeanLuminance / (Luminance(mean_measured) / n);
+  if (std::isfinite(exposure)) error.exposure = exposure;
+  const auto exposed = [&](double x) { return x > 0 ? std::min(exposure * x, 1.0) : 0.0; };
+  const double length = std::hypot(mean_measured[0], mean_measured[1], mean_measured[2]);
+  if (length > 0) {
+    error.mean_color_error =
+        std::hypot(mean_fitted[0] - mean_measured[0], mean_fitted[1] - mean_measured[1],
+                   mean_fitted[2] - mean_measured[2]) /
+        length;
+  }
+  double squares = 0;
+  std::vector<double> delta_e;
+  for (const size_t k : pixels) {
+    Rgb a, b;
+    for (int c = 0; c < kChannels; ++c) {
+      a[c] = exposed(measured.radiance[k][c]);
+      b[c] = exposed(fitted.radiance[k][c]);
+      const double difference = EncodeSrgb(b[c]) - EncodeSrgb(a[c]);
+      squares += difference * difference;
+    }
+    delta_e.push_back(LabDifference(ToLab(a), ToLab(b)));
+    error.mean_delta_e += delta_e.back() / n;
+  }
+  error.psnr_db = squares > 0 ? -10 * std::log10(squares / (n * kChannels))
+                              : std::numeric_limits<double>::infinity();
+  if (!delta_e.empty()) {
+    const auto nth = delta_e.begin() +
+                     static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(delta_e.size() - 1));
+    std::ranges::nth_element(delta_e, nth);
+    error.delta_e_95 = *nth;
+  }
+  return error;
+}
+
+AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,
+                                   const AppearanceOptions& options) {
+  const Environment& environment = EnvironmentOf(options);
+  const TabulatedBrdf table(measured);
+  const MeasuredDirections counts(measured);
+  const std::vector<bool> valid = ValidBins(measured);
+  const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
+
+  AppearanceReport report;
+  report.environment = environment.name;
+  report.lights = options.lights;
+  report.size = options.size;
+  report.sphere = CompareOnSphere(measured, fitted, options);
+  report.albedo = CompareAlbedos(brdfs[0], brdfs[1], counts, options.num_threads);
+  report.at_centers =
+      CompareAtPoints(measured, valid, 0.5, brdfs[0], brdfs[1], options.num_threads);
+  report.between_centers =
+      CompareAtPoints(measured, valid, 1, brdfs[0], brdfs[1], options.num_threads);
+  if (!measured.unmeasured.empty()) {
+    report.beyond = LookBeyond(measured, valid, brdfs[1], options.num_threads);
+    const SpherePair whole = RenderEverywhere(measured, fitted, options);
+    report.beyond->psnr_db = CompareSpheres(whole.measured, whole.fitted).psnr_db;
+  }
+  const double largest = report.beyond ? report.beyond->largest : 0;
+  for (const double x : {report.sphere.mean_color_error, report.sphere.mean_delta_e,
+                         report.albedo.mean, report.at_centers.log, report.at_centers.relative,
+                         report.between_centers.log, report.between_centers.relative, largest}) {
+    if (!std::isfinite(x)) {
+      throw Error(measured.source + ": the model's values overflow; its factors are too large");
+    }
+  }
+  return report;
+}
+
+SpherePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
+                              const AppearanceOptions& options) {
+  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
+  const TabulatedBrdf table(measured);
+  const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
+  std::vector<SphereImage> spheres =
+      RenderSpheres(brdfs, lights, options.size, MeasuredDirections(measured), options.num_threads);
+  return {std::move(spheres[0]), std::move(spheres[1])};
+}
+
+SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted,
+                            const AppearanceOptions& options) {
+  const SpherePair pair = RenderMeasuredPair(measured, fitted, options);
+  return CompareSpheres(pair.measured, pair.fitted);
+}
+
+SpherePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
+                            const AppearanceOptions& options) {
+  SpherePair counted = RenderMeasuredPair(measured, fitted, options);
+  if (MeasuredDirections(measured).everything()) return counted;
+  SpherePair pair = RenderEverywhere(measured, fitted, options);
+  pair.measured.coverage = std::move(counted.measured.coverage);
+  pair.fitted.coverage = std::move(counted.fitted.coverage);
+  return pair;
+}
+
+}  // namespace trilobe

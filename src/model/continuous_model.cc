@@ -1,0 +1,48 @@
+#include "trilobe/model/continuous_model.h"
+
+#include <cmath>
+
+#include "trilobe/model/folded_grid.h"
+
+namespace trilobe {
+
+ContinuousModel::ContinuousModel(const FactorModel& model)
+    : model_(model),
+      grid_{.theta_h = model.spec().d_bins, .theta_d = model.spec().f_bins},
+      spline_(model.spec().g_nodes),
+      cosine_(CosinePieces(spline_)),
+      g_(ShadowingPieces(model)) {}
+
+Rgb ContinuousModel::operator()(const Stencil& D, const Stencil& F, const Cosines& cosines) const {
+  const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));
+  const CatmullRom::Location o = spline_.Locate(std::acos(cosines.o));
+  const auto product = [&](const std::vector<CatmullRom::Piece>& spline) {
+    return spline[i.interval](i.t - 0.5) * spline[o.interval](o.t - 0.5);
+  };
+  const double inverse_cosines = 1 / product(cosine_);
+  const ModelSpec& spec = model_.spec();
+  double g_products[kMaxLobes * kChannels];  // [G table]
+  for (size_t t = 0; t < g_.size(); ++t) g_products[t] = product(g_[t]) * inverse_cosines;
+  Rgb rho;
+  for (int c = 0; c < kChannels; ++c) {
+    rho[c] = model_.d()[c];
+    for (int m = 0; m < spec.lobes; ++m) {
+      rho[c] += model_.s(m)[c] * D(model_.D(m, c)) * F(model_.F(m, c)) *
+                g_products[spec.table(Factor::kG, m, c)];
+    }
+  }
+  return rho;
+}
+
+Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
+  return (*this)(LinearStencil(grid_.ThetaHCoordinate(angles.theta_h), grid_.theta_h),
+                 LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
+}
+
+Rgb ContinuousModel::operator()(const DirectionPair& directions) const {
+  if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
+  const HalfDiffAngles angles = ToHalfDiff(directions);
+  return (*this)(angles, ToCosines(angles));
+}
+
+}  // namespace trilobe

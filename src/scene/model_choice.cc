@@ -1,0 +1,161 @@
+#include "trilobe/scene/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/split_lobe.h"
+#include "trilobe/scene/prune.h"
+#include "trilobe/solvers/data_edge.h"
+#include "trilobe/solvers/joint_step.h"
+#include "trilobe/solvers/reduction.h"
+#include "trilobe/solvers/start_race.h"
+
+namespace trilobe {
+namespace {
+
+// A form before thinning: what it is called, and where its fit begins.
+struct Form {
+  std::string name;
+  FactorModel start;
+};
+
+// The same values with tables shared by less.
+FactorModel SharingLess(const FactorModel& model, const ModelSpec& spec) {
+  FactorModel result(spec);
+  const Reduction repeat = Reduction::BySharing(spec, model.spec());
+  std::ranges::copy(repeat.Expand(model.parameters()), result.parameters().begin());
+  return result;
+}
+
+std::vector<Form> Forms(const FactorModel& fitted) {
+  const ModelSpec& own = fitted.spec();
+  std::vector<Form> forms;
+  if (own.lobes > 1 && !own.F.per_lobe) {
+    ModelSpec spec = own;
+    spec.F.per_lobe = true;
+    forms.push_back({"F by lobe", SharingLess(fitted, spec)});
+  }
+  if (own.lobes > 0 && !own.D.per_channel) {
+    ModelSpec spec = own;
+    spec.D.per_channel = true;
+    forms.push_back({"D by channel", SharingLess(fitted, spec)});
+  }
+  if (own.lobes > 0 && own.lobes < kMaxLobes && own.D.per_lobe) {
+    forms.push_back({"a lobe more", SplitLobe(fitted, StrongestLobe(fitted))});
+  }
+  return forms;
+}
+
+// Some joint steps on thinned samples, then on all. The start reflects as the fitted model does, so
+// that few are enough.
+FactorModel Fit(const Objective& objective, const FactorModel& start,
+                const std::function<bool()>& stop) {
+  constexpr StartRace::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
+  constexpr int kStepsOnThinned = 12, kStepsOnAll = 2;
+  StartRace race(objective, kThinned, stop);
+  race.Enter("", [&start] { return std::optional(start); }, {.count = 0});
+  race.Advance(kStepsOnThinned);
+  PhaseSeconds phases;
+  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
+                       JointStepper::Trial::kProjected, &phases);
+  stepper.Restart(race.leader() != nullptr ? *race.leader() : start);
+  for (int k = 0; k < kStepsOnAll && !stepper.exhausted() && !stop(); ++k) stepper.Step();
+  return stepper.current();
+}
+
+}  // namespace
+
+ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
+                        const ModelChoiceOptions& options) {
+  if (options.max_numbers < 1) throw Error("a budget of numbers must be at least 1");
+  ChosenModel best;
+  Stopwatch stopwatch;
+  const auto judge = [&](const std::string& name, const FactorModel& model,
+                         const TableLayout& layout, double E) {
+    const double seconds = stopwatch.Lap();
+    double score = options.judge(model);
+    // Below all others, with which NaN has no order.
+    if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
+    best.candidates.push_back({.name = name,
+                               .numbers = layout.num_numbers(model.spec()),
+                               .E = E,
+                               .score = score,
+                               .seconds = seconds});
+    stopwatch.Lap();
+    return score;
+  };
+  // The last candidate, if it is the best that keeps to the budget.
+  const auto choose = [&](const FactorModel& model, const TableLayout& layout) {
+    const ModelCandidate& last = best.candidates.back();
+    if (last.numbers > options.max_numbers) return;
+    if (best.chosen >= 0 && !(last.score > best.candidates[best.chosen].score)) return;
+    best.chosen = static_cast<int>(best.candidates.size()) - 1;
+    best.model = model;
+    best.layout = layout;
+  };
+  const auto thin = [&](const std::string& name, const Objective& of, const FactorModel& model) {
+    PruneOptions prune;
+    prune.max_numbers = options.max_numbers;
+    prune.lobes = prune.colour = false;
+    const PrunedModel pruned = Prune(of, model, prune);
+    judge(name + ", thinned", pruned.model, pruned.layout, pruned.E);
+    choose(pruned.model, pruned.layout);
+  };
+
+  const TableLayout all = TableLayout::Full(fitted.spec());
+  judge("as fitted", fitted, all, objective.Value(fitted));
+  choose(fitted, all);
+  if (best.chosen < 0) thin("as fitted", objective, fitted);
+  if (best.chosen < 0) {
+    // One number a table is still too much: lobes and colours have to go, and no form that shares
+    // less has a chance.
+    const PrunedModel pruned = Prune(objective, fitted, {.max_numbers = options.max_numbers});
+    judge("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
+    choose(pruned.model, pruned.layout);
+    if (best.chosen < 0) {
+      throw Error("no form of the model keeps to " + std::to_string(options.max_numbers) +
+                  " numbers; its values overflow");
+    }
+    return best;
+  }
+  struct Fitted {
+    std::string name;
+    Objective objective;
+    FactorModel model;
+    double score;
+  };
+  std::vector<Fitted> forms;
+  for (const Form& form : Forms(fitted)) {
+    if (options.stop()) return best;
+    Objective of(objective, form.start.spec());
+    FactorModel model = Fit(of, form.start, options.stop);
+    const double score = judge(form.name, model, TableLayout::Full(model.spec()), of.Value(model));
+    forms.push_back({form.name, std::move(of), std::move(model), score});
+  }
+  // What follows takes time, and changes little of what a form has gained: only the best ones.
+  std::ranges::stable_sort(forms, std::greater(), &Fitted::score);
+  for (Fitted& form : forms) {
+    if (options.stop() || form.score <= best.candidates[best.chosen].score) break;
+    TieEntriesAtDataEdge(form.objective, &form.model);
+    const TableLayout layout = TableLayout::Full(form.model.spec());
+    if (layout.num_numbers(form.model.spec()) > options.max_numbers) {
+      thin(form.name, form.objective, form.model);
+    } else {
+      Canonicalize(form.objective.coverage(), &form.model);
+      judge(form.name + ", finished", form.model, layout, form.objective.Value(form.model));
+      choose(form.model, layout);
+    }
+  }
+  return best;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,51 @@
+#ifndef TRILOBE_SCENE_MODEL_CHOICE_H_
+#define TRILOBE_SCENE_MODEL_CHOICE_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
+#include "trilobe/model/table_layout.h"
+
+namespace trilobe {
+
+struct ModelChoiceOptions {
+  int max_numbers = 822;  // stored: values, without the places of nodes
+
+  // How good a model is to the eye; the highest wins, the first of equals. Asked once a candidate.
+  std::function<double(const FactorModel&)> judge;
+
+  // Asked after each step; true to stop with the best so far that keeps to the budget.
+  std::function<bool()> stop = [] { return false; };
+};
+
+// One form that was tried.
+struct ModelCandidate {
+  std::string name;    // "as fitted", "F by lobe", "F by lobe, thinned", ...
+  int numbers = 0;     // stored
+  double E = 0;        // Objective::Value
+  double score = 0;    // by the judge; -infinity where that says NaN
+  double seconds = 0;  // that it took to make, from the one that it came from
+};
+
+struct ChosenModel {
+  FactorModel model;   // of full-size tables, in canonical form but for the order of its lobes
+  TableLayout layout;  // which of its numbers are stored
+  std::vector<ModelCandidate> candidates;  // in the order in which they were tried
+  int chosen = -1;                         // which of them; there is always one
+};
+
+// The form that looks best within a budget of numbers (docs/model-choice.md): the fitted model
+// itself, thinned if it has more numbers; or one that shares less or has a lobe more, fitted from
+// there by some joint steps and thinned to the budget. Where one number a table is too much, what
+// Prune makes of the fitted model, with fewer lobes or colours. `fitted` is a fit of the objective,
+// in canonical form, and has its spec. The same bits for any number of threads, as long as `stop`
+// stays false. Throws Error for a budget below 1.
+ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
+                        const ModelChoiceOptions& options);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SCENE_MODEL_CHOICE_H_

@@ -1,0 +1,98 @@
+#include "trilobe/model/continuous_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/test_util.h"
+
+namespace trilobe {
+namespace {
+
+constexpr MerlGrid kGrid = {.theta_h = 12, .theta_d = 10, .phi_d = 16};
+
+// Angles of two directions above the surface, not at bin centres.
+HalfDiffAngles RandomAngles(Random* random) {
+  while (true) {
+    const HalfDiffAngles angles = {random->Uniform(0, kPi / 2), random->Uniform(0, kPi / 2),
+                                   random->Uniform(0, kPi)};
+    const Cosines cosines = ToCosines(angles);
+    if (cosines.i > 1e-3 && cosines.o > 1e-3) return angles;
+  }
+}
+
+void ExpectNear(const Rgb& rho, const FactorModel& model, const SampleStencils& stencils,
+                const std::string& what) {
+  for (int c = 0; c < kChannels; ++c) {
+    const double expected = Evaluate(model, stencils, c);
+    ASSERT_NEAR(rho[c], expected, 1e-13 * std::abs(expected)) << what << ", channel " << c;
+  }
+}
+
+TEST(ContinuousModelTest, EqualsTheStencilsInAnyDirections) {
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    const FactorModel model = RandomModel(spec, 5, 0.3);
+    const ContinuousModel continuous(model);
+    Random random(1);
+    for (int k = 0; k < 2000; ++k) {
+      const HalfDiffAngles angles = RandomAngles(&random);
+      const Cosines cosines = ToCosines(angles);
+      const SampleStencils stencils = ScatteredStencils(spec, angles);
+      ExpectNear(continuous(angles, cosines), model, stencils, name);
+      ExpectNear(continuous(stencils.D, stencils.F, cosines), model, stencils, name);
+    }
+  }
+}
+
+TEST(ContinuousModelTest, EqualsTheStencilsAtBinCentres) {
+  const std::vector<bool> above = BinsAboveSurface(kGrid);
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    const FactorModel model = RandomModel(spec, 6, 0.3);
+    const ContinuousModel continuous(model);
+    for (int bin = 0; bin < kGrid.size(); ++bin) {
+      if (!above[bin]) continue;
+      const int row = bin / kGrid.phi_d;
+      const Rgb rho = continuous(PointStencil(row / kGrid.theta_d),
+                                 PointStencil(row % kGrid.theta_d), ToCosines(kGrid.Center(bin)));
+      ExpectNear(rho, model, GridStencils(spec, kGrid, bin), name);
+    }
+  }
+}
+
+TEST(ContinuousModelTest, TakesDirections) {
+  const FactorModel model = RandomModel(ModelSpec::SharedFactors(2, kGrid), 7);
+  const ContinuousModel continuous(model);
+  Random random(2);
+  for (int k = 0; k < 100; ++k) {
+    const DirectionPair pair = ToDirections(RandomAngles(&random));
+    const Rgb expected = Evaluate(model, pair), rho = continuous(pair);
+    for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(rho[c], expected[c], 1e-13 * expected[c]);
+  }
+  EXPECT_EQ(continuous({.wi = {0.6, 0, 0.8}, .wo = {0.8, 0, -0.6}}), Rgb{});
+  EXPECT_EQ(continuous({.wi = {0.6, 0, -0.8}, .wo = {0, 0, 1}}), Rgb{});
+}
+
+// A negative weight of the spline, where G may undershoot: the value is the model's, not clamped.
+TEST(ContinuousModelTest, DoesNotClamp) {
+  FactorModel model(ModelSpec::SharedFactors(1, kGrid));
+  for (double& x : model.parameters()) x = 1;
+  for (double& d : model.d()) d = 0;
+  for (double& g : model.table(Factor::kG, 0)) g = 0;
+  model.table(Factor::kG, 0)[5] = 1;
+  const ContinuousModel continuous(model);
+  const double step = kPi / 2 / model.spec().g_nodes, node = 5.5 * step;
+  double lowest = 0;
+  for (double beside = -2.5; beside <= 2.5; beside += 0.1) {
+    const double theta_o = node + beside * step;
+    const DirectionPair pair = {{std::sin(node), 0, std::cos(node)},
+                                {0, std::sin(theta_o), std::cos(theta_o)}};
+    const double rho = continuous(pair)[0];
+    lowest = std::min(lowest, rho);
+    ASSERT_NEAR(rho, Evaluate(model, pair)[0], 1e-12);
+  }
+  EXPECT_LT(lowest, -1e-3);
+}
+
+}  // namespace
+}  // namespace trilobe
