@@ -5,12 +5,14 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
+#include "trilobe/model/catmull_rom.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/split_lobe.h"
 #include "trilobe/scene/prune.h"
@@ -72,6 +74,42 @@ FactorModel Fit(const Objective& objective, const FactorModel& start,
   return stepper.current();
 }
 
+// The last live entry of each G; that of the table where data go on to its end.
+std::vector<int> LastLiveNodes(const Objective& objective) {
+  const ModelSpec& spec = objective.spec();
+  const FactorModel layout(spec);
+  std::vector<int> last;
+  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+    int node = spec.g_nodes - 1;
+    while (node > 0 && !(objective.coverage()[layout.TableOffset(Factor::kG, t) + node] > 0)) {
+      --node;
+    }
+    last.push_back(node);
+  }
+  return last;
+}
+
+// A thinned G is constant beyond its last node, which makes the BRDF grow as 1 / cos^2 theta where
+// no data are. Two more nodes, at the last live entry and at the end, make it fall about as the
+// cosine.
+void ContinueShadowing(const std::vector<int>& last_live, PrunedModel* pruned) {
+  const ModelSpec& spec = pruned->model.spec();
+  const CatmullRom spline(spec.g_nodes);
+  const int end = spec.g_nodes - 1;
+  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+    const int last = last_live[t];
+    std::vector<int>& nodes = pruned->layout.of(Factor::kG, t);
+    if (last == end || nodes.front() > last) continue;
+    while (nodes.back() > last) nodes.pop_back();
+    const std::span<double> G = pruned->model.table(Factor::kG, t);
+    if (nodes.back() != last) nodes.push_back(last);
+    nodes.push_back(end);
+    G[end] = G[last] * std::cos(spline.NodeAngle(end)) / std::cos(spline.NodeAngle(last));
+  }
+  ExpandStored(pruned->layout, &pruned->model);
+  pruned->numbers = pruned->layout.num_numbers(spec);
+}
+
 }  // namespace
 
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
@@ -103,10 +141,16 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     best.layout = layout;
   };
   const auto thin = [&](const std::string& name, const Objective& of, const FactorModel& model) {
+    const std::vector<int> last_live = LastLiveNodes(of);
+    const auto continued = 2 * static_cast<int>(std::ranges::count_if(
+                                   last_live, [&](int k) { return k < of.spec().g_nodes - 1; }));
     PruneOptions prune;
-    prune.max_numbers = options.max_numbers;
     prune.lobes = prune.colour = false;
-    const PrunedModel pruned = Prune(of, model, prune);
+    // Not where next to nothing would be left.
+    const bool continues = continued > 0 && options.max_numbers > 4 * continued;
+    prune.max_numbers = options.max_numbers - (continues ? continued : 0);
+    PrunedModel pruned = Prune(of, model, prune);
+    if (continues) ContinueShadowing(last_live, &pruned);
     judge(name + ", thinned", pruned.model, pruned.layout, pruned.E);
     choose(pruned.model, pruned.layout);
   };

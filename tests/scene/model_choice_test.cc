@@ -13,6 +13,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/model/catmull_rom.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/solvers/initial_model.h"
@@ -228,6 +229,35 @@ TEST(ModelChoice, FinishesWhatItDoesNotThin) {
     ASSERT_LT(last, spec.g_nodes - 1);
     EXPECT_EQ(G[last], G[last - 1]) << t;
   }
+}
+
+// Where data end G falls about as the cosine does; a constant one lets the BRDF grow.
+TEST(ModelChoice, ThinnedShadowingGoesOnBeyondTheData) {
+  BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);
+  LimitAngles(DegreesToRadians(50), Unmeasured::kBeyondMaxAngle, &measured);
+  const Fit fit(measured, Spec(2));
+  const int budget = fit.model.spec().num_parameters() - 12;
+  const ChosenModel chosen = fit.Choose(budget);
+  ExpectConsistent(fit, chosen, budget);
+  ASSERT_THAT(chosen.candidates[chosen.chosen].name, testing::HasSubstr("thinned"));
+  const ModelSpec& spec = chosen.model.spec();
+  const Objective objective(fit.objective, spec);
+  const CatmullRom spline(spec.g_nodes);
+  int checked = 0;
+  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+    int last = spec.g_nodes - 1;
+    const int offset = chosen.model.TableOffset(Factor::kG, t);
+    while (!(objective.coverage()[offset + last] > 0)) --last;
+    ASSERT_LT(last, spec.g_nodes - 1);
+    const auto G = chosen.model.table(Factor::kG, t);
+    if (!(G[last] > 0)) continue;
+    ++checked;
+    EXPECT_NEAR(G[spec.g_nodes - 1] / G[last],
+                std::cos(spline.NodeAngle(spec.g_nodes - 1)) / std::cos(spline.NodeAngle(last)),
+                1e-12);
+    for (int k = last + 1; k < spec.g_nodes; ++k) EXPECT_LT(G[k], G[k - 1]);
+  }
+  EXPECT_GT(checked, 0);
 }
 
 TEST(ModelChoice, AModelThatHasTheFormStaysAsItIs) {
