@@ -258,9 +258,10 @@ TEST(CompareAppearance, LeavesOutWhatWasNotMeasured) {
     for (int c = 0; c < kChannels; ++c) table.SetValue(c, bin, 7);
   }
   const TabulatedBrdf brdf(table);
+  const std::vector<Unmeasured> marks = table.unmeasured;  // which the table will lose
   const AngularBrdf fitted = [&](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
     const int bin = kGrid.Bin(angles);
-    if (above[bin] && table.unmeasured[bin] != Unmeasured::kNo) return Rgb{10, 1000, 100};
+    if (above[bin] && marks[bin] != Unmeasured::kNo) return Rgb{10, 1000, 100};
     return brdf.Interpolate(angles);
   };
   const AppearanceReport report = CompareAppearance(table, fitted, Quick());
