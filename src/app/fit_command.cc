@@ -172,7 +172,8 @@ int RunFit(std::span<const std::string> arguments) {
   const bool init_is_file = InitIsFile();
   const InitialModel* const init = init_is_file ? nullptr : &FindInitialModel(FLAGS_init);
   // Before the long work, for the errors.
-  FinishOptionsFromFlags();
+  FinishOptions finish = FinishOptionsFromFlags();
+  finish.stop = [] { return InterruptGuard::signal() != 0; };
   SolverOptionsFromFlags(solver, SpecFromFlags({}));
   const SourceOptions source_options = SourceOptionsFromFlags();
   FactorModel model;
@@ -199,8 +200,6 @@ int RunFit(std::span<const std::string> arguments) {
   summary = Solve(solver, objective, SolverOptionsFromFlags(solver, report.spec), &model, &course);
   summary.phases.reading = report.seconds.read;
   report.seconds.solve = stopwatch.Lap();
-  FinishOptions finish = FinishOptionsFromFlags();
-  finish.stop = [] { return InterruptGuard::signal() != 0; };
   const FinishedFit fit = FinishFit(objective, measured, std::move(model), finish);
   report.finished = {fit.tied, fit.candidates, fit.chosen};
   report.spec = fit.model.spec();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -165,18 +166,24 @@ BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
   return data;
 }
 
+using Counts = std::function<bool(const HalfDiffAngles&, const Cosines&)>;
+
+SpherePair RenderPair(const TabulatedBrdf& measured, const AngularBrdf& fitted,
+                      const Counts& counts, const AppearanceOptions& options) {
+  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
+  const AngularBrdf brdfs[] = {Interpolated(measured), Clamped(fitted)};
+  std::vector<SphereImage> spheres =
+      RenderSpheres(brdfs, lights, options.size, counts, options.num_threads);
+  return {std::move(spheres[0]), std::move(spheres[1])};
+}
+
 // Everything, measured or not; for `measured` what its table is filled with.
 SpherePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
                             const AppearanceOptions& options) {
-  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
   BrdfTable all = measured;
   all.unmeasured.clear();
-  const TabulatedBrdf table(all);
-  const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
-  const auto everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
-  std::vector<SphereImage> spheres =
-      RenderSpheres(brdfs, lights, options.size, everything, options.num_threads);
-  return {std::move(spheres[0]), std::move(spheres[1])};
+  const Counts everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
+  return RenderPair(TabulatedBrdf(all), fitted, everything, options);
 }
 
 }  // namespace
@@ -240,7 +247,8 @@ AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf&
   report.environment = environment.name;
   report.lights = options.lights;
   report.size = options.size;
-  report.sphere = CompareOnSphere(measured, fitted, options);
+  const SpherePair pair = RenderPair(table, fitted, std::cref(counts), options);
+  report.sphere = CompareSpheres(pair.measured, pair.fitted);
   report.albedo = CompareAlbedos(brdfs[0], brdfs[1], counts, options.num_threads);
   report.at_centers =
       CompareAtPoints(measured, valid, 0.5, brdfs[0], brdfs[1], options.num_threads);
@@ -264,12 +272,7 @@ AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf&
 
 SpherePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
                               const AppearanceOptions& options) {
-  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
-  const TabulatedBrdf table(measured);
-  const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
-  std::vector<SphereImage> spheres =
-      RenderSpheres(brdfs, lights, options.size, MeasuredDirections(measured), options.num_threads);
-  return {std::move(spheres[0]), std::move(spheres[1])};
+  return RenderPair(TabulatedBrdf(measured), fitted, MeasuredDirections(measured), options);
 }
 
 SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted,

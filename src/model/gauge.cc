@@ -151,6 +151,7 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
     }
   }
   const CatmullRom spline(spec.g_nodes);
+  const std::vector<double> visible = VisibleSolidAngles(spec.d_bins);
   for (const Factor factor : kFactors) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {
       const std::span<double> table = model->table(factor, t);
@@ -164,7 +165,7 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
         FillDeadBins(covered, kLookedAt, table);
       }
       if (factor == Factor::kD) {
-        Normalize(factor, t, VisibleSolidAngles(spec.d_bins), 1, model);
+        Normalize(factor, t, visible, 1, model);
         continue;
       }
       std::span<const double> weights = std::span(light.through).subspan(offset, table.size());

@@ -60,7 +60,7 @@ struct Power {
     const double area = solid_angle == 0 ? 1 : std::pow(point.solid_angle, solid_angle);
     const auto weight = [&](double rho_star) {
       const double x = rho_star * scale * cosine + epsilon;
-      // The same bits as pow for the exponent that most fits use, and faster.
+      // The logarithm, without the time of a power.
       const double slope = exponent == 1 ? 1 / x : std::pow(x, -exponent);
       return area * Square(cosine * slope);
     };
