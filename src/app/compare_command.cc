@@ -8,8 +8,9 @@
 
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
+#include "trilobe/app/interrupt.h"
 #include "trilobe/app/print.h"
-#include "trilobe/app/progress.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/app/scene_report.h"
 #include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
@@ -60,6 +61,9 @@ PrunedScene FromRun(const std::string& path) {
   PrunedScene pruned{.settings = SceneSettingsFromFlags()};
   SceneRun run = RunScene(ReadScene(path), pruned.settings, [](const MaterialFit&) {});
   if (run.interrupted != 0) throw Error("interrupted; the same command goes on from the cache");
+  if (!run.failures.empty()) {
+    throw Error("material '" + run.failures[0].name + "': " + run.failures[0].error);
+  }
   pruned.scene = std::move(run.scene);
   for (MaterialFit& fit : run.fits) {
     pruned.numbers.push_back(fit.numbers);
@@ -85,6 +89,9 @@ PrunedScene FromFolder(const std::string& folder) {
   const std::string path = folder + "/plan.json";
   try {
     const Json plan = Json::parse(ReadFile(path));
+    if (plan.contains("unfinished")) {
+      throw Error(path + ": its run was cut off; make the folder again with `trilobe fit --scene`");
+    }
     TakeFlags(plan.at("flags"));
     PrunedScene pruned{.scene = ReadScene(plan.at("scene").get<std::string>()),
                        .settings = SceneSettingsFromFlags()};
@@ -228,6 +235,7 @@ void Draw(const Comparison& comparison, const std::string& path) {
 int RunCompare(std::span<const std::string> arguments) {
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(arguments[0], ignored);
+  if (!FLAGS_out.empty()) Inputs({arguments[0]}).CheckOutput(FLAGS_out);
   const Comparison comparison =
       Compare(is_folder ? FromFolder(arguments[0]) : FromRun(arguments[0]));
   if (FLAGS_json) {

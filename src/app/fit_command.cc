@@ -3,34 +3,24 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <limits>
+#include <optional>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "trilobe/app/appearance_report.h"
 #include "trilobe/app/command.h"
-#include "trilobe/app/course.h"
-#include "trilobe/app/finish_fit.h"
+#include "trilobe/app/fit_many.h"
 #include "trilobe/app/fit_report.h"
+#include "trilobe/app/fit_run.h"
 #include "trilobe/app/flags.h"
+#include "trilobe/app/interrupt.h"
 #include "trilobe/app/progress.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/peak_memory.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/base/utc_time.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
-#include "trilobe/io/plots.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/trace_file.h"
-#include "trilobe/model/continuous_model.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/measurement_stats.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/model/score.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
@@ -58,17 +48,6 @@ DEFINE_bool(plots, false, "also draw the pictures of `trilobe plot` into DIR");
 namespace trilobe {
 namespace {
 
-FinishOptions FinishOptionsFromFlags() {
-  if (!(FLAGS_robust >= 0 && FLAGS_robust <= 1e6)) throw Error("--robust must be from 0 to 1e6");
-  if (FLAGS_max_numbers < 1) throw Error("--max_numbers must be at least 1");
-  if (FLAGS_model != "auto" && !IsDefault("max_numbers")) {
-    throw Error("--max_numbers goes with --model=auto");
-  }
-  return {.robust = FLAGS_robust,
-          .max_numbers = FLAGS_model == "auto" ? FLAGS_max_numbers : 0,
-          .appearance = AppearanceOptionsFromFlags()};
-}
-
 ModelSpec SpecFromFlags(const MerlGrid& grid) {
   if (FLAGS_model == "independent") {
     if (!IsDefault("lobes") && FLAGS_lobes != 1) {
@@ -94,10 +73,10 @@ bool InitIsFile() {
          std::filesystem::exists(FLAGS_init, ignored);
 }
 
-FactorModel StartFromFile(const MerlGrid& grid) {
+FactorModel StartFromFile() {
   FactorModel model = ReadModel(FLAGS_init).model;
   const ModelSpec& spec = model.spec();
-  if ((!IsDefault("lobes") || !IsDefault("model")) && !(spec == SpecFromFlags(grid))) {
+  if ((!IsDefault("lobes") || !IsDefault("model")) && !(spec == SpecFromFlags({}))) {
     throw Error(FLAGS_init +
                 " does not have the lobes and sharing that --lobes and --model ask "
                 "for; leave these flags out to fit the file's own");
@@ -105,45 +84,101 @@ FactorModel StartFromFile(const MerlGrid& grid) {
   return model;
 }
 
-SolverSummary Solve(const SolverEntry& solver, const Objective& objective, SolverOptions options,
-                    FactorModel* model, Course* course) {
-  Progress progress(options);
-  options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
-    progress.Show(record);
-    if (FLAGS_course) course->Keep(record, current);
-    return InterruptGuard::signal() == 0;
-  };
-  return solver.make()->Solve(objective, options, model);
+// Flags on which a result does not depend, or only by the content of a file.
+constexpr const char* kFlagsOfNoResult[] = {"threads", "out", "scene", "cache", "nocache", "probe"};
+
+std::vector<std::string> FitFlags() {
+  std::vector<std::string> flags = {"solver", "init",        "weighting", "model",
+                                    "robust", "max_numbers", "lobes"};
+  for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
+  flags.insert(flags.end(),
+               {"threads", "noise", "seed", "max_angle", "extrapolated", "out", "reconstruction",
+                "course", "plots", "probe", "scene", "cache", "nocache"});
+  return flags;
 }
 
-// Everything that a fit leaves in its folder. Each file is written whole or not at all, the model
-// first.
-void WriteOutputs(const ModelFile& file, const FitReport& report, const BrdfTable& measured,
-                  const Course& course, const Objective& objective) {
-  const std::string folder = FLAGS_out + "/";
-  WriteModel(file, folder + "model.json");
-  WriteTrace(folder + "trace.csv", report.summary.trace);
-  WriteFile(folder + "report.json", [&report](std::ostream& out) {
-    out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
-  });
-  std::string written = "model.json, trace.csv, report.json";
-  if (FLAGS_course) {
-    course.Write(folder + "course.csv", objective);
-    written += ", course.csv";
+std::string KeyOfFlags() {
+  std::vector<std::string> flags = FitFlags();
+  for (const std::string& flag : ParticularSolverFlags()) flags.push_back(flag);
+  std::string key;
+  for (const char* const flag : kFlagsOfNoResult) std::erase(flags, flag);
+  for (const auto& [flag, value] : GivenFlags(flags)) key += flag + "=" + value + "\n";
+  return key;
+}
+
+FitSettings SettingsFromFlags() {
+  FitSettings settings;
+  settings.weighting = FindWeighting(FLAGS_weighting);
+  settings.solver = &SolverFromFlags();
+  settings.options = [solver = settings.solver](const ModelSpec& spec) {
+    return SolverOptionsFromFlags(*solver, spec);
+  };
+  settings.init = FLAGS_init;
+  const bool init_is_file = InitIsFile();
+  if (!init_is_file) settings.start = &FindInitialModel(FLAGS_init);
+  if (!(FLAGS_robust >= 0 && FLAGS_robust <= 1e6)) throw Error("--robust must be from 0 to 1e6");
+  if (FLAGS_max_numbers < 1) throw Error("--max_numbers must be at least 1");
+  if (FLAGS_model != "auto" && !IsDefault("max_numbers")) {
+    throw Error("--max_numbers goes with --model=auto");
   }
-  const int threads = objective.num_threads();
-  if (FLAGS_reconstruction) {
-    WriteMerl(Reconstruct(file.model, file.fit.source, measured.grid, threads),
-              folder + "reconstruction.binary");
-    written += ", reconstruction.binary";
+  settings.finish = {.robust = FLAGS_robust,
+                     .max_numbers = FLAGS_model == "auto" ? FLAGS_max_numbers : 0,
+                     .appearance = AppearanceOptionsFromFlags()};
+  settings.spec = SpecFromFlags;
+  SolverOptionsFromFlags(*settings.solver, SpecFromFlags({}));
+  settings.source = SourceOptionsFromFlags();
+  settings.seed = FLAGS_seed;
+  settings.course = FLAGS_course;
+  settings.reconstruction = FLAGS_reconstruction;
+  settings.plots = FLAGS_plots;
+  settings.key = KeyOfFlags();
+  if (!FLAGS_probe.empty()) settings.inputs.push_back(FLAGS_probe);
+  if (init_is_file) {
+    settings.start_model = StartFromFile();
+    settings.inputs.push_back(FLAGS_init);
   }
-  if (FLAGS_plots) {
-    for (const std::string& path : DrawPictures(file, &measured, report.summary.trace, FLAGS_out,
-                                                AppearanceOptionsFromFlags())) {
-      written += ", " + std::filesystem::path(path).filename().string();
+  return settings;
+}
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+int RunFitOfOne(const std::string& source) {
+  const FitSettings settings = SettingsFromFlags();
+  std::optional<ResultFolder> folder;
+  if (!FLAGS_out.empty()) {
+    std::vector<std::string> inputs = settings.inputs;
+    inputs.push_back(source);
+    folder.emplace(FLAGS_out, FitFileNames(), Inputs(inputs));
+  }
+  ResultFolder* const into = folder ? &*folder : nullptr;
+  const int threads = ThreadsFromFlags();
+  std::optional<InterruptGuard> guard;  // while it reads, Ctrl-C ends it at once
+  std::optional<Progress> progress;
+  const auto show = [&](const IterationRecord& record) {
+    if (!progress) progress.emplace(settings.options(SpecFromFlags({})));
+    progress->Show(record);
+  };
+  FitRun run = RunOneFit(
+      source, settings, threads, into, [&] { guard.emplace(); }, show);
+  progress.reset();
+  Print(run.report);
+  if (run.interrupted) std::cout << "interrupted  this is the best model so far\n";
+  if (into == nullptr) {
+    std::cout << "written      nothing; give --out=DIR to keep the model\n";
+  } else {
+    try {
+      WriteRest(&run, settings, into);
+    } catch (const Error& error) {
+      throw Error(std::string(error.what()) + "; the model is in '" + into->PathOf("model.json") +
+                  "'");
     }
+    std::cout << "written      " << Joined(run.report.files) << " in " << FLAGS_out << "\n";
   }
-  std::cout << "written      " << written << " in " << FLAGS_out << "\n";
+  return run.interrupted ? 128 + InterruptGuard::signal() : 0;  // as a shell reports such an end
 }
 
 // A scene says what is fitted and, by its budgets, what models come out.
@@ -166,76 +201,11 @@ int RunFit(std::span<const std::string> arguments) {
   for (const char* const flag : {"cache", "nocache"}) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " goes with --scene");
   }
-  const int threads = ThreadsFromFlags();
-  const Weighting weighting = FindWeighting(FLAGS_weighting);
-  const SolverEntry& solver = SolverFromFlags();
-  const bool init_is_file = InitIsFile();
-  const InitialModel* const init = init_is_file ? nullptr : &FindInitialModel(FLAGS_init);
-  // Before the long work, for the errors.
-  FinishOptions finish = FinishOptionsFromFlags();
-  finish.stop = [] { return InterruptGuard::signal() != 0; };
-  SolverOptionsFromFlags(solver, SpecFromFlags({}));
-  const SourceOptions source_options = SourceOptionsFromFlags();
-  FactorModel model;
-  if (init_is_file) model = StartFromFile({});
-
-  FitReport report;
-  report.noise = FLAGS_noise;
-  report.seed = FLAGS_seed;
-  Stopwatch stopwatch;
-  const BrdfTable measured = LoadSource(arguments[0], source_options);
-  report.seconds.read = stopwatch.Lap();
-  report.spec = init_is_file ? model.spec() : SpecFromFlags(measured.grid);
-  const Objective objective(ValidSamples(measured), report.spec, weighting, threads);
-  report.seconds.prepare = stopwatch.Lap();
-  if (init != nullptr) model = init->make(objective, static_cast<uint64_t>(FLAGS_seed));
-  report.seconds.init = stopwatch.Lap();
-  report.bins = CountBins(measured);
-  // Now, not later: a fit must not be lost for want of a folder.
-  if (!FLAGS_out.empty()) MakeDirectories(FLAGS_out);
-  // From here on a first Ctrl-C ends the work but not before the model is written.
-  const InterruptGuard guard;
-  Course course;
-  SolverSummary& summary = report.summary;
-  summary = Solve(solver, objective, SolverOptionsFromFlags(solver, report.spec), &model, &course);
-  summary.phases.reading = report.seconds.read;
-  report.seconds.solve = stopwatch.Lap();
-  const FinishedFit fit = FinishFit(objective, measured, std::move(model), finish);
-  report.finished = {fit.tied, fit.candidates, fit.chosen};
-  report.spec = fit.model.spec();
-  report.stored_numbers =
-      fit.layout ? fit.layout->num_numbers(report.spec) : report.spec.num_parameters();
-  report.seconds.finish = stopwatch.Lap();
-  report.score = ScoreModel(fit.objective, fit.model);
-  report.appearance = CompareAppearance(measured, ContinuousModel(fit.model), finish.appearance);
-  report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
-  report.seconds.score = stopwatch.Lap();
-  report.peak_memory = PeakMemory();
-
-  report.fit = {.solver = solver.name,
-                .init = FLAGS_init,
-                .weighting = weighting.name,
-                .objective = report.score.objective,
-                .initial_objective = summary.initial_objective,
-                .stop_reason = StopReasonName(summary.stop_reason),
-                .iterations = summary.iterations,
-                .seconds = summary.seconds,
-                .threads = threads,
-                .source = arguments[0],
-                .valid_samples = report.score.valid_samples,
-                .max_angle = MaxAngleDegrees(measured),
-                .program = std::string("trilobe ") + gflags::VersionString(),
-                .date = UtcNow()};
-  Print(report);
-  const bool interrupted = InterruptGuard::signal() != 0;
-  if (interrupted) std::cout << "interrupted  this is the best model so far\n";
-  if (FLAGS_out.empty()) {
-    std::cout << "written      nothing; give --out=DIR to keep the model\n";
-  } else {
-    WriteOutputs({fit.model, DeadParameters(fit.objective.coverage()), report.fit, fit.layout},
-                 report, measured, course, fit.objective);
+  std::error_code ignored;
+  if (arguments.size() == 1 && !std::filesystem::is_directory(arguments[0], ignored)) {
+    return RunFitOfOne(arguments[0]);
   }
-  return interrupted ? 128 + InterruptGuard::signal() : 0;  // as a shell reports such an end
+  return RunFitOfMany(arguments, SettingsFromFlags());
 }
 
 // "  name  description" a line, from a registry.
@@ -254,30 +224,28 @@ std::string List(const std::vector<T>& entries) {
 }  // namespace
 
 Command FitCommand() {
-  std::vector<std::string> flags = {"solver", "init",        "weighting", "model",
-                                    "robust", "max_numbers", "lobes"};
-  for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(),
-               {"threads", "noise", "seed", "max_angle", "extrapolated", "out", "reconstruction",
-                "course", "plots", "probe", "scene", "cache", "nocache"});
   return {.name = "fit",
           .summary = "fit a model to a measurement",
-          .arguments = "SOURCE | --scene=SCENE",
+          .arguments = "SOURCE... | --scene=SCENE",
           .min_arguments = 0,
-          .max_arguments = 1,
+          .max_arguments = std::numeric_limits<int>::max(),
           .details =
               "Writes DIR/model.json (the model, in canonical form), DIR/trace.csv (E, step and "
               "seconds of\neach iteration; row 0 is the starting point) and DIR/report.json "
               "(settings, errors, diagnosis,\ntimes). Ctrl-C stops after the iteration and keeps "
               "the best model so far; go on from it, with the\nsame solver or another, with "
-              "--init=DIR/model.json.\n\nWith --scene, does what `trilobe plan` says for the "
+              "--init=DIR/model.json.\n\nSeveral sources, or a folder of measurements, are fitted "
+              "side by side, each into a folder of its name\nin DIR; DIR/fits.csv and "
+              "DIR/index.html, a page of pictures, gather them. What DIR has already, of\nthe "
+              "same measurement and flags, is not fitted again; one that fails does not stop the "
+              "others.\n\nWith --scene, does what `trilobe plan` says for the "
               "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
               "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
               "command goes on with the others.\n\nsolvers:\n" +
               List(Solvers()) + "\nstarting points (--init):\n" + List(InitialModels()) +
               "\nweightings:\n" + List(Weightings()) +
               "\n`trilobe help fit --solver=NAME` shows the flags of another solver than this:",
-          .flags = flags,
+          .flags = FitFlags(),
           .particular_flags = ParticularSolverFlags(),
           .particular_help = [] { return DescribeSolver(SolverFromFlags()); },
           .run = RunFit};

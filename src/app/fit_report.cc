@@ -142,7 +142,10 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"phases", ToJson(summary.phases)},
           {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
           {"program", fit.program},
-          {"date", fit.date}};
+          {"date", fit.date},
+          {"key", report.key},
+          {"run", fit.run},
+          {"files", report.files}};
 }
 
 void Print(const FitReport& report) {

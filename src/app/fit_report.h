@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
@@ -25,6 +26,8 @@ struct FitReport {
   };
 
   FitInfo fit;
+  std::string key;                 // what a repetition has in common: FitKey
+  std::vector<std::string> files;  // of the run, in its folder
   ModelSpec spec;
   double noise = 0;  // of the source
   int64_t seed = 0;

@@ -18,7 +18,8 @@ int RunPlan(std::span<const std::string> arguments) {
   } else {
     PrintPlan(run, std::cout);
   }
-  return run.interrupted != 0 ? 128 + run.interrupted : 0;
+  if (run.interrupted != 0) return 128 + run.interrupted;
+  return run.failures.empty() ? 0 : 1;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/plots.h"
@@ -21,6 +22,11 @@ namespace {
 
 int RunPlot(std::span<const std::string> arguments) {
   const std::string folder = RequiredOut("plot", "DIR");
+  std::vector<std::string> read(arguments.begin(), arguments.end());
+  for (const std::string& path : {FLAGS_trace, FLAGS_probe}) read.push_back(path);
+  for (const char* const name : {"factors.png", "slices.png", "spheres.png", "trace.png"}) {
+    Inputs(read).CheckOutput(folder + "/" + name);
+  }
   const ModelFile file = ReadModel(arguments[0]);
   std::optional<BrdfTable> measured;
   if (arguments.size() > 1) measured = LoadSource(arguments[1], SourceOptionsFromFlags());

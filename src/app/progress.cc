@@ -4,26 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
+#include <utility>
 
 namespace trilobe {
-namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
-
-extern "C" void OnSignal(int signal) { caught_signal = signal; }
-
-void Catch(int signal, struct sigaction* old) {
-  struct sigaction action {};
-  action.sa_handler = OnSignal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second one ends the program
-  sigaction(signal, nullptr, old);
-  if (old->sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-}
-
-}  // namespace
-
 Progress::Progress(const SolverOptions& options)
     : max_iterations_(options.max_iterations),
       max_seconds_(options.max_seconds),
@@ -49,17 +33,35 @@ void Progress::Show(const IterationRecord& record) {
   last_ = record;
 }
 
-InterruptGuard::InterruptGuard() {
-  caught_signal = 0;
-  Catch(SIGINT, &old_int_);
-  Catch(SIGTERM, &old_term_);
+JobProgress::JobProgress(size_t count, std::string what)
+    : on_terminal_(isatty(STDERR_FILENO) != 0), count_(count), what_(std::move(what)) {
+  Show();
 }
 
-InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &old_int_, nullptr);
-  sigaction(SIGTERM, &old_term_, nullptr);
+JobProgress::~JobProgress() { Clear(); }
+
+void JobProgress::Clear() const {
+  if (on_terminal_) std::fputs("\r\033[K", stderr);
 }
 
-int InterruptGuard::signal() { return caught_signal; }
+void JobProgress::Done(const std::string& name, bool took_time) {
+  ++done_;
+  timed_ += took_time ? 1 : 0;
+  last_ = ", last " + name;
+  Show();
+}
+
+void JobProgress::Show() const {
+  if (!on_terminal_) return;
+  std::fprintf(stderr, "\r\033[K%zu of %zu %s finished%s", done_, count_, what_.c_str(),
+               last_.c_str());
+  if (timed_ > 0 && done_ < count_) {
+    const double left =
+        since_.Seconds() / static_cast<double>(timed_) * static_cast<double>(count_ - done_);
+    std::fprintf(stderr, left < 90 ? ", about %.0f s left" : ", about %.0f min left",
+                 left < 90 ? std::ceil(left) : std::ceil(left / 60));
+  }
+  std::fflush(stderr);
+}
 
 }  // namespace trilobe

@@ -1,8 +1,10 @@
 #ifndef TRILOBE_APP_PROGRESS_H_
 #define TRILOBE_APP_PROGRESS_H_
 
-#include <csignal>
+#include <cstddef>
+#include <string>
 
+#include "trilobe/base/stopwatch.h"
 #include "trilobe/model/iteration_record.h"
 #include "trilobe/solvers/solver.h"
 
@@ -26,21 +28,30 @@ class Progress {
   IterationRecord last_;
 };
 
-// While one lives, the first SIGINT (Ctrl-C) or SIGTERM does not end the program but is kept in
-// signal(); a second one does end it. A signal that the program was started to ignore stays
-// ignored.
-class InterruptGuard {
+// How many of some jobs are finished, on one line of a terminal: "3 of 100 materials finished, last
+// felt, about 5 min left". Draws nothing where standard error is not a terminal.
+class JobProgress {
  public:
-  InterruptGuard();
-  ~InterruptGuard();
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
+  JobProgress(size_t count, std::string what);
+  ~JobProgress();  // clears the line
+  JobProgress(const JobProgress&) = delete;
+  JobProgress& operator=(const JobProgress&) = delete;
 
-  static int signal();  // 0 while none has come
+  // A job is through. What took no time, since it had been done before, says nothing about the
+  // rest.
+  void Done(const std::string& name, bool took_time = true);
+  // Clears the line, to print something else; the next Done draws it again.
+  void Clear() const;
 
  private:
-  struct sigaction old_int_ {
-  }, old_term_{};
+  void Show() const;
+
+  const bool on_terminal_;
+  const size_t count_;
+  const std::string what_;
+  const Stopwatch since_;
+  size_t done_ = 0, timed_ = 0;
+  std::string last_;
 };
 
 }  // namespace trilobe

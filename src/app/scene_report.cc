@@ -123,17 +123,24 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
       << Text(run.seconds, 3) << " seconds side by side on " << run.threads << " threads"
       << (run.reused > 0 ? ", reckoned from what the parts took when they were made" : "") << "\n";
   for (const MaterialFit& fit : run.fits) PrintDecisions(run, fit, out);
+  for (const auto& [material, error] : run.failures)
+    out << "\n" << material << " failed: " << error << "\n";
 }
 
 Json PlanToJson(const SceneRun& run) {
   Json materials = Json::array();
   for (const MaterialFit& fit : run.fits) materials.push_back(ToJson(run, fit));
+  Json failed = Json::array();
+  for (const auto& [name, error] : run.failures) {
+    failed.push_back({{"name", name}, {"error", error}});
+  }
   return {{"scene", std::filesystem::absolute(run.scene.path).lexically_normal().string()},
           {"flags", GivenFlags(SceneModelFlags())},
           {"threads", run.threads},
           {"seconds", run.seconds},
           {"reused", run.reused},
-          {"materials", materials}};
+          {"materials", materials},
+          {"failed", failed}};
 }
 
 }  // namespace trilobe

@@ -1,23 +1,25 @@
 #include "trilobe/app/scene_run.h"
 
 #include <gflags/gflags.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <utility>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
+#include "trilobe/app/interrupt.h"
 #include "trilobe/app/progress.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/app/scene_report.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/weighting.h"
 #include "trilobe/solvers/initial_model.h"
@@ -29,6 +31,9 @@ DEFINE_bool(nocache, false, "neither use nor keep fits");
 
 namespace trilobe {
 namespace {
+
+constexpr const char* kPlanName = "plan.json";
+constexpr const char* kPlanTextName = "plan.txt";
 
 FitCache CacheFromFlags() {
   if (FLAGS_nocache) {
@@ -44,34 +49,24 @@ FitCache CacheFromFlags() {
   }
 }
 
-// "\r3 of 10 materials" on a terminal.
-class SceneProgress {
- public:
-  explicit SceneProgress(size_t count) : count_(count) { Show(); }
-  ~SceneProgress() {
-    if (on_terminal_) std::fputs("\r\033[K", stderr);
+// Names of the files that the scene leaves in its folder, and of those that an earlier one has left
+// there by what its plan says.
+std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& folder) {
+  std::set<std::string> names = {kPlanName, kPlanTextName};
+  for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
+  const std::string plan = folder + "/" + kPlanName;
+  try {
+    const auto earlier = nlohmann::json::parse(ReadFile(plan));
+    for (const std::string file : earlier.at("files")) {
+      if (file.find('/') == std::string::npos) names.insert(file);
+    }
+  } catch (const Error&) {
+    // There was none.
+  } catch (const nlohmann::json::exception&) {
+    throw Error("'" + plan + "' is not a plan of `trilobe fit --scene`; give another --out");
   }
-  SceneProgress(const SceneProgress&) = delete;
-  SceneProgress& operator=(const SceneProgress&) = delete;
-
-  void Done(const std::string& name) {
-    ++done_;
-    last_ = ", last " + name;
-    Show();
-  }
-
- private:
-  void Show() const {
-    if (!on_terminal_) return;
-    std::fprintf(stderr, "\r\033[K%zu of %zu materials finished%s", done_, count_, last_.c_str());
-    std::fflush(stderr);
-  }
-
-  const bool on_terminal_ = isatty(STDERR_FILENO) != 0;
-  const size_t count_;
-  size_t done_ = 0;
-  std::string last_;
-};
+  return {names.begin(), names.end()};
+}
 
 }  // namespace
 
@@ -124,48 +119,65 @@ SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done) {
   SceneRun run{.scene = std::move(scene), .threads = ThreadsFromFlags()};
   const InterruptGuard guard;
-  SceneProgress progress(run.scene.materials.size());
+  JobProgress progress(run.scene.materials.size(), "materials");
   Stopwatch stopwatch;
-  const auto fits = FitScene(run.scene, settings, run.threads, [&](const MaterialFit& fit) {
-    on_done(fit);
-    progress.Done(fit.name);
-  });
+  const std::vector<MaterialResult> results =
+      FitScene(run.scene, settings, run.threads, [&](const MaterialFit& fit) {
+        on_done(fit);
+        progress.Done(fit.name, !fit.prune_from_cache);
+      });
   run.seconds = stopwatch.Lap();
   double when_made = 0;
-  for (const std::optional<MaterialFit>& fit : fits) {
+  for (size_t k = 0; k < results.size(); ++k) {
+    const auto& [fit, error] = results[k];
+    if (!error.empty()) run.failures.push_back({run.scene.materials[k].name, error});
     if (!fit) continue;
     run.fits.push_back(*fit);
     run.reused += fit->fit_from_cache ? 1 : 0;
     when_made += fit->fit_seconds + fit->prune_seconds;
   }
   if (run.reused > 0) {
-    run.seconds = when_made / std::min<double>(run.threads, static_cast<double>(fits.size()));
+    run.seconds = when_made / std::min<double>(run.threads, static_cast<double>(results.size()));
   }
   run.interrupted = InterruptGuard::signal();
   return run;
 }
 
 int RunSceneFit(const std::string& path) {
-  const std::string folder = RequiredOut("fit --scene", "DIR");
+  const std::string out = RequiredOut("fit --scene", "DIR");
   const SceneFitSettings settings = SceneSettingsFromFlags();
-  Scene scene = ReadScene(path);  // its errors come before anything is made
-  MakeDirectories(folder);
+  Scene scene = ReadScene(path);
+  const std::vector<std::string> names = SceneFileNames(scene, out);
+  ResultFolder folder(out, names, Inputs(FilesOf(scene)));
+  folder.Open();
+  const auto write_plan = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
+    plan["run"] = folder.run();
+    plan["files"] = files;
+    folder.Write(kPlanName, [&](std::ostream& to) { to << plan.dump(2) << "\n"; });
+  };
+  bool begun = false;
   const SceneRun run = RunScene(std::move(scene), settings, [&](const MaterialFit& fit) {
-    WriteModel(fit.file, folder + "/" + fit.name + ".json");
+    ModelFile file = fit.file;
+    file.fit.run = folder.run();
+    const std::string text = FormatModel(file);
+    // Should the program be killed, the next run knows by this what there may be.
+    if (!std::exchange(begun, true)) write_plan({{"unfinished", true}}, names);
+    folder.Write(fit.name + ".json", [&](std::ostream& to) { to << text; });
   });
   std::ostringstream text;
   PrintPlan(run, text);
   std::cout << text.str();
-  WriteFile(folder + "/plan.txt", [&](std::ostream& out) { out << text.str(); });
-  WriteFile(folder + "/plan.json",
-            [&](std::ostream& out) { out << PlanToJson(run).dump(2) << "\n"; });
-  std::cout << "\nwritten: " << run.fits.size() << " models, plan.json, plan.txt in " << folder
-            << "\n";
+  if (!run.fits.empty()) {
+    folder.Write(kPlanTextName, [&](std::ostream& to) { to << text.str(); });
+    write_plan(PlanToJson(run), folder.Files());
+    std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
+              << kPlanTextName << " in " << out << "\n";
+  }
   if (run.interrupted != 0) {
     std::cout << "interrupted: the same command goes on with the others\n";
     return 128 + run.interrupted;
   }
-  return 0;
+  return run.failures.empty() ? 0 : 1;
 }
 
 }  // namespace trilobe

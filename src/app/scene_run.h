@@ -23,6 +23,10 @@ SceneFitSettings SceneSettingsFromFlags();
 struct SceneRun {
   Scene scene;
   std::vector<MaterialFit> fits = {};  // those that were finished, in the order of the scene
+  struct Failure {
+    std::string name, error;
+  };
+  std::vector<Failure> failures = {};
   int threads = 0;
   // From the first file read to the last model, all side by side. Where fits came from the cache,
   // that says nothing: then it is what the parts took when they were made, spread over the threads.
@@ -32,7 +36,8 @@ struct SceneRun {
 };
 
 // Fits the scene. With a terminal it shows how far it is; Ctrl-C keeps what is finished. `on_done`
-// sees each material when it is finished, one at a time.
+// sees each material when it is finished, one at a time. A material that fails does not stop the
+// others.
 SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done);
 

@@ -8,6 +8,7 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/source.h"
@@ -106,6 +107,9 @@ int RunScore(std::span<const std::string> arguments) {
   const Weighting weighting = FindWeighting(FLAGS_weighting);
   const AppearanceOptions appearance_options = AppearanceOptionsFromFlags();
   const int threads = ThreadsFromFlags();
+  if (!FLAGS_out.empty()) {
+    Inputs({arguments[0], arguments[1], FLAGS_probe}).CheckOutput(FLAGS_out);
+  }
   FactorModel model;
   std::optional<BrdfTable> other;
   if (IsModelFile(arguments[0])) {

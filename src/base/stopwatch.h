@@ -15,6 +15,9 @@ class Stopwatch {
     return lap.count();
   }
 
+  // The same, without beginning anew.
+  double Seconds() const { return Stopwatch(*this).Lap(); }
+
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };

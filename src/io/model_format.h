@@ -26,6 +26,7 @@ void VisitFitInfo(Info* fit, const Visitor& visit) {
   visit("max_angle", &fit->max_angle);
   visit("program", &fit->program);
   visit("date", &fit->date);
+  visit("run", &fit->run);
 }
 
 }  // namespace trilobe

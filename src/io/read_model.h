@@ -27,6 +27,7 @@ struct FitInfo {
   double max_angle = 0;  // [degrees] up to which theta_i and theta_o the data reach
   std::string program;   // "trilobe 0.1.0"
   std::string date;      // ISO 8601, UTC
+  std::string run = {};  // as in the report.json that belongs to it
 };
 
 // A model as it is stored (docs/file-formats.md).

@@ -14,11 +14,13 @@
 namespace trilobe {
 namespace {
 
-// The first line of an entry: this, the hash of what follows, and a newline.
-constexpr std::string_view kMagic = "trilobe-cache 1 ";
+// The first line of an entry: this, the hash of what follows, the size of the key, and a newline.
+// What follows is the key, a newline, and the content.
+constexpr std::string_view kMagic = "trilobe-cache 2 ";
 
-std::string Header(std::string_view content) {
-  return std::string(kMagic) + ContentHash(content) + "\n";
+std::string Entry(std::string_view key, std::string_view content) {
+  const std::string rest = std::string(key) + "\n" + std::string(content);
+  return std::string(kMagic) + ContentHash(rest) + " " + std::to_string(key.size()) + "\n" + rest;
 }
 
 }  // namespace
@@ -32,7 +34,10 @@ std::string ContentHash(std::string_view bytes) {
   return text.data();
 }
 
-FitCache::FitCache(const std::string& folder) : folder_(folder) { MakeDirectories(folder); }
+FitCache::FitCache(const std::string& folder) : folder_(folder) {
+  MakeDirectories(folder);
+  SweepTemporaryFiles(folder);
+}
 
 std::string FitCache::PathOf(std::string_view key) const {
   return folder_ + "/" + ContentHash(key) + ".cache";
@@ -41,12 +46,10 @@ std::string FitCache::PathOf(std::string_view key) const {
 std::optional<std::string> FitCache::Find(std::string_view key) const {
   if (folder_.empty()) return std::nullopt;
   try {
-    std::string entry = ReadFile(PathOf(key));
-    const size_t header_size = Header("").size();
-    if (entry.size() < header_size) return std::nullopt;
-    std::string content = entry.substr(header_size);
-    if (!entry.starts_with(Header(content))) return std::nullopt;
-    return content;
+    const std::string entry = ReadFile(PathOf(key));
+    const size_t begin = Entry(key, "").size();
+    if (entry.size() < begin || entry != Entry(key, entry.substr(begin))) return std::nullopt;
+    return entry.substr(begin);
   } catch (const Error&) {
     return std::nullopt;  // not there, or not to be read
   }
@@ -55,7 +58,7 @@ std::optional<std::string> FitCache::Find(std::string_view key) const {
 void FitCache::Keep(std::string_view key, std::string_view content) const {
   if (folder_.empty()) return;
   try {
-    WriteFile(PathOf(key), [&](std::ostream& out) { out << Header(content) << content; });
+    WriteFile(PathOf(key), [&](std::ostream& out) { out << Entry(key, content); });
   } catch (const Error&) {
     return;  // it will be made again
   }

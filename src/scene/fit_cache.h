@@ -12,9 +12,9 @@ std::string ContentHash(std::string_view bytes);
 
 // A folder of results that can be had again at the cost of time: a file each, named by the hash of
 // a key, which is to say everything that the result depends on. Any of the files, or all, may be
-// deleted at any time. Each is written under a temporary name and then renamed, and begins with the
-// hash of its content, so several processes can share the folder, and a file that is torn, cut off
-// or edited counts as none.
+// deleted at any time. Each is written under a temporary name and then renamed, holds its key, and
+// begins with a hash, so several processes can share the folder, and a file that is torn, cut off,
+// edited, or put in the place of another counts as none.
 class FitCache {
  public:
   // A cache that keeps nothing.

@@ -1,6 +1,7 @@
 #include "trilobe/scene/scene_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
@@ -267,6 +268,10 @@ std::string ReadName(const Node& node) {
     node.Fail("is the name of a file, too: 1 to " + std::to_string(kMaxNameSize) +
               " bytes, no '/', no control character, no '.' in front");
   }
+  // NAME.json is written beside plan.json; some file systems take Plan for plan.
+  std::string lower = name;
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (lower == "plan") node.Fail("is kept for plan.json; give the material another name");
   return name;
 }
 
@@ -324,6 +329,16 @@ Scene ParseScene(std::string_view text, const std::string& path) {
     }
   }
   return scene;
+}
+
+std::vector<std::string> FilesOf(const Scene& scene) {
+  std::vector<std::string> files = {scene.path};
+  for (const SceneMaterial& material : scene.materials) {
+    if (!IsSynthetic(material.source)) files.push_back(material.source);
+    const auto* const histogram = std::get_if<DirectionHistogram>(&material.directions);
+    if (histogram != nullptr) files.push_back(histogram->source);
+  }
+  return files;
 }
 
 Scene ReadScene(const std::string& path) { return ParseScene(ReadFile(path), path); }

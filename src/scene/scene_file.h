@@ -56,6 +56,9 @@ struct Scene {
 Scene ParseScene(std::string_view text, const std::string& path);
 Scene ReadScene(const std::string& path);
 
+// The files that a scene takes its content from: its own, sources and histograms.
+std::vector<std::string> FilesOf(const Scene& scene);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_SCENE_SCENE_FILE_H_

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
@@ -384,19 +385,26 @@ std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
   return MaterialFitter(material, settings, num_threads).FitAndPrune();
 }
 
-std::vector<std::optional<MaterialFit>> FitScene(
-    const Scene& scene, const SceneFitSettings& settings, int num_threads,
-    const std::function<void(const MaterialFit&)>& on_done) {
+std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings& settings,
+                                     int num_threads,
+                                     const std::function<void(const MaterialFit&)>& on_done) {
   const int count = static_cast<int>(scene.materials.size());
-  std::vector<std::optional<MaterialFit>> fits(count);
+  std::vector<MaterialResult> results(count);
   std::mutex mutex;
   ParallelJobs(count, num_threads, [&](int k) {
     if (settings.stop()) return;
-    fits[k] = FitMaterial(scene.materials[k], settings, 1);
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (fits[k]) on_done(*fits[k]);
+    try {
+      std::optional<MaterialFit> fit = FitMaterial(scene.materials[k], settings, 1);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (fit) on_done(*fit);
+      results[k].fit = std::move(fit);
+    } catch (const Error& error) {
+      results[k].error = error.what();
+    } catch (const std::bad_alloc&) {
+      results[k].error = "out of memory; try fewer threads";
+    }
   });
-  return fits;
+  return results;
 }
 
 std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,

@@ -75,11 +75,18 @@ struct MaterialFit {
 std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
                                        const SceneFitSettings& settings, int num_threads);
 
+// What became of a material: a fit, or why there is none; neither if it was stopped.
+struct MaterialResult {
+  std::optional<MaterialFit> fit;
+  std::string error;
+};
+
 // All materials side by side, a thread each, to which come the threads that have no material left.
-// `on_done` sees each when it is finished, one at a time. Those that were stopped are missing.
-std::vector<std::optional<MaterialFit>> FitScene(
-    const Scene& scene, const SceneFitSettings& settings, int num_threads,
-    const std::function<void(const MaterialFit&)>& on_done);
+// `on_done` sees each when it is finished, one at a time; an Error that it throws counts as the
+// material's. One that fails does not stop the others.
+std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings& settings,
+                                     int num_threads,
+                                     const std::function<void(const MaterialFit&)>& on_done);
 
 // What one would do without a scene: the material as a whole, in all directions and in RGB, on all
 // threads, with the diagnosis that `trilobe fit` makes. Timed for itself, so a fit of FitScene is

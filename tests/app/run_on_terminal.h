@@ -18,9 +18,9 @@ struct TerminalResult {
 };
 
 // Runs the real program on a terminal of its own. As soon as it has written `cue`, sends it
-// `signal` (none if 0).
+// `signal` (none if 0), that many times.
 inline TerminalResult RunOnTerminal(const std::vector<std::string>& arguments,
-                                    const std::string& cue, int signal) {
+                                    const std::string& cue, int signal, int times = 1) {
   std::vector<std::string> words = {TRILOBE_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -39,7 +39,10 @@ inline TerminalResult RunOnTerminal(const std::vector<std::string>& arguments,
   for (ssize_t size; (size = read(terminal, buffer, sizeof(buffer))) > 0;) {
     result.text.append(buffer, static_cast<size_t>(size));
     if (!sent && result.text.find(cue) != std::string::npos) {
-      kill(pid, signal);
+      for (int k = 0; k < times; ++k) {
+        if (k > 0) usleep(20000);  // two that wait at the same time count as one
+        kill(pid, signal);
+      }
       sent = true;
     }
   }

@@ -113,6 +113,75 @@ TEST(Scene, AnInterruptKeepsWhatIsFinished) {
   EXPECT_EQ(nlohmann::json::parse(Contents(out + "/plan.json"))["materials"].size(), 1U);
 }
 
+TEST(Scene, OneBadMaterialDoesNotStopTheOthers) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "torn.binary") << std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12);
+  const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
+      "directions": {"theta_i": [0, 10], "theta_o": [0, 10]},
+      "materials": [{"name": "torn", "source": "torn.binary"},
+                    {"name": "wall", "source": "synth:rubber"}]})");
+  const std::string out = folder / "out";
+  const ProgramResult fit = RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
+  EXPECT_EQ(fit.status, 1);
+  EXPECT_THAT(fit.out, HasSubstr("\ntorn failed: "));
+  EXPECT_THAT(fit.out, HasSubstr("torn.binary"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/wall.json"));
+  const auto plan = nlohmann::json::parse(Contents(out + "/plan.json"));
+  ASSERT_EQ(plan["materials"].size(), 1U);
+  EXPECT_EQ(plan["materials"][0]["name"], "wall");
+  ASSERT_EQ(plan["failed"].size(), 1U);
+  EXPECT_EQ(plan["failed"][0]["name"], "torn");
+  EXPECT_THAT(plan["failed"][0]["error"].get<std::string>(), HasSubstr("torn.binary"));
+  const ProgramResult compare = RunQuickly(folder, {"compare", scene});
+  EXPECT_EQ(compare.status, 1);
+  EXPECT_THAT(compare.err, HasSubstr("material 'torn': "));
+}
+
+TEST(Scene, ItsFolderHoldsOneScene) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const auto fit = [&](const std::string& name) {
+    const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
+        "directions": {"theta_i": [0, 10], "theta_o": [0, 10]},
+        "materials": [{"name": ")" + name + R"(", "source": "synth:rubber"}]})");
+    return RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
+  };
+  ASSERT_EQ(fit("first").status, 0);
+  std::ofstream(out + "/notes.json") << "{}";  // somebody's own
+  ASSERT_EQ(fit("second").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(out + "/first.json"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/notes.json"));
+  const auto plan = nlohmann::json::parse(Contents(out + "/plan.json"));
+  EXPECT_EQ(plan["files"], nlohmann::json({"plan.json", "plan.txt", "second.json"}));
+  EXPECT_EQ(ReadModel(out + "/second.json").fit.run, plan["run"]);
+
+  // After a run that was killed, the plan says what there may be, and that it is no plan yet.
+  std::ofstream(out + "/plan.json")
+      << R"({"unfinished": true, "run": "0", "files": ["second.json"]})";
+  const ProgramResult compare = RunQuickly(folder, {"compare", out});
+  EXPECT_EQ(compare.status, 1);
+  EXPECT_THAT(compare.err, HasSubstr("was cut off"));
+  ASSERT_EQ(fit("third").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(out + "/second.json"));
+
+  std::ofstream(out + "/plan.json") << R"({"plan": "of somebody"})";
+  const ProgramResult refused = fit("fourth");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("is not a plan of `trilobe fit --scene`"));
+}
+
+TEST(Scene, DoesNotOverwriteItsOwnFiles) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
+      "materials": [{"name": "scene", "source": "synth:rubber"}]})");
+  const std::string before = Contents(scene);
+  const ProgramResult result =
+      RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + (folder / "")});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("would destroy"));
+  EXPECT_EQ(Contents(scene), before);
+}
+
 TEST(Scene, BadUseIsAnError) {
   const TemporaryFolder folder;
   const std::string scene = MakeScene(folder), bad = folder / "bad.json";

@@ -183,6 +183,85 @@ TEST(WriteFile, LeavesEverythingAsItWasOnAFullDisk) {
       testing::ExitedWithCode(0), "");
 }
 
+// What a run leaves that was killed while it wrote: nobody holds the lock of its temporary file.
+TEST(WriteFile, IsNotInTheWayOfWhatAKilledRunLeft) {
+  const TestDirectory directory;
+  const std::string path = directory.Path("file");
+  // Killed before it can rename, many times, so that names could collide if they were not random.
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EXIT(WriteFile(
+                    path, [](std::ostream& out) { out << "half"; }, [] { std::raise(SIGKILL); }),
+                testing::KilledBySignal(SIGKILL), "");
+  }
+  EXPECT_EQ(directory.Names().size(), 5U);
+  WriteText(path, "whole");
+  EXPECT_EQ(TestDirectory::Content(path), "whole");
+
+  directory.Make(".somebody.trilobe-tmp-notours", "");
+  directory.Make("file.trilobe-tmp-0123456789abcdef", "");
+  SweepTemporaryFiles(directory.path());
+  EXPECT_THAT(directory.Names(), ElementsAre(".somebody.trilobe-tmp-notours", "file",
+                                             "file.trilobe-tmp-0123456789abcdef"));
+}
+
+TEST(SweepTemporaryFiles, LeavesWhatIsStillBeingWritten) {
+  const TestDirectory directory;
+  const std::string path = directory.Path("file");
+  WriteFile(
+      path, [](std::ostream& out) { out << "new"; },
+      [&] {
+        SweepTemporaryFiles(directory.path());
+        EXPECT_EQ(directory.Names().size(), 1U);
+      });
+  EXPECT_EQ(TestDirectory::Content(path), "new");
+  SweepTemporaryFiles(directory.Path("missing"));  // nothing to do
+}
+
+TEST(WriteFile, ShowsTheOldFileUntilTheNewOneIsWhole) {
+  const TestDirectory directory;
+  const std::string path = directory.Make("file", "old");
+  WriteFile(
+      path, [](std::ostream& out) { out << "new"; },
+      [&] { EXPECT_EQ(TestDirectory::Content(path), "old"); });
+  EXPECT_THROW(WriteFile(
+                   path, [](std::ostream& out) { out << "newer"; }, [] { throw Error("no"); }),
+               Error);
+  EXPECT_EQ(TestDirectory::Content(path), "new");
+  EXPECT_THAT(directory.Names(), ElementsAre("file"));
+}
+
+TEST(CheckWritable, FindsOutBeforeAndLeavesNothing) {
+  const TestDirectory directory;
+  const std::string file = directory.Make("file", "old");
+  CheckWritable(file);
+  CheckWritable(directory.Path("new"));
+  CheckWritable(directory.Path("a/b/new"));  // whose folders can be made
+  CheckWritable("relative");
+  EXPECT_EQ(TestDirectory::Content(file), "old");
+  EXPECT_THAT(directory.Names(), ElementsAre("file"));
+  std::filesystem::create_symlink("nothing", directory.Path("dangling"));
+  EXPECT_THAT(ErrorOf([&] { CheckWritable(directory.Path("dangling")); }),
+              HasSubstr("symbolic link to nothing"));
+  EXPECT_THAT(ErrorOf([&] { CheckWritable(directory.path()); }), HasSubstr("is a directory"));
+  EXPECT_THAT(ErrorOf([&] { CheckWritable(directory.Path("file/a")); }),
+              HasSubstr("/file' is not a directory"));
+  EXPECT_THAT(ErrorOf([] { CheckWritable("/proc/a/b"); }), HasSubstr("cannot write '/proc/a/b'"));
+}
+
+TEST(CheckWritable, SeesAFullDisk) {
+  const TestDirectory directory;
+  EXPECT_EXIT(ExitWith([&] {
+                const std::string reason = FillTheDisk(directory.path());
+                if (reason == "File too large") return true;  // no file system of its own
+                const std::string path = directory.Path("file");
+                CheckWritable(path);
+                std::ofstream(directory.Path("other")) << std::string(1 << 20, 'x');
+                return ErrorOf([&] { CheckWritable(path); }).find(reason) != std::string::npos &&
+                       directory.Names() == std::vector<std::string>{"other"};
+              }),
+              testing::ExitedWithCode(0), "");
+}
+
 TEST(MakeDirectories, MakesParentsAndAcceptsWhatIsThere) {
   const TestDirectory directory;
   MakeDirectories(directory.Path("a/b/c"));

@@ -60,6 +60,18 @@ TEST(FitCache, TornEntriesCountAsNone) {
   EXPECT_EQ(cache.Find("key"), "again");
 }
 
+// A copy of one material's entry over another's would else give that one's model.
+TEST(FitCache, AnEntryInThePlaceOfAnotherCountsAsNone) {
+  const TestDirectory directory;
+  const FitCache cache(directory.path());
+  cache.Keep("felt", "a model of felt");
+  cache.Keep("rust", "a model of rust");
+  std::filesystem::copy_file(cache.PathOf("felt"), cache.PathOf("rust"),
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(cache.Find("rust"), std::nullopt);
+  EXPECT_EQ(cache.Find("felt"), "a model of felt");
+}
+
 TEST(FitCache, ThatCannotBeWrittenToHarmsNothing) {
   const TestDirectory directory;
   const FitCache cache(directory.Path("cache"));

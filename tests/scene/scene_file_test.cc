@@ -142,6 +142,8 @@ TEST(SceneFile, BadOnesGetAnErrorWithKeyAndReason) {
        "/materials/0/name:", "1 to 100 bytes"},
       {material(R"({"name": "a", "source": "synth:felt"}, {"name": "a", "source": "synth:felt"})"),
        "/materials/1/name:", "'a' is the name of another material"},
+      {material(R"({"name": "Plan", "source": "synth:felt"})"),
+       "/materials/0/name:", "is kept for plan.json; give the material another name"},
       {material(R"({"name": "a", "source": "nowhere.binary"})"),
        "/materials/0/source:", "there is no file 'nowhere.binary'"},
       {material(R"({"name": "a", "source": "."})"), "/materials/0/source:", "there is no file"},

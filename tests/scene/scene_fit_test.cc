@@ -166,9 +166,28 @@ TEST(FitScene, IsTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(one.size(), 3U);
   ASSERT_EQ(four.size(), 3U);
   for (size_t k = 0; k < one.size(); ++k) {
-    ASSERT_TRUE(one[k] && four[k]);
-    ExpectSame(*one[k], *four[k]);
+    ASSERT_TRUE(one[k].fit && four[k].fit);
+    ExpectSame(*one[k].fit, *four[k].fit);
+    EXPECT_EQ(one[k].error, "");
   }
+}
+
+TEST(FitScene, OneThatFailsDoesNotStopTheOthers) {
+  const TestDirectory directory;
+  SceneMaterial broken = Material("felt");
+  broken.name = "broken";
+  broken.source = directory.Make("broken.binary", "no measurement");
+  const Scene scene{"scene.json", {Material("felt"), broken, Material("rubber")}};
+  const auto results = FitScene(scene, Settings(), 1, [](const MaterialFit& fit) {
+    if (fit.name == "rubber") throw Error("the disk is full");
+  });
+  ASSERT_EQ(results.size(), 3U);
+  EXPECT_TRUE(results[0].fit.has_value());
+  EXPECT_EQ(results[0].error, "");
+  EXPECT_EQ(results[1].fit, std::nullopt);
+  EXPECT_THAT(results[1].error, testing::HasSubstr("broken.binary"));
+  EXPECT_EQ(results[2].fit, std::nullopt);
+  EXPECT_EQ(results[2].error, "the disk is full");
 }
 
 }  // namespace

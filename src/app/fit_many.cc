@@ -1,0 +1,205 @@
+#include "trilobe/app/fit_many.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "trilobe/app/fit_page.h"
+#include "trilobe/app/flags.h"
+#include "trilobe/app/inputs.h"
+#include "trilobe/app/interrupt.h"
+#include "trilobe/app/print.h"
+#include "trilobe/app/progress.h"
+#include "trilobe/app/result_folder.h"
+#include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/model_file.h"
+
+namespace trilobe {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kTableName = "fits.csv";
+constexpr const char* kPageName = "index.html";
+
+// The measurements in a folder, by name.
+std::vector<std::string> MeasurementsIn(const std::string& folder) {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string extension = it->path().extension().string();
+    if (extension == ".binary" || extension == ".bsdf") found.push_back(it->path().string());
+  }
+  if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
+  if (found.empty()) {
+    throw Error("'" + folder + "' has no measurement: no file *.binary or *.bsdf");
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+std::string NameOf(const std::string& source) {
+  if (IsSynthetic(source)) return SynthMaterialOf(source).name;
+  return fs::path(source).stem().string();
+}
+
+// Folders replaced by what is in them. Each becomes a folder of its own, so names must differ.
+std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
+  std::vector<std::string> sources;
+  for (const std::string& argument : arguments) {
+    std::error_code ignored;
+    if (fs::is_directory(argument, ignored)) {
+      std::ranges::copy(MeasurementsIn(argument), std::back_inserter(sources));
+    } else {
+      sources.push_back(argument);
+    }
+  }
+  std::map<std::string, std::string> source_of;
+  std::vector<FitOutcome> outcomes;
+  for (const std::string& source : sources) {
+    const std::string name = NameOf(source);
+    if (name.empty() || name == "." || name == "..") {
+      throw Error("'" + source + "' gives no name for a folder; rename it");
+    }
+    const auto [other, is_new] = source_of.emplace(name, source);
+    if (!is_new) {
+      throw Error("'" + other->second + "' and '" + source + "' would both be fitted into '" +
+                  name + "'; rename one, or fit it by a command of its own");
+    }
+    outcomes.push_back({.name = name, .source = source});
+  }
+  return outcomes;
+}
+
+void TakeReport(const Json& report, FitOutcome* outcome) {
+  const Json& sphere = report.at("appearance");
+  outcome->psnr_db = sphere.at("psnr_db").is_null() ? std::numeric_limits<double>::infinity()
+                                                    : sphere.at("psnr_db").get<double>();
+  outcome->mean_delta_e = sphere.at("mean_delta_e");
+  outcome->mean_color_error = sphere.at("mean_color_error");
+  outcome->objective = report.at("objective");
+  outcome->numbers = report.at("stored_numbers");
+  outcome->seconds = 0;
+  for (const auto& [phase, seconds] : report.at("seconds").items()) {
+    outcome->seconds += seconds.get<double>();
+  }
+}
+
+// Whether the folder has what a fit of this key leaves, whole and of one run.
+bool IsFinished(const ResultFolder& folder, const std::string& key, FitOutcome* outcome) {
+  try {
+    const Json report = Json::parse(ReadFile(folder.PathOf("report.json")));
+    if (report.at("key") != key || report.at("stop_reason") == "interrupted" ||
+        report.at("run") != ReadModel(folder.PathOf("model.json")).fit.run) {
+      return false;
+    }
+    const std::vector<std::string> files = folder.Files();
+    for (const std::string name : report.at("files")) {
+      if (std::ranges::find(files, name) == files.end()) return false;
+    }
+    TakeReport(report, outcome);
+    return true;
+  } catch (const Error&) {
+    return false;  // nothing there, or not to be read
+  } catch (const Json::exception&) {
+    return false;  // of another version
+  }
+}
+
+void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* outcome) {
+  const std::string& source = outcome->source;
+  if (IsFinished(*folder, FitKey(settings, source, IsSynthetic(source) ? "" : ReadFile(source)),
+                 outcome)) {
+    outcome->state = FitOutcome::State::kKept;
+    return;
+  }
+  FitRun run = RunOneFit(
+      source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
+  WriteRest(&run, settings, folder);
+  TakeReport(ToJson(run.report), outcome);
+  outcome->state = run.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
+}
+
+// "sphere 45.2 dB in the median, at least 33 (brass)", of those that have a model.
+std::string Summary(std::vector<FitOutcome> outcomes) {
+  std::erase_if(outcomes, [](const FitOutcome& outcome) { return !outcome.has_model(); });
+  if (outcomes.empty()) return "no model";
+  std::ranges::sort(outcomes, {}, &FitOutcome::psnr_db);
+  const FitOutcome& least = outcomes.front();
+  return "sphere " + Text(outcomes[outcomes.size() / 2].psnr_db, 3) +
+         " dB in the median, at least " + Text(least.psnr_db, 3) + " (" + least.name + ")";
+}
+
+void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
+  std::cout << "[" << done << "/" << count << "] " << outcome.name << ": "
+            << StateName(outcome.state);
+  if (outcome.has_model()) {
+    std::cout << ", sphere " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
+              << Text(outcome.mean_delta_e, 2) << ", E " << Text(outcome.objective, 5) << ", "
+              << outcome.numbers << " numbers, " << Text(outcome.seconds, 3) << " s";
+  }
+  if (!outcome.error.empty()) std::cout << ": " << outcome.error;
+  std::cout << std::endl;
+}
+
+}  // namespace
+
+int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
+  const std::string out = RequiredOut("fit SOURCE...", "DIR");
+  settings.pair = true;
+  std::vector<FitOutcome> outcomes = ListSources(arguments);
+  std::vector<std::string> read = settings.inputs;
+  for (const FitOutcome& outcome : outcomes) read.push_back(outcome.source);
+  const Inputs inputs(read);
+  std::vector<ResultFolder> folders;
+  for (const FitOutcome& outcome : outcomes) {
+    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), inputs);
+  }
+  const ResultFolder summary(out, {kTableName, kPageName}, inputs);
+  summary.Open();
+
+  const InterruptGuard guard;
+  JobProgress progress(outcomes.size(), "measurements");
+  std::mutex mutex;
+  size_t done = 0;
+  ParallelJobs(static_cast<int>(outcomes.size()), ThreadsFromFlags(), [&](int k) {
+    if (InterruptGuard::signal() != 0) return;
+    FitOutcome& outcome = outcomes[k];
+    try {
+      FitOrKeep(settings, &folders[k], &outcome);
+    } catch (const Error& error) {
+      outcome.state = FitOutcome::State::kFailed;
+      outcome.error = error.what();
+    } catch (const std::bad_alloc&) {
+      outcome.state = FitOutcome::State::kFailed;
+      outcome.error = "out of memory; try fewer --threads";
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    progress.Clear();
+    PrintOutcome(outcome, ++done, outcomes.size());
+    progress.Done(outcome.name, outcome.state != FitOutcome::State::kKept);
+  });
+
+  WriteFile(summary.PathOf(kTableName), [&](std::ostream& file) { file << FitsCsv(outcomes); });
+  WriteFile(summary.PathOf(kPageName), [&](std::ostream& file) { file << FitsPage(outcomes); });
+  const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);
+  progress.Clear();
+  std::cout << "all          " << Summary(outcomes) << "\n"
+            << "written      a folder each, " << kTableName << ", " << kPageName << " in " << out
+            << (failed > 0 ? "; " + std::to_string(failed) + " failed" : "") << "\n";
+  if (InterruptGuard::signal() != 0) {
+    std::cout << "interrupted  the same command goes on with what is missing\n";
+    return 128 + InterruptGuard::signal();
+  }
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace trilobe

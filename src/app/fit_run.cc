@@ -1,0 +1,207 @@
+#include "trilobe/app/fit_run.h"
+
+#include <gflags/gflags.h>
+
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <utility>
+
+#include "trilobe/app/interrupt.h"
+#include "trilobe/base/error.h"
+#include "trilobe/base/peak_memory.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/base/utc_time.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/merl_file.h"
+#include "trilobe/io/plots.h"
+#include "trilobe/io/trace_file.h"
+#include "trilobe/model/continuous_model.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/measurement_stats.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/model/score.h"
+#include "trilobe/scene/fit_cache.h"
+
+namespace trilobe {
+namespace {
+
+constexpr const char* kModelName = "model.json";
+constexpr const char* kTraceName = "trace.csv";
+constexpr const char* kReportName = "report.json";
+constexpr const char* kCourseName = "course.csv";
+constexpr const char* kReconstructionName = "reconstruction.binary";
+constexpr const char* kPairName = "pair.png";
+
+std::string Program() { return std::string("trilobe ") + gflags::VersionString(); }
+
+// On a disk that has filled up meanwhile, a model is saved elsewhere rather than lost.
+void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
+  const std::string text = FormatModel(file);
+  const auto write = [&](std::ostream& out) { out << text; };
+  try {
+    folder->Write(kModelName, write);
+  } catch (const Error& error) {
+    std::error_code ignored;
+    const std::filesystem::path places[] = {std::filesystem::temp_directory_path(ignored),
+                                            std::filesystem::current_path(ignored), "/dev/shm"};
+    for (const std::filesystem::path& place : places) {
+      const std::string path = place / ("trilobe-" + folder->run() + ".json");
+      try {
+        WriteFile(path, write);
+      } catch (const Error&) {
+        continue;
+      }
+      throw Error(std::string(error.what()) + "; the model is saved as '" + path + "' instead");
+    }
+    throw;
+  }
+}
+
+FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const std::string& source,
+               const BrdfTable& measured, const Objective& objective, const std::string& run) {
+  return {.solver = settings.solver->name,
+          .init = settings.init,
+          .weighting = settings.weighting.name,
+          .objective = summary.final_objective,
+          .initial_objective = summary.initial_objective,
+          .stop_reason = StopReasonName(summary.stop_reason),
+          .iterations = summary.iterations,
+          .seconds = summary.seconds,
+          .threads = objective.num_threads(),
+          .source = source,
+          .valid_samples = objective.samples().size(),
+          .max_angle = MaxAngleDegrees(measured),
+          .program = Program(),
+          .date = UtcNow(),
+          .run = run};
+}
+
+}  // namespace
+
+const std::vector<std::string>& FitFileNames() {
+  static const std::vector<std::string> names = {
+      kModelName,    kTraceName,   kReportName,   kCourseName, kReconstructionName,
+      "factors.png", "slices.png", "spheres.png", "trace.png", kPairName};
+  return names;
+}
+
+std::string FitKey(const FitSettings& settings, const std::string& source,
+                   const std::string& bytes) {
+  std::string text = Program() + "\n" + settings.key;
+  text += IsSynthetic(source) ? source : ContentHash(bytes);
+  for (const std::string& input : settings.inputs) text += ContentHash(ReadFile(input));
+  return ContentHash(text);
+}
+
+FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num_threads,
+                 ResultFolder* folder, const std::function<void()>& on_begin,
+                 const std::function<void(const IterationRecord&)>& on_iteration) {
+  FitReport report;
+  report.noise = settings.source.noise;
+  report.seed = settings.seed;
+  Stopwatch stopwatch;
+  SourceOptions source_options = settings.source;
+  source_options.num_threads = num_threads;
+  BrdfTable measured;
+  if (IsSynthetic(source)) {
+    measured = LoadSource(source, source_options);
+    report.key = FitKey(settings, source, "");
+  } else {
+    const std::string bytes = ReadFile(source);
+    measured = ParseSource(bytes, source, source_options);
+    report.key = FitKey(settings, source, bytes);
+  }
+  report.seconds.read = stopwatch.Lap();
+  report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured.grid);
+  const Objective objective(ValidSamples(measured), report.spec, settings.weighting, num_threads);
+  report.seconds.prepare = stopwatch.Lap();
+  FactorModel model = settings.start_model
+                          ? *settings.start_model
+                          : settings.start->make(objective, static_cast<uint64_t>(settings.seed));
+  report.seconds.init = stopwatch.Lap();
+  report.bins = CountBins(measured);
+  if (folder != nullptr) folder->Open();
+  on_begin();
+  std::optional<UnsavedModel> unsaved;
+  if (folder != nullptr) unsaved.emplace();
+  Course course;
+  SolverOptions options = settings.options(report.spec);
+  options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
+    on_iteration(record);
+    if (settings.course) course.Keep(record, current);
+    return InterruptGuard::signal() == 0;
+  };
+  SolverSummary& summary = report.summary;
+  summary = settings.solver->make()->Solve(objective, options, &model);
+  summary.phases.reading = report.seconds.read;
+  report.seconds.solve = stopwatch.Lap();
+  report.fit = InfoOf(settings, summary, source, measured, objective,
+                      folder == nullptr ? "" : folder->run());
+  // As the solver left it; what follows may take longer than somebody who ends the program waits.
+  if (folder != nullptr && InterruptGuard::signal() == 0) {
+    FactorModel canonical = model;
+    Canonicalize(objective.coverage(), &canonical);
+    WriteModelInto({canonical, DeadParameters(objective.coverage()), report.fit}, folder);
+  }
+  FinishOptions finish = settings.finish;
+  finish.appearance.num_threads = num_threads;
+  finish.stop = [] { return InterruptGuard::signal() != 0; };
+  FinishedFit fit = FinishFit(objective, measured, std::move(model), finish);
+  report.finished = {fit.tied, fit.candidates, fit.chosen};
+  report.spec = fit.model.spec();
+  report.stored_numbers =
+      fit.layout ? fit.layout->num_numbers(report.spec) : report.spec.num_parameters();
+  report.score = ScoreModel(fit.objective, fit.model);
+  report.fit.objective = report.score.objective;
+  ModelFile file{fit.model, DeadParameters(fit.objective.coverage()), report.fit, fit.layout};
+  if (folder != nullptr) WriteModelInto(file, folder);
+  unsaved.reset();
+  report.seconds.finish = stopwatch.Lap();
+
+  report.appearance = CompareAppearance(measured, ContinuousModel(fit.model), finish.appearance);
+  report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
+  report.seconds.score = stopwatch.Lap();
+  report.peak_memory = PeakMemory();
+  return {.measured = std::move(measured),
+          .objective = std::move(fit.objective),
+          .file = std::move(file),
+          .report = std::move(report),
+          .course = std::move(course),
+          .interrupted = InterruptGuard::signal() != 0};
+}
+
+void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
+  const Objective& objective = run->objective;
+  const int threads = objective.num_threads();
+  FitReport& report = run->report;
+  WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
+  if (settings.course) run->course.Write(folder->PathOf(kCourseName), objective);
+  if (settings.reconstruction) {
+    WriteMerl(Reconstruct(run->file.model, run->file.fit.source, run->measured.grid, threads),
+              folder->PathOf(kReconstructionName));
+  }
+  AppearanceOptions appearance = settings.finish.appearance;
+  appearance.num_threads = threads;
+  std::exception_ptr failure;
+  try {
+    if (settings.pair) {
+      WriteSpherePair(run->measured, ContinuousModel(run->file.model), folder->PathOf(kPairName),
+                      appearance);
+    }
+    if (settings.plots) {
+      DrawPictures(run->file, &run->measured, report.summary.trace, folder->path(), appearance);
+    }
+  } catch (const Error&) {
+    failure = std::current_exception();
+  }
+  report.files = folder->Files();
+  report.files.emplace_back(kReportName);
+  folder->Write(kReportName, [&report](std::ostream& out) {
+    out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  });
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,75 @@
+#ifndef TRILOBE_APP_FIT_RUN_H_
+#define TRILOBE_APP_FIT_RUN_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/app/course.h"
+#include "trilobe/app/finish_fit.h"
+#include "trilobe/app/fit_report.h"
+#include "trilobe/app/result_folder.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/source.h"
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective.h"
+#include "trilobe/model/weighting.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// How `trilobe fit` fits, whatever it is given.
+struct FitSettings {
+  const SolverEntry* solver = nullptr;
+  std::function<SolverOptions(const ModelSpec&)> options;
+  Weighting weighting;
+  std::string init;                     // as the user named it
+  const InitialModel* start = nullptr;  // or else:
+  std::optional<FactorModel> start_model;
+  std::function<ModelSpec(const MerlGrid&)> spec;
+  SourceOptions source;
+  FinishOptions finish;
+  int64_t seed = 0;
+  // What is written besides model.json, trace.csv and report.json: files of these names.
+  bool course = false, reconstruction = false, plots = false;
+  bool pair = false;                // pair.png, a thumbnail
+  std::vector<std::string> inputs;  // files that all fits read
+  std::string key;                  // all of this but the measurement, as text
+};
+
+// Names of all files that a fit may leave in its folder.
+const std::vector<std::string>& FitFileNames();
+
+// What the result depends on: settings, the measurement's content, the program's version.
+// 32 hexadecimal digits.
+std::string FitKey(const FitSettings& settings, const std::string& source,
+                   const std::string& bytes);
+
+// A fit that is through, and in its folder if it has one, as far as the model goes.
+struct FitRun {
+  BrdfTable measured;
+  Objective objective;
+  ModelFile file;
+  FitReport report;
+  Course course;
+  bool interrupted = false;
+};
+
+// Reads a measurement, fits it, writes the model into `folder` (none if null), and only then scores
+// it. A signal ends it early, with the best model so far. `on_begin` is called when it has read all
+// and there begins to be something to lose; an InterruptGuard must live from then on. Throws Error.
+FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num_threads,
+                 ResultFolder* folder, const std::function<void()>& on_begin,
+                 const std::function<void(const IterationRecord&)>& on_iteration);
+
+// Writes the other files, the report last: where it is, all are. If a picture cannot be drawn, the
+// others are written before Error is thrown.
+void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_FIT_RUN_H_

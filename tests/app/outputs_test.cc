@@ -1,0 +1,238 @@
+// What commands leave on the disk: one result a folder, and inputs as they were.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_on_terminal.h"
+#include "tests/app/run_program.h"
+#include "trilobe/io/model_file.h"
+
+namespace trilobe {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
+
+std::vector<std::string> Quick(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--solver=awls", "--max_iterations=1", "--lobes=1",
+                                     "--max_angle=30", "--nodiagnose"});
+  return arguments;
+}
+
+std::vector<std::string> Names(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename());
+  }
+  return names;
+}
+
+void ExpectRefusal(const ProgramResult& result, const std::string& part) {
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr(part));
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+}
+
+TEST(FitFolder, HoldsTheFilesOfOneRun) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--plots", "--reconstruction", "--course",
+                              "--out=" + out}))
+                .status,
+            0);
+  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
+                                               "course.csv", "reconstruction.binary", "factors.png",
+                                               "slices.png", "spheres.png", "trace.png"));
+  const nlohmann::json first = Json(out + "/report.json");
+  EXPECT_EQ(first["files"].size(), 9U);
+  EXPECT_EQ(ReadModel(out + "/model.json").fit.run, first["run"]);
+
+  std::ofstream(out + "/notes.txt") << "mine";
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:rubber", "--out=" + out})).status, 0);
+  EXPECT_THAT(Names(out),
+              UnorderedElementsAre("model.json", "trace.csv", "report.json", "notes.txt"));
+  const nlohmann::json second = Json(out + "/report.json");
+  EXPECT_EQ(second["files"], nlohmann::json({"model.json", "trace.csv", "report.json"}));
+  EXPECT_EQ(ReadModel(out + "/model.json").fit.run, second["run"]);
+  EXPECT_NE(first["run"], second["run"]);
+  EXPECT_NE(first["key"], second["key"]);
+}
+
+// A fit that fails, or is refused, has not touched what was there.
+TEST(FitFolder, KeepsTheEarlierRunUntilThereIsANewModel) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--out=" + out})).status, 0);
+  const std::string before = Contents(out + "/report.json");
+  std::ofstream(folder / "bad.binary") << "no measurement";
+  EXPECT_EQ(RunProgram(Quick({"fit", folder / "bad.binary", "--out=" + out})).status, 1);
+  std::filesystem::create_directory(out + "/factors.png");
+  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt", "--out=" + out})),
+                "factors.png': it is a directory");
+  EXPECT_EQ(Contents(out + "/report.json"), before);
+}
+
+TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const ProgramResult result =
+      RunProgram(Quick({"fit", "synth:felt", "--plots", "--out=" + out}), {"PATH=/nowhere"});
+  ExpectRefusal(result, "gnuplot");
+  EXPECT_THAT(result.err, HasSubstr("; the model is in '" + out + "/model.json'"));
+  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json"));
+  EXPECT_EQ(Json(out + "/report.json")["run"], ReadModel(out + "/model.json").fit.run);
+}
+
+TEST(Outputs, AreNeverInputs) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out", model = out + "/model.json";
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--reconstruction", "--out=" + out})).status, 0);
+  const std::string table = out + "/reconstruction.binary";
+  std::filesystem::create_symlink(model, folder / "link");
+  std::filesystem::create_hard_link(model, folder / "hard");
+  std::filesystem::create_directory_symlink(out, folder / "linked");
+  const std::string model_before = Contents(model), table_before = Contents(table);
+  const std::vector<std::vector<std::string>> commands = {
+      {"fit", table, "--out=" + out},
+      {"fit", table, "--reconstruction", "--out=" + out + "/../out/."},
+      {"fit", table, "--out=" + (folder / "linked")},
+      {"fit", table, "synth:felt", "--out=" + (folder / "")},
+      {"fit", "synth:felt", "--init=" + model, "--out=" + out},
+      {"fit", "synth:felt", "--init=" + (folder / "hard"), "--out=" + out},
+      {"convert", model, "--out=" + model},
+      {"convert", model, "--out=" + (folder / "link")},
+      {"convert", table, "--out=" + table},
+      {"score", model, "synth:felt", "--out=" + (folder / "hard")},
+      {"compare", out, "--out=" + out + "/plan.json"},
+  };
+  std::filesystem::create_directory(folder / "reconstruction");
+  std::filesystem::create_symlink(table, folder / "reconstruction/pair.png");
+  std::ofstream(out + "/plan.json") << "{}";
+  for (const std::vector<std::string>& command : commands) {
+    const ProgramResult result = RunProgram(command);
+    SCOPED_TRACE(command[0] + " " + command.back());
+    ExpectRefusal(result, "would destroy '");
+    EXPECT_EQ(Contents(model), model_before);
+    EXPECT_EQ(Contents(table), table_before);
+  }
+}
+
+TEST(Outputs, AreCheckedBeforeTheWork) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "model.json");
+  std::filesystem::create_symlink("nothing", folder / "trace.csv");
+  const std::vector<std::string> endless = {"fit", "synth:felt", "--max_iterations=1000000",
+                                            "--tolerance=0"};
+  for (const std::string& out : {folder / "", std::string("/proc/nowhere")}) {
+    std::vector<std::string> command = endless;
+    command.push_back("--out=" + out);
+    EXPECT_EQ(RunProgram(command).status, 1);  // it would never come back
+  }
+}
+
+// The first signal ends the work and the next one would end the program, but for the model.
+TEST(Interrupt, TwiceKeepsTheModel) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const TerminalResult result =
+      RunOnTerminal({"fit", "synth:felt", "--solver=awls", "--max_iterations=1000000",
+                     "--tolerance=0", "--plots", "--out=" + out},
+                    "iteration 2", SIGINT, /*times=*/2);
+  // A shell reports an end by SIGINT as 130, too.
+  EXPECT_TRUE(result.status == -1 || result.status == 130) << result.text;
+  EXPECT_EQ(ReadModel(out + "/model.json").fit.stop_reason, "interrupted");
+  for (const std::string& name : Names(out)) EXPECT_FALSE(name.starts_with('.')) << name;
+}
+
+TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out", data = folder / "data";
+  std::filesystem::create_directory(data);
+  ASSERT_EQ(RunProgram({"synth", "copper", "--out=" + data + "/a & b.binary"}).status, 0);
+  std::ofstream(data + "/torn.binary") << "no measurement";
+  std::ofstream(data + "/notes.txt") << "no measurement, by its name";
+  const std::vector<std::string> command =
+      Quick({"fit", data, "synth:felt", "--threads=2", "--out=" + out});
+  const ProgramResult result = RunProgram(command);
+  EXPECT_EQ(result.status, 1);  // one failed
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, HasSubstr("] torn: failed: "));
+  EXPECT_THAT(result.out, HasSubstr("] felt: fitted, sphere "));
+  EXPECT_THAT(result.out, HasSubstr("1 failed\n"));
+  EXPECT_THAT(Names(out), UnorderedElementsAre("a & b", "felt", "fits.csv", "index.html"));
+  for (const char* const name : {"a & b", "felt"}) {
+    EXPECT_THAT(Names(out + "/" + name),
+                UnorderedElementsAre("model.json", "trace.csv", "report.json", "pair.png"));
+  }
+  const std::string table = Contents(out + "/fits.csv"), page = Contents(out + "/index.html");
+  EXPECT_EQ(std::ranges::count(table, '\n'), 4);
+  EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt,fitted,"));
+  EXPECT_THAT(table, HasSubstr("\ntorn," + data + "/torn.binary,failed,,,,,,,"));
+  EXPECT_THAT(page, HasSubstr("<h1>2 of 3 measurements fitted</h1>"));
+  EXPECT_THAT(page, HasSubstr("src=\"a%20%26%20b/pair.png\""));
+  EXPECT_THAT(page, HasSubstr("<b>a &amp; b</b>"));
+
+  // A thread more or less, and alone or with others: the same model.
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--out=" + (folder / "alone")})).status, 0);
+  EXPECT_THAT(
+      ReadModel(out + "/felt/model.json").model.parameters(),
+      ::testing::ElementsAreArray(ReadModel(folder / "alone/model.json").model.parameters()));
+
+  // The same again keeps what is there; other flags, data or missing files make it anew.
+  const std::string felt = Contents(out + "/felt/report.json");
+  const ProgramResult again = RunProgram(command);
+  EXPECT_THAT(again.out, HasSubstr("] felt: kept, sphere "));
+  EXPECT_THAT(again.out, HasSubstr("] a & b: kept, sphere "));
+  EXPECT_EQ(Contents(out + "/felt/report.json"), felt);
+  ASSERT_EQ(RunProgram({"synth", "rubber", "--out=" + (folder / "data/a & b.binary")}).status, 0);
+  std::filesystem::remove(out + "/felt/trace.csv");
+  const ProgramResult changed = RunProgram(command);
+  EXPECT_THAT(changed.out, HasSubstr("] felt: fitted"));
+  EXPECT_THAT(changed.out, HasSubstr("] a & b: fitted"));
+  std::vector<std::string> other = command;
+  other.emplace_back("--weighting=cosine");
+  EXPECT_THAT(RunProgram(other).out, HasSubstr("] felt: fitted"));
+}
+
+TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  std::vector<std::string> command = {
+      "fit",           "synth:felt",         "synth:rubber", "synth:copper",   "--threads=1",
+      "--solver=awls", "--max_iterations=3", "--lobes=1",    "--max_angle=30", "--out=" + out};
+  const TerminalResult result = RunOnTerminal(command, "1 of 3 measurements finished", SIGTERM);
+  EXPECT_EQ(result.status, 128 + SIGTERM) << result.text;
+  EXPECT_THAT(result.text, HasSubstr("the same command goes on"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/felt/report.json"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/copper"));
+  EXPECT_THAT(Contents(out + "/fits.csv"), HasSubstr("\ncopper,synth:copper,missing,"));
+  const ProgramResult rest = RunProgram(command);
+  EXPECT_EQ(rest.status, 0) << rest.err;
+  EXPECT_THAT(rest.out, HasSubstr("] felt: kept"));
+  EXPECT_THAT(rest.out, HasSubstr("] copper: fitted"));
+  EXPECT_THAT(rest.out, ::testing::Not(HasSubstr("rubber: kept")));  // it had been cut short
+}
+
+TEST(FitMany, BadUseIsAnError) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "empty");
+  ExpectRefusal(RunProgram({"fit", "synth:felt", "synth:rubber"}), "needs --out=DIR");
+  ExpectRefusal(RunProgram({"fit", folder / "empty", "--out=" + (folder / "o")}),
+                "has no measurement");
+  ExpectRefusal(RunProgram({"fit", "synth:felt", "x/felt.binary", "--out=" + (folder / "o")}),
+                "'synth:felt' and 'x/felt.binary' would both be fitted into 'felt'");
+  EXPECT_FALSE(std::filesystem::exists(folder / "o"));
+}
+
+}  // namespace
+}  // namespace trilobe
