@@ -4,7 +4,7 @@
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/model_file.h"
+#include "trilobe/io/content.h"
 
 namespace trilobe {
 
@@ -13,7 +13,7 @@ bool IsModelFile(const std::string& path) {
   std::string begin(256, ' ');
   file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   begin.resize(static_cast<size_t>(file.gcount()));
-  return LooksLikeModel(begin);
+  return RecogniseContent(begin).kind == Content::Kind::kJson;
 }
 
 std::string RequiredOut(const std::string& command, const std::string& what) {

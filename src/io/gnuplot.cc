@@ -17,6 +17,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/utf8.h"
 
 namespace trilobe {
 namespace {
@@ -105,21 +106,6 @@ std::string CommonStyle(int width, int height) {
          "set title textcolor '#111111'\n"
          "set xlabel textcolor '#222222'\n"
          "set ylabel textcolor '#222222'\n";
-}
-
-// Length of the UTF-8 sequence at the front of `text`, 0 if it is broken.
-size_t Utf8Length(std::string_view text) {
-  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
-  const size_t length = byte(0) < 0x80                       ? 1
-                        : byte(0) >= 0xC2 && byte(0) <= 0xDF ? 2
-                        : byte(0) >= 0xE0 && byte(0) <= 0xEF ? 3
-                        : byte(0) >= 0xF0 && byte(0) <= 0xF4 ? 4
-                                                             : 0;
-  if (length > text.size()) return 0;
-  for (size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  }
-  return length;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/io/bilinear_warp.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/rgl_mask.h"
 #include "trilobe/io/tensor_file.h"
 
@@ -158,7 +159,7 @@ RglBrdf::Value RglBrdf::LookUp(const DirectionPair& directions) const {
   return looked_up;
 }
 
-bool LooksLikeRgl(std::string_view bytes) { return TensorFile::HasMagic(bytes); }
+bool LooksLikeRgl(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }
 
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid,
                       int num_threads) {

@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/little_endian.h"
 
 namespace trilobe {
 namespace {
-
-constexpr std::string_view kMagic("tensor_file\0", 12);
 
 // Bytes of one entry, by type number: none, then (u)int8, 16, 32, 64 in pairs unsigned, signed,
 // then float16, float32, float64.
@@ -54,16 +53,16 @@ class Cursor {
 
 }  // namespace
 
-bool TensorFile::HasMagic(std::string_view bytes) { return bytes.starts_with(kMagic); }
-
 void TensorFile::Fail(std::string_view field, const std::string& problem) const {
   throw Error(source_ + ": field " + Quote(field) + " " + problem);
 }
 
 TensorFile::TensorFile(std::string_view bytes, const std::string& source) : source_(source) {
-  if (!HasMagic(bytes)) throw Error(source + ": not an RGL file: it must begin with tensor_file");
+  if (!bytes.starts_with(kTensorMagic)) {
+    throw Error(source + ": not an RGL file: it must begin with tensor_file");
+  }
   Cursor cursor(bytes, source);
-  cursor.Bytes(kMagic.size());
+  cursor.Bytes(kTensorMagic.size());
   const int major = cursor.Number<uint8_t>();
   const int minor = cursor.Number<uint8_t>();
   if (major != 1 || minor != 0) {

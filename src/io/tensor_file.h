@@ -24,8 +24,6 @@ class TensorFile {
   // Checks that every field lies inside the file. Throws Error.
   TensorFile(std::string_view bytes, const std::string& source);
 
-  static bool HasMagic(std::string_view bytes);
-
   // A float32 array with `ndim` dimensions. Throws Error if it is missing, of another type or
   // shape, or has an entry that is not finite.
   Tensor Float32(std::string_view name, int ndim) const;
