@@ -40,6 +40,8 @@ class Cursor {
     return taken;
   }
 
+  size_t position() const { return position_; }
+
   template <typename T>
   T Number() {
     return LoadLittleEndian<T>(Bytes(sizeof(T)).data());
@@ -102,6 +104,36 @@ TensorFile::TensorFile(std::string_view bytes, const std::string& source) : sour
     if (size > available) Fail(field.name, "reaches past the end of the file");
     field.data = bytes.substr(offset, size);
     fields_.push_back(std::move(field));
+  }
+  CheckApart(bytes, cursor.position());
+}
+
+void TensorFile::CheckApart(std::string_view bytes, size_t header_size) const {
+  std::vector<std::string_view> names;
+  for (const Field& field : fields_) names.push_back(field.name);
+  std::ranges::sort(names);
+  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end()) {
+    Fail(*twice, "comes twice; there must be one field of each name");
+  }
+  struct Part {
+    size_t begin, end;
+    std::string_view name;
+  };
+  std::vector<Part> parts;
+  for (const Field& field : fields_) {
+    const auto begin = static_cast<size_t>(field.data.data() - bytes.data());
+    parts.push_back({begin, begin + field.data.size(), field.name});
+  }
+  std::ranges::sort(parts, {}, &Part::begin);
+  size_t end = header_size;
+  std::string before = "the header";
+  for (const Part& part : parts) {
+    if (part.begin < end) {
+      Fail(part.name, "starts at byte " + std::to_string(part.begin) + ", inside " + before +
+                          ", which ends at byte " + std::to_string(end));
+    }
+    end = part.end;
+    before = "field " + Quote(part.name);
   }
 }
 
