@@ -20,7 +20,7 @@ int RunSynth(std::span<const std::string> arguments) {
     return 0;
   }
   const SynthMaterial& material = FindSynthMaterial(arguments[0]);
-  const std::string out = RequiredOut("synth", "FILE");
+  const std::string out = RequiredMerlOut("synth");
   const SourceOptions options = SourceOptionsFromFlags();
   WriteMerl(Synthesize(material, options.noise, options.seed, {}, options.num_threads), out);
   std::cout << "wrote " << out << ": " << material.description << ", noise " << Text(options.noise)
