@@ -35,11 +35,13 @@ is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
 }
 
-# Package lists may be absent or too old to match what the mirror has: only then update them.
+# A dpkg that was killed while it worked wants to finish that before anything else, and package lists
+# may be absent or too old to match what the mirror has: both are set right only when it fails.
 apt_install() {
   local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@")
-  "${as_root[@]}" "${install[@]}" ||
-    { "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"; }
+  "${as_root[@]}" "${install[@]}" && return
+  "${as_root[@]}" dpkg --configure -a || true
+  "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"
 }
 
 # setup_packages GROUP...: installs what is missing of these groups.

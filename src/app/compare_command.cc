@@ -15,7 +15,7 @@
 #include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
+#include "trilobe/io/json_value.h"
 #include "trilobe/io/plots.h"
 
 namespace trilobe {
@@ -88,7 +88,7 @@ void TakeFlags(const Json& flags) {
 PrunedScene FromFolder(const std::string& folder) {
   const std::string path = folder + "/plan.json";
   try {
-    const Json plan = Json::parse(ReadFile(path));
+    const Json plan = Json::parse(ReadJsonText(path, path + ": not a plan"));
     if (plan.contains("unfinished")) {
       throw Error(path + ": its run was cut off; make the folder again with `trilobe fit --scene`");
     }

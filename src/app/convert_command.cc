@@ -3,6 +3,7 @@
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
@@ -14,7 +15,8 @@ namespace {
 
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
-  const std::string out = RequiredOut("convert", "FILE");
+  const std::string out = RequiredMerlOut("convert");
+  Inputs({source}).CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
   BrdfTable table;
   if (IsModelFile(source)) {
@@ -47,7 +49,8 @@ Command ConvertCommand() {
           "filled; "
           "elsewhere bins are marked invalid. With --max_angle, bins\nbeyond it are marked "
           "invalid, "
-          "too, whatever the input.",
+          "too, whatever the input. A FILE whose ending says another format, as .bsdf does, "
+          "is an error.",
       .flags = {"out", "noise", "seed", "max_angle", "extrapolated", "threads"},
       .run = RunConvert};
 }

@@ -19,6 +19,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/json_value.h"
 #include "trilobe/io/model_file.h"
 
 namespace trilobe {
@@ -96,7 +97,8 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
 // Whether the folder has what a fit of this key leaves, whole and of one run.
 bool IsFinished(const ResultFolder& folder, const std::string& key, FitOutcome* outcome) {
   try {
-    const Json report = Json::parse(ReadFile(folder.PathOf("report.json")));
+    const std::string path = folder.PathOf("report.json");
+    const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
     if (report.at("key") != key || report.at("stop_reason") == "interrupted" ||
         report.at("run") != ReadModel(folder.PathOf("model.json")).fit.run) {
       return false;

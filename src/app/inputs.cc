@@ -1,10 +1,15 @@
 #include "trilobe/app/inputs.h"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/model_file.h"
+#include "trilobe/io/content.h"
 
 namespace trilobe {
 
@@ -13,7 +18,7 @@ bool IsModelFile(const std::string& path) {
   std::string begin(256, ' ');
   file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   begin.resize(static_cast<size_t>(file.gcount()));
-  return LooksLikeModel(begin);
+  return RecogniseContent(begin).kind == Content::Kind::kJson;
 }
 
 std::string RequiredOut(const std::string& command, const std::string& what) {
@@ -21,6 +26,23 @@ std::string RequiredOut(const std::string& command, const std::string& what) {
     throw Error("trilobe " + command + " needs --out=" + what + ", to know where to write");
   }
   return FLAGS_out;
+}
+
+std::string RequiredMerlOut(const std::string& command) {
+  // Of formats that other programs would take the file for.
+  constexpr std::string_view kOthers[] = {
+      ".bsdf", ".json", ".csv",  ".txt", ".png", ".jpg", ".jpeg", ".hdr", ".pic",
+      ".exr",  ".tif",  ".tiff", ".pdf", ".svg", ".npy", ".npz",  ".mat", ".h5",
+      ".xml",  ".zip",  ".gz",   ".tgz", ".xz",  ".bz2", ".zst",  ".7z",  ".tar"};
+  std::string out = RequiredOut(command, "FILE");
+  std::string ending = std::filesystem::path(out).extension();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::ranges::find(kOthers, ending) != std::end(kOthers)) {
+    throw Error("--out=" + out + ": trilobe " + command + " writes MERL data, and the ending '" +
+                ending + "' says another format; end the name in .binary");
+  }
+  return out;
 }
 
 }  // namespace trilobe

@@ -19,6 +19,8 @@ std::string Text(double x, int digits) {
   return buffer.data();
 }
 
+double PsnrFall(double from, double to) { return from == to ? 0 : from - to; }
+
 std::string Text(const Rgb& rgb) {
   return Text(rgb[0]) + ", " + Text(rgb[1]) + ", " + Text(rgb[2]);
 }

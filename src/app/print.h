@@ -16,6 +16,9 @@ namespace trilobe {
 // "0.01235", "1.235e+06", "infinite": four significant digits unless told otherwise.
 std::string Text(double x, int digits = 4);
 
+// By how much a PSNR falls [dB]: 0 where both are infinite, as those of exact fits are.
+double PsnrFall(double from, double to);
+
 // "0.1, 0.2, 0.3".
 std::string Text(const Rgb& rgb);
 

@@ -110,7 +110,7 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
         << Right(std::to_string(fit.numbers), 9) << Right(std::to_string(fit.full_numbers), 9)
         << Right(std::to_string(BytesOf(fit.numbers)), 9)
         << Right(Text(100 * RelativeRise(fit.full, fit.pruned), 3) + " %", 12)
-        << Right(Text(fit.full.psnr_db - fit.pruned.psnr_db, 3) + " dB", 15)
+        << Right(Text(PsnrFall(fit.full.psnr_db, fit.pruned.psnr_db), 3) + " dB", 15)
         << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
         << (fit.prune_from_cache ? "  from the cache"
             : fit.fit_from_cache ? "  the fit from the cache"

@@ -19,6 +19,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/json_value.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/weighting.h"
@@ -56,7 +57,7 @@ std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& f
   for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
   const std::string plan = folder + "/" + kPlanName;
   try {
-    const auto earlier = nlohmann::json::parse(ReadFile(plan));
+    const auto earlier = nlohmann::json::parse(ReadJsonText(plan, plan + ": not a plan"));
     for (const std::string file : earlier.at("files")) {
       if (file.find('/') == std::string::npos) names.insert(file);
     }

@@ -4,6 +4,7 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/io/synth.h"
@@ -20,7 +21,8 @@ int RunSynth(std::span<const std::string> arguments) {
     return 0;
   }
   const SynthMaterial& material = FindSynthMaterial(arguments[0]);
-  const std::string out = RequiredOut("synth", "FILE");
+  const std::string out = RequiredMerlOut("synth");
+  Inputs().CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
   WriteMerl(Synthesize(material, options.noise, options.seed, {}, options.num_threads), out);
   std::cout << "wrote " << out << ": " << material.description << ", noise " << Text(options.noise)

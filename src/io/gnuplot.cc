@@ -8,15 +8,20 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <ostream>
+#include <thread>
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/utf8.h"
 
 namespace trilobe {
 namespace {
@@ -55,8 +60,22 @@ std::string ErrorLine(const std::string& message) {
   return best.empty() ? "no message" : best;
 }
 
+// Its status, as of waitpid; nothing if it goes on after the limit.
+std::optional<int> WaitFor(pid_t pid, double max_seconds) {
+  constexpr auto kPause = std::chrono::milliseconds(5);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(max_seconds);
+  while (std::chrono::steady_clock::now() < end) {
+    int status = 0;
+    const pid_t ended = waitpid(pid, &status, WNOHANG);
+    // Where whoever started this program ignores SIGCHLD, no status is kept; the picture tells.
+    if (ended == pid || (ended < 0 && errno == ECHILD)) return status;
+    std::this_thread::sleep_for(kPause);
+  }
+  return std::nullopt;
+}
+
 // gnuplot's standard output for a script on its standard input.
-std::string RunGnuplot(const std::string& script) {
+std::string RunGnuplot(const std::string& script, double max_seconds) {
   const TemporaryFile in = MakeTemporaryFile(), out = MakeTemporaryFile(),
                       err = MakeTemporaryFile();
   if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
@@ -73,22 +92,36 @@ std::string RunGnuplot(const std::string& script) {
   std::string program = "gnuplot", defaults = "--default-settings";
   char* const arguments[] = {program.data(), defaults.data(), nullptr};
   pid_t pid = 0;
-  const int failure = posix_spawnp(&pid, "gnuplot", &actions, nullptr, arguments, environ);
+  // In a process group of its own, so that it can be ended with all that it started.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int failure = posix_spawnp(&pid, "gnuplot", &actions, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failure == ENOENT) {
     throw Error("pictures need gnuplot, which is not on the PATH; install the package gnuplot-nox");
   }
   if (failure != 0) throw Error(std::string("cannot run gnuplot: ") + std::strerror(failure));
 
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  const std::optional<int> status = WaitFor(pid, max_seconds);
+  if (!status) {
+    kill(-pid, SIGKILL);
+    while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    throw Error("gnuplot was stopped, as it had not drawn the picture after " +
+                GnuplotNumber(max_seconds) + " seconds");
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+  if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0) {
     throw Error("gnuplot failed: " + ErrorLine(ReadAll(err.get())));
   }
   std::string png = ReadAll(out.get());
-  if (!png.starts_with("\x89PNG\r\n")) {
+  if (!png.starts_with("\x89PNG\r\n\x1A\n")) {
     throw Error("gnuplot drew no picture: " + ErrorLine(ReadAll(err.get())));
+  }
+  // The chunk that ends every PNG picture: no data, its name, and the checksum of that.
+  if (!png.ends_with(std::string_view("\0\0\0\0IEND\xAE\x42\x60\x82", 12))) {
+    throw Error("gnuplot drew a part of the picture alone: " + ErrorLine(ReadAll(err.get())));
   }
   return png;
 }
@@ -105,21 +138,6 @@ std::string CommonStyle(int width, int height) {
          "set title textcolor '#111111'\n"
          "set xlabel textcolor '#222222'\n"
          "set ylabel textcolor '#222222'\n";
-}
-
-// Length of the UTF-8 sequence at the front of `text`, 0 if it is broken.
-size_t Utf8Length(std::string_view text) {
-  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
-  const size_t length = byte(0) < 0x80                       ? 1
-                        : byte(0) >= 0xC2 && byte(0) <= 0xDF ? 2
-                        : byte(0) >= 0xE0 && byte(0) <= 0xEF ? 3
-                        : byte(0) >= 0xF0 && byte(0) <= 0xF4 ? 4
-                                                             : 0;
-  if (length > text.size()) return 0;
-  for (size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  }
-  return length;
 }
 
 }  // namespace
@@ -171,8 +189,9 @@ std::string GnuplotLogRange(std::span<const double> values, double decades) {
   return '[' + GnuplotNumber(low / margin) + ':' + GnuplotNumber(high * margin) + ']';
 }
 
-void DrawPng(const std::string& path, int width, int height, const std::string& script) {
-  const std::string png = RunGnuplot(CommonStyle(width, height) + script);
+void DrawPng(const std::string& path, int width, int height, const std::string& script,
+             double max_seconds) {
+  const std::string png = RunGnuplot(CommonStyle(width, height) + script, max_seconds);
   WriteFile(path, [&](std::ostream& out) {
     out.write(png.data(), static_cast<std::streamsize>(png.size()));
   });

@@ -33,8 +33,11 @@ std::string GnuplotLogRange(std::span<const double> values, double decades);
 // Runs `gnuplot` on a script and writes the PNG picture that it draws to `path`, as a whole or not
 // at all. The script may carry data inline, also binary; it begins in the common style: a pngcairo
 // terminal of this size in pixels, font sizes, light grid. Throws Error when gnuplot is not
-// installed, when it fails (with its own message), or when the file cannot be written.
-void DrawPng(const std::string& path, int width, int height, const std::string& script);
+// installed, when it fails (with its own message), when it takes longer than `max_seconds` (then it
+// is ended, and all that it started), or when the file cannot be written. The pictures here take a
+// second or two.
+void DrawPng(const std::string& path, int width, int height, const std::string& script,
+             double max_seconds = 120);
 
 }  // namespace trilobe
 

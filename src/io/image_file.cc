@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
 
 // The part of the library that is used, compiled into this file alone. Its reader of Radiance
@@ -135,7 +136,10 @@ Environment ParseProbe(std::string_view bytes, const std::string& source) {
   RadianceReader reader(bytes, source);
   int width = 0, height = 0;
   if (!reader.ReadHeader(&width, &height)) {
-    throw Error(source + ": not a Radiance picture; give a light probe as a lat-long .hdr file");
+    const Content content = RecogniseContent(bytes);
+    const bool foreign = content.kind == Content::Kind::kForeign && !bytes.starts_with("#?");
+    throw Error(source + ": not a Radiance picture" + (foreign ? " but " + content.name : "") +
+                "; give a light probe as a lat-long .hdr file");
   }
   if (height < 2 || width / 2 != height || width % 2 != 0 || width > kMaxPixels / height) {
     throw Error(source + ": the picture is " + std::to_string(width) + " x " +

@@ -3,34 +3,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/utf8.h"
 
 namespace trilobe {
 namespace {
 
 constexpr int kMaxDepth = 64;
-
-// Bytes of the UTF-8 sequence at the start of `text`; 0 if there is none (RFC 3629).
-size_t Utf8Length(std::string_view text) {
-  const auto byte = [&](size_t k) -> unsigned {
-    return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U;
-  };
-  const auto follows = [&](size_t k, unsigned low, unsigned high) {
-    return byte(k) >= low && byte(k) <= high;
-  };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return follows(1, 0x80, 0xBF) ? 2 : 0;
-  // The second byte excludes overlong forms, surrogates, and what is above U+10FFFF.
-  const unsigned low = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
-  const unsigned high = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-  if (!follows(1, low, high) || !follows(2, 0x80, 0xBF)) return 0;
-  if (first >= 0xE0 && first <= 0xEF) return 3;
-  return first >= 0xF0 && first <= 0xF4 && follows(3, 0x80, 0xBF) ? 4 : 0;
-}
 
 void AppendUtf8(uint32_t code, std::string* text) {
   const auto append = [text](uint32_t byte) { text->push_back(static_cast<char>(byte)); };
@@ -52,6 +36,13 @@ void AppendUtf8(uint32_t code, std::string* text) {
   }
 }
 
+void CheckSize(size_t bytes, const std::string& what) {
+  if (bytes > kMaxJsonBytes) {
+    throw Error(what + ": it has " + std::to_string(bytes) + " bytes; at most " +
+                std::to_string(kMaxJsonBytes) + " can be read");
+  }
+}
+
 }  // namespace
 
 class JsonParser {
@@ -63,6 +54,24 @@ class JsonParser {
     SkipSpace();
     if (at_ < text_.size()) Fail("the text goes on after its end");
     return value;
+  }
+
+  std::string ParseString() {
+    if (!Take('"')) Fail("expected a string");
+    std::string string;
+    while (!Take('"')) {
+      if (at_ >= text_.size()) Fail("a string does not end");
+      if (Take('\\')) {
+        ParseEscape(&string);
+        continue;
+      }
+      if (static_cast<unsigned char>(Peek()) < ' ') Fail("a control character in a string");
+      const size_t length = Utf8Length(text_.substr(at_));
+      if (length == 0) Fail("not UTF-8");
+      string.append(text_, at_, length);
+      at_ += length;
+    }
+    return string;
   }
 
  private:
@@ -93,12 +102,8 @@ class JsonParser {
         return ParseObject(depth);
       case '[':
         return ParseArray(depth);
-      case '"': {
-        JsonValue value;
-        value.type_ = Type::kString;
-        value.string_ = ParseString();
-        return value;
-      }
+      case '"':
+        return ParseStringValue();
       case 't':
         return ParseWord("true", Type::kBoolean);
       case 'f':
@@ -137,8 +142,9 @@ class JsonParser {
     JsonValue value;
     value.type_ = Type::kNumber;
     value.text_ = text_.substr(begin, at_ - begin);
-    const char* const end = value.text_.data() + value.text_.size();
-    if (std::from_chars(value.text_.data(), end, value.number_).ec != std::errc()) {
+    double number = 0;
+    if (std::from_chars(value.text_.data(), value.text_.data() + value.text_.size(), number).ec !=
+        std::errc()) {
       at_ = begin;
       Fail("the number is out of the range of a double");
     }
@@ -173,22 +179,14 @@ class JsonParser {
     AppendUtf8(code, string);
   }
 
-  std::string ParseString() {
-    if (!Take('"')) Fail("expected a string");
-    std::string string;
-    while (!Take('"')) {
-      if (at_ >= text_.size()) Fail("a string does not end");
-      if (Take('\\')) {
-        ParseEscape(&string);
-        continue;
-      }
-      if (static_cast<unsigned char>(Peek()) < ' ') Fail("a control character in a string");
-      const size_t length = Utf8Length(text_.substr(at_));
-      if (length == 0) Fail("not UTF-8");
-      string.append(text_, at_, length);
-      at_ += length;
-    }
-    return string;
+  JsonValue ParseStringValue(std::string* decoded = nullptr) {
+    const size_t begin = at_;
+    const std::string string = ParseString();
+    JsonValue value;
+    value.type_ = Type::kString;
+    value.text_ = text_.substr(begin, at_ - begin);
+    if (decoded != nullptr) *decoded = string;
+    return value;
   }
 
   JsonValue ParseArray(int depth) {
@@ -198,7 +196,7 @@ class JsonParser {
     SkipSpace();
     if (Take(']')) return value;
     do {
-      value.items_.push_back(ParseValue(depth + 1));
+      value.parts_.push_back(ParseValue(depth + 1));
       SkipSpace();
     } while (Take(','));
     if (!Take(']')) Fail("expected ',' or ']'");
@@ -206,31 +204,24 @@ class JsonParser {
   }
 
   JsonValue ParseObject(int depth) {
-    std::vector<std::pair<std::string, JsonValue>> members;
-    Take('{');
-    SkipSpace();
-    if (!Take('}')) {
-      do {
-        SkipSpace();
-        std::string key = ParseString();
-        SkipSpace();
-        if (!Take(':')) Fail("expected ':'");
-        members.emplace_back(std::move(key), ParseValue(depth + 1));
-        SkipSpace();
-      } while (Take(','));
-      if (!Take('}')) Fail("expected ',' or '}'");
-    }
-    const auto key_of = [](const auto& member) -> const std::string& { return member.first; };
-    std::ranges::sort(members, {}, key_of);
-    if (const auto twice = std::ranges::adjacent_find(members, {}, key_of);
-        twice != members.end()) {
-      Fail("the key '" + twice->first + "' comes twice in the object that ends here");
-    }
     JsonValue value;
     value.type_ = Type::kObject;
-    for (auto& [key, member] : members) {
-      value.keys_.push_back(std::move(key));
-      value.items_.push_back(std::move(member));
+    Take('{');
+    SkipSpace();
+    if (Take('}')) return value;
+    std::vector<std::string> keys;
+    do {
+      SkipSpace();
+      value.parts_.push_back(ParseStringValue(&keys.emplace_back()));
+      SkipSpace();
+      if (!Take(':')) Fail("expected ':'");
+      value.parts_.push_back(ParseValue(depth + 1));
+      SkipSpace();
+    } while (Take(','));
+    if (!Take('}')) Fail("expected ',' or '}'");
+    std::ranges::sort(keys);
+    if (const auto twice = std::ranges::adjacent_find(keys); twice != keys.end()) {
+      Fail("the key '" + *twice + "' comes twice in the object that ends here; keep one");
     }
     return value;
   }
@@ -241,6 +232,21 @@ class JsonParser {
 };
 
 JsonValue JsonValue::Parse(std::string_view text, const std::string& what) {
+  CheckSize(text.size(), what);
+  const Content content = RecogniseContent(text);
+  if (content.kind != Content::Kind::kJson && content.kind != Content::Kind::kText &&
+      content.kind != Content::Kind::kUnknown) {
+    throw Error(what + ": this is " + content.name);
+  }
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  // Each value but the first comes after one of these.
+  const auto values = 1 + std::ranges::count_if(text, [](char c) {
+                        return c == ',' || c == ':' || c == '[' || c == '{';
+                      });
+  if (static_cast<size_t>(values) > kMaxJsonValues) {
+    throw Error(what + ": it has about " + std::to_string(values) + " values; at most " +
+                std::to_string(kMaxJsonValues) + " can be read");
+  }
   return JsonParser(text, what).ParseText();
 }
 
@@ -249,9 +255,26 @@ const char* JsonValue::type_name() const {
   return kNames[static_cast<int>(type_)];
 }
 
+double JsonValue::number() const {
+  double number = 0;
+  std::from_chars(text_.data(), text_.data() + text_.size(), number);
+  return number;
+}
+
+std::string JsonValue::string() const { return JsonParser(text_, "").ParseString(); }
+
 const JsonValue* JsonValue::Find(std::string_view key) const {
-  const auto found = std::ranges::lower_bound(keys_, key);
-  return found != keys_.end() && *found == key ? &items_[found - keys_.begin()] : nullptr;
+  for (size_t k = 0; k < size(); ++k) {
+    if (this->key(k) == key) return &(*this)[k];
+  }
+  return nullptr;
+}
+
+std::string ReadJsonText(const std::string& path, const std::string& what) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (!error) CheckSize(size, what);
+  return ReadFile(path);
 }
 
 }  // namespace trilobe

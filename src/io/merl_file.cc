@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/little_endian.h"
 
@@ -23,20 +24,15 @@ std::string ToString(const Dimensions& n) {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
 }
 
-// True if the first bytes are printable ASCII and white space. A MERL header is not: it has zeros.
-bool LooksLikeText(std::string_view bytes) {
-  return std::ranges::all_of(bytes.substr(0, 64), [](char c) {
-    return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t';
-  });
-}
-
 // Why `bytes` is no MERL file, or nothing if it is one.
 std::string Defect(std::string_view bytes) {
   const std::string size = std::to_string(bytes.size()) + " bytes";
   const std::string expected = "a MERL file has " + std::to_string(kFileSize) + " bytes";
   if (bytes.empty()) return "the file is empty; " + expected;
-  if (LooksLikeText(bytes)) {
-    return "this looks like text; a measurement is a binary file, MERL .binary or RGL *_rgb.bsdf";
+  if (const Content content = RecogniseContent(bytes);
+      content.kind != Content::Kind::kUnknown && content.kind != Content::Kind::kMerl) {
+    return "this is " + content.name +
+           "; a measurement is a MERL .binary file, an RGL *_rgb.bsdf file, or synth:NAME";
   }
   if (bytes.size() < kHeaderSize) return "truncated: " + size + "; " + expected;
   Dimensions n;

@@ -169,10 +169,15 @@ void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std
   });
 
   std::array<char, 300> caption;
+  std::string psnr = "infinite";
+  if (std::isfinite(error.psnr_db)) {
+    std::snprintf(caption.data(), caption.size(), "%.1f", error.psnr_db);
+    psnr = caption.data();
+  }
   std::snprintf(caption.data(), caption.size(),
-                "exposed to a mean luminance of %g, sRGB curve, clipped at 1; PSNR %.1f dB, mean "
+                "exposed to a mean luminance of %g, sRGB curve, clipped at 1; PSNR %s dB, mean "
                 "ΔE %.2f%s",
-                kMeanLuminance, error.psnr_db, error.mean_delta_e,
+                kMeanLuminance, psnr.c_str(), error.mean_delta_e,
                 all_measured ? "" : ", of measured directions; grey: none");
   const std::string environment =
       options.environment != nullptr ? options.environment->name : StudioEnvironment().name;

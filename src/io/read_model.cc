@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
 #include "trilobe/io/json_value.h"
 #include "trilobe/io/model_format.h"
 
@@ -35,7 +34,7 @@ class Node {
   }
 
   Node operator[](size_t index) const {
-    return {json_.items()[index], key_ + "[" + std::to_string(index) + "]", source_};
+    return {json_[index], key_ + "[" + std::to_string(index) + "]", source_};
   }
 
   const Node& CheckObject() const {
@@ -45,7 +44,7 @@ class Node {
 
   size_t ArraySize() const {
     CheckType(Type::kArray, "an array");
-    return json_.items().size();
+    return json_.size();
   }
 
   void CheckArraySize(size_t size) const {
@@ -250,18 +249,14 @@ FitInfo ReadFitInfo(const Node& root) {
   return fit;
 }
 
+std::string NotAModel(const std::string& source) { return source + ": not a model file"; }
+
 }  // namespace
 
-bool LooksLikeModel(std::string_view bytes) {
-  const size_t first = bytes.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && bytes[first] == '{' &&
-         bytes.substr(0, 64).find('\0') == std::string_view::npos;
-}
-
 ModelFile ParseModel(std::string_view text, const std::string& source) {
-  const JsonValue json = JsonValue::Parse(text, source + ": not a model file");
+  const JsonValue json = JsonValue::Parse(text, NotAModel(source));
   if (json.type() != JsonValue::Type::kObject) {
-    throw Error(source + ": not a model file: it must be a JSON object, not " + json.type_name());
+    throw Error(NotAModel(source) + ": it must be a JSON object, not " + json.type_name());
   }
   const Node root(json, "", source);
   if (const std::string format = root["format"].String(); format != kModelFormat) {
@@ -284,6 +279,8 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
   return file;
 }
 
-ModelFile ReadModel(const std::string& path) { return ParseModel(ReadFile(path), path); }
+ModelFile ReadModel(const std::string& path) {
+  return ParseModel(ReadJsonText(path, NotAModel(path)), path);
+}
 
 }  // namespace trilobe

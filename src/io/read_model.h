@@ -40,9 +40,6 @@ struct ModelFile {
   std::optional<TableLayout> layout = std::nullopt;
 };
 
-// True if the bytes begin like a JSON object, as model files do and no measurement does.
-bool LooksLikeModel(std::string_view bytes);
-
 // JSON with "format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes", "d" [3],
 // "s" [M][3], "D" [M][90], "F" [3][90], "G" [M][90] as docs/file-formats.md has it for the paper's
 // model. Tables with other sharing nest as the spec says: [lobe][channel][entry], a level left out

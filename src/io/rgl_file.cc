@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/io/bilinear_warp.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/rgl_mask.h"
 #include "trilobe/io/tensor_file.h"
 
@@ -28,10 +29,29 @@ struct RglBrdf::Tables {
 
 namespace {
 
-std::vector<double> ReadAngles(const TensorFile& file, const char* name) {
+std::string Text(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+
+// They are float32, so that 90 degrees may be a little more than kPi / 2.
+constexpr double kRounding = 1e-4;
+
+// Angles in ascending order from `min` to `max` [rad].
+std::vector<double> ReadAngles(const TensorFile& file, const char* name, double min, double max) {
   std::vector<double> angles = file.Float32(name, 1).values;
-  if (std::ranges::adjacent_find(angles, std::greater_equal<>()) != angles.end()) {
-    file.Fail(name, "must be in ascending order");
+  for (size_t k = 0; k < angles.size(); ++k) {
+    const auto fail = [&](const std::string& expected) {
+      file.Fail(name,
+                "has " + Text(angles[k]) + " as entry " + std::to_string(k) + "; " + expected);
+    };
+    if (!(angles[k] >= min - kRounding && angles[k] <= max + kRounding)) {
+      fail("angles are in radians, from " + Text(min) + " to " + Text(max));
+    }
+    if (k > 0 && angles[k] <= angles[k - 1]) {
+      fail("it must be above the entry before it, " + Text(angles[k - 1]));
+    }
   }
   return angles;
 }
@@ -95,8 +115,8 @@ RglBrdf::~RglBrdf() = default;
 
 RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   const TensorFile file(bytes, source);
-  const std::vector<double> phi_i = ReadAngles(file, "phi_i");
-  const std::vector<double> theta_i = ReadAngles(file, "theta_i");
+  const std::vector<double> phi_i = ReadAngles(file, "phi_i", -2 * kPi, 2 * kPi);
+  const std::vector<double> theta_i = ReadAngles(file, "theta_i", 0, kPi / 2);
   // Files may leave out what a symmetry of the material repeats; that is not undone here.
   if (phi_i.size() > 1 && std::abs(phi_i.back() - phi_i.front() - 2 * kPi) > 1e-3) {
     file.Fail("phi_i", "must have one entry, or reach once around the circle");
@@ -158,7 +178,7 @@ RglBrdf::Value RglBrdf::LookUp(const DirectionPair& directions) const {
   return looked_up;
 }
 
-bool LooksLikeRgl(std::string_view bytes) { return TensorFile::HasMagic(bytes); }
+bool LooksLikeRgl(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }
 
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid,
                       int num_threads) {

@@ -39,11 +39,6 @@ BrdfTable ParseSource(std::string_view bytes, const std::string& source,
     return table;
   }
 #endif
-  if (LooksLikeModel(bytes)) {
-    throw Error(source +
-                ": this is a JSON file, as a fitted model is, and not a measurement; give a MERL "
-                ".binary file, an RGL *_rgb.bsdf file, or synth:NAME");
-  }
   BrdfTable table = ParseMerl(bytes, source);
   DecideMeasured(options, &table);
   return table;

@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/little_endian.h"
 
 namespace trilobe {
 namespace {
-
-constexpr std::string_view kMagic("tensor_file\0", 12);
 
 // Bytes of one entry, by type number: none, then (u)int8, 16, 32, 64 in pairs unsigned, signed,
 // then float16, float32, float64.
@@ -41,6 +40,8 @@ class Cursor {
     return taken;
   }
 
+  size_t position() const { return position_; }
+
   template <typename T>
   T Number() {
     return LoadLittleEndian<T>(Bytes(sizeof(T)).data());
@@ -54,16 +55,16 @@ class Cursor {
 
 }  // namespace
 
-bool TensorFile::HasMagic(std::string_view bytes) { return bytes.starts_with(kMagic); }
-
 void TensorFile::Fail(std::string_view field, const std::string& problem) const {
   throw Error(source_ + ": field " + Quote(field) + " " + problem);
 }
 
 TensorFile::TensorFile(std::string_view bytes, const std::string& source) : source_(source) {
-  if (!HasMagic(bytes)) throw Error(source + ": not an RGL file: it must begin with tensor_file");
+  if (!bytes.starts_with(kTensorMagic)) {
+    throw Error(source + ": not an RGL file: it must begin with tensor_file");
+  }
   Cursor cursor(bytes, source);
-  cursor.Bytes(kMagic.size());
+  cursor.Bytes(kTensorMagic.size());
   const int major = cursor.Number<uint8_t>();
   const int minor = cursor.Number<uint8_t>();
   if (major != 1 || minor != 0) {
@@ -103,6 +104,36 @@ TensorFile::TensorFile(std::string_view bytes, const std::string& source) : sour
     if (size > available) Fail(field.name, "reaches past the end of the file");
     field.data = bytes.substr(offset, size);
     fields_.push_back(std::move(field));
+  }
+  CheckApart(bytes, cursor.position());
+}
+
+void TensorFile::CheckApart(std::string_view bytes, size_t header_size) const {
+  std::vector<std::string_view> names;
+  for (const Field& field : fields_) names.push_back(field.name);
+  std::ranges::sort(names);
+  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end()) {
+    Fail(*twice, "comes twice; there must be one field of each name");
+  }
+  struct Part {
+    size_t begin, end;
+    std::string_view name;
+  };
+  std::vector<Part> parts;
+  for (const Field& field : fields_) {
+    const auto begin = static_cast<size_t>(field.data.data() - bytes.data());
+    parts.push_back({begin, begin + field.data.size(), field.name});
+  }
+  std::ranges::sort(parts, {}, &Part::begin);
+  size_t end = header_size;
+  std::string before = "the header";
+  for (const Part& part : parts) {
+    if (part.begin < end) {
+      Fail(part.name, "starts at byte " + std::to_string(part.begin) + ", inside " + before +
+                          ", which ends at byte " + std::to_string(end));
+    }
+    end = part.end;
+    before = "field " + Quote(part.name);
   }
 }
 

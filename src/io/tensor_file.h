@@ -1,6 +1,7 @@
 #ifndef TRILOBE_IO_TENSOR_FILE_H_
 #define TRILOBE_IO_TENSOR_FILE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -21,10 +22,9 @@ struct Tensor {
 // It views the bytes it was made from, which must outlive it.
 class TensorFile {
  public:
-  // Checks that every field lies inside the file. Throws Error.
+  // Checks that every field lies inside the file, in bytes of its own, and has a name of its own.
+  // Throws Error.
   TensorFile(std::string_view bytes, const std::string& source);
-
-  static bool HasMagic(std::string_view bytes);
 
   // A float32 array with `ndim` dimensions. Throws Error if it is missing, of another type or
   // shape, or has an entry that is not finite.
@@ -48,6 +48,7 @@ class TensorFile {
     std::vector<int> shape;
     std::string_view data;  // product of shape x item size bytes
   };
+  void CheckApart(std::string_view bytes, size_t header_size) const;
   const Field& Find(std::string_view name, uint8_t dtype, int ndim) const;
 
   std::string source_;

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -14,12 +13,11 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/nearest_name.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/json_value.h"
 #include "trilobe/io/source.h"
 
 namespace trilobe {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* kFormat = "trilobe-scene";
 constexpr int kVersion = 1;
@@ -33,64 +31,75 @@ std::string Text(double x) {
   return text.str();
 }
 
-// A value of the file, with the JSON pointer to it (RFC 6901) for messages.
+// A key as a JSON pointer has it (RFC 6901).
+std::string Escaped(std::string_view key) {
+  std::string escaped;
+  for (const char c : key) escaped += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return escaped;
+}
+
+// A value of the file, with the JSON pointer to it for messages.
 class Node {
  public:
-  Node(const Json& json, const std::string& file) : Node(json, Json::json_pointer(), file) {}
+  Node(const JsonValue& json, std::string pointer, const std::string& file)
+      : json_(json), pointer_(std::move(pointer)), file_(file) {}
 
   [[noreturn]] void Fail(const std::string& problem) const {
-    const std::string pointer = pointer_.to_string();
-    throw Error(file_ + ": " + (pointer.empty() ? "/" : pointer) + ": " + problem);
+    throw Error(file_ + ": " + (pointer_.empty() ? "/" : pointer_) + ": " + problem);
   }
 
-  bool is_string() const { return json_.is_string(); }
-  bool Has(const char* key) const { return json_.contains(key); }
+  bool is_string() const { return json_.type() == Type::kString; }
+  bool Has(const char* key) const { return json_.Find(key) != nullptr; }
   size_t size() const { return json_.size(); }
 
   Node operator[](const char* key) const {
-    const auto found = json_.find(key);
-    if (found == json_.end()) Fail("the key '" + std::string(key) + "' is missing; add it");
-    return {*found, pointer_ / key, file_};
+    const JsonValue* const found = json_.Find(key);
+    if (found == nullptr) Fail("the key '" + std::string(key) + "' is missing; add it");
+    return {*found, pointer_ + "/" + key, file_};
   }
-  Node operator[](size_t index) const { return {json_[index], pointer_ / index, file_}; }
+  Node operator[](size_t index) const {
+    return {json_[index], pointer_ + "/" + std::to_string(index), file_};
+  }
 
   // Fails unless this is an object with no keys but these.
   const Node& CheckObject(std::initializer_list<std::string_view> known) const {
-    if (!json_.is_object()) FailType("an object");
-    for (const auto& item : json_.items()) {
-      if (std::ranges::find(known, item.key()) != known.end()) continue;
+    CheckType(Type::kObject, "an object");
+    for (size_t k = 0; k < size(); ++k) {
+      const std::string key = json_.key(k);
+      if (std::ranges::find(known, key) != known.end()) continue;
       std::string list;
-      for (const std::string_view key : known) {
-        list += (list.empty() ? "" : ", ") + std::string(key);
+      for (const std::string_view each : known) {
+        list += (list.empty() ? "" : ", ") + std::string(each);
       }
-      Node(item.value(), pointer_ / item.key(), file_)
-          .Fail("unknown key; did you mean '" + std::string(NearestName(item.key(), known)) +
+      Node(json_[k], pointer_ + "/" + Escaped(key), file_)
+          .Fail("unknown key; did you mean '" + std::string(NearestName(key, known)) +
                 "'? Known here: " + list);
     }
     return *this;
   }
 
   const Node& CheckArray(const std::string& of) const {
-    if (!json_.is_array()) FailType("an array of " + of);
+    CheckType(Type::kArray, "an array of " + of);
     return *this;
   }
 
   std::string String() const {
-    if (!json_.is_string()) FailType("a string");
-    return json_.get<std::string>();
+    CheckType(Type::kString, "a string");
+    return json_.string();
   }
 
   bool Bool() const {
-    if (!json_.is_boolean()) FailType("true or false");
-    return json_.get<bool>();
+    CheckType(Type::kBoolean, "true or false");
+    return json_.boolean();
   }
 
   double Number(double min, double max, const std::string& meaning) const {
-    if (!json_.is_number()) FailType("a number, " + meaning);
-    const double value = json_.get<double>();
+    CheckType(Type::kNumber, "a number, " + meaning);
+    const double value = json_.number();
     if (!(min <= value && value <= max)) {
       Fail("must be " + meaning + ", from " + Text(min) +
-           (std::isfinite(max) ? " to " + Text(max) : " up") + ", not " + json_.dump());
+           (std::isfinite(max) ? " to " + Text(max) : " up") + ", not " +
+           std::string(json_.number_text()));
     }
     return value;
   }
@@ -107,54 +116,18 @@ class Node {
   }
 
  private:
-  Node(const Json& json, Json::json_pointer pointer, const std::string& file)
-      : json_(json), pointer_(std::move(pointer)), file_(file) {}
+  using Type = JsonValue::Type;
 
-  [[noreturn]] void FailType(const std::string& expected) const {
-    Fail("must be " + expected + ", not " + json_.type_name());
+  void CheckType(Type type, const std::string& expected) const {
+    if (json_.type() != type) Fail("must be " + expected + ", not " + json_.type_name());
   }
 
-  const Json& json_;
-  Json::json_pointer pointer_;
+  const JsonValue& json_;
+  std::string pointer_;
   const std::string& file_;
 };
 
-// Of two members with the same key the parser keeps one, in silence.
-class RepeatedKeys {
- public:
-  explicit RepeatedKeys(std::string file) : file_(std::move(file)) {}
-
-  bool operator()(int /*depth*/, Json::parse_event_t event, const Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys_.pop_back();
-    if (event == Json::parse_event_t::key &&
-        !keys_.back().insert(parsed.get<std::string>()).second) {
-      throw Error(file_ + ": the key '" + parsed.get<std::string>() +
-                  "' comes twice in the same object; keep one");
-    }
-    return true;
-  }
-
- private:
-  const std::string file_;
-  std::vector<std::set<std::string>> keys_;  // of each object that is open
-};
-
-Json ParseJson(std::string_view text, const std::string& file) {
-  // The parser would take a zero byte for the end of the text, and miss what follows.
-  if (const size_t zero = text.find('\0'); zero != std::string_view::npos) {
-    throw Error(file + ": not a scene file: byte " + std::to_string(zero) + " is zero");
-  }
-  try {
-    return Json::parse(text, RepeatedKeys(file));
-  } catch (const Json::exception& exception) {
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-    const std::string_view what = exception.what();
-    const size_t end = what.find("] ");
-    throw Error(file + ": not a scene file: " +
-                std::string(what.substr(end == std::string_view::npos ? 0 : end + 2)));
-  }
-}
+std::string NotAScene(const std::string& path) { return path + ": not a scene file"; }
 
 std::string Beside(const std::string& scene_file, const std::string& path) {
   return (std::filesystem::path(scene_file).parent_path() / path).string();
@@ -307,8 +280,8 @@ SceneMaterial ReadMaterial(const Node& node, const std::string& scene_file,
 }  // namespace
 
 Scene ParseScene(std::string_view text, const std::string& path) {
-  const Json json = ParseJson(text, path);
-  const Node root(json, path);
+  const JsonValue json = JsonValue::Parse(text, NotAScene(path));
+  const Node root(json, "", path);
   root.CheckObject(
       {"format", "version", "directions", "channels", "budget", "leave_out", "materials"});
   root["format"].Word({kFormat});
@@ -341,6 +314,8 @@ std::vector<std::string> FilesOf(const Scene& scene) {
   return files;
 }
 
-Scene ReadScene(const std::string& path) { return ParseScene(ReadFile(path), path); }
+Scene ReadScene(const std::string& path) {
+  return ParseScene(ReadJsonText(path, NotAScene(path)), path);
+}
 
 }  // namespace trilobe

@@ -206,6 +206,17 @@ TEST(ConvertTest, WritesAModelsReconstruction) {
 
 TEST(ConvertTest, RejectsBadInput) {
   ExpectError(RunProgram({"convert", "synth:foam"}), "needs --out=FILE");
+  const TemporaryFolder folder;
+  for (const char* name : {"x.bsdf", "x.json", "x.CSV", "x.png", "x.hdr", "x.exr", "x.binary.gz"}) {
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"convert", "synth:foam"}, {"synth", "foam"}}) {
+      std::vector<std::string> arguments = words;
+      arguments.push_back("--out=" + (folder / name));
+      const ProgramResult result = RunProgram(arguments);
+      ExpectError(result, std::string(name) + ": trilobe " + words[0] + " writes MERL data");
+      EXPECT_FALSE(std::filesystem::exists(folder / name));
+    }
+  }
   ExpectError(RunProgram({"convert", "nothing.binary", "--out=x"}), "nothing.binary");
   ExpectError(RunProgram({"convert", "synth:unobtainium", "--out=x"}), "known: plastic, ");
 }

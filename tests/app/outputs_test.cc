@@ -109,7 +109,6 @@ TEST(Outputs, AreNeverInputs) {
       {"fit", table, "synth:felt", "--out=" + (folder / "")},
       {"fit", "synth:felt", "--init=" + model, "--out=" + out},
       {"fit", "synth:felt", "--init=" + (folder / "hard"), "--out=" + out},
-      {"convert", model, "--out=" + model},
       {"convert", model, "--out=" + (folder / "link")},
       {"convert", table, "--out=" + table},
       {"score", model, "synth:felt", "--out=" + (folder / "hard")},

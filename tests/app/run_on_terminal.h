@@ -6,9 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <string>
 #include <vector>
+
+#include "tests/app/run_program.h"
 
 namespace trilobe {
 
@@ -29,6 +30,7 @@ inline TerminalResult RunOnTerminal(const std::vector<std::string>& arguments,
   int terminal = -1;
   const pid_t pid = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (pid == 0) {
+    HeedSignals();
     execv(argv[0], argv.data());
     _exit(127);
   }

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -40,6 +41,13 @@ inline std::string Contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+// For a child that is to heed signals: one that whoever started the tests ignores, as nohup and the
+// `&` of a script do, would stay so.
+inline void HeedSignals() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 struct ProgramResult {
   int status = -1;  // exit status; -1 if it was killed by a signal
   std::string out, err;
@@ -62,6 +70,7 @@ inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
     const int out_fd = open(out.c_str(), O_CREAT | O_WRONLY, 0600);
     const int err_fd = open(err.c_str(), O_CREAT | O_WRONLY, 0600);
     if (dup2(out_fd, STDOUT_FILENO) < 0 || dup2(err_fd, STDERR_FILENO) < 0) _exit(126);
+    HeedSignals();
     for (std::string& setting : settings) putenv(setting.data());
     execv(argv[0], argv.data());
     _exit(127);

@@ -13,6 +13,7 @@
 
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
+#include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 
 namespace trilobe {
@@ -40,6 +41,23 @@ ProgramResult RunQuickly(const TemporaryFolder& folder, std::vector<std::string>
   arguments.insert(arguments.end(), {"--solver=awls", "--max_iterations=2", "--lobes=1",
                                      "--cache=" + (folder / "cache")});
   return RunProgram(arguments);
+}
+
+// Both PSNRs are infinite.
+TEST(Scene, AnExactFitLosesNothing) {
+  const TemporaryFolder folder;
+  BrdfTable black = MakeInvalidTable("black", {});
+  for (auto& plane : black.stored) plane.assign(plane.size(), 0);
+  WriteMerl(black, folder / "black.binary");
+  const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
+                            "materials": [{"name": "soot", "source": "black.binary"}]})");
+  const ProgramResult plan = RunQuickly(folder, {"plan", scene});
+  ASSERT_EQ(plan.status, 0) << plan.err;
+  EXPECT_THAT(plan.out, HasSubstr(" 0 %           0 dB "));
+  EXPECT_THAT(plan.out, testing::Not(HasSubstr("nan")));
+  const ProgramResult compared = RunQuickly(folder, {"compare", scene});
+  EXPECT_THAT(compared.out, HasSubstr("infinite  infinite\n"));
+  EXPECT_THAT(compared.out, testing::Not(HasSubstr("nan")));
 }
 
 TEST(Scene, IsPlannedFittedAndCompared) {

@@ -2,14 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "trilobe/base/error.h"
+#include "trilobe/base/stopwatch.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/synth.h"
@@ -40,6 +44,28 @@ class GnuplotTest : public testing::Test {
     };
     return {number(16), number(20)};
   }
+
+  // A gnuplot of our own while it lives: a script that comes first on the PATH.
+  class FakeGnuplot {
+   public:
+    FakeGnuplot(const std::filesystem::path& folder, const std::string& script)
+        : folder_(folder / "bin"), path_(std::getenv("PATH")) {
+      std::filesystem::create_directory(folder_);
+      std::ofstream(folder_ / "gnuplot") << "#!/bin/sh\n" << script;
+      std::filesystem::permissions(folder_ / "gnuplot", std::filesystem::perms::owner_all);
+      setenv("PATH", (folder_.string() + ":" + path_).c_str(), 1);
+    }
+    FakeGnuplot(const FakeGnuplot&) = delete;
+    FakeGnuplot& operator=(const FakeGnuplot&) = delete;
+    ~FakeGnuplot() {
+      setenv("PATH", path_.c_str(), 1);
+      std::filesystem::remove_all(folder_);
+    }
+
+   private:
+    const std::filesystem::path folder_;
+    const std::string path_;
+  };
 
   static AppearanceOptions Appearance(int num_threads) {
     return {.lights = 60, .num_threads = num_threads};
@@ -96,6 +122,63 @@ TEST_F(GnuplotTest, SaysWhichPackageIsMissing) {
     EXPECT_THAT(error.what(), testing::HasSubstr("gnuplot-nox"));
   }
   setenv("PATH", path.c_str(), 1);
+}
+
+// Whether a process runs; one that was killed may stay as a zombie for a while.
+bool Runs(const std::string& pid) {
+  std::ifstream file("/proc/" + pid + "/stat");
+  std::string number, name, state;
+  file >> number >> name >> state;
+  return !state.empty() && state != "Z" && state != "X";
+}
+
+TEST_F(GnuplotTest, EndsOneThatHangsAndWhatItStarted) {
+  const FakeGnuplot fake(
+      folder_, "sleep 1000 &\necho $! > " + Path("child") + "\ntrap '' TERM INT\nsleep 1000\n");
+  // Signals all the time, which end every wait of the system's.
+  struct sigaction action {
+  }, before{};
+  action.sa_handler = [](int) {};
+  sigaction(SIGALRM, &action, &before);
+  const itimerval often = {{0, 1000}, {0, 1000}}, never = {};
+  setitimer(ITIMER_REAL, &often, nullptr);
+  Stopwatch stopwatch;
+  std::string error;
+  try {
+    DrawPng(Path("a.png"), 400, 300, "plot x\n", 0.5);
+  } catch (const Error& e) {
+    error = e.what();
+  }
+  const double seconds = stopwatch.Lap();
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  EXPECT_EQ(error, "gnuplot was stopped, as it had not drawn the picture after 0.5 seconds");
+  EXPECT_GE(seconds, 0.5);
+  EXPECT_LT(seconds, 10);
+  std::string child = ReadFile(Path("child"));
+  child.pop_back();
+  for (int wait = 0; wait < 1000 && Runs(child); ++wait) usleep(1000);
+  EXPECT_FALSE(Runs(child)) << child;
+  EXPECT_FALSE(std::filesystem::exists(Path("a.png")));
+}
+
+TEST_F(GnuplotTest, DoesNotBelieveHalfAPicture) {
+  DrawPng(Path("whole.png"), 400, 300, "plot x\n");
+  const std::string whole = ReadFile(Path("whole.png"));
+  for (const size_t size : {size_t{8}, whole.size() / 2, whole.size() - 1}) {
+    const FakeGnuplot fake(folder_,
+                           "head -c " + std::to_string(size) + " " + Path("whole.png") + "\n");
+    try {
+      DrawPng(Path("half.png"), 400, 300, "plot x\n");
+      ADD_FAILURE() << size;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("gnuplot drew a part of the picture alone"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(Path("half.png")));
+  }
+  const FakeGnuplot fake(folder_, "cat " + Path("whole.png") + "\n");
+  DrawPng(Path("copy.png"), 400, 300, "plot x\n");
+  EXPECT_EQ(ReadFile(Path("copy.png")), whole);
 }
 
 TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {

@@ -123,9 +123,9 @@ TEST(MerlFile, RefusesOtherDimensions) {
 }
 
 TEST(MerlFile, RecognisesText) {
-  EXPECT_THAT(ParseError("{\"format\": \"trilobe-model\"}"), HasSubstr("looks like text"));
-  EXPECT_THAT(ParseError("hi\n"), HasSubstr("looks like text"));
-  EXPECT_THAT(ParseError(std::string(kFileSize, 'x')), HasSubstr("looks like text"));
+  EXPECT_THAT(ParseError("{\"format\": \"trilobe-model\"}"), HasSubstr("this is a JSON file"));
+  EXPECT_THAT(ParseError("hi\n"), HasSubstr("this is text"));
+  EXPECT_THAT(ParseError(std::string(kFileSize, 'x')), HasSubstr("this is text"));
 }
 
 TEST(MerlFile, NonFiniteAndNegativeBinsAreJustInvalid) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <locale>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "tests/io/test_directory.h"
+#include "trilobe/io/json_value.h"
 
 namespace trilobe {
 namespace {
@@ -342,6 +344,26 @@ TEST(ModelFile, RefusesWhatIsNoJsonObject) {
         std::string("{\"format\": \"\xff\"}"), std::string(100000, '[')}) {
     EXPECT_THAT(ErrorOfText(bad), HasSubstr("model.json: not a model file"));
   }
+}
+
+TEST(ModelFile, RefusesAFileThatIsTooLarge) {
+  const TestDirectory directory;
+  const std::string path = directory.Make("model.json", FormatModel(ModelFile()));
+  std::filesystem::resize_file(path, kMaxJsonBytes + 1);
+  EXPECT_THAT(ErrorOf([&] { ReadModel(path); }),
+              HasSubstr("model.json: not a model file: it has 16777217 bytes"));
+}
+
+// The largest model that there is, with a number on a line each.
+TEST(ModelFile, TheLimitsHoldTheLargestModel) {
+  ModelSpec spec{.lobes = kMaxLobes};
+  spec.d_bins = spec.f_bins = spec.g_nodes = kMaxTableSize;
+  spec.D = spec.F = spec.G = {.per_lobe = true, .per_channel = true};
+  ModelFile file{FactorModel(spec), std::vector<bool>(spec.num_parameters(), true), {}};
+  for (double& x : file.model.parameters()) x = 0.12345678901234567;
+  const std::string text = json::parse(FormatModel(file)).dump(4);
+  EXPECT_GT(text.size(), 4 << 20);
+  EXPECT_EQ(ParseModel(text, "model.json").model.spec(), spec);
 }
 
 TEST(ModelFile, EveryTruncationIsAnError) {

@@ -349,6 +349,25 @@ TEST(RglFile, RefusesFieldsThatReachPastTheFile) {
   EXPECT_THAT(FieldsError(fields), HasSubstr("field 'sigma' reaches past the end"));
 }
 
+TEST(RglFile, RefusesFieldsThatShareANameOrBytes) {
+  TinyRgl file;
+  file.FillConstant(1, 1, 1);
+  std::vector<TensorField> fields = file.Fields();
+  fields.push_back(fields[2]);
+  EXPECT_THAT(FieldsError(fields), HasSubstr("tiny.bsdf: field 'ndf' comes twice"));
+  // sigma where ndf is, and in the header.
+  fields = file.Fields();
+  const size_t ndf = file.Bytes().find(fields[2].data);
+  fields[3].offset = static_cast<int64_t>(ndf) + 4;
+  EXPECT_THAT(FieldsError(fields),
+              AllOf(HasSubstr("field 'sigma' starts at byte " + std::to_string(ndf + 4)),
+                    HasSubstr("inside field 'ndf', which ends at byte " +
+                              std::to_string(ndf + fields[2].data.size()))));
+  fields = file.Fields();
+  fields[3].offset = 14;
+  EXPECT_THAT(FieldsError(fields), HasSubstr("field 'sigma' starts at byte 14, inside the header"));
+}
+
 TEST(RglFile, RefusesUnknownTypesAndMissingFields) {
   TinyRgl file;
   file.FillConstant(1, 1, 1);
@@ -406,7 +425,21 @@ TEST(RglFile, RefusesImpossibleNumbers) {
   EXPECT_THAT(error_of([](TinyRgl* file) {
                 file->theta_i = {0, 1, 1};
               }),
-              HasSubstr("'theta_i' must be in ascending order"));
+              HasSubstr("'theta_i' has 1 as entry 2; it must be above the entry before it, 1"));
+  EXPECT_THAT(error_of([](TinyRgl* file) {
+                file->theta_i = {0, 45, 90};
+              }),
+              HasSubstr("'theta_i' has 45 as entry 1; angles are in radians, from 0 to 1.5708"));
+  EXPECT_THAT(error_of([](TinyRgl* file) {
+                file->theta_i = {-0.5F, 0, 1};
+              }),
+              HasSubstr("'theta_i' has -0.5 as entry 0; angles are in radians, from 0 to 1.5708"));
+  EXPECT_THAT(error_of([](TinyRgl* file) {
+                file->theta_i = {0, 1, 0.5F};
+              }),
+              HasSubstr("'theta_i' has 0.5 as entry 2; it must be above the entry before it, 1"));
+  EXPECT_THAT(error_of([](TinyRgl* file) { file->phi_i = {180}; }),
+              HasSubstr("'phi_i' has 180 as entry 0; angles are in radians"));
   EXPECT_THAT(error_of([](TinyRgl* file) {
                 file->phi_i = {0, 1};
                 file->FillConstant(1, 1, 1);

@@ -86,10 +86,10 @@ TEST(LoadSource, ErrorsSayWhatToDo) {
   EXPECT_THAT(ErrorOf([&] { LoadSource(directory.path()); }), HasSubstr("directory"));
   EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Make("empty", "")); }), HasSubstr("empty"));
   EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Make("text", "BRDF of a cheese\n")); }),
-              HasSubstr("looks like text"));
+              HasSubstr("this is text"));
   WriteModel(ModelFile(), directory.Path("model.json"));
   EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Path("model.json")); }),
-              AllOf(HasSubstr("model.json"), HasSubstr("not a measurement")));
+              AllOf(HasSubstr("model.json"), HasSubstr("this is a JSON file; a measurement is a")));
 }
 
 }  // namespace

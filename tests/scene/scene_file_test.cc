@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "tests/io/test_directory.h"
+#include "trilobe/io/json_value.h"
 
 namespace trilobe {
 namespace {
@@ -111,9 +113,9 @@ TEST(SceneFile, BadOnesGetAnErrorWithKeyAndReason) {
     return kBegin + (R"(, "materials": [)" + json + "]}");
   };
   const std::vector<Bad> cases = {
-      {"", "", "not a scene file: parse error at line 1, column 1"},
-      {"{\"format\": 1,}", "", "not a scene file: parse error at line 1, column 14"},
-      {std::string("{}\0", 3), "", "byte 2 is zero"},
+      {"", "", "not a scene file: line 1, column 1:"},
+      {"{\"format\": 1,}", "", "not a scene file: line 1, column 14:"},
+      {std::string("{}\0", 3), "", "not a scene file: line 1, column 3:"},
       {"[]", "/:", "must be an object, not array"},
       {"{}", "/:", "the key 'format' is missing"},
       {R"({"format": "trilobe-model"})",
@@ -197,6 +199,14 @@ TEST(SceneFile, BadOnesGetAnErrorWithKeyAndReason) {
     EXPECT_THAT(error, AllOf(StartsWith("s.json: " + bad.pointer), HasSubstr(bad.reason)))
         << bad.text;
   }
+}
+
+TEST(SceneFile, AFileThatIsTooLargeIsAnError) {
+  const TestDirectory directory;
+  const std::string path = directory.Make("scene.json", Text(""));
+  std::filesystem::resize_file(path, kMaxJsonBytes + 1);
+  EXPECT_THAT(ErrorOf([&] { ReadScene(path); }),
+              HasSubstr("scene.json: not a scene file: it has 16777217 bytes"));
 }
 
 // Cut anywhere, a scene is no scene, and no crash.

@@ -1,0 +1,29 @@
+#ifndef TRILOBE_IO_CONTENT_H_
+#define TRILOBE_IO_CONTENT_H_
+
+#include <string>
+#include <string_view>
+
+namespace trilobe {
+
+inline constexpr std::string_view kTensorMagic("tensor_file\0", 12);
+
+// What a file holds, as far as its beginning tells (256 bytes are enough) and, for UTIA tables,
+// which have no header, its size.
+struct Content {
+  enum class Kind {
+    kUnknown,
+    kMerl,    // by the header alone
+    kTensor,  // of RGL
+    kJson,    // an object, in UTF-8
+    kText,    // any other
+    kForeign  // nothing that this program reads, or a picture
+  };
+  Kind kind = Kind::kUnknown;
+  std::string name;  // "a PNG picture"; for text in UTF-16, also what to do; "" if unknown
+};
+Content RecogniseContent(std::string_view bytes);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_CONTENT_H_
