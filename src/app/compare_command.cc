@@ -57,9 +57,18 @@ struct PrunedScene {
   bool reckoned = false;
 };
 
+// Of the picture, which must not replace what is read.
+void CheckOut(const Scene& scene, std::vector<std::string> others) {
+  if (FLAGS_out.empty()) return;
+  for (const std::string& file : FilesOf(scene)) others.push_back(file);
+  Inputs(others).CheckOutput(FLAGS_out);
+}
+
 PrunedScene FromRun(const std::string& path) {
   PrunedScene pruned{.settings = SceneSettingsFromFlags()};
-  SceneRun run = RunScene(ReadScene(path), pruned.settings, [](const MaterialFit&) {});
+  Scene scene = ReadScene(path);
+  CheckOut(scene, {});
+  SceneRun run = RunScene(std::move(scene), pruned.settings, [](const MaterialFit&) {});
   if (run.interrupted != 0) throw Error("interrupted; the same command goes on from the cache");
   if (!run.failures.empty()) {
     throw Error("material '" + run.failures[0].name + "': " + run.failures[0].error);
@@ -95,6 +104,11 @@ PrunedScene FromFolder(const std::string& folder) {
     TakeFlags(plan.at("flags"));
     PrunedScene pruned{.scene = ReadScene(plan.at("scene").get<std::string>()),
                        .settings = SceneSettingsFromFlags()};
+    std::vector<std::string> read = {path};
+    for (const SceneMaterial& material : pruned.scene.materials) {
+      read.push_back(folder + "/" + material.name + ".json");
+    }
+    CheckOut(pruned.scene, read);
     for (const SceneMaterial& material : pruned.scene.materials) {
       const auto& planned = plan.at("materials");
       const auto found = std::ranges::find_if(
@@ -235,7 +249,6 @@ void Draw(const Comparison& comparison, const std::string& path) {
 int RunCompare(std::span<const std::string> arguments) {
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(arguments[0], ignored);
-  if (!FLAGS_out.empty()) Inputs({arguments[0]}).CheckOutput(FLAGS_out);
   const Comparison comparison =
       Compare(is_folder ? FromFolder(arguments[0]) : FromRun(arguments[0]));
   if (FLAGS_json) {

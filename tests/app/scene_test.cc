@@ -103,6 +103,13 @@ TEST(Scene, IsPlannedFittedAndCompared) {
   }
   EXPECT_EQ(compared["all"]["seconds"]["pruned_reckoned"], true);
 
+  for (const std::string& mine : {out + "/plan.json", out + "/wall.json", scene}) {
+    const std::string before = Contents(mine);
+    const ProgramResult refused = RunProgram({"compare", out, "--nocache", "--out=" + mine});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.err, HasSubstr("would destroy '"));
+    EXPECT_EQ(Contents(mine), before);
+  }
   const ProgramResult table = RunProgram(
       {"compare", out, "--cache=" + (folder / "cache"), "--out=" + (folder / "trade_off.png")});
   ASSERT_EQ(table.status, 0) << table.err;
