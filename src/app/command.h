@@ -25,6 +25,9 @@ struct Command {
   int (*run)(std::span<const std::string> arguments) = nullptr;
 };
 
+// Exit status where all was tried and some of it failed, as of the experiments.
+inline constexpr int kSomeFailed = 3;
+
 // One function a command, each in its own file.
 Command CompareCommand();
 Command ConvertCommand();

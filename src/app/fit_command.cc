@@ -85,7 +85,8 @@ FactorModel StartFromFile() {
 }
 
 // Flags on which a result does not depend, or only by the content of a file.
-constexpr const char* kFlagsOfNoResult[] = {"threads", "out", "scene", "cache", "nocache", "probe"};
+constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shard",
+                                            "cache",   "nocache", "probe"};
 
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags = {"solver", "init",        "weighting", "model",
@@ -93,7 +94,7 @@ std::vector<std::string> FitFlags() {
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(),
                {"threads", "noise", "seed", "max_angle", "extrapolated", "out", "reconstruction",
-                "course", "plots", "probe", "scene", "cache", "nocache"});
+                "course", "plots", "probe", "shard", "scene", "cache", "nocache"});
   return flags;
 }
 
@@ -187,7 +188,7 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag : {"init", "model", "max_numbers", "robust", "probe", "course",
-                                 "reconstruction", "plots", "diagnose"}) {
+                                 "reconstruction", "plots", "diagnose", "shard"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }
@@ -203,6 +204,7 @@ int RunFit(std::span<const std::string> arguments) {
   }
   std::error_code ignored;
   if (arguments.size() == 1 && !std::filesystem::is_directory(arguments[0], ignored)) {
+    if (!IsDefault("shard")) throw Error("--shard is for many SOURCEs");
     return RunFitOfOne(arguments[0]);
   }
   return RunFitOfMany(arguments, SettingsFromFlags());

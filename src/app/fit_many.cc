@@ -1,14 +1,18 @@
 #include "trilobe/app/fit_many.h"
 
+#include <gflags/gflags.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 #include <vector>
 
+#include "trilobe/app/command.h"
 #include "trilobe/app/fit_page.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
@@ -21,6 +25,10 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/json_value.h"
 #include "trilobe/io/model_file.h"
+
+DEFINE_string(shard, "",
+              "i/n: of many SOURCEs fit only every n-th, from the i-th on, and leave the page to "
+              "the same command without --shard, when all shards are through");
 
 namespace trilobe {
 namespace {
@@ -78,6 +86,21 @@ std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
     outcomes.push_back({.name = name, .source = source});
   }
   return outcomes;
+}
+
+// Those that --shard leaves.
+std::vector<FitOutcome> InShard(const std::vector<FitOutcome>& outcomes) {
+  if (FLAGS_shard.empty()) return outcomes;
+  int first = 0, count = 0;
+  char slash = 0;
+  std::istringstream text(FLAGS_shard);
+  text >> first >> slash >> count;
+  if (!text || slash != '/' || text.peek() != EOF || first < 1 || first > count) {
+    throw Error("--shard=" + FLAGS_shard + " is no i/n with i from 1 to n, as 2/8 is");
+  }
+  std::vector<FitOutcome> shard;
+  for (size_t k = first - 1; k < outcomes.size(); k += count) shard.push_back(outcomes[k]);
+  return shard;
 }
 
 void TakeReport(const Json& report, FitOutcome* outcome) {
@@ -157,7 +180,7 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
   settings.pair = true;
-  std::vector<FitOutcome> outcomes = ListSources(arguments);
+  std::vector<FitOutcome> outcomes = InShard(ListSources(arguments));
   std::vector<std::string> read = settings.inputs;
   for (const FitOutcome& outcome : outcomes) read.push_back(outcome.source);
   const Inputs inputs(read);
@@ -190,18 +213,22 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
     progress.Done(outcome.name, outcome.state != FitOutcome::State::kKept);
   });
 
-  WriteFile(summary.PathOf(kTableName), [&](std::ostream& file) { file << FitsCsv(outcomes); });
-  WriteFile(summary.PathOf(kPageName), [&](std::ostream& file) { file << FitsPage(outcomes); });
+  std::string written = "a folder each";
+  if (FLAGS_shard.empty()) {
+    WriteFile(summary.PathOf(kTableName), [&](std::ostream& to) { to << FitsCsv(outcomes); });
+    WriteFile(summary.PathOf(kPageName), [&](std::ostream& to) { to << FitsPage(outcomes); });
+    written += std::string(", ") + kTableName + ", " + kPageName;
+  }
   const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);
   progress.Clear();
   std::cout << "all          " << Summary(outcomes) << "\n"
-            << "written      a folder each, " << kTableName << ", " << kPageName << " in " << out
+            << "written      " << written << " in " << out
             << (failed > 0 ? "; " + std::to_string(failed) + " failed" : "") << "\n";
   if (InterruptGuard::signal() != 0) {
     std::cout << "interrupted  the same command goes on with what is missing\n";
     return 128 + InterruptGuard::signal();
   }
-  return failed > 0 ? 1 : 0;
+  return failed > 0 ? kSomeFailed : 0;
 }
 
 }  // namespace trilobe

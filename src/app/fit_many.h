@@ -11,7 +11,7 @@ namespace trilobe {
 // `trilobe fit SOURCE... --out=DIR`, where a SOURCE may be a folder of measurements: fits each, on
 // a thread of its own, into the folder DIR/NAME, leaves out those of which that folder already has
 // what would come out, and gathers all in DIR/fits.csv and DIR/index.html. Returns the exit status:
-// 1 if one or more could not be fitted, which does not stop the others.
+// 3 if one or more could not be fitted, which does not stop the others.
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings);
 
 }  // namespace trilobe

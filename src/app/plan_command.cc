@@ -19,7 +19,7 @@ int RunPlan(std::span<const std::string> arguments) {
     PrintPlan(run, std::cout);
   }
   if (run.interrupted != 0) return 128 + run.interrupted;
-  return run.failures.empty() ? 0 : 1;
+  return run.failures.empty() ? 0 : kSomeFailed;
 }
 
 }  // namespace

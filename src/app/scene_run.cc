@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/interrupt.h"
@@ -178,7 +179,7 @@ int RunSceneFit(const std::string& path) {
     std::cout << "interrupted: the same command goes on with the others\n";
     return 128 + run.interrupted;
   }
-  return run.failures.empty() ? 0 : 1;
+  return run.failures.empty() ? 0 : kSomeFailed;
 }
 
 }  // namespace trilobe

@@ -161,7 +161,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   const std::vector<std::string> command =
       Quick({"fit", data, "synth:felt", "--threads=2", "--out=" + out});
   const ProgramResult result = RunProgram(command);
-  EXPECT_EQ(result.status, 1);  // one failed
+  EXPECT_EQ(result.status, 3);  // one failed
   EXPECT_EQ(result.err, "");
   EXPECT_THAT(result.out, HasSubstr("] torn: failed: "));
   EXPECT_THAT(result.out, HasSubstr("] felt: fitted, sphere "));
@@ -193,9 +193,16 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   EXPECT_EQ(Contents(out + "/felt/report.json"), felt);
   ASSERT_EQ(RunProgram({"synth", "rubber", "--out=" + (folder / "data/a & b.binary")}).status, 0);
   std::filesystem::remove(out + "/felt/trace.csv");
-  const ProgramResult changed = RunProgram(command);
-  EXPECT_THAT(changed.out, HasSubstr("] felt: fitted"));
-  EXPECT_THAT(changed.out, HasSubstr("] a & b: fitted"));
+  std::vector<std::string> shard = command;  // a & b.binary and synth:felt
+  shard.emplace_back("--shard=1/2");
+  const std::string page_before = Contents(out + "/index.html");
+  const ProgramResult half = RunProgram(shard);
+  EXPECT_EQ(half.status, 0) << half.err;
+  EXPECT_THAT(half.out, HasSubstr("/2] a & b: fitted"));
+  EXPECT_EQ(Contents(out + "/index.html"), page_before);
+  const ProgramResult all = RunProgram(command);
+  EXPECT_THAT(all.out, HasSubstr("] felt: kept"));
+  EXPECT_THAT(all.out, HasSubstr("] a & b: kept"));
 }
 
 TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
@@ -225,6 +232,12 @@ TEST(FitMany, BadUseIsAnError) {
                 "has no measurement");
   ExpectRefusal(RunProgram({"fit", "synth:felt", "x/felt.binary", "--out=" + (folder / "o")}),
                 "'synth:felt' and 'x/felt.binary' would both be fitted into 'felt'");
+  for (const char* const shard : {"0/2", "3/2", "1", "1/2x", "-1/-1", "a/b"}) {
+    ExpectRefusal(RunProgram({"fit", "synth:felt", "synth:rubber", "--out=" + (folder / "o"),
+                              std::string("--shard=") + shard}),
+                  "is no i/n");
+  }
+  ExpectRefusal(RunProgram({"fit", "synth:felt", "--shard=1/2"}), "--shard is for many SOURCEs");
   EXPECT_FALSE(std::filesystem::exists(folder / "o"));
 }
 

@@ -147,7 +147,7 @@ TEST(Scene, OneBadMaterialDoesNotStopTheOthers) {
                     {"name": "wall", "source": "synth:rubber"}]})");
   const std::string out = folder / "out";
   const ProgramResult fit = RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
-  EXPECT_EQ(fit.status, 1);
+  EXPECT_EQ(fit.status, 3);
   EXPECT_THAT(fit.out, HasSubstr("\ntorn failed: "));
   EXPECT_THAT(fit.out, HasSubstr("torn.binary"));
   EXPECT_TRUE(std::filesystem::exists(out + "/wall.json"));
