@@ -122,9 +122,9 @@ class CondensedCost : public ceres::CostFunction {
 };
 
 class Lm : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("lm", objective, options, model);
     const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kInCost, &run);
     std::optional<CondensedCost> cost;

@@ -133,9 +133,9 @@ class PlainProblem {
 // The model as one writes it down for Ceres: every sample a residual block with derivatives by
 // automatic differentiation.
 class LmPlain : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("lm_plain", objective, options, model);
     const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kNone, &run);
     std::optional<PlainProblem> problem;
