@@ -53,7 +53,7 @@ class SquaresResidual {
   std::vector<int> sizes_;
 };
 
-// E / unit^2 as a problem for Ceres, with a residual block a sample.
+// E / residual_unit^2 as a problem for Ceres, with a residual block a sample.
 class PlainProblem {
  public:
   PlainProblem(const Objective& objective, const CeresParameters& parameters)
@@ -95,7 +95,9 @@ class PlainProblem {
 
   template <typename Residual>
   void AddSample(WeightedSample sample) {
-    for (double& rho : sample.rho) rho /= parameters_.unit();
+    const double unit = parameters_.value_unit(), ratio = unit / parameters_.residual_unit();
+    for (double& rho : sample.rho) rho /= unit;
+    for (double& w : sample.weight) w *= ratio * ratio;
     auto* const cost = new ceres::DynamicAutoDiffCostFunction<Residual, kStride>(
         new Residual(blocks_, sample, &block_numbers_));
     cost->SetNumResiduals(SampleResidual::kNumResiduals);
