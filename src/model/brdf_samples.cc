@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <sstream>
+#include <string>
 
 #include "trilobe/base/error.h"
 
@@ -32,49 +34,30 @@ void CheckSizes(const BrdfSamples& samples) {
   if (!samples.multiplicity.empty()) check("multiplicities", samples.multiplicity.size());
 }
 
-// Tells whether both directions are above the surface at the centre of a bin without a cosine for
-// each: cos theta_{i,o} = a -+ b cos phi_d (ToCosines).
-class Horizon {
- public:
-  explicit Horizon(const MerlGrid& grid) : grid_(grid), cos_phi_(grid.phi_d) {
-    for (int p = 0; p < grid.phi_d; ++p) cos_phi_[p] = std::cos(grid.Center(0, 0, p).phi_d);
-  }
-
-  bool IsAbove(int bin) {
-    const int row = bin / grid_.phi_d;
-    if (row != row_) {
-      const HalfDiffAngles at = grid_.Center(bin);
-      a_ = std::cos(at.theta_h) * std::cos(at.theta_d);
-      b_ = std::sin(at.theta_h) * std::sin(at.theta_d);
-      row_ = row;
-    }
-    return a_ - std::abs(b_ * cos_phi_[bin % grid_.phi_d]) > 0;
-  }
-
- private:
-  const MerlGrid grid_;
-  std::vector<double> cos_phi_;
-  int row_ = -1;
-  double a_ = 0, b_ = 0;
-};
-
+// One pass over bins that ascend. Both directions are above the surface at the centre of a bin
+// where cos theta_{i,o} = a -+ b cos phi_d > 0 (ToCosines), a and b being those of its row.
 void CheckBins(const BrdfSamples& samples) {
-  CheckGrid(samples.grid);
-  const int size = samples.grid.size();
-  Horizon horizon(samples.grid);
-  int last = -1;
+  const MerlGrid& grid = samples.grid;
+  CheckGrid(grid);
+  std::vector<double> cos_phi(grid.phi_d);
+  for (int p = 0; p < grid.phi_d; ++p) cos_phi[p] = std::cos(grid.Center(0, 0, p).phi_d);
+  int last = -1, row_begin = -grid.phi_d;
+  double a = 0, b = 0;
   for (int j = 0; j < samples.size(); ++j) {
     const int bin = samples.bins[j];
-    if (bin < 0 || bin >= size) {
+    if (bin <= last || bin >= grid.size()) {
       FailAt(samples, j,
-             "is in bin " + std::to_string(bin) + " of " + std::to_string(size) + " bins");
+             "is in bin " + std::to_string(bin) + " of " + std::to_string(grid.size()) +
+                 (last < 0 ? "" : ", after one in bin " + std::to_string(last)) +
+                 "; bins must exist and ascend");
     }
-    if (bin <= last) {
-      FailAt(samples, j,
-             "is in bin " + std::to_string(bin) + " after one in bin " + std::to_string(last) +
-                 "; bins must ascend");
+    if (bin - row_begin >= grid.phi_d) {
+      row_begin = bin - bin % grid.phi_d;
+      const HalfDiffAngles at = grid.Center(bin);
+      a = std::cos(at.theta_h) * std::cos(at.theta_d);
+      b = std::sin(at.theta_h) * std::sin(at.theta_d);
     }
-    if (!horizon.IsAbove(bin)) {
+    if (!(a - std::abs(b * cos_phi[bin - row_begin]) > 0)) {
       FailAt(samples, j,
              "is in bin " + std::to_string(bin) +
                  ", at whose centre a direction is below the surface");
@@ -99,6 +82,17 @@ void CheckAngles(const BrdfSamples& samples) {
 
 bool IsValid(double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }
 
+bool AreValid(std::span<const double> values) {
+  // 0 * x is NaN for an infinite x, and the least of all is below 0 where one is.
+  double least = 0, zero = 0;
+#pragma omp simd reduction(min : least) reduction(+ : zero)
+  for (size_t k = 0; k < values.size(); ++k) {
+    least = values[k] < least ? values[k] : least;
+    zero += 0 * values[k];
+  }
+  return least == 0 && zero == 0;
+}
+
 std::string ToText(double x) {
   std::ostringstream text;
   text << x;
@@ -114,7 +108,11 @@ void CheckSamples(const BrdfSamples& samples) {
   } else {
     CheckAngles(samples);
   }
-  for (int j = 0; j < samples.size(); ++j) {
+  // All at once first, which is several times as fast.
+  const bool valid = AreValid({samples.rho.empty() ? nullptr : samples.rho.front().data(),
+                               samples.rho.size() * kChannels}) &&
+                     AreValid(samples.multiplicity);
+  for (int j = 0; j < samples.size() && !valid; ++j) {
     for (const double rho : samples.rho[j]) {
       if (!IsValid(rho)) FailAt(samples, j, "is " + ToText(rho) + "/sr; it must be 0 or more");
     }

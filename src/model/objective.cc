@@ -29,18 +29,17 @@ void CheckBins(const ModelSpec& spec, const MerlGrid& grid) {
 void CheckRange(const BrdfSamples& samples) {
   constexpr double kMinBrdf = 1e-50, kMaxBrdf = 1e50;
   double largest = 0;
-  int at = 0;
-  for (int j = 0; j < samples.size(); ++j) {
-    for (const double rho : samples.rho[j]) {
-      if (rho <= largest) continue;
-      largest = rho;
-      at = j;
-    }
+  const double* const values = samples.rho.front().data();
+#pragma omp simd reduction(max : largest)
+  for (size_t k = 0; k < kChannels * samples.rho.size(); ++k) {
+    largest = values[k] > largest ? values[k] : largest;
   }
   if (largest == 0 || (largest >= kMinBrdf && largest <= kMaxBrdf)) return;
   std::ostringstream message;
-  message << samples.source << ": sample " << at << ", the largest, is " << largest
-          << "/sr; that must be from " << kMinBrdf << " to " << kMaxBrdf
+  const auto at = std::ranges::find_if(
+      samples.rho, [&](const Rgb& rho) { return std::ranges::max(rho) == largest; });
+  message << samples.source << ": sample " << at - samples.rho.begin() << ", the largest, is "
+          << largest << "/sr; that must be from " << kMinBrdf << " to " << kMaxBrdf
           << ": check the file, or multiply all values by 2^" << -std::ilogb(largest);
   throw Error(message.str());
 }
@@ -73,8 +72,11 @@ BrdfSamples Checked(BrdfSamples samples, const ModelSpec& spec, int num_threads)
   return samples;
 }
 
-bool AllNonnegative(std::span<const double> weights) {
-  return std::ranges::all_of(weights, [](double w) { return w >= 0; });
+bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
+  double least = 0;
+#pragma omp simd reduction(min : least)
+  for (size_t k = 0; k < weights.size(); ++k) least = weights[k] < least ? weights[k] : least;
+  return least == 0;
 }
 
 double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model) {
