@@ -18,7 +18,7 @@
 
 namespace trilobe {
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;  // about ten times slower: tests do less of the same
 #else
 inline constexpr bool kSanitized = false;

@@ -38,7 +38,9 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable& measured, Fac
   std::optional<double> tied;
   if (!options.stop()) {
     const double before = of.Value(model);
-    if (TieEntriesAtDataEdge(of, &model) && before > 0) tied = of.Value(model) / before - 1;
+    if (TieEntriesAtDataEdge(of, &model, options.stop) && before > 0) {
+      tied = of.Value(model) / before - 1;
+    }
   }
   Canonicalize(objective.coverage(), &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};

@@ -9,7 +9,7 @@
 // Sanitizers instrument the picking, which runs before they are ready: a single copy there. So it
 // is with clang, where the attribute is young.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TRILOBE_MULTIVERSION __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define TRILOBE_MULTIVERSION

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -53,7 +54,11 @@ void RunOnThreads(int count, int num_threads, const std::function<void(int)>& wo
   };
   {
     std::vector<std::jthread> threads;
-    for (int t = 1; t < num_threads; ++t) threads.emplace_back(run);
+    threads.reserve(num_threads - 1);
+    try {
+      for (int t = 1; t < num_threads; ++t) threads.emplace_back(run);
+    } catch (const std::system_error&) {  // no thread is left: those that there are do it all
+    }
     run();
   }
   if (failure) std::rethrow_exception(failure);

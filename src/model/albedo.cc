@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/model/merl_grid.h"
 
@@ -21,6 +23,9 @@ void AddScaled(const Rgb& value, double scale, Rgb* sum) {
 }  // namespace
 
 Rgb DirectionalAlbedo(const BrdfFunction& brdf, double theta_i) {
+  if (!(theta_i >= 0 && theta_i < kPi / 2)) {
+    throw Error("theta_i is " + std::to_string(theta_i) + "; it must be from 0 to below pi/2");
+  }
   const MerlGrid grid;
   const Direction wi{std::sin(theta_i), 0, std::cos(theta_i)};
   Rgb albedo{};
@@ -61,6 +66,11 @@ std::vector<Rgb> DirectionalAlbedos(const BrdfFunction& brdf, std::span<const do
 
 std::optional<double> AlbedoPassesOne(std::span<const double> theta_i, std::span<const Rgb> albedo,
                                       int channel) {
+  if (theta_i.size() != albedo.size() || channel < 0 || channel >= kChannels) {
+    throw Error("each angle needs an albedo of channel 0, 1 or 2; there are " +
+                std::to_string(theta_i.size()) + " angles, " + std::to_string(albedo.size()) +
+                " albedos, and channel " + std::to_string(channel));
+  }
   for (size_t i = 0; i < albedo.size(); ++i) {
     const double here = albedo[i][channel];
     if (!(here > 1)) continue;

@@ -33,15 +33,20 @@ struct BrdfSamples {
   double SolidAngle(int j) const;
 };
 
+// Throws Error, with the source and the first sample that is wrong, unless the samples are as said
+// above: bins of the grid, or angles, of two directions above the surface, and as many as values.
+void CheckSamples(const BrdfSamples& samples);
+
 // The valid bins of a table. Throws Error when there is none.
 BrdfSamples ValidSamples(const BrdfTable& table);
 
-// The samples whose numbers in `samples` are these, in this order. [any size]
+// The samples whose numbers in `samples` are these, in this order. [any size] Throws Error for a
+// number that none has.
 BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers);
 
 // About one in `stride` >= 1 of them, for a cheap look at the same problem: on a grid, of each
 // (theta_h, theta_d) every stride-th phi_d and its mirror, 180 degrees - phi_d, beginning with
-// another one in each row.
+// another one in each row. At least one, where there is any. Throws Error for other strides.
 BrdfSamples Thinned(const BrdfSamples& samples, int stride);
 
 }  // namespace trilobe

@@ -42,7 +42,12 @@ struct BrdfTable {
   }
 };
 
+// Throws Error unless the table has a value of each channel for each bin, and a mark of each or
+// none.
+void CheckTable(const BrdfTable& table);
+
 // A table of `grid` where every bin is marked invalid (-1).
+// These and what follows throw Error for a grid or a table that is none.
 BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid);
 
 // True where both directions are above the surface at the bin's centre. [grid.size()]
@@ -61,7 +66,7 @@ inline Unmeasured ReasonOf(const BrdfTable& table, int bin) {
 double MaxAngleDegrees(const BrdfTable& table);
 
 // From now on nothing is measured where theta_i or theta_o, at the centre of a bin above the
-// surface, is beyond `max_theta` [rad]. Bins that were not measured before keep their reason.
+// surface, is beyond `max_theta` >= 0 [rad]. Bins that were not measured before keep their reason.
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table);
 
 }  // namespace trilobe

@@ -24,8 +24,8 @@ class CatmullRom {
   explicit CatmullRom(int nodes);
 
   int nodes() const { return nodes_; }
-  double NodeAngle(int k) const;  // [rad]
-  Location Locate(double theta) const;
+  double NodeAngle(int k) const;        // [rad]
+  Location Locate(double theta) const;  // throws Error where theta is not a number
 
   // Weights of the nodes interval-1 .. interval+2 at t; those of nodes that do not exist are 0.
   std::array<double, 4> Weights(const Location& at) const;
@@ -54,7 +54,8 @@ class CatmullRom {
     }
   };
 
-  // The spline through `values`, interval by interval. [nodes - 1]
+  // The spline through `values` [nodes], interval by interval. [nodes - 1]
+  // Throws Error for another number of values.
   std::vector<Piece> Pieces(std::span<const double> values) const;
 
  private:

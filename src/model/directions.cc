@@ -1,8 +1,24 @@
 #include "trilobe/model/directions.h"
 
 #include <algorithm>
+#include <sstream>
+
+#include "trilobe/base/error.h"
 
 namespace trilobe {
+
+void CheckAngles(const HalfDiffAngles& angles) {
+  constexpr double kMaxTheta = kPi / 2 + 1e-6;
+  const auto [theta_h, theta_d, phi_d] = angles;
+  if (theta_h >= 0 && theta_h <= kMaxTheta && theta_d >= 0 && theta_d <= kMaxTheta && phi_d >= 0 &&
+      phi_d <= kPi) {
+    return;
+  }
+  std::ostringstream message;
+  message << "theta_h, theta_d, phi_d are " << theta_h << ", " << theta_d << ", " << phi_d
+          << "; they must be from 0 to pi/2, pi/2 and pi";
+  throw Error(message.str());
+}
 
 DirectionPair ToDirections(const HalfDiffAngles& angles) {
   const double sin_h = std::sin(angles.theta_h), cos_h = std::cos(angles.theta_h);

@@ -23,6 +23,10 @@ struct HalfDiffAngles {
   double phi_d = 0;
 };
 
+// Throws Error unless the angles are numbers, theta_h and theta_d from 0 to 90 degrees (a little
+// more by rounding) and phi_d from 0 to 180.
+void CheckAngles(const HalfDiffAngles& angles);
+
 // Incident and outgoing directions.
 struct DirectionPair {
   Direction wi{};

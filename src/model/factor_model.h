@@ -73,6 +73,12 @@ class FactorModel {
   std::vector<double> values_;
 };
 
+// Throws Error, with the place of the first that is not, unless all numbers are finite and >= 0.
+void CheckNumbers(const FactorModel& model);
+
+// Throws Error unless these are as many numbers as the model has parameters.
+void CheckCoverage(std::span<const double> coverage, const FactorModel& model);
+
 // How one direction pair reads the tables: the model's value is
 //   d + sum_m s (D . stencil) (F . stencil) (G . theta_i) (G . theta_o) * inverse_cosines.
 struct SampleStencils {
@@ -90,7 +96,8 @@ SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& an
 // BRDF of one channel [1/sr].
 double Evaluate(const FactorModel& model, const SampleStencils& stencils, int channel);
 
-// BRDF [1/sr] for any pair of directions; 0 where either is below the surface.
+// BRDF [1/sr] for any pair of directions; 0 where either is below the surface. Throws Error where
+// one is not a number.
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions);
 
 }  // namespace trilobe

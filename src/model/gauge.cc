@@ -113,12 +113,15 @@ std::vector<double> LiveEntries(const std::vector<bool>& dead) {
 
 void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from,
                         FactorModel* to) {
+  CheckSameSpec(from.spec(), to->spec());
+  CheckCoverage(coverage, from);
   for (size_t k = 0; k < coverage.size(); ++k) {
     if (!(coverage[k] > 0)) to->parameters()[k] = from.parameters()[k];
   }
 }
 
 void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
+  CheckCoverage(coverage, *model);
   const ModelSpec& spec = model->spec();
   for (const Factor factor : kFactors) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {

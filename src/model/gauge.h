@@ -21,7 +21,8 @@ namespace trilobe {
 // Dead bins (coverage 0) are filled for display and for directions beyond the data first, from
 // their nearest live neighbours: linearly between two, beyond the last the median of the last five;
 // of G it is G / cos theta that is continued so, since that keeps the BRDF from growing towards the
-// horizon. `coverage` is Objective::coverage(), in the order of model->parameters().
+// horizon. `coverage` is Objective::coverage(), in the order of model->parameters(); these
+// functions throw Error if it has another size.
 enum class LobeOrder { kByLight, kAsTheyAre };
 void Canonicalize(std::span<const double> coverage, FactorModel* model,
                   LobeOrder order = LobeOrder::kByLight);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "trilobe/base/error.h"
 #include "trilobe/model/catmull_rom.h"
 #include "trilobe/model/merl_grid.h"
 
@@ -27,6 +29,10 @@ double Total(const LobeLight& light) {
 }  // namespace
 
 double LobeLight::Share(int lobe) const {
+  if (lobe < 0 || lobe >= static_cast<int>(lobes.size())) {
+    throw Error("there is no lobe " + std::to_string(lobe) + " among " +
+                std::to_string(lobes.size()));
+  }
   const double total = Total(*this);
   return total > 0 ? Mean(lobes[lobe]) / total : 0;
 }
@@ -37,6 +43,7 @@ double LobeLight::DiffuseShare() const {
 }
 
 LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model) {
+  CheckCoverage(coverage, model);
   const ModelSpec& spec = model.spec();
   const MerlGrid grid = GridOf(spec);
   const CatmullRom spline(spec.g_nodes);
@@ -107,6 +114,7 @@ std::vector<double> VisibleSolidAngles(int bins) {
   // phi_d, those with tan theta_h tan theta_d |cos phi_d| < 1 are above the surface.
   constexpr int kPhi = 64;
   const MerlGrid grid{.theta_h = bins};
+  CheckGrid(grid);
   std::vector<double> angles(bins);
   for (int h = 0; h < bins; ++h) {
     const double theta_h = grid.ThetaH(h + 0.5), tangent = std::tan(theta_h);

@@ -22,7 +22,7 @@ struct LobeLight {
   std::vector<double> through;
 
   // The part of all that the model reflects, mean over the channels, that a lobe does; 0 where the
-  // model is black.
+  // model is black. Throws Error if there is no such lobe.
   double Share(int lobe) const;
   double DiffuseShare() const;
 };

@@ -34,6 +34,7 @@ PairError Summarize(std::vector<double> differences) {
 }  // namespace
 
 BinCounts CountBins(const BrdfTable& table) {
+  CheckTable(table);
   BinCounts counts{.total = table.grid.size()};
   const std::vector<bool> above = BinsAboveSurface(table.grid);
   for (int bin = 0; bin < table.grid.size(); ++bin) {
@@ -121,6 +122,7 @@ PairError ExchangeError(const BrdfTable& table) {
 
 PairError ReciprocityError(const BrdfFunction& brdf, const MerlGrid& grid, int num_threads,
                            const MeasuredFunction& measured) {
+  CheckGrid(grid);
   std::vector<std::vector<double>> rows(grid.theta_h);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     const int size = grid.theta_d * grid.phi_d;

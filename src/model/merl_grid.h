@@ -44,8 +44,9 @@ struct MerlGrid {
   double ThetaHCoordinate(double angle) const { return theta_h * std::sqrt(angle / (kPi / 2)); }
   double ThetaDCoordinate(double angle) const { return theta_d * (angle / (kPi / 2)); }
 
-  // The bin that contains these angles.
+  // The bin that contains these angles. Throws Error as CheckAngles does.
   int Bin(const HalfDiffAngles& a) const {
+    CheckAngles(a);
     const auto clamp = [](double x, int n) { return std::clamp(static_cast<int>(x), 0, n - 1); };
     return Index(clamp(ThetaHCoordinate(a.theta_h), theta_h),
                  clamp(ThetaDCoordinate(a.theta_d), theta_d), clamp(a.phi_d / kPi * phi_d, phi_d));
@@ -53,6 +54,9 @@ struct MerlGrid {
 
   bool operator==(const MerlGrid&) const = default;
 };
+
+// Throws Error unless the grid has bins, and no more than an int can count.
+void CheckGrid(const MerlGrid& grid);
 
 }  // namespace trilobe
 

@@ -44,6 +44,20 @@ int ModelSpec::num_parameters() const {
   return count;
 }
 
+void CheckSameSpec(const ModelSpec& is, const ModelSpec& wanted) {
+  if (is == wanted) return;
+  const auto text = [](const ModelSpec& spec) {
+    std::string tables;
+    for (const Factor factor : kFactors) {
+      tables += ", " + std::to_string(spec.num_tables(factor)) + " tables " + FactorName(factor) +
+                " of " + std::to_string(spec.table_size(factor));
+    }
+    return std::to_string(spec.lobes) + " lobes" + tables;
+  };
+  throw Error("a model of another spec: it has " + text(is) + "; wanted are " + text(wanted) +
+              ", shared alike");
+}
+
 void CheckSpec(const ModelSpec& spec) {
   if (spec.lobes < 0 || spec.lobes > kMaxLobes) {
     throw Error("lobes is " + std::to_string(spec.lobes) + "; it must be from 0 to " +

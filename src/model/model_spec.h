@@ -76,6 +76,9 @@ struct ModelSpec {
 // entries.
 void CheckSpec(const ModelSpec& spec);
 
+// Throws Error unless a model with the spec `is` is one of the spec `wanted`.
+void CheckSameSpec(const ModelSpec& is, const ModelSpec& wanted);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_MODEL_MODEL_SPEC_H_

@@ -1,11 +1,11 @@
 #include "trilobe/model/objective.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <span>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "trilobe/base/error.h"
@@ -14,7 +14,7 @@
 namespace trilobe {
 namespace {
 
-void CheckGrid(const ModelSpec& spec, const MerlGrid& grid) {
+void CheckBins(const ModelSpec& spec, const MerlGrid& grid) {
   CheckSpec(spec);
   if (spec.d_bins != grid.theta_h || spec.f_bins != grid.theta_d) {
     throw Error("the model has " + std::to_string(spec.d_bins) + " D bins and " +
@@ -24,18 +24,59 @@ void CheckGrid(const ModelSpec& spec, const MerlGrid& grid) {
   }
 }
 
-// Products of factors and squares of residuals stay finite below this.
+// Products of factors and squares of residuals neither overflow nor vanish in this range. Black
+// measurements are exact.
 void CheckRange(const BrdfSamples& samples) {
-  constexpr double kMaxBrdf = 1e50;
-  for (int j = 0; j < samples.size(); ++j) {
-    for (const double rho : samples.rho[j]) {
-      if (rho <= kMaxBrdf) continue;
-      std::ostringstream message;
-      message << samples.source << ": sample " << j << " is " << rho << "/sr; values above "
-              << kMaxBrdf << " are no reflectance: check the file, or rescale it";
-      throw Error(message.str());
-    }
+  constexpr double kMinBrdf = 1e-50, kMaxBrdf = 1e50;
+  double largest = 0;
+  const double* const values = samples.rho.front().data();
+#pragma omp simd reduction(max : largest)
+  for (size_t k = 0; k < kChannels * samples.rho.size(); ++k) {
+    largest = values[k] > largest ? values[k] : largest;
   }
+  if (largest == 0 || (largest >= kMinBrdf && largest <= kMaxBrdf)) return;
+  std::ostringstream message;
+  const auto at = std::ranges::find_if(
+      samples.rho, [&](const Rgb& rho) { return std::ranges::max(rho) == largest; });
+  message << samples.source << ": sample " << at - samples.rho.begin() << ", the largest, is "
+          << largest << "/sr; that must be from " << kMinBrdf << " to " << kMaxBrdf
+          << ": check the file, or multiply all values by 2^" << -std::ilogb(largest);
+  throw Error(message.str());
+}
+
+// What weights make of it.
+void CheckWeights(const std::string& weighting, bool nonnegative, double energy) {
+  constexpr double kMinEnergy = 1e-200, kMaxEnergy = 1e200;
+  if (!nonnegative) {
+    throw Error("weighting '" + weighting + "' gives a weight that is negative or no number");
+  }
+  if (energy == 0 || (energy >= kMinEnergy && energy <= kMaxEnergy)) return;
+  std::ostringstream message;
+  message << "weighting '" << weighting
+          << "' and the samples' multiplicities make a black model's E " << energy
+          << ", out of the range from " << kMinEnergy << " to " << kMaxEnergy
+          << "; multiply them by another factor";
+  throw Error(message.str());
+}
+
+BrdfSamples Checked(BrdfSamples samples, const ModelSpec& spec, int num_threads) {
+  if (num_threads < 1) {
+    throw Error("num_threads is " + std::to_string(num_threads) + "; give 1 or more");
+  }
+  if (samples.size() == 0) {
+    throw Error(samples.source + ": no sample; an objective needs one or more");
+  }
+  CheckBins(spec, samples.grid);
+  CheckSamples(samples);
+  CheckRange(samples);
+  return samples;
+}
+
+bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
+  double least = 0;
+#pragma omp simd reduction(min : least)
+  for (size_t k = 0; k < weights.size(); ++k) least = weights[k] < least ? weights[k] : least;
+  return least == 0;
 }
 
 double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model) {
@@ -100,22 +141,28 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
 
 struct Objective::Prepared {
   Prepared(BrdfSamples all, const ModelSpec& of, const Weighting& weights, int num_threads)
-      : samples(std::move(all)), spec(of), weighting(ForSamples(weights, samples)) {
-    CheckGrid(spec, samples.grid);
-    CheckRange(samples);
+      : samples(Checked(std::move(all), of, num_threads)),
+        spec(of),
+        weighting(ForSamples(weights, samples)) {
+    bool nonnegative = true;
     if (samples.on_grid()) {
       folded = std::make_unique<FoldedGrid>(Fold(samples, spec.g_nodes, weighting, num_threads));
       measured_energy = folded->measured_energy;
       coverage = FoldedCoverage(*folded);
+      for (const std::vector<double>& w : folded->weight) {
+        nonnegative = nonnegative && AllNonnegative(w);
+      }
     } else {
       const std::vector<WeightedSample>& weighted = WeightedSamples(num_threads);
       coverage = ScatteredCoverage(weighted, spec);
       for (const WeightedSample& sample : weighted) {
+        nonnegative = nonnegative && AllNonnegative(sample.weight);
         for (int c = 0; c < kChannels; ++c) {
           measured_energy += sample.weight[c] * sample.rho[c] * sample.rho[c];
         }
       }
     }
+    CheckWeights(weighting.name, nonnegative, measured_energy);
   }
 
   WeightedSample Sample(int j) const {
@@ -162,7 +209,7 @@ Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting
 
 Objective::Objective(const Objective& other, const ModelSpec& spec)
     : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
-  CheckGrid(spec, samples().grid);
+  CheckBins(spec, samples().grid);
   if (spec.g_nodes != other.spec_.g_nodes) {
     prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
   }
@@ -178,18 +225,25 @@ double Objective::MeasuredEnergy() const { return prepared_->measured_energy; }
 const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 
 double Objective::Value(const FactorModel& model) const {
-  CHECK(model.spec() == spec_) << "a model of another spec";
+  CheckSameSpec(model.spec(), spec_);
   return folded() != nullptr ? FoldedValue(*folded(), model, num_threads_)
                              : ScatteredValue(weighted_samples(), model);
 }
 
 const SplineCells& Objective::spline_cells() const {
+  if (folded() == nullptr) throw Error(samples().source + ": the samples are on no grid");
   std::call_once(prepared_->spline_cells_once,
                  [this] { prepared_->spline_cells = std::make_unique<SplineCells>(*folded()); });
   return *prepared_->spline_cells;
 }
 
-WeightedSample Objective::Sample(int j) const { return prepared_->Sample(j); }
+WeightedSample Objective::Sample(int j) const {
+  if (j < 0 || j >= samples().size()) {
+    throw Error(samples().source + ": there is no sample " + std::to_string(j) + " among " +
+                std::to_string(samples().size()));
+  }
+  return prepared_->Sample(j);
+}
 
 const std::vector<WeightedSample>& Objective::weighted_samples() const {
   return prepared_->WeightedSamples(num_threads_);

@@ -24,7 +24,10 @@ struct WeightedSample {
 // docs/method.md), prepared for a spec and a weighting. Immutable; safe to share between threads.
 class Objective {
  public:
-  // Throws Error if the spec's tables do not fit the samples' grid, or a value is above 1e50/sr.
+  // Throws Error if there is no sample, or one that is none (CheckSamples), if the largest value is
+  // below 1e-50/sr, but not 0, or above 1e50/sr, if the spec's tables do not fit the samples' grid,
+  // if a weight is no number >= 0 or so extreme that E would leave the range of a double, or if
+  // num_threads is below 1.
   Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
             int num_threads = 1);
 
@@ -38,7 +41,7 @@ class Objective {
   int num_threads() const { return num_threads_; }
 
   // E of a model with this spec: the one scorer, that every trace and table quotes. The same bits
-  // for any number of threads.
+  // for any number of threads. Throws Error for a model of another spec.
   double Value(const FactorModel& model) const;
 
   // sum w rho*^2: E of the black model, the scale against which E is small or large.
@@ -49,7 +52,7 @@ class Objective {
   // (docs/method.md).
   const std::vector<double>& coverage() const { return coverage_; }
 
-  // One sample with its stencils.
+  // One sample with its stencils. Throws Error if there is no such sample.
   WeightedSample Sample(int j) const;
 
   // All of them. Made at the first call (280 bytes a sample).
@@ -58,8 +61,8 @@ class Objective {
   // The samples folded by symmetry, or null when they are not on a grid.
   const FoldedGrid* folded() const;
 
-  // The folded samples by knot intervals of G, which must exist. Made at the first call (64 bytes a
-  // sample).
+  // The folded samples by knot intervals of G. Made at the first call (64 bytes a sample). Throws
+  // Error when they are not on a grid.
   const SplineCells& spline_cells() const;
 
  private:

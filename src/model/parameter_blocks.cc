@@ -1,7 +1,5 @@
 #include "trilobe/model/parameter_blocks.h"
 
-#include <glog/logging.h>
-
 namespace trilobe {
 
 ParameterBlocks::ParameterBlocks(const ModelSpec& spec) : spec_(spec), begin_{0} {
@@ -26,12 +24,12 @@ ParameterBlocks::ParameterBlocks(const ModelSpec& spec) : spec_(spec), begin_{0}
 }
 
 void ParameterBlocks::Read(const FactorModel& model) {
-  CHECK(model.spec() == spec_) << "a model of another spec";
+  CheckSameSpec(model.spec(), spec_);
   for (size_t k = 0; k < values_.size(); ++k) values_[k] = model.parameters()[parameter_[k]];
 }
 
 void ParameterBlocks::Write(FactorModel* model) const {
-  CHECK(model->spec() == spec_) << "a model of another spec";
+  CheckSameSpec(model->spec(), spec_);
   for (size_t k = 0; k < values_.size(); ++k) model->parameters()[parameter_[k]] = values_[k];
 }
 

@@ -34,7 +34,7 @@ class ParameterBlocks {
   static constexpr int kS = 1;
   int row(Factor factor, int entry) const { return first_row_[static_cast<int>(factor)] + entry; }
 
-  // Copies from and to a model of the same spec.
+  // Copies from and to a model of the same spec. Throws Error for another one.
   void Read(const FactorModel& model);
   void Write(FactorModel* model) const;
 

@@ -17,6 +17,7 @@ constexpr int kChunk = 1 << 14;
 
 std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
                                  int num_threads) {
+  CheckSamples(samples);
   const ModelSpec& spec = model.spec();
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_bins &&
                         samples.grid.theta_d == spec.f_bins;

@@ -14,7 +14,8 @@ namespace trilobe {
 // with the measurement. On a grid whose theta_h and theta_d bins are those of the spec, D and F are
 // read at their own bins; elsewhere they are interpolated (docs/method.md). Since the spline
 // through G may undershoot, a value may be slightly negative; and nothing stops the product of huge
-// factors from overflowing to infinity or NaN.
+// factors from overflowing to infinity or NaN. Throws Error for samples that are none
+// (CheckSamples).
 std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
                                  int num_threads);
 

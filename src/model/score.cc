@@ -90,6 +90,10 @@ ScoreReport ScoreModel(const Objective& objective, const FactorModel& model) {
 
 ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted) {
   const BrdfSamples& samples = objective.samples();
+  if (fitted.size() != samples.rho.size()) {
+    throw Error(samples.source + ": " + std::to_string(fitted.size()) + " values for " +
+                std::to_string(samples.size()) + " samples; each needs one");
+  }
   ScoreReport report;
   report.valid_samples = samples.size();
   report.psnr_peak = Peak(samples);

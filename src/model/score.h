@@ -58,7 +58,8 @@ struct ScoreReport {
 // any number of threads. Throws Error if the model's values overflow.
 ScoreReport ScoreModel(const Objective& objective, const FactorModel& model);
 
-// The same for anything that has a value at each sample. [samples().size()]
+// The same for anything that has a value at each sample. [samples().size()] Throws Error for
+// another number of values.
 ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted);
 
 }  // namespace trilobe

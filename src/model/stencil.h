@@ -33,7 +33,7 @@ struct Stencil {
 Stencil PointStencil(int index);
 
 // Linear between the centres of `bins` unit bins (centre of bin i at i + 1/2), constant beyond the
-// outer centres. `coordinate` is in [0, bins].
+// outer centres. `coordinate` is in [0, bins], bins >= 2. Throws Error where it is not a number.
 Stencil LinearStencil(double coordinate, int bins);
 
 }  // namespace trilobe

@@ -10,6 +10,7 @@
 namespace trilobe {
 
 NodeWeights WeightsAt(std::span<const int> nodes, int entry) {
+  if (nodes.empty()) throw Error("a table needs one node or more");
   const auto right = std::ranges::lower_bound(nodes, entry);
   const int r = static_cast<int>(right - nodes.begin());
   if (right == nodes.end()) return {r - 1, r - 1, 0};

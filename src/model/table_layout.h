@@ -18,7 +18,7 @@ struct NodeWeights {
 
 // Linear between nodes, in the number of the entry (for D that is the coordinate sqrt(theta_h));
 // constant beyond the first and the last. So one node is a constant table, and a last node that is
-// 0 makes a tail of zeros. `nodes` ascend.
+// 0 makes a tail of zeros. `nodes` ascend; Error if there is none.
 NodeWeights WeightsAt(std::span<const int> nodes, int entry);
 
 // Which of a model's numbers are stored, if not all: the others follow from those. What is shared

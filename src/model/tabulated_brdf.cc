@@ -66,6 +66,7 @@ Rgb TabulatedBrdf::Interpolate(const DirectionPair& directions) const {
 }
 
 Rgb TabulatedBrdf::Interpolate(const HalfDiffAngles& angles) const {
+  CheckAngles(angles);
   const MerlGrid& grid = table_.grid;
   const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
   const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);

@@ -23,7 +23,8 @@ class TabulatedBrdf {
 
   // The same, linear between bin centres in sqrt(theta_h), theta_d and phi_d.
   Rgb Interpolate(const DirectionPair& directions) const;
-  Rgb Interpolate(const HalfDiffAngles& angles) const;  // of two directions above the surface
+  // Of two directions above the surface. Throws Error as CheckAngles does.
+  Rgb Interpolate(const HalfDiffAngles& angles) const;
 
  private:
   double Value(int channel, int bin) const { return table_.Value(channel, nearest_valid_[bin]); }

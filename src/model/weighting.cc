@@ -56,7 +56,7 @@ struct Power {
     // Of values over the level, where relative, so that the unit does not matter for any exponent.
     // A black measurement has no level; any will do. So for one next to nothing, whose weights
     // would be infinite.
-    const double scale = relative && level > 1e-50 ? 1 / level : 1;
+    const double scale = relative && level > 1e-100 ? 1 / level : 1;
     const double area = solid_angle == 0 ? 1 : std::pow(point.solid_angle, solid_angle);
     const auto weight = [&](double rho_star) {
       const double x = rho_star * scale * cosine + epsilon;
@@ -164,6 +164,7 @@ Weighting FindWeighting(std::string_view name) {
 }
 
 Weighting ForSamples(Weighting weighting, const BrdfSamples& samples) {
+  if (!weighting.formula) throw Error("weighting '" + weighting.name + "' has no formula");
   if (weighting.needs_level && !(weighting.level > 0)) weighting.level = MeanReflectance(samples);
   return weighting;
 }

@@ -50,7 +50,7 @@ const std::vector<Weighting>& Weightings();
 Weighting FindWeighting(std::string_view name);
 
 // The same with the level of these samples, unless it has one already: copies that see fewer
-// samples keep the level of the whole.
+// samples keep the level of the whole. Throws Error if the weighting has no formula.
 Weighting ForSamples(Weighting weighting, const BrdfSamples& samples);
 
 // The BRDF of a Lambertian material that reflects as much light as the samples do, all channels and

@@ -9,9 +9,9 @@ namespace {
 
 // Alternating weighted least squares (paper 2.3) from exact sums.
 class Awls : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("awls", objective, options, model);
     GridSweep sweep("awls", objective, &run.summary().phases);
     RepeatSweeps([&](FactorModel* current) { sweep(options.on_element, current); }, objective,

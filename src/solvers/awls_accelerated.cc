@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 
-#include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/solvers/element_step.h"
 #include "trilobe/solvers/grid_sweep.h"
@@ -128,10 +127,9 @@ struct Point {
 // otherwise the memory starts afresh. De Sterck 2012 does so for alternating least squares of
 // tensors.
 class AwlsAccelerated : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
-    if (options.memory < 0) throw Error("memory is negative; give 0 or more earlier iterates");
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("awls_accelerated", objective, options, model);
     GridSweep sweep("awls_accelerated", objective, &run.summary().phases);
     const FactorModel start = *model;
@@ -168,7 +166,6 @@ class AwlsAccelerated : public Solver {
     return run.Finish();
   }
 
- private:
   // Tries the step, then longer ones while E falls; or else a quarter of it. E costs a tenth of a
   // sweep.
   template <typename Lowers>

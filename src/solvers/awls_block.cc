@@ -9,9 +9,9 @@ namespace {
 // bin, and F of all lobes in a theta_d bin move together, as non-negative least squares, and
 // several times for each pass over the samples.
 class AwlsBlock : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("awls_block", objective, options, model);
     GridSweep sweep("awls_block", objective, &run.summary().phases);
     const auto& trace = run.summary().trace;

@@ -153,9 +153,9 @@ class LiteralSweep {
 // The same element updates as Awls, each from the samples that the element touches (paper 2.3): the
 // reference that Awls is tested and timed against.
 class AwlsLiteral : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("awls_literal", objective, options, model);
     std::optional<LiteralSweep> sweep;
     {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -45,9 +46,16 @@ ceres::LinearSolverType ToCeres(CeresLinearSolver linear_solver) {
   return ceres::DENSE_QR;
 }
 
-double Unit(const Objective& objective) {
-  const double mean_square = objective.MeasuredEnergy() / (kChannels * objective.samples().size());
+// The power of two next to the root of the mean of squares.
+double Unit(double sum_of_squares, double total_weight) {
+  const double mean_square = sum_of_squares / total_weight;
   return mean_square > 0 ? std::exp2(std::ilogb(std::sqrt(mean_square))) : 1;
+}
+
+double ValueUnit(const Objective& objective) {
+  double weight = 0;
+  for (int c = 0; c < kChannels; ++c) weight += objective.coverage()[c];  // of d
+  return Unit(objective.MeasuredEnergy(), weight);
 }
 
 // Replaces an active set that there is not by bounds.
@@ -98,7 +106,8 @@ CeresParameters::CeresParameters(const Objective& objective, FactorModel start,
                                  ActiveSet active_set, Run* run)
     : objective_(objective),
       start_(std::move(start)),
-      unit_(Unit(objective)),
+      value_unit_(ValueUnit(objective)),
+      residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.samples().size())),
       squares_(ChoosePositivity(active_set, run) == Positivity::kSquares),
       holds_(run->options().positivity == Positivity::kActiveSet) {}
 
@@ -111,7 +120,7 @@ FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
 }
 
 FactorModel CeresParameters::Start() const {
-  FactorModel p = Scaled(start_, 1 / unit_);
+  FactorModel p = Scaled(start_, 1 / value_unit_);
   if (squares_) {
     for (double& x : p.parameters()) x = std::sqrt(x);
   }
@@ -122,7 +131,7 @@ FactorModel CeresParameters::Model(FactorModel p) const {
   if (squares_) {
     for (double& x : p.parameters()) x *= x;
   }
-  FactorModel model = Scaled(std::move(p), unit_);
+  FactorModel model = Scaled(std::move(p), value_unit_);
   CopyDeadParameters(objective_.coverage(), start_, &model);
   return model;
 }
@@ -143,7 +152,13 @@ void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
   options.callbacks.push_back(&recorder);
 
   ceres::Solver::Summary summary;
-  ceres::Solve(options, problem, &summary);
+  try {
+    ceres::Solve(options, problem, &summary);
+  } catch (const std::system_error&) {  // Ceres starts its threads before all else, and got fewer
+    if (options.num_threads == 1) throw;
+    options.num_threads = 1;
+    ceres::Solve(options, problem, &summary);
+  }
   if (!run->stopped()) {
     run->summary().notes.push_back("Ceres: " + summary.message);
     run->Stop(StopReason::kNoDecrease);

@@ -15,10 +15,10 @@ class Problem;
 
 namespace trilobe {
 
-// A model's numbers x as Ceres sees them. d and s are measured in the power of two next to the root
-// mean square of the weighted data, since Ceres' scaling of columns and its damping contain
-// absolute constants; E becomes E / unit^2. x >= 0 is kept by bounds or, with squares, by Ceres'
-// numbers being p, x = p^2: a number at 0 stays there.
+// A model's numbers x as Ceres sees them. d and s are measured in the power of two next to the
+// weighted root mean square of the data, and residuals in that next to theirs at a black model,
+// since Ceres' scaling of columns and its damping contain absolute constants. x >= 0 is kept by
+// bounds or, with squares, by Ceres' numbers being p, x = p^2: a number at 0 stays there.
 class CeresParameters {
  public:
   // Whether the cost function holds numbers on their bounds (IsHeld).
@@ -28,7 +28,8 @@ class CeresParameters {
   // the options ask for one and the cost has none, there are bounds alone and a note says so.
   CeresParameters(const Objective& objective, FactorModel start, ActiveSet active_set, Run* run);
 
-  double unit() const { return unit_; }
+  double value_unit() const { return value_unit_; }        // of d and s
+  double residual_unit() const { return residual_unit_; }  // E becomes E / residual_unit^2
   bool squares() const { return squares_; }
 
   // True for a number that is 0 and that a lower E would push below, with dE/dx given, where there
@@ -49,7 +50,7 @@ class CeresParameters {
 
   const Objective& objective_;
   const FactorModel start_;
-  const double unit_;
+  const double value_unit_, residual_unit_;
   const bool squares_, holds_;
 };
 
@@ -65,12 +66,12 @@ struct CeresPoint {
 };
 
 // Makes the iterations of a run that Run::Start has begun by Ceres' trust-region minimizer, with
-// `num_threads` threads, from where the problem's parameter blocks stand. The problem's cost is to
-// be E up to a constant factor. `current` makes a model of the blocks, which are up to date when it
-// is called; the run records it after each iteration of Ceres, those among them whose step was
-// taken back. The run's trust_region option is honoured, and its stopping test is the only one;
-// where Ceres can go no further before, it is kNoDecrease, with Ceres' reason in a note. Adds
-// Ceres' times to the run's phases.
+// `num_threads` threads, or this one alone where the system gives no more, from where the problem's
+// parameter blocks stand. The problem's cost is to be E up to a constant factor. `current` makes a
+// model of the blocks, which are up to date when it is called; the run records it after each
+// iteration of Ceres, those among them whose step was taken back. The run's trust_region option is
+// honoured, and its stopping test is the only one; where Ceres can go no further before, it is
+// kNoDecrease, with Ceres' reason in a note. Adds Ceres' times to the run's phases.
 void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
                        const std::function<CeresPoint()>& current, ceres::Problem* problem,
                        Run* run);

@@ -64,7 +64,8 @@ int NumKept(Rule rule, std::span<const double> coverage, std::span<const double>
 // Ties the ends of the tables of these factors. True if there was something to tie, and E came
 // back.
 bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& objective,
-         FactorModel* model) {
+         const std::function<bool()>& stop, FactorModel* model) {
+  if (stop()) return false;
   const ModelSpec& spec = model->spec();
   TableLayout layout = TableLayout::Full(spec);
   bool any = false;
@@ -89,7 +90,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kAsItIs, &phases, &reduction);
   stepper.Restart(tied);
-  for (int step = 0; step < kSteps && !stepper.exhausted(); ++step) {
+  for (int step = 0; step < kSteps && !stepper.exhausted() && !stop(); ++step) {
     const double before = stepper.E();
     if (stepper.Step() && stepper.E() > (1 - kSmallDecrease) * before) break;
   }
@@ -100,12 +101,15 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
 
 }  // namespace
 
-bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model) {
+bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
+                          const std::function<bool()>& stop) {
+  CheckSameSpec(model->spec(), objective.spec());
+  CheckNumbers(*model);
   // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the
   // spline reads.
-  return Tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}, objective, model) ||
-         Tie(Rule::kCoverage, {Factor::kD, Factor::kF, Factor::kG}, objective, model) ||
-         Tie(Rule::kCoverage, {Factor::kG}, objective, model);
+  return Tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
+         Tie(Rule::kCoverage, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
+         Tie(Rule::kCoverage, {Factor::kG}, objective, stop, model);
 }
 
 }  // namespace trilobe

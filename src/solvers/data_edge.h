@@ -1,6 +1,8 @@
 #ifndef TRILOBE_SOLVERS_DATA_EDGE_H_
 #define TRILOBE_SOLVERS_DATA_EDGE_H_
 
+#include <functional>
+
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective.h"
 
@@ -15,8 +17,12 @@ namespace trilobe {
 // - those from the first on, in the last third, that is five times the median of the five before
 // it. True, with the new model, if E came back to within 5 % of what it was (0.01 to 3 % are seen,
 // in samples at the very edge); false, and the model as it was, if not, or if there is nothing to
-// tie.
-bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model);
+// tie. `stop` is asked before each step of the refit: once it says so there are no more, and the
+// model is judged as it is. Throws Error for a model of another spec, or with numbers that none
+// has.
+bool TieEntriesAtDataEdge(
+    const Objective& objective, FactorModel* model,
+    const std::function<bool()>& stop = [] { return false; });
 
 }  // namespace trilobe
 

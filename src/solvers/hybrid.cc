@@ -13,9 +13,9 @@ constexpr double kLeastDecrease = 0.02;
 constexpr int kMaxSweeps = 5;
 
 class Hybrid : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("hybrid", objective, options, model);
     GridSweep sweep("hybrid", objective, &run.summary().phases);
     FactorModel current = *model;

@@ -43,7 +43,7 @@ class CondensedCost : public ceres::CostFunction {
     const int n = parameter_block_sizes()[0];
     std::fill_n(residuals, n + 1, 0.0);
     if (jacobians == nullptr || jacobians[0] == nullptr) {
-      residuals[n] = std::sqrt(Value(p)) / parameters_.unit();
+      residuals[n] = std::sqrt(Value(p)) / parameters_.residual_unit();
       return std::isfinite(residuals[n]);
     }
     equations_.Evaluate(Model(p), Hessian::kGaussNewton, &at_);
@@ -93,14 +93,15 @@ class CondensedCost : public ceres::CostFunction {
     for (size_t k = 0; k < n; ++k) rest -= residuals[k] * residuals[k];
     residuals[n] = std::sqrt(std::max(0.0, rest));
 
-    // d (r / unit) / dp = J C, C diagonal: 1 or 1 / unit for the change of units, 2 p for squares;
-    // 0 for what is held.
-    const double unit = parameters_.unit();
+    // d (r / unit) / dp = J C, C diagonal: value_unit / unit or 1 / unit for the change of units,
+    // 2 p for squares; 0 for what is held.
+    const double unit = parameters_.residual_unit();
     for (size_t k = 0; k <= n; ++k) residuals[k] /= unit;
     const size_t num_in_units = kChannels * (1 + objective_.spec().lobes);  // d and s
     std::vector<double> column(n);
     for (size_t k = 0; k < n; ++k) {
-      column[k] = std::sqrt(at_.squared_lengths[k]) * (k < num_in_units ? 1 : 1 / unit);
+      column[k] = std::sqrt(at_.squared_lengths[k]) *
+                  (k < num_in_units ? parameters_.value_unit() : 1) / unit;
       if (parameters_.squares()) column[k] *= 2 * p[k];
       if (parameters_.IsHeld(p[k], at_.gradient[k])) column[k] = 0;
     }
@@ -122,9 +123,9 @@ class CondensedCost : public ceres::CostFunction {
 };
 
 class Lm : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("lm", objective, options, model);
     const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kInCost, &run);
     std::optional<CondensedCost> cost;

@@ -53,7 +53,7 @@ class SquaresResidual {
   std::vector<int> sizes_;
 };
 
-// E / unit^2 as a problem for Ceres, with a residual block a sample.
+// E / residual_unit^2 as a problem for Ceres, with a residual block a sample.
 class PlainProblem {
  public:
   PlainProblem(const Objective& objective, const CeresParameters& parameters)
@@ -95,7 +95,9 @@ class PlainProblem {
 
   template <typename Residual>
   void AddSample(WeightedSample sample) {
-    for (double& rho : sample.rho) rho /= parameters_.unit();
+    const double unit = parameters_.value_unit(), ratio = unit / parameters_.residual_unit();
+    for (double& rho : sample.rho) rho /= unit;
+    for (double& w : sample.weight) w *= ratio * ratio;
     auto* const cost = new ceres::DynamicAutoDiffCostFunction<Residual, kStride>(
         new Residual(blocks_, sample, &block_numbers_));
     cost->SetNumResiduals(SampleResidual::kNumResiduals);
@@ -133,9 +135,9 @@ class PlainProblem {
 // The model as one writes it down for Ceres: every sample a residual block with derivatives by
 // automatic differentiation.
 class LmPlain : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("lm_plain", objective, options, model);
     const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kNone, &run);
     std::optional<PlainProblem> problem;

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/split_lobe.h"
 #include "trilobe/solvers/initial_model.h"
@@ -200,8 +199,8 @@ class Auto : public Solver {
  public:
   static constexpr double kToleranceFactor = 10;
 
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("auto", objective, options, model);
     // A joint step on all samples gains more than an iteration of others, and costs more.
     run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
@@ -216,10 +215,9 @@ class Auto : public Solver {
 };
 
 class Multistart : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
-    if (options.starts < 1) throw Error("starts is below 1; give 1 or more starting points");
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("multistart", objective, options, model);
     const int n = options.starts, half = (n + 1) / 2;
     RunLegs({{.starts = n, .tries = 10, .keep = n},
@@ -231,7 +229,6 @@ class Multistart : public Solver {
     return run.Finish();
   }
 
- private:
   static std::string Agreement(const std::vector<StartResult>& starts) {
     const auto within = [&](double fraction) {
       return std::ranges::count_if(starts, [&](const StartResult& start) {

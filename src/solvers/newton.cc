@@ -6,9 +6,9 @@ namespace trilobe {
 namespace {
 
 class Newton : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     return SolveByJointSteps("newton", JointStepper::Curvature::kNewton,
                              JointStepper::Trial::kAsItIs, objective, options, model);
   }

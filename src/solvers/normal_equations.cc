@@ -182,6 +182,7 @@ NormalEquations::NormalEquations(const Objective& objective) : objective_(object
 NormalEquations::~NormalEquations() = default;
 
 void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
+  CheckSameSpec(model.spec(), objective_.spec());
   if (condensed_ == nullptr) {
     EvaluateLiterally(objective_, model, hessian, result);
     return;

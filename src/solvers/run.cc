@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "trilobe/base/error.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/gaussian_filter.h"
 
@@ -83,6 +84,10 @@ bool Run::Record(const FactorModel& current, const Step& step) {
   } else {
     const ScopedTimer timer = Time(&PhaseSeconds::tracing);
     record.objective = objective_.Value(current);
+  }
+  if (record.iteration == 0 && !std::isfinite(record.objective)) {
+    throw Error(objective_.samples().source +
+                ": E overflows at the starting model; its factors are too large");
   }
   record.seconds = seconds();
   record.filtered = step.filtered;

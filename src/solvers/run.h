@@ -61,7 +61,8 @@ class Run {
   double seconds() const;
   double best_objective() const { return summary_.final_objective; }
 
-  // Records the starting point; false when there is nothing to do.
+  // Records the starting point; false when there is nothing to do. Throws Error if E overflows
+  // there.
   bool Start(std::optional<double> optimality = std::nullopt);
 
   // Records the next iteration; false when it is time to stop. A step that was not accepted comes

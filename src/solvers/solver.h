@@ -152,9 +152,15 @@ class Solver {
 
   // Starts at *model, whose spec is the objective's and whose numbers are finite and >= 0, and
   // leaves the best model found there; dead bins stay as they were.
-  // Throws Error if this solver cannot work on this objective.
-  virtual SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                              FactorModel* model) const = 0;
+  // Throws Error, with *model as it was, if that is no such model or E overflows there, if an
+  // option is out of its range, or if this solver cannot work on this objective.
+  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
+                      FactorModel* model) const;
+
+ private:
+  // Solve, of arguments that have been checked.
+  virtual SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                                FactorModel* model) const = 0;
 };
 
 // A solver by name, for flags and lists.
@@ -170,7 +176,8 @@ struct SolverEntry {
 const std::vector<SolverEntry>& Solvers();
 
 // Adds a solver that is not part of the library (docs/adding-a-solver.md). Not thread-safe: call it
-// before any other use of the list. Throws Error if the name is taken.
+// before any other use of the list. Throws Error if the name is empty or taken, or if there is
+// nothing to make it.
 void RegisterSolver(SolverEntry entry);
 
 // Throws Error that lists the known names.

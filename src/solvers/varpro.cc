@@ -10,9 +10,9 @@ namespace {
 // of all parameters together, after which the linear ones go to their best places before the step
 // is judged: exactly, a block of lobes at a time, by the sums over cells that AWLS uses.
 class Varpro : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     return SolveByJointSteps("varpro", JointStepper::Curvature::kByProgress,
                              JointStepper::Trial::kProjected, objective, options, model);
   }

@@ -8,8 +8,11 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "tests/base/no_threads.h"
 
 namespace trilobe {
 namespace {
@@ -51,6 +54,23 @@ TEST(ParallelFor, RethrowsAndStopsHandingOut) {
                  std::out_of_range);
     EXPECT_LE(calls, threads);
   }
+}
+
+TEST(ParallelFor, GoesOnAloneWhereThereIsNoThread) {
+  const NoThreads none;
+  EXPECT_THROW(std::jthread([] {}), std::system_error);
+  std::vector<int> calls(100, 0);
+  const auto work = [&, here = std::this_thread::get_id()](int i) {
+    EXPECT_EQ(std::this_thread::get_id(), here);
+    ++calls[i];
+  };
+  ParallelFor(100, 4, work);
+  EXPECT_THAT(calls, testing::Each(1));
+  // Jobs whose threads never came do not wait for them, nor do the loops that they would help.
+  ParallelJobs(2, 4, [&](int half) { ParallelFor(50, 1, [&](int i) { work(50 * half + i); }); });
+  EXPECT_THAT(calls, testing::Each(2));
+  EXPECT_THROW(ParallelFor(100, 4, [](int) { throw std::out_of_range("item"); }),
+               std::out_of_range);
 }
 
 TEST(ParallelJobs, CallsEveryItemOnce) {

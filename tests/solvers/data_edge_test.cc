@@ -167,6 +167,36 @@ TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
   EXPECT_LT(LargestBeyond(objective, measured, tamed), 3 * Largest(measured));
 }
 
+// A model that is as it was, or tied and no worse than it may be, whenever the stop comes.
+TEST(DataEdge, StopsBetweenSteps) {
+  const Objective objective = MakeObjective(Measured(2, 75), ModelSpec::SharedFactors(2, kGrid));
+  const FactorModel fitted = Fitted(objective);
+  const double E = objective.Value(fitted);
+  int asked = 0;
+  FactorModel whole = fitted;
+  ASSERT_TRUE(TieEntriesAtDataEdge(objective, &whole, [&] { return ++asked < 0; }));
+  ASSERT_GT(asked, 2);
+  int kept = 0;
+  for (int stop_at = 1; stop_at <= asked; ++stop_at) {
+    int times = 0;
+    FactorModel model = fitted;
+    const bool tied = TieEntriesAtDataEdge(objective, &model, [&] { return ++times >= stop_at; });
+    EXPECT_LE(times, stop_at + 2) << "one a rule that is left, at most";
+    if (!tied) {
+      EXPECT_TRUE(SameBits(model, fitted)) << stop_at;
+      continue;
+    }
+    ++kept;
+    EXPECT_LE(objective.Value(model), 1.05 * E) << stop_at;
+    for (const Factor factor : kFactors) {
+      const Ties ties = CountTies(objective, model, factor);
+      EXPECT_EQ(ties.made, ties.wanted) << stop_at;
+    }
+  }
+  EXPECT_GT(kept, 0);
+  EXPECT_LT(kept, asked);
+}
+
 // Tables that are not smooth have no fit that is like theirs and tied.
 TEST(DataEdge, WhatWouldBeDearStaysToTheBit) {
   for (const double noise : {0.0, 0.01, 0.05}) {

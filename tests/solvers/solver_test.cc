@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/solvers/option_values.h"
@@ -12,7 +13,7 @@ namespace {
 
 TEST(Solver, KnowsItsNames) {
   std::vector<std::string> names;
-  for (const SolverEntry& entry : Solvers()) {
+  for (const SolverEntry& entry : kLibrarySolvers) {
     names.push_back(entry.name);
     EXPECT_FALSE(entry.description.empty());
     EXPECT_NE(entry.make(), nullptr);

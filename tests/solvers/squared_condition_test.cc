@@ -167,7 +167,7 @@ TEST(SquaredCondition, IsWarnedOfWhereItIsTooLarge) {
     FactorModel model = NearlyEqualLobes(difference);
     return MakeSolver("newton")->Solve(NoisyObjective(model), {.max_iterations = 0}, &model);
   };
-  const SolverSummary good = diagnosed(0.5);
+  const SolverSummary good = diagnosed(0.3);
   ASSERT_TRUE(good.diagnosis);
   EXPECT_EQ(good.diagnosis->unresolved, 0);
   EXPECT_EQ(good.diagnosis->rank + kGaugeDimensions, good.diagnosis->live_parameters);

@@ -1,0 +1,231 @@
+// What a caller may give that is no such thing: an Error in one line, and no crash.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/io/test_directory.h"
+#include "tests/test_util.h"
+#include "trilobe/model/albedo.h"
+#include "trilobe/model/continuous_model.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/lobe_light.h"
+#include "trilobe/model/measurement_stats.h"
+#include "trilobe/model/parameter_blocks.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/model/score.h"
+#include "trilobe/model/table_layout.h"
+#include "trilobe/model/tabulated_brdf.h"
+
+namespace trilobe {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 8};
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+BrdfSamples Samples() { return ValidSamples(RandomTable(kGrid, 1)); }
+
+Objective MakeObjective(BrdfSamples samples, int num_threads = 1) {
+  return {std::move(samples), ModelSpec::SharedFactors(1, kGrid), FindWeighting("appearance"),
+          num_threads};
+}
+
+// The message for samples with something changed.
+std::string ErrorWith(const std::function<void(BrdfSamples*)>& change, bool scattered = false) {
+  BrdfSamples samples = scattered ? Scattered(Samples()) : Samples();
+  change(&samples);
+  return ErrorOf([&] { MakeObjective(samples); });
+}
+
+TEST(Arguments, SamplesOfAnObjective) {
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { *to = Selected(*to, {}); }), HasSubstr("no sample"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.pop_back(); }), HasSubstr("each needs one"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.clear(); }), HasSubstr("0 bins"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins[0] = -1; }), HasSubstr("sample 0"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.back() = kGrid.size(); }),
+              HasSubstr("bin 240 of 240"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { std::swap(to->bins[3], to->bins[4]); }),
+              HasSubstr("ascend"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins[4] = to->bins[3]; }), HasSubstr("ascend"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.back() = kGrid.Index(5, 4, 0); }),
+              HasSubstr("below the surface"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) {
+                to->multiplicity = {1, 1};
+              }),
+              HasSubstr("2 multiplicities"));
+  for (const double bad : {-1e-300, -1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) { to->rho[3][1] = bad; }), HasSubstr("sample 3"));
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) {
+                  to->multiplicity.assign(to->size(), 1);
+                  to->multiplicity[5] = bad;
+                }),
+                HasSubstr("sample 5"));
+  }
+  for (const HalfDiffAngles& bad :
+       {HalfDiffAngles{kNaN, 0, 0}, HalfDiffAngles{0, kNaN, 0}, HalfDiffAngles{0, 0, kNaN},
+        HalfDiffAngles{-0.1, 0, 0}, HalfDiffAngles{0, 2, 0}, HalfDiffAngles{1.5, 1.5, 0}}) {
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) { to->angles[2] = bad; }, true),
+                HasSubstr("sample 2"));
+  }
+  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->angles.pop_back(); }, true),
+              HasSubstr("angles; each needs one"));
+  for (const int phi_d : {0, -1, 1 << 30}) {
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) { to->grid.phi_d = phi_d; }), HasSubstr("grid"));
+  }
+}
+
+// Every bin above the surface is one, at the horizon too.
+TEST(Arguments, BinsAtTheHorizonAreAccepted) {
+  for (const MerlGrid& grid :
+       {kGrid, MerlGrid{}, MerlGrid{.theta_h = 7, .theta_d = 7, .phi_d = 1}}) {
+    EXPECT_NO_THROW(CheckSamples(ValidSamples(RandomTable(grid, 1, 0))));
+    const std::vector<bool> above = BinsAboveSurface(grid);
+    for (int bin = 0; bin < grid.size(); bin += 7) {
+      if (above[bin]) continue;
+      BrdfSamples below{"below", grid, {bin}, {}, {Rgb{1, 1, 1}}};
+      EXPECT_THROW(CheckSamples(below), Error) << bin;
+    }
+  }
+}
+
+TEST(Arguments, OfAnObjective) {
+  for (const int threads : {0, -1}) {
+    EXPECT_THAT(ErrorOf([&] { MakeObjective(Samples(), threads); }), HasSubstr("num_threads"));
+  }
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  for (const double bad : {-1.0, kNaN, kInfinity, 1e-250, 1e250}) {
+    for (const bool scattered : {false, true}) {
+      const Weighting weighting{
+          .name = "own", .description = "", .formula = [&](const WeightedPoint&, double) {
+            return Rgb{bad, bad, bad};
+          }};
+      const BrdfSamples samples = scattered ? Scattered(Samples()) : Samples();
+      EXPECT_THAT(ErrorOf([&] { Objective(samples, spec, weighting); }),
+                  HasSubstr("weighting 'own'"))
+          << bad;
+    }
+  }
+  EXPECT_THAT(ErrorOf([&] { Objective(Samples(), spec, {.name = "own", .description = ""}); }),
+              HasSubstr("no formula"));
+
+  const Objective objective = MakeObjective(Samples());
+  for (const ModelSpec& other : {ModelSpec::SharedFactors(2, kGrid), ModelSpec::SharedFactors(1),
+                                 ModelSpec::IndependentG(kGrid)}) {
+    EXPECT_THAT(ErrorOf([&] { objective.Value(FactorModel(other)); }), HasSubstr("another spec"));
+    EXPECT_THAT(ErrorOf([&] { ScoreModel(objective, FactorModel(other)); }),
+                HasSubstr("another spec"));
+    ParameterBlocks blocks(spec);
+    FactorModel model(other);
+    EXPECT_THAT(ErrorOf([&] { blocks.Read(model); }), HasSubstr("another spec"));
+    EXPECT_THAT(ErrorOf([&] { blocks.Write(&model); }), HasSubstr("another spec"));
+  }
+  for (const int j : {-1, objective.samples().size()}) {
+    EXPECT_THAT(ErrorOf([&] { objective.Sample(j); }), HasSubstr("no sample"));
+  }
+  EXPECT_THAT(ErrorOf([&] { MakeObjective(Scattered(Samples())).spline_cells(); }),
+              HasSubstr("no grid"));
+  EXPECT_THAT(ErrorOf([&] { ScoreValues(objective, std::vector<Rgb>(3)); }), HasSubstr("3 values"));
+}
+
+TEST(Arguments, NumbersOfSamples) {
+  const BrdfSamples samples = Samples();
+  for (const int j : {-1, samples.size(), 1 << 30}) {
+    EXPECT_THAT(ErrorOf([&] { Selected(samples, {0, j}); }), HasSubstr(std::to_string(j)));
+  }
+  for (const int stride : {0, -1}) {
+    EXPECT_THAT(ErrorOf([&] { Thinned(samples, stride); }), HasSubstr("stride"));
+  }
+  BrdfSamples no_bins = samples;
+  no_bins.bins.clear();
+  EXPECT_THROW(Selected(no_bins, {0}), Error);
+  EXPECT_THROW(Thinned(no_bins, 2), Error);
+  EXPECT_THROW(EvaluateSamples(FactorModel(ModelSpec::SharedFactors(1, kGrid)), no_bins, 1), Error);
+  // None of these is one that a thinning keeps.
+  for (int j = 0; j < samples.size(); ++j) {
+    EXPECT_EQ(Thinned(Selected(samples, {j}), 1000).size(), 1) << j;
+  }
+}
+
+TEST(Arguments, AnglesThatAreNone) {
+  const FactorModel model = RandomModel(ModelSpec::SharedFactors(1, kGrid), 1);
+  const ContinuousModel continuous(model);
+  const BrdfTable table = RandomTable(kGrid, 1);
+  const TabulatedBrdf tabulated(table);
+  for (const DirectionPair& bad :
+       {DirectionPair{{kNaN, 0, 1}, {0, 0, 1}}, DirectionPair{{0, 0, 1}, {0, kNaN, 1}},
+        DirectionPair{{kInfinity, 0, 1}, {0, 0, 1}}}) {
+    EXPECT_NE(ErrorOf([&] { Evaluate(model, bad); }), "");
+    EXPECT_NE(ErrorOf([&] { continuous(bad); }), "");
+    EXPECT_NE(ErrorOf([&] { tabulated(bad); }), "");
+    EXPECT_NE(ErrorOf([&] { tabulated.Interpolate(bad); }), "");
+  }
+  for (const HalfDiffAngles& bad :
+       {HalfDiffAngles{kNaN, 0, 0}, HalfDiffAngles{0, kNaN, 0}, HalfDiffAngles{-1, 0, 0}}) {
+    EXPECT_NE(ErrorOf([&] { ScatteredStencils(model.spec(), bad); }), "");
+    EXPECT_NE(ErrorOf([&] { continuous(bad, {1, 1}); }), "");
+    EXPECT_NE(ErrorOf([&] { kGrid.Bin(bad); }), "");
+  }
+  for (const HalfDiffAngles& bad : {HalfDiffAngles{0, 0, kNaN}, HalfDiffAngles{0, 0, 100}}) {
+    EXPECT_NE(ErrorOf([&] { kGrid.Bin(bad); }), "");
+    EXPECT_NE(ErrorOf([&] { tabulated.Interpolate(bad); }), "");
+  }
+  EXPECT_NE(ErrorOf([&] { continuous({0.1, 0.1, 0}, {kNaN, 1}); }), "");
+  for (const double theta : {kNaN, -0.1, kPi / 2, kInfinity}) {
+    EXPECT_THAT(ErrorOf([&] { DirectionalAlbedo(continuous, theta); }), HasSubstr("theta_i"));
+  }
+}
+
+TEST(Arguments, TablesAndGrids) {
+  BrdfTable table = RandomTable(kGrid, 1);
+  table.stored[2].pop_back();
+  EXPECT_THAT(ErrorOf([&] { ValidSamples(table); }), HasSubstr("239 values"));
+  EXPECT_THAT(ErrorOf([&] { CountBins(table); }), HasSubstr("239 values"));
+  EXPECT_THAT(ErrorOf([&] { TabulatedBrdf{table}; }), HasSubstr("239 values"));
+  EXPECT_THAT(ErrorOf([&] { LimitAngles(1, Unmeasured::kBeyondMaxAngle, &table); }),
+              HasSubstr("239 values"));
+  table = RandomTable(kGrid, 1);
+  table.unmeasured.resize(3);
+  EXPECT_THAT(ErrorOf([&] { ValidBins(table); }), HasSubstr("3 bins"));
+  table.unmeasured.clear();
+  for (const double bad : {kNaN, -1.0}) {
+    EXPECT_NE(ErrorOf([&] { LimitAngles(bad, Unmeasured::kBeyondMaxAngle, &table); }), "");
+  }
+  for (const MerlGrid& bad : {MerlGrid{.theta_h = 0}, MerlGrid{.theta_d = -1},
+                              MerlGrid{.theta_h = 1 << 20, .theta_d = 1 << 20}}) {
+    EXPECT_THAT(ErrorOf([&] { MakeInvalidTable("bad", bad); }), HasSubstr("grid"));
+    EXPECT_THAT(ErrorOf([&] { BinsAboveSurface(bad); }), HasSubstr("grid"));
+    EXPECT_THAT(ErrorOf([&] { Reconstruct(FactorModel(), "bad", bad); }), HasSubstr("grid"));
+  }
+  EXPECT_NE(ErrorOf([] { VisibleSolidAngles(0); }), "");
+}
+
+TEST(Arguments, SizesOfArrays) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  FactorModel model = RandomModel(spec, 1);
+  const std::vector<double> coverage(model.parameters().size() - 1, 1.0);
+  EXPECT_THAT(ErrorOf([&] { Canonicalize(coverage, &model); }), HasSubstr("coverage"));
+  EXPECT_THAT(ErrorOf([&] { NormalizeScale(coverage, &model); }), HasSubstr("coverage"));
+  EXPECT_THAT(ErrorOf([&] { CopyDeadParameters(coverage, model, &model); }), HasSubstr("coverage"));
+  EXPECT_THAT(ErrorOf([&] { ComputeLobeLight(coverage, model); }), HasSubstr("coverage"));
+  FactorModel other;
+  EXPECT_THAT(ErrorOf([&] { CopyDeadParameters(coverage, model, &other); }),
+              HasSubstr("another spec"));
+  const LobeLight light =
+      ComputeLobeLight(std::vector<double>(model.parameters().size(), 1.0), model);
+  for (const int lobe : {-1, 1}) EXPECT_NE(ErrorOf([&] { light.Share(lobe); }), "");
+  EXPECT_THAT(ErrorOf([] { CatmullRom(6).Pieces(std::vector<double>(5)); }), HasSubstr("not 5"));
+  EXPECT_NE(ErrorOf([] { WeightsAt({}, 0); }), "");
+  const std::vector<double> angles = {0, 1};
+  EXPECT_NE(ErrorOf([&] { AlbedoPassesOne(angles, std::vector<Rgb>(3), 0); }), "");
+  EXPECT_NE(ErrorOf([&] { AlbedoPassesOne(angles, std::vector<Rgb>(2), 3); }), "");
+}
+
+}  // namespace
+}  // namespace trilobe

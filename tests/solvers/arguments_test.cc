@@ -1,0 +1,121 @@
+// What a caller may give to a solver that is no such thing: an Error in one line, the model as it
+// was, and no crash.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/io/test_directory.h"
+#include "tests/solvers/solver_kinds.h"
+#include "tests/test_util.h"
+#include "trilobe/solvers/data_edge.h"
+#include "trilobe/solvers/diagnosis.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 8};
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class SolverArguments : public testing::TestWithParam<std::string> {
+ protected:
+  // Checks that the model stays as it was, too.
+  std::string ErrorFrom(const FactorModel& start, const SolverOptions& options = {}) const {
+    FactorModel model = start;
+    std::string error =
+        ErrorOf([&] { MakeSolver(GetParam())->Solve(objective_, options, &model); });
+    const auto same = [](double a, double b) { return a == b || (a != a && b != b); };
+    EXPECT_TRUE(std::ranges::equal(model.parameters(), start.parameters(), same));
+    return error;
+  }
+
+  const ModelSpec spec_ = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective_ = MakeObjective(RandomTable(kGrid, 1), spec_);
+};
+
+TEST_P(SolverArguments, StartsThatAreNoModel) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity, -1.0, -1e-300}) {
+    for (const size_t k : {size_t{0}, size_t{5}, size_t{12}}) {
+      FactorModel model = RandomModel(spec_, 1);
+      model.parameters()[k] = bad;
+      EXPECT_THAT(ErrorFrom(model), HasSubstr("number " + std::to_string(k))) << bad;
+    }
+  }
+  for (const NamedSpec& other : TestSpecs(kGrid)) {
+    if (other.spec == spec_) continue;
+    EXPECT_THAT(ErrorFrom(RandomModel(other.spec, 1)), HasSubstr("another spec")) << other.name;
+  }
+  FactorModel huge(spec_);
+  std::ranges::fill(huge.parameters(), 1e100);
+  EXPECT_THAT(ErrorFrom(huge), HasSubstr("overflows"));
+  EXPECT_THAT(ErrorOf([&] { MakeSolver(GetParam())->Solve(objective_, {}, nullptr); }),
+              HasSubstr("null"));
+}
+
+TEST_P(SolverArguments, OptionsOutOfTheirRange) {
+  const FactorModel start = RandomModel(spec_, 1);
+  const auto error = [&](const auto& change) {
+    SolverOptions options;
+    change(&options);
+    return ErrorFrom(start, options);
+  };
+  EXPECT_THAT(error([](SolverOptions* to) { to->max_iterations = -1; }),
+              HasSubstr("max_iterations"));
+  EXPECT_THAT(error([](SolverOptions* to) { to->max_seconds = -1; }), HasSubstr("max_seconds"));
+  EXPECT_THAT(error([](SolverOptions* to) { to->max_seconds = kNaN; }), HasSubstr("max_seconds"));
+  EXPECT_THAT(error([](SolverOptions* to) { to->relative_decrease_tolerance = kNaN; }),
+              HasSubstr("relative_decrease_tolerance"));
+  EXPECT_THAT(error([](SolverOptions* to) { to->optimality_tolerance = kNaN; }),
+              HasSubstr("optimality_tolerance"));
+  for (const double bad : {-1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(error([&](SolverOptions* to) { to->g_filter_sigma = bad; }),
+                HasSubstr("g_filter_sigma"));
+  }
+  EXPECT_THAT(error([](SolverOptions* to) { to->memory = -1; }), HasSubstr("memory"));
+  EXPECT_THAT(error([](SolverOptions* to) { to->starts = 0; }), HasSubstr("starts"));
+}
+
+std::vector<std::string> SolverNames() {
+  std::vector<std::string> names;
+  for (const SolverEntry& solver : kLibrarySolvers) names.push_back(solver.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, SolverArguments, testing::ValuesIn(SolverNames()),
+                         [](const auto& param) { return param.param; });
+
+TEST(RegisterSolver, NeedsANameAndSomethingToMakeIt) {
+  const size_t before = Solvers().size();
+  SolverEntry entry = FindSolver("awls");
+  entry.name = "";
+  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }), HasSubstr("a name"));
+  entry.name = "own";
+  entry.make = nullptr;
+  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }), HasSubstr("'own'"));
+  EXPECT_EQ(Solvers().size(), before);
+  // This can be told no sooner than when it is asked for.
+  entry.make = [] { return nullptr; };
+  RegisterSolver(entry);
+  EXPECT_THAT(ErrorOf([] { MakeSolver("own"); }), HasSubstr("'own'"));
+}
+
+TEST(SolverRoom, ModelsOfAnotherSpec) {
+  const Objective objective =
+      MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(2, kGrid));
+  FactorModel other(ModelSpec::SharedFactors(1, kGrid));
+  EXPECT_THAT(ErrorOf([&] { Diagnose(objective, other); }), HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &other); }), HasSubstr("another spec"));
+  FactorModel bad(objective.spec());
+  bad.d()[1] = kNaN;
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("number 1"));
+}
+
+}  // namespace
+}  // namespace trilobe
