@@ -7,7 +7,7 @@
 namespace trilobe {
 namespace {
 
-using std::string_view_literals::operator""sv;
+using namespace std::string_view_literals;
 using Kind = Content::Kind;
 
 struct Signature {

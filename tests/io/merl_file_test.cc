@@ -66,6 +66,21 @@ TEST(MerlFile, PutsPlanesAndBinsWhereTheFormatSays) {
   EXPECT_LT(table.Value(0, index + 1), 0);
 }
 
+TEST(MerlFile, ReadsAnotherGridIfToldSo) {
+  const MerlGrid grid{.theta_h = 1, .theta_d = 2, .phi_d = 3};
+  std::string bytes = Header(1, 2, 3);
+  for (int k = 0; k < 18; ++k) {
+    const double value = k;
+    bytes.append(reinterpret_cast<const char*>(&value), 8);
+  }
+  const BrdfTable table = ParseMerl(bytes, "tiny", grid);
+  EXPECT_EQ(table.grid, grid);
+  EXPECT_THAT(table.stored[1], ElementsAre(6, 7, 8, 9, 10, 11));
+  EXPECT_THAT(ErrorOf([&] { ParseMerl(bytes + "x", "tiny", grid); }),
+              HasSubstr("1 bytes too many: 157 bytes; a MERL file has 156 bytes"));
+  EXPECT_THAT(ParseError(bytes), HasSubstr("1 x 2 x 3 bins in a file of 156 bytes"));
+}
+
 TEST(MerlFile, KeepsEveryBit) {
   std::string bytes = FileOf(-1);
   const std::vector<uint64_t> patterns = {
