@@ -84,11 +84,13 @@ bool IsValid(double x) { return x >= 0 && x <= std::numeric_limits<double>::max(
 
 bool AreValid(std::span<const double> values) {
   // 0 * x is NaN for an infinite x, and the least of all is below 0 where one is.
+  const double* const x = values.data();
+  const size_t size = values.size();
   double least = 0, zero = 0;
 #pragma omp simd reduction(min : least) reduction(+ : zero)
-  for (size_t k = 0; k < values.size(); ++k) {
-    least = values[k] < least ? values[k] : least;
-    zero += 0 * values[k];
+  for (size_t k = 0; k < size; ++k) {
+    least = x[k] < least ? x[k] : least;
+    zero += 0 * x[k];
   }
   return least == 0 && zero == 0;
 }

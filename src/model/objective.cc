@@ -73,9 +73,11 @@ BrdfSamples Checked(BrdfSamples samples, const ModelSpec& spec, int num_threads)
 }
 
 bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
+  const double* const w = weights.data();
+  const size_t size = weights.size();
   double least = 0;
 #pragma omp simd reduction(min : least)
-  for (size_t k = 0; k < weights.size(); ++k) least = weights[k] < least ? weights[k] : least;
+  for (size_t k = 0; k < size; ++k) least = w[k] < least ? w[k] : least;
   return least == 0;
 }
 

@@ -42,16 +42,11 @@ std::vector<NamedTable> OddTables() {
     single.SetValue(c, bin, 0.5);
     black_single.SetValue(c, bin, 0);
   }
-  return {{"random", random},
-          {"tiny", scaled(1e-12)},
-          {"huge", scaled(1e12)},
-          {"smallest", scaled(1e-48)},
-          {"largest", scaled(1e46)},
-          {"black", black},
-          {"no red", no_red},
-          {"spike", spike},
-          {"single", single},
-          {"black single", black_single}};
+  return {{"random", random},        {"tiny", scaled(1e-12)},
+          {"huge", scaled(1e12)},    {"smallest", scaled(1e-48)},
+          {"largest", scaled(1e46)}, {"black", black},
+          {"no red", no_red},        {"spike", spike},
+          {"single", single},        {"black single", black_single}};
 }
 
 TEST(InitialModel, IsFiniteAndNotNegativeForAnyDataAndSpec) {
