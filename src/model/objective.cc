@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <span>
 #include <sstream>
 #include <string>
@@ -81,15 +82,22 @@ bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
   return least == 0;
 }
 
-double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model) {
-  double sum = 0;
-  for (const WeightedSample& sample : samples) {
-    for (int c = 0; c < kChannels; ++c) {
-      const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
-      sum += sample.weight[c] * residual * residual;
+double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model,
+                      int num_threads) {
+  constexpr size_t kChunk = 4096;
+  const int chunks = static_cast<int>((samples.size() + kChunk - 1) / kChunk);
+  std::vector<double> sums(chunks, 0.0);
+  ParallelFor(chunks, num_threads, [&](int k) {
+    const size_t end = std::min(samples.size(), (k + 1) * kChunk);
+    for (size_t j = k * kChunk; j < end; ++j) {
+      const WeightedSample& sample = samples[j];
+      for (int c = 0; c < kChannels; ++c) {
+        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+        sums[k] += sample.weight[c] * residual * residual;
+      }
     }
-  }
-  return sum;
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 CoverageByChannel ScatteredCoverage(const std::vector<WeightedSample>& samples,
@@ -229,7 +237,7 @@ const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 double Objective::Value(const FactorModel& model) const {
   CheckSameSpec(model.spec(), spec_);
   return folded() != nullptr ? FoldedValue(*folded(), model, num_threads_)
-                             : ScatteredValue(weighted_samples(), model);
+                             : ScatteredValue(weighted_samples(), model, num_threads_);
 }
 
 const SplineCells& Objective::spline_cells() const {

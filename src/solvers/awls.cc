@@ -1,8 +1,8 @@
-#include <optional>
+#include <memory>
 
-#include "trilobe/solvers/grid_sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 namespace {
@@ -13,8 +13,8 @@ class Awls : public Solver {
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("awls", objective, options, model);
-    GridSweep sweep("awls", objective, &run.summary().phases);
-    RepeatSweeps([&](FactorModel* current) { sweep(options.on_element, current); }, objective,
+    const std::unique_ptr<Sweep> sweep = MakeSweep(objective, &run.summary().phases);
+    RepeatSweeps([&](FactorModel* current) { (*sweep)(options.on_element, current); }, objective,
                  *model, &run);
     return run.Finish();
   }

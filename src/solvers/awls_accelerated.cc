@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "trilobe/model/gauge.h"
 #include "trilobe/solvers/element_step.h"
-#include "trilobe/solvers/grid_sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 namespace {
@@ -131,7 +132,7 @@ class AwlsAccelerated : public Solver {
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("awls_accelerated", objective, options, model);
-    GridSweep sweep("awls_accelerated", objective, &run.summary().phases);
+    const std::unique_ptr<Sweep> sweep = MakeSweep(objective, &run.summary().phases);
     const FactorModel start = *model;
     const Coordinates coordinates(objective, start);
     AndersonMemory memory(static_cast<size_t>(options.memory));
@@ -143,7 +144,7 @@ class AwlsAccelerated : public Solver {
     FactorModel current = start;
     for (bool go_on = run.Start(); go_on;) {
       const VectorXd u = coordinates.Of(current);
-      sweep.InBlocks(run.summary().trace.back(), options.on_element, &current);
+      sweep->InBlocks(run.summary().trace.back(), options.on_element, &current);
       Point best{current, evaluate(current)};
       const VectorXd g = coordinates.Of(current);
       std::optional<VectorXd> step;

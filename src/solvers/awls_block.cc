@@ -1,6 +1,8 @@
-#include "trilobe/solvers/grid_sweep.h"
+#include <memory>
+
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 namespace {
@@ -13,10 +15,10 @@ class AwlsBlock : public Solver {
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("awls_block", objective, options, model);
-    GridSweep sweep("awls_block", objective, &run.summary().phases);
+    const std::unique_ptr<Sweep> sweep = MakeSweep(objective, &run.summary().phases);
     const auto& trace = run.summary().trace;
     RepeatSweeps(
-        [&](FactorModel* current) { sweep.InBlocks(trace.back(), options.on_element, current); },
+        [&](FactorModel* current) { sweep->InBlocks(trace.back(), options.on_element, current); },
         objective, *model, &run);
     return run.Finish();
   }

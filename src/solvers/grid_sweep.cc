@@ -1,17 +1,9 @@
 #include "trilobe/solvers/grid_sweep.h"
 
-#include "trilobe/base/error.h"
+#include <glog/logging.h>
 
 namespace trilobe {
 namespace {
-
-const FoldedGrid& FoldedOrThrow(const std::string& solver, const Objective& objective) {
-  if (objective.folded() == nullptr) {
-    throw Error(objective.samples().source + ": solver " + solver +
-                " needs samples on a MERL grid; use --solver=awls_literal");
-  }
-  return *objective.folded();
-}
 
 const SplineCells& TimedSplineCells(const Objective& objective, PhaseSeconds* phases) {
   const ScopedTimer timer(&phases->preparing);
@@ -20,14 +12,13 @@ const SplineCells& TimedSplineCells(const Objective& objective, PhaseSeconds* ph
 
 }  // namespace
 
-GridSweep::GridSweep(const std::string& solver, const Objective& objective, PhaseSeconds* phases)
+GridSweep::GridSweep(const Objective& objective, PhaseSeconds* phases)
     : num_threads_(objective.num_threads()),
       phases_(phases),
-      cells_(FoldedOrThrow(solver, objective), objective.spec()),
+      cells_(*CHECK_NOTNULL(objective.folded()), objective.spec()),
       shadowing_(TimedSplineCells(objective, phases), objective.spec()) {}
 
-void GridSweep::operator()(const std::function<void(const FactorModel&)>& on_element,
-                           FactorModel* model) {
+void GridSweep::operator()(const OnElement& on_element, FactorModel* model) {
   AccumulateCells(*model);
   {
     const ScopedTimer timer(&phases_->linear_algebra);
@@ -36,23 +27,10 @@ void GridSweep::operator()(const std::function<void(const FactorModel&)>& on_ele
   UpdateG(on_element, model);
 }
 
-void GridSweep::InBlocks(const IterationRecord& last,
-                         const std::function<void(const FactorModel&)>& on_block,
-                         FactorModel* model) {
-  // What other numbers do to E: docs/solvers.md.
-  constexpr int kElementSweeps = 3, kRounds = 5;
-  if (last.iteration < kElementSweeps) {
-    (*this)(on_block, model);
-    return;
-  }
+void GridSweep::UpdateBlocks(double E, int rounds, const OnElement& on_block, FactorModel* model) {
   AccumulateCells(*model);
-  {
-    const ScopedTimer timer(&phases_->linear_algebra);
-    for (int k = 0; k < kRounds; ++k) {
-      cells_.UpdateBlocks(last.objective, num_threads_, on_block, model);
-    }
-  }
-  UpdateG(on_block, model);
+  const ScopedTimer timer(&phases_->linear_algebra);
+  for (int k = 0; k < rounds; ++k) cells_.UpdateBlocks(E, num_threads_, on_block, model);
 }
 
 void GridSweep::AccumulateCells(const FactorModel& model) {
@@ -60,8 +38,7 @@ void GridSweep::AccumulateCells(const FactorModel& model) {
   cells_.Accumulate(model, num_threads_);
 }
 
-void GridSweep::UpdateG(const std::function<void(const FactorModel&)>& on_element,
-                        FactorModel* model) {
+void GridSweep::UpdateG(const OnElement& on_element, FactorModel* model) {
   for (int t = 0; t < model->spec().num_tables(Factor::kG); ++t) {
     {
       const ScopedTimer timer(&phases_->evaluating);

@@ -1,7 +1,9 @@
-#include "trilobe/solvers/grid_sweep.h"
+#include <memory>
+
 #include "trilobe/solvers/joint_step.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 namespace {
@@ -17,12 +19,12 @@ class Hybrid : public Solver {
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("hybrid", objective, options, model);
-    GridSweep sweep("hybrid", objective, &run.summary().phases);
+    const std::unique_ptr<Sweep> sweep = MakeSweep(objective, &run.summary().phases);
     FactorModel current = *model;
     bool go_on = run.Start();
     for (int k = 0; k < kMaxSweeps && go_on; ++k) {
       const double before = run.best_objective();
-      sweep(nullptr, &current);
+      (*sweep)(nullptr, &current);
       go_on = run.Record(current);
       if (run.best_objective() > (1 - kLeastDecrease) * before) break;
     }

@@ -54,18 +54,20 @@ JointStepper::JointStepper(const Objective& objective, Curvature curvature, Tria
       lambda_(kInitialLambda) {
   CHECK(reduction == nullptr || trial == Trial::kAsItIs)
       << "a projection would leave the reduction";
-  if (trial == Trial::kProjected && objective.folded() != nullptr) {
-    cells_.emplace(*objective.folded(), objective.spec());
-  }
+  if (trial == Trial::kProjected) sweep_ = MakeSweep(objective, phases);
 }
 
 void JointStepper::Restart(const FactorModel& model) {
   current_ = model;
-  const ScopedTimer timer(&phases_->evaluating);
-  E_ = objective_.Value(current_);
+  E_ = Evaluate(current_);
   linearized_ = false;
   growth_ = 2;
   indefinite_ = 0;
+}
+
+double JointStepper::Evaluate(const FactorModel& model) {
+  const ScopedTimer timer(&phases_->evaluating);
+  return objective_.Value(model);
 }
 
 void JointStepper::Linearize() {
@@ -104,15 +106,10 @@ bool JointStepper::Step() {
   held_back_ = lambda_ > kHeavyLambda;
   std::ranges::copy(reduction_ != nullptr ? reduction_->Expand(result.x) : result.x,
                     trial.parameters().begin());
-  double E = 0;
-  {
-    const ScopedTimer timer(&phases_->evaluating);
-    E = objective_.Value(trial);
-    if (cells_) {
-      cells_->Accumulate(trial, objective_.num_threads());
-      cells_->UpdateBlocks(E, objective_.num_threads(), nullptr, &trial);
-      E = objective_.Value(trial);
-    }
+  double E = Evaluate(trial);
+  if (sweep_) {
+    sweep_->Project(E, &trial);
+    E = Evaluate(trial);
   }
   const double gain = (E_ - E) / (2 * result.predicted_decrease);
   if (!(E < E_ && gain > kMinGain)) {

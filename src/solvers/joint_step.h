@@ -1,17 +1,17 @@
 #ifndef TRILOBE_SOLVERS_JOINT_STEP_H_
 #define TRILOBE_SOLVERS_JOINT_STEP_H_
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "trilobe/solvers/cell_sums.h"
 #include "trilobe/solvers/nonnegative_step.h"
 #include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/reduction.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 
@@ -37,9 +37,8 @@ class JointStepper {
     kProjected,  // d, s, D and F are put where E is lowest, block by block, given G and the others
   };
 
-  // Times go to *phases. Only samples on a grid can be projected; others are left as they are.
-  // With a reduction, which must outlive the stepper, the steps are of its numbers y; trials cannot
-  // be projected then.
+  // Times go to *phases. With a reduction, which must outlive the stepper, the steps are of its
+  // numbers y; trials cannot be projected then.
   JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases,
                const Reduction* reduction = nullptr);
 
@@ -61,6 +60,7 @@ class JointStepper {
   double Optimality();
 
  private:
+  double Evaluate(const FactorModel& model);
   void Linearize();
 
   const Objective& objective_;
@@ -69,7 +69,7 @@ class JointStepper {
   Hessian hessian_;  // of the next point
   PhaseSeconds* const phases_;
   NormalEquations equations_;
-  std::optional<CellSums> cells_;  // if trials are projected
+  std::unique_ptr<Sweep> sweep_;  // if trials are projected
   FactorModel current_;
   double E_ = 0;
   bool linearized_ = false;

@@ -78,11 +78,7 @@ class Starts {
 
   // As `awls` would go on from the given one: it creeps past minima that longer steps fall into.
   void EnterSwept() {
-    const auto given = [this]() -> std::optional<FactorModel> {
-      if (objective_.folded() == nullptr) return std::nullopt;
-      return given_;
-    };
-    race_->Enter("swept", given, {.count = 60, .in_blocks = false});
+    race_->Enter("swept", [this] { return given_; }, {.count = 60, .in_blocks = false});
   }
 
   void EnterGrown(int sweeps, const char* name) {

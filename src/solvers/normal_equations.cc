@@ -8,6 +8,7 @@
 #include "trilobe/base/parallel.h"
 #include "trilobe/solvers/joint_rows.h"
 #include "trilobe/solvers/joint_shadowing.h"
+#include "trilobe/solvers/sample_equations.h"
 
 namespace trilobe {
 namespace {
@@ -174,21 +175,24 @@ class NormalEquations::Condensed {
 };
 
 NormalEquations::NormalEquations(const Objective& objective) : objective_(objective) {
-  if (objective.folded() == nullptr) return;
-  condensed_ =
-      std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(), objective.spec());
+  if (objective.folded() == nullptr) {
+    of_samples_ = std::make_unique<SampleEquations>(objective);
+  } else {
+    condensed_ = std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(),
+                                             objective.spec());
+  }
 }
 
 NormalEquations::~NormalEquations() = default;
 
 void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   CheckSameSpec(model.spec(), objective_.spec());
-  if (condensed_ == nullptr) {
-    EvaluateLiterally(objective_, model, hessian, result);
-    return;
-  }
   Clear(model.spec().num_parameters(), result);
-  condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
+  if (condensed_ != nullptr) {
+    condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
+  } else {
+    of_samples_->Evaluate(model, hessian, result);
+  }
   ClearDeadParameters(objective_.coverage(), result);
 }
 

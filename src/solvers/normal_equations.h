@@ -31,8 +31,10 @@ enum class Hessian {
 // are few samples, since sums are cleared and added up for each.
 constexpr int NumShares(int samples) { return std::clamp(samples / 65536, 2, 8); }
 
+class SampleEquations;
+
 // Accumulates it without ever storing J, in one pass over the samples (docs/method.md). Samples on
-// a grid are taken folded, by their cells; others one by one.
+// a grid are taken folded, by their cells; others one by one (SampleEquations).
 class NormalEquations {
  public:
   explicit NormalEquations(const Objective& objective);
@@ -44,11 +46,12 @@ class NormalEquations {
  private:
   class Condensed;
   const Objective& objective_;
-  std::unique_ptr<Condensed> condensed_;  // null where samples are not on a grid
+  std::unique_ptr<Condensed> condensed_;  // null where samples are not on a grid; then:
+  std::unique_ptr<SampleEquations> of_samples_;
 };
 
 // The same from each sample's own derivatives, in a time that only small data forgive: the
-// reference for tests, and the way for samples that are not on a grid.
+// reference for tests.
 void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
                        QuadraticModel* result);
 

@@ -1,11 +1,12 @@
 #include "trilobe/solvers/start_race.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "trilobe/base/parallel.h"
-#include "trilobe/solvers/grid_sweep.h"
 #include "trilobe/solvers/joint_step.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 namespace {
@@ -77,14 +78,13 @@ class StartRace::Entrant {
       return;
     }
     E_ = Evaluate();
-    if (objective_->folded() == nullptr) return;
-    GridSweep sweep(name_, *objective_, &phases_);
+    const std::unique_ptr<Sweep> sweep = MakeSweep(*objective_, &phases_);
     for (int k = 0; k < sweeps_.count && !stop(); ++k) {
       if (sweeps_.in_blocks) {
-        sweep.InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
+        sweep->InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
         E_ = Evaluate();  // which blocks need to know
       } else {
-        sweep(nullptr, &*model_);
+        (*sweep)(nullptr, &*model_);
       }
     }
     if (!sweeps_.in_blocks) E_ = Evaluate();

@@ -38,8 +38,7 @@ class StartRace {
   // The selection of samples, for one thread.
   const Objective& thinned() const { return *thinned_; }
 
-  // What a start gets first of all, where samples are on a grid: sweeps of AWLS, which bring its
-  // magnitudes in order.
+  // What a start gets first of all: sweeps of AWLS, which bring its magnitudes in order.
   struct Sweeps {
     int count = 5;
     bool in_blocks = true;

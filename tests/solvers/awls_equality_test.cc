@@ -62,6 +62,30 @@ void ExpectSameSweeps(const Objective& objective, const FactorModel& start,
   }
 }
 
+// Samples that are on no grid, of which each reads entries of D and F between bins.
+BrdfSamples BetweenBins(const MerlGrid& grid, uint64_t seed) {
+  BrdfSamples samples = Scattered(ValidSamples(RandomTable(grid, seed)));
+  Random random(seed);
+  for (HalfDiffAngles& at : samples.angles) {
+    at.theta_h *= random.Uniform(0.5, 1);
+    at.theta_d *= random.Uniform(0.5, 1);
+  }
+  return samples;
+}
+
+TEST(AwlsEquality, ScatteredSamples) {
+  constexpr MerlGrid kGrid{7, 9, 12};
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    for (const char* const weighting : {"appearance", "uniform"}) {
+      const Objective objective(BetweenBins(kGrid, 4), spec, FindWeighting(weighting));
+      ASSERT_EQ(objective.folded(), nullptr);
+      const FactorModel start = FindInitialModel("random").make(objective, 3);
+      ASSERT_NO_FATAL_FAILURE(
+          ExpectSameSweeps(objective, start, Sweeps(20), name + ", " + weighting));
+    }
+  }
+}
+
 // All sharings, all weightings, half pairs and missing rows, an odd number of phi_d bins.
 TEST(AwlsEquality, AnySpecAndWeighting) {
   for (const MerlGrid& grid : {MerlGrid{8, 10, 12}, MerlGrid{7, 9, 13}}) {

@@ -243,8 +243,7 @@ TEST_P(Multistart, FitsScatteredSamples) {
   SolverOptions options = Iterations(10);
   options.starts = 10;
   const SolverSummary summary = Solve(objective, options, &model);
-  EXPECT_THAT(Names(summary),
-              testing::AllOf(testing::Contains("given"), testing::Not(testing::Contains("swept"))));
+  EXPECT_THAT(Names(summary), testing::IsSupersetOf({"given", "swept"}));
   if (GetParam() == std::string("multistart")) {
     EXPECT_THAT(Names(summary), testing::Contains("grown"));
   }

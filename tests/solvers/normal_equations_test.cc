@@ -61,6 +61,30 @@ TEST(NormalEquations, CondensedEqualsLiteral) {
   }
 }
 
+TEST(NormalEquations, OfScatteredSamplesEqualLiteral) {
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    BrdfSamples samples = Scattered(ValidSamples(RandomTable(kGrid, 3)));
+    for (HalfDiffAngles& at : samples.angles) at.theta_h *= 0.9;
+    std::vector<QuadraticModel> by_threads;
+    for (const int threads : {1, 3}) {
+      const Objective objective(samples, spec, FindWeighting("uniform"), threads);
+      NormalEquations equations(objective);
+      for (const bool zeros : {false, true}) {
+        FactorModel model = RandomModel(spec, 4);
+        if (zeros) PutSomeAtZero(&model);
+        QuadraticModel expected;
+        for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
+          by_threads.emplace_back();
+          equations.Evaluate(model, hessian, &by_threads.back());
+          EvaluateLiterally(objective, model, hessian, &expected);
+          ExpectEqual(by_threads.back(), expected, name + (zeros ? ", with zeros" : ""));
+        }
+      }
+    }
+    for (int k = 0; k < 4; ++k) EXPECT_EQ(by_threads[k].H, by_threads[4 + k].H) << name;
+  }
+}
+
 TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");

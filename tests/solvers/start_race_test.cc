@@ -104,7 +104,7 @@ TEST(StartRace, SweepsAsAwlsDoes) {
   race.Advance(0);
   FactorModel swept = start;
   PhaseSeconds phases;
-  GridSweep sweep("awls", race.thinned(), &phases);
+  GridSweep sweep(race.thinned(), &phases);
   for (int k = 0; k < 7; ++k) sweep(nullptr, &swept);
   ASSERT_NE(race.leader(), nullptr);
   EXPECT_TRUE(std::ranges::equal(race.leader()->parameters(), swept.parameters()));
