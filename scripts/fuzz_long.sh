@@ -38,8 +38,12 @@ for name in "${readers[@]}"; do
   mkdir -p "$root/$name"/{corpus,crashes}
   touch "$root/$name/progress"
 done
-for name in "${readers[@]}"; do
-  while run_chunk "$name"; do :; done
+# In turn, so that all are equally far.
+for ((again = 1; again; )); do
+  again=0
+  for name in "${readers[@]}"; do
+    if run_chunk "$name"; then again=1; fi
+  done
 done
 
 printf '%-8s %12s %9s %7s %8s\n' reader executions seconds corpus crashes

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string_view>
 
@@ -14,11 +13,7 @@
 namespace trilobe {
 
 bool IsModelFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string begin(256, ' ');
-  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<size_t>(file.gcount()));
-  return RecogniseContent(begin).kind == Content::Kind::kJson;
+  return RecogniseFile(path).kind == Content::Kind::kJson;
 }
 
 std::string RequiredOut(const std::string& command, const std::string& what) {

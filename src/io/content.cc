@@ -1,6 +1,10 @@
 #include "trilobe/io/content.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
 
 #include "trilobe/io/utf8.h"
 
@@ -84,6 +88,15 @@ Content RecogniseContent(std::string_view bytes) {
             "a UTIA table (288 x 288 x 3 doubles, by its size), which cannot be read yet"};
   }
   return {};
+}
+
+Content RecogniseFile(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};  // a pipe would be waited for
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 256> begin{};
+  file.read(begin.data(), begin.size());
+  return RecogniseContent({begin.data(), static_cast<size_t>(file.gcount())});
 }
 
 }  // namespace trilobe

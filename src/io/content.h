@@ -24,6 +24,9 @@ struct Content {
 };
 Content RecogniseContent(std::string_view bytes);
 
+// The same for a file by its beginning alone; kUnknown where it is none that can be read.
+Content RecogniseFile(const std::string& path);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_IO_CONTENT_H_

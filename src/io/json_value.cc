@@ -36,6 +36,13 @@ void AppendUtf8(uint32_t code, std::string* text) {
   }
 }
 
+void CheckContent(const Content& content, const std::string& what) {
+  if (content.kind != Content::Kind::kJson && content.kind != Content::Kind::kText &&
+      content.kind != Content::Kind::kUnknown) {
+    throw Error(what + ": this is " + content.name);
+  }
+}
+
 void CheckSize(size_t bytes, const std::string& what) {
   if (bytes > kMaxJsonBytes) {
     throw Error(what + ": it has " + std::to_string(bytes) + " bytes; at most " +
@@ -232,12 +239,8 @@ class JsonParser {
 };
 
 JsonValue JsonValue::Parse(std::string_view text, const std::string& what) {
+  CheckContent(RecogniseContent(text), what);
   CheckSize(text.size(), what);
-  const Content content = RecogniseContent(text);
-  if (content.kind != Content::Kind::kJson && content.kind != Content::Kind::kText &&
-      content.kind != Content::Kind::kUnknown) {
-    throw Error(what + ": this is " + content.name);
-  }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   // Each value but the first comes after one of these.
   const auto values = 1 + std::ranges::count_if(text, [](char c) {
@@ -271,6 +274,7 @@ const JsonValue* JsonValue::Find(std::string_view key) const {
 }
 
 std::string ReadJsonText(const std::string& path, const std::string& what) {
+  CheckContent(RecogniseFile(path), what);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (!error) CheckSize(size, what);

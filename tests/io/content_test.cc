@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "tests/io/test_directory.h"
@@ -84,6 +85,24 @@ TEST(Content, IsNamedByEveryReader) {
   EXPECT_EQ(ErrorOf([] { ParseProbe("\x89PNG\r\n\x1a\n", "f"); }),
             "f: not a Radiance picture but a PNG picture; give a light probe as a lat-long .hdr "
             "file");
+}
+
+// Before its size is looked at, or its bytes are.
+TEST(Content, OfALargeFileIsNamed) {
+  const TestDirectory directory;
+  const std::string path =
+      directory.Make("a.binary", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12));
+  std::filesystem::resize_file(path, 34992012);
+  EXPECT_EQ(ErrorOf([&] { ReadModel(path); }),
+            path + ": not a model file: this is a MERL measurement");
+}
+
+TEST(Content, OfAPipeIsNotWaitedFor) {
+  const TestDirectory directory;
+  ASSERT_EQ(mkfifo(directory.Path("pipe").c_str(), 0600), 0);
+  EXPECT_EQ(RecogniseFile(directory.Path("pipe")).kind, Kind::kUnknown);
+  EXPECT_THAT(ErrorOf([&] { ReadModel(directory.Path("pipe")); }),
+              testing::HasSubstr("it is not a regular file"));
 }
 
 TEST(Content, AByteOrderMarkBeforeAModelDoesNoHarm) {
