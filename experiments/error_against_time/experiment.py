@@ -9,6 +9,7 @@ from lab.fits import Fit
 POINTS = 32  # of a curve, at times that grow by a constant factor
 TARGETS = (0.1, 0.01, 0.001)
 DEFAULT_START = "analytic"
+SOON = 5  # seconds after which errors are compared
 
 
 def units(setting):
@@ -138,7 +139,7 @@ def _draw_shares(axes, of_solver, solvers, low, high):
     plots.label_ends(axes)
 
 
-def _profile_figure(rows, solvers, threads, what):
+def _profile_figure(rows, solvers, threads):
     """Data profiles at the three targets, and the performance profile at 1 %."""
     from lab import plots
     figure, panels = plots.plt.subplots(2, 2, figsize=(11, 8))
@@ -159,8 +160,8 @@ def _profile_figure(rows, solvers, threads, what):
     _draw_shares(axes, ratios, solvers, 1, max(1.1 * max(finite), 2))
     axes.set(title="performance profile: within 1 %", ylabel="share of materials (%)",
              xlabel="time over that of the soonest solver")
-    figure.suptitle(f"How soon near the best E: {what}, {len(names)} materials, {threads} threads",
-                    x=0.01, ha="left")
+    figure.suptitle(f"How soon near the best E: all solvers, {len(names)} materials, {threads} "
+                    "threads", x=0.01, ha="left")
     return figure
 
 
@@ -301,6 +302,31 @@ def _summary(rows, solvers):
                                "trace, % of solving"], times))
 
 
+def _errors_table(curves, solvers, threads):
+    """The course's other errors, soon and at the end: median over the materials, and the worst. A
+    fit that is missing, or has no model yet, has infinite errors."""
+    curves = [row for row in curves if row["threads"] == threads]
+    names = {row["material"] for row in curves}
+    times = sorted({row["seconds"] for row in curves})
+    soon = min(times, key=lambda seconds: abs(seconds - SOON))
+    of_fit = tables.groups(curves, "material", "solver")
+    lines = []
+    for solver in solvers:
+        cells = []
+        for end in (soon, times[-1]):
+            last = [max((row for row in of_fit.get((name, solver), []) if row["seconds"] <= end),
+                        key=lambda row: row["seconds"], default={}) for name in names]
+            for column, digits in (("psnr_loss_db", 2), ("log_error_ratio", 3)):
+                values = [math.inf if row.get(column) is None else row[column] for row in last]
+                cells += [f"{round(value, digits) + 0.0:.{digits}f}"  # and not -0.00
+                          for value in (stats.median(values), max(values))]
+        lines.append([solver, *cells])
+    return tables.markdown(
+        ["solver", *(f"{what}, {when}{which}" for when in (f"{soon:.3g} s", "end")
+                     for what in ("PSNR lost (dB)", "log error ratio")
+                     for which in ("", ": worst"))], lines)
+
+
 def _thread_table(runs):
     """Paired: time to 1 % with one thread over that with two, on the same material."""
     rows = [row for row in runs if row["start"] == DEFAULT_START]
@@ -372,13 +398,10 @@ def draw(drawn, _):
     products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads),
                 "threads.md": _thread_table(runs), "repeats.md": _repeat_table(drawn["runs"])}
     if curves:
+        products["errors.md"] = _errors_table(curves, solvers, threads)
         products["median"] = _median_figure(curves, rows, solvers, threads)
         products["materials"] = _material_figure(curves, rows, solvers, threads)
-    products["profiles"] = _profile_figure(rows, solvers, threads, "all solvers")
-    if count > names:
-        products["profiles_all"] = _profile_figure(
-            [row for row in everywhere if row["solver"] in widest], widest, threads,
-            ", ".join(widest))
+    products["profiles"] = _profile_figure(rows, solvers, threads)
     if (figure := _start_figure(runs, threads)) is not None:
         products["starts"] = figure
     return products

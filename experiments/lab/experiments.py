@@ -8,7 +8,7 @@ pictures can be drawn again anywhere from the tables alone.
                                          rows, a list of dicts, become NAME.csv; bytes the file NAME
     draw(tables, folder) -> {name: Figure or text}
                                          tables: {name: rows} as read back; folder: of all files
-                                         of tabulate; a Figure becomes NAME.svg, a text NAME
+                                         of tabulate; a Figure becomes NAME.png, a text NAME
 """
 import dataclasses
 import importlib.util

@@ -19,6 +19,7 @@ report   all pages with their tables and pictures in one file, OUT/report.html
 
 
 SOME_FAILED = 3  # exit status: everything was tried, and some units have failed
+PUBLISHED_ROWS = 1000  # of a table: a larger one is bulk, which stays in OUT
 
 
 def _threads(text):
@@ -57,7 +58,8 @@ def parse(arguments):
                         help="make nothing; tables and pictures of what is there")
     parser.add_argument("--draw", action="store_true", help="only draw, from the tables in OUT")
     parser.add_argument("--publish", action="store_true",
-                        help="copy tables and pictures into experiments/NAME/results")
+                        help="copy pictures, and tables of at most "
+                        f"{PUBLISHED_ROWS} rows, into experiments/NAME/results")
     options = parser.parse_intermixed_args(arguments)
     if options.out is None:
         options.out = pathlib.Path("out/experiments-quick" if options.quick else "out/experiments")
@@ -105,7 +107,7 @@ def draw(experiment, folder):
         if isinstance(content, str):
             (folder / name).write_text(content)
         else:
-            plots.save(content, folder / f"{name}.svg")
+            plots.save(content, folder / f"{name}.png")
 
 
 def _fill(folder, fill):
@@ -134,12 +136,22 @@ def tabulate(experiment, setting, store, units, folder):
                        setting.build)
 
 
+def bulk(folder):
+    """The tables of a folder that are not published: of more than PUBLISHED_ROWS rows."""
+    return [path for path in sorted(folder.glob("*.csv"))
+            if len(tables.read(path)) > PUBLISHED_ROWS]
+
+
 def publish(experiment, folder):
-    """Copies a run's tables and pictures to where the page looks for them."""
+    """Copies a run's pictures and small tables to where the page looks for them."""
     units = json.loads((folder / "manifest.json").read_text())["units"]
     if left := units["all"] - units["made"] - units["failed"]:
         raise UsageError(f"{left} units have not been tried yet; publish when they are")
-    _fill(experiment.published, lambda part: shutil.copytree(folder, part))
+    kept = bulk(folder)
+    _fill(experiment.published, lambda part: shutil.copytree(
+        folder, part, ignore=shutil.ignore_patterns(*(path.name for path in kept))))
+    for path in kept:
+        print(f"not copied, more than {PUBLISHED_ROWS} rows: {path}")
     size = sum(path.stat().st_size for path in experiment.published.rglob("*") if path.is_file())
     print(f"copied to {experiment.published}: {size / 1e6:.2f} MB")
 

@@ -1,10 +1,13 @@
 """The look of all pictures: one colour for a solver everywhere, lines labelled where they end."""
+import io
+
 import matplotlib
 
-matplotlib.use("svg")  # before pyplot: no display
+matplotlib.use("agg")  # before pyplot: no display
 
 import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.ticker  # noqa: E402
+from PIL import Image  # noqa: E402
 
 # Okabe and Ito, "Color universal design", 2008.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -36,7 +39,7 @@ plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 10, "axes.titlesize": 11,
     "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
     "axes.grid": True, "grid.color": "#E4E4E4", "axes.axisbelow": True, "lines.linewidth": 1.8,
-    "svg.fonttype": "none", "svg.hashsalt": "trilobe", "legend.frameon": False})
+    "legend.frameon": False})
 
 
 def solver_style(solver, solvers=()):
@@ -94,7 +97,10 @@ def legend_above(figure, axes):
 
 
 def save(figure, path):
-    """Writes the picture, the same bytes for the same data, and closes it."""
-    figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None,
-                   bbox_inches="tight", pad_inches=0.15)  # legends outside the axes are kept
+    """Writes the picture as a PNG of 256 colours, which a repository and a page can carry however
+    many points it has; the same bytes for the same data. Closes the figure."""
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=110, bbox_inches="tight", pad_inches=0.15)  # with outer legends
     plt.close(figure)
+    Image.open(picture).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
+        path, optimize=True)

@@ -10,6 +10,7 @@ from lab.tests import FolderTest
 from lab.units import FOLDER, Unit
 
 MANIFEST = '{"question": "?", "flags": {}, "runs": [], "quick": {"sources": ["synth:plastic"]}}'
+PUBLISHED = experiments.FOLDER  # that of this repository; the tests put another in its place
 PROGRAM = """#!/bin/sh
 [ "$2" != bad ] || { echo broken >&2; exit 1; }
 echo 1 > "$1/number"
@@ -91,6 +92,32 @@ class MainTest(FolderTest):
         with contextlib.redirect_stdout(io.StringIO()):
             main.publish(experiment, out)  # what has failed shows in the tables
         self.assertTrue((experiment.published / "results.csv").exists())
+
+    def test_bulk_is_not_published(self):
+        self.module.tabulate = lambda _, results: {
+            "small": [{"n": n} for n in range(main.PUBLISHED_ROWS)],
+            "bulk": [{"n": n} for n in range(main.PUBLISHED_ROWS + 1)]}
+        self.run_it()
+        experiment, out = Experiment("x", self.module), self.folder / "out" / "x"
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            main.publish(experiment, out)
+        self.assertIn(f"not copied, more than {main.PUBLISHED_ROWS} rows: {out / 'bulk.csv'}",
+                      said.getvalue())
+        self.assertTrue((out / "bulk.csv").exists())
+        self.assertEqual({path.name for path in experiment.published.iterdir()},
+                         {"small.csv", "text.md", "manifest.json"})
+
+    def test_what_is_published_is_small_and_has_no_bulk(self):
+        lines = 0
+        for path in sorted(PUBLISHED.glob("*/results/*")):
+            with self.subTest(path=path):
+                self.assertIn(path.suffix, {".json", ".csv", ".md", ".png", ".jpg"})
+                self.assertLess(path.stat().st_size, 500_000)
+            if path.suffix in {".json", ".csv", ".md"}:
+                lines += path.read_text().count("\n")
+        self.assertEqual([main.bulk(folder) for folder in PUBLISHED.glob("*/results")
+                          if main.bulk(folder)], [])
+        self.assertLess(lines, 15_000)
 
     def test_units_that_tables_do_not_tell_apart_are_refused(self):
         self.module.ONE, self.words = ("solver",), ["good", "other"]
