@@ -203,8 +203,8 @@ int RunFit(std::span<const std::string> arguments) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " goes with --scene");
   }
   std::error_code ignored;
-  if (arguments.size() == 1 && !std::filesystem::is_directory(arguments[0], ignored)) {
-    if (!IsDefault("shard")) throw Error("--shard is for many SOURCEs");
+  if (arguments.size() == 1 && IsDefault("shard") &&
+      !std::filesystem::is_directory(arguments[0], ignored)) {
     return RunFitOfOne(arguments[0]);
   }
   return RunFitOfMany(arguments, SettingsFromFlags());
@@ -240,7 +240,8 @@ Command FitCommand() {
               "side by side, each into a folder of its name\nin DIR; DIR/fits.csv and "
               "DIR/index.html, a page of pictures, gather them. What DIR has already, of\nthe "
               "same measurement and flags, is not fitted again; one that fails does not stop the "
-              "others.\n\nWith --scene, does what `trilobe plan` says for the "
+              "others, and\nmakes the exit status 3. --shard=i/n shares them out between machines "
+              "(docs/batch.md).\n\nWith --scene, does what `trilobe plan` says for the "
               "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
               "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
               "command goes on with the others.\n\nsolvers:\n" +

@@ -237,7 +237,6 @@ TEST(FitMany, BadUseIsAnError) {
                               std::string("--shard=") + shard}),
                   "is no i/n");
   }
-  ExpectRefusal(RunProgram({"fit", "synth:felt", "--shard=1/2"}), "--shard is for many SOURCEs");
   EXPECT_FALSE(std::filesystem::exists(folder / "o"));
 }
 

@@ -98,10 +98,10 @@ TEST(RacesInScenes, OfMaterialsSideBySide) {
   const auto fits = FitScene(scene, settings, kThreads, [](const MaterialFit&) {});
   settings.cache = FitCache();
   for (size_t k = 0; k < fits.size(); ++k) {
-    ASSERT_TRUE(fits[k]);
+    ASSERT_TRUE(fits[k].fit);
     const auto alone = FitMaterial(scene.materials[k], settings, 1);
     ASSERT_TRUE(alone);
-    EXPECT_TRUE(SameBits(fits[k]->file.model, alone->file.model)) << fits[k]->name;
+    EXPECT_TRUE(SameBits(fits[k].fit->file.model, alone->file.model)) << fits[k].fit->name;
   }
 }
 
