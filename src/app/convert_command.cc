@@ -1,9 +1,14 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <iostream>
+#include <string>
 
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/io/csv_file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
@@ -13,18 +18,34 @@
 namespace trilobe {
 namespace {
 
+bool EndsInCsv(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".csv";
+}
+
+Measurement MeasurementOf(const std::string& source, const SourceOptions& options) {
+  if (!IsModelFile(source)) return LoadMeasurement(source, options);
+  Measurement measurement{
+      .source = source,
+      .kind = "reconstruction",
+      .table = Reconstruct(ReadModel(source).model, source, {}, options.num_threads)};
+  DecideMeasured(options, &measurement);
+  return measurement;
+}
+
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
-  const std::string out = RequiredMerlOut("convert");
+  const bool csv = EndsInCsv(FLAGS_out);
+  const std::string out = csv ? FLAGS_out : RequiredMerlOut("convert");
   Inputs({source}).CheckOutput(out);
-  const SourceOptions options = SourceOptionsFromFlags();
-  BrdfTable table;
-  if (IsModelFile(source)) {
-    table = Reconstruct(ReadModel(source).model, source, {}, options.num_threads);
-    DecideMeasured(options, &table);
-  } else {
-    table = LoadSource(source, options);
+  const Measurement measurement = MeasurementOf(source, SourceOptionsFromFlags());
+  if (csv) {
+    std::cout << "wrote " << out << ": CSV, " << WriteCsv(measurement, out) << " samples\n";
+    return 0;
   }
+  const BrdfTable& table = TableOf(measurement);
   WriteMerl(table, out);
   const BinCounts bins = CountBins(table);
   std::cout << "wrote " << out << ": MERL layout, " << bins.valid << " of " << bins.total
@@ -37,7 +58,7 @@ int RunConvert(std::span<const std::string> arguments) {
 Command ConvertCommand() {
   return {
       .name = "convert",
-      .summary = "write a measurement, or a model's reconstruction, in MERL layout",
+      .summary = "write a measurement, or a model's reconstruction, in MERL layout or as CSV",
       .arguments = "SOURCE|MODEL",
       .min_arguments = 1,
       .max_arguments = 1,
@@ -49,8 +70,10 @@ Command ConvertCommand() {
           "filled; "
           "elsewhere bins are marked invalid. With --max_angle, bins\nbeyond it are marked "
           "invalid, "
-          "too, whatever the input. A FILE whose ending says another format, as .bsdf does, "
-          "is an error.",
+          "too, whatever the input. Scattered samples have no bins: that is an error.\nTo a FILE "
+          "that ends in .csv it writes the valid samples, scattered ones too, a row each, with all "
+          "their\ndigits; a whole table takes some 130 MB. A FILE whose ending says another "
+          "format, as .bsdf does, is an\nerror.",
       .flags = {"out", "noise", "seed", "max_angle", "extrapolated", "threads"},
       .run = RunConvert};
 }

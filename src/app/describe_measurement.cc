@@ -4,13 +4,15 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "trilobe/app/albedo_table.h"
 #include "trilobe/app/bin_counts.h"
 #include "trilobe/app/describe.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/print.h"
+#include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/rgl_file.h"
@@ -23,29 +25,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A measurement and what only its own format knows.
-struct Measurement {
-  std::string kind;
-  BrdfTable table;
-  std::optional<RglBrdf> rgl;
-};
-
-Measurement LoadMeasurement(const std::string& source) {
-  const SourceOptions options = SourceOptionsFromFlags();
-  if (IsSynthetic(source)) return {"synthetic measurement", LoadSource(source, options), {}};
-  const std::string bytes = ReadFile(source);
-  if (!LooksLikeRgl(bytes)) return {"MERL measurement", ParseSource(bytes, source, options), {}};
-  RglBrdf brdf = RglBrdf::Parse(bytes, source);
-  BrdfTable table = TabulateRgl(brdf, source, {}, options.num_threads);
-  DecideMeasured(options, &table);
-  return {"RGL measurement, at MERL bins", std::move(table), std::move(brdf)};
-}
-
 // What a measurement says of single directions, and not only at bins: 0 where it was not measured.
 class MeasuredBrdf {
  public:
   explicit MeasuredBrdf(const Measurement& measurement) : measurement_(measurement) {
-    if (!measurement.rgl) tabulated_.emplace(measurement.table);
+    if (!measurement.rgl) tabulated_.emplace(*measurement.table);
   }
 
   Rgb operator()(const DirectionPair& pair) const {
@@ -68,7 +52,7 @@ class MeasuredBrdf {
   const Measurement& measurement_;
   // Directions at the limit itself count, whatever the last digit of their cosine.
   const double min_cosine_ =
-      measurement_.table.max_theta < kPi / 2 ? std::cos(measurement_.table.max_theta) - 1e-12 : 0;
+      measurement_.table->max_theta < kPi / 2 ? std::cos(measurement_.table->max_theta) - 1e-12 : 0;
   std::optional<TabulatedBrdf> tabulated_;
 };
 
@@ -88,12 +72,10 @@ Json ToJson(const PairError& error) {
           {"percentile_95", error.pairs > 0 ? Json(error.percentile_95) : Json()}};
 }
 
-}  // namespace
-
-void DescribeMeasurement(const std::string& source) {
+void DescribeTable(const Measurement& measurement) {
+  const std::string& source = measurement.source;
   const int num_threads = ThreadsFromFlags();
-  const Measurement measurement = LoadMeasurement(source);
-  const BrdfTable& table = measurement.table;
+  const BrdfTable& table = *measurement.table;
   const BinCounts bins = CountBins(table);
   const ValueRange range = RangeOfValidBins(table);
   const PairError exchange = ExchangeError(table);
@@ -153,6 +135,95 @@ void DescribeMeasurement(const std::string& source) {
   if (albedo) {
     const bool whole = bins.extrapolated + bins.beyond_nodes + bins.beyond_max_angle == 0;
     Print(*albedo, whole ? "directional albedo" : "directional albedo of what was measured");
+  }
+}
+
+// Which values an angle has among the samples.
+struct AngleRange {
+  double min_deg = 0, max_deg = 0;
+  int values = 0;  // that differ by more than 1e-6 rad
+};
+
+AngleRange RangeOf(const std::vector<SphericalAngles>& all, double SphericalAngles::*angle) {
+  std::vector<double> sorted;
+  sorted.reserve(all.size());
+  for (const SphericalAngles& angles : all) sorted.push_back(angles.*angle);
+  if (sorted.empty()) return {};
+  std::ranges::sort(sorted);
+  AngleRange range{RadiansToDegrees(sorted.front()), RadiansToDegrees(sorted.back()), 1};
+  for (size_t k = 1; k < sorted.size(); ++k) range.values += sorted[k] - sorted[k - 1] > 1e-6;
+  return range;
+}
+
+Json ToJson(const AngleRange& range) {
+  return {{"min", range.min_deg}, {"max", range.max_deg}, {"values", range.values}};
+}
+
+ValueRange RangeOf(const std::vector<Rgb>& values) {
+  if (values.empty()) return {};
+  ValueRange range{values.front(), values.front()};
+  for (const Rgb& rho : values) {
+    for (int c = 0; c < kChannels; ++c) {
+      range.min[c] = std::min(range.min[c], rho[c]);
+      range.max[c] = std::max(range.max[c], rho[c]);
+    }
+  }
+  return range;
+}
+
+void DescribeScattered(const Measurement& measurement) {
+  if (!FLAGS_out.empty()) {
+    throw Error("--out is for a picture of the bins of a table; " + measurement.source + " is a " +
+                measurement.kind);
+  }
+  const AngleRange theta_i = RangeOf(measurement.angles, &SphericalAngles::theta_i);
+  const AngleRange theta_o = RangeOf(measurement.angles, &SphericalAngles::theta_o);
+  const ValueRange range = RangeOf(measurement.samples.rho);
+  const PairError reciprocity = ReciprocityError(measurement);
+  const BinCounts& counts = measurement.counts;
+  if (FLAGS_json) {
+    PrintJson({{"file", measurement.source},
+               {"kind", measurement.kind},
+               {"samples", ToJson(counts)},
+               {"out_of_gamut", measurement.out_of_gamut},
+               {"max_angle", MaxAngleDegrees(measurement)},
+               {"theta_i", ToJson(theta_i)},
+               {"theta_o", ToJson(theta_o)},
+               {"min", range.min},
+               {"max", range.max},
+               {"reciprocity_error", ToJson(reciprocity)}});
+    return;
+  }
+  PrintLine("file", measurement.source);
+  PrintLine("kind", measurement.kind);
+  PrintLine("samples", std::to_string(counts.total));
+  PrintLine("  valid", std::to_string(counts.valid));
+  for (const LeftOut& left_out : ReasonsOf(counts)) {
+    if (left_out.bins > 0) PrintLine("  " + left_out.reason, std::to_string(left_out.bins));
+  }
+  if (measurement.out_of_gamut > 0) {
+    PrintLine("out of gamut, set to 0", std::to_string(measurement.out_of_gamut));
+  }
+  if (counts.valid == 0) return;
+  const auto text = [](const AngleRange& angles) {
+    return Text(angles.min_deg) + " to " + Text(angles.max_deg) + " deg, " +
+           std::to_string(angles.values) + (angles.values == 1 ? " value" : " values");
+  };
+  PrintLine("theta_i", text(theta_i));
+  PrintLine("theta_o", text(theta_o));
+  PrintLine("smallest value, RGB", Text(range.min) + " /sr");
+  PrintLine("largest value, RGB", Text(range.max) + " /sr");
+  Print("reciprocity error", reciprocity);
+}
+
+}  // namespace
+
+void DescribeMeasurement(const std::string& source) {
+  const Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
+  if (measurement.table) {
+    DescribeTable(measurement);
+  } else {
+    DescribeScattered(measurement);
   }
 }
 

@@ -35,10 +35,9 @@ Command InfoCommand() {
           "mirror-symmetric\nmaterial; for RGL files also the plain reciprocity error), and the "
           "directional albedo over\ntheta_i with the angle where it passes 1, all of what was "
           "measured. With --out=DIR it draws\nDIR/measured.png: how many of the bins are valid, "
-          "over "
-          "theta_i and theta_o. A model file: its tables,\ncoefficients, how it was fitted, and "
-          "its "
-          "albedo.",
+          "over theta_i and theta_o.\nScattered samples: how many are valid and why the others are "
+          "not, their angles and values, and how\nfar those with swapped directions differ.\nA "
+          "model file: its tables, coefficients, how it was fitted, and its albedo.",
       .flags = {"json", "out", "noise", "seed", "max_angle", "extrapolated", "threads"},
       .run = RunInfo};
 }

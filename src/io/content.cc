@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -26,6 +27,7 @@ constexpr const char* kJsonInUtf16 = "a JSON file in UTF-16; save it as UTF-8";
 constexpr Signature kSignatures[] = {
     {"\x5A\0\0\0\x5A\0\0\0\xB4\0\0\0"sv, Kind::kMerl, "a MERL measurement"},
     {kTensorMagic, Kind::kTensor, "an RGL measurement"},
+    {kMbsdfMagic, Kind::kMbsdf, "an MBSDF measurement"},
     {"\xFF\xFE{\0"sv, Kind::kForeign, kJsonInUtf16},
     {"\xFE\xFF\0{"sv, Kind::kForeign, kJsonInUtf16},
     {"{\0\""sv, Kind::kForeign, kJsonInUtf16},
@@ -70,6 +72,63 @@ bool LooksLikeText(std::string_view bytes) {
   return true;
 }
 
+constexpr std::string_view kSpace = " \t\r";
+
+std::string_view Trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kSpace);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
+}
+
+// Cuts the first line from a text, trimmed.
+std::string_view TakeLine(std::string_view* text) {
+  const size_t end = std::min(text->find('\n'), text->size());
+  const std::string_view line = text->substr(0, end);
+  text->remove_prefix(std::min(end + 1, text->size()));
+  return Trimmed(line);
+}
+
+// The same for the first line that is neither blank nor a comment.
+std::string_view TakeSignificantLine(std::string_view* text) {
+  while (!text->empty()) {
+    const std::string_view line = TakeLine(text);
+    if (!line.empty() && line[0] != '#') return line;
+  }
+  return {};
+}
+
+bool HasCell(std::string_view line, std::string_view cell) {
+  while (!line.empty()) {
+    const size_t end = std::min(line.find(','), line.size());
+    if (Trimmed(line.substr(0, end)) == cell) return true;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return false;
+}
+
+// A header of keys, of which VARS is the last.
+bool LooksLikeAstm(std::string_view text) {
+  constexpr size_t kLongestHeader = 1 << 16;
+  text = text.substr(0, kLongestHeader);
+  while (!text.empty()) {
+    const std::string_view line = TakeLine(&text);
+    if (line.starts_with("VARS ") || line.starts_with("VARS\t")) return true;
+  }
+  return false;
+}
+
+// The number of wavelengths alone on its line, then the first of them [nm].
+bool LooksLikeCornell(std::string_view text) {
+  const auto number_at_begin = [](std::string_view line, bool alone) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+    return error == std::errc() && (!alone || end == line.data() + line.size()) ? number : 0;
+  };
+  const double count = number_at_begin(TakeSignificantLine(&text), true);
+  const double first = number_at_begin(TakeSignificantLine(&text), false);
+  return count >= 2 && count <= 10000 && first >= 200 && first <= 3000;
+}
+
 }  // namespace
 
 Content RecogniseContent(std::string_view bytes) {
@@ -81,6 +140,10 @@ Content RecogniseContent(std::string_view bytes) {
     if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
     const size_t first = bytes.find_first_not_of(" \t\r\n");
     if (first != std::string_view::npos && bytes[first] == '{') return {Kind::kJson, "a JSON file"};
+    std::string_view rest = bytes;
+    if (HasCell(TakeSignificantLine(&rest), "theta_i")) return {Kind::kCsv, "samples in CSV"};
+    if (LooksLikeAstm(bytes)) return {Kind::kAstm, "an ASTM E1392 measurement"};
+    if (LooksLikeCornell(bytes)) return {Kind::kCornell, "spectra as Cornell measured them"};
     return {Kind::kText, "text"};
   }
   if (bytes.size() == kUtiaSize) {

@@ -7,17 +7,22 @@
 namespace trilobe {
 
 inline constexpr std::string_view kTensorMagic("tensor_file\0", 12);
+inline constexpr std::string_view kMbsdfMagic = "NVIDIA ARC MBSDF V1\n";
 
-// What a file holds, as far as its beginning tells (256 bytes are enough) and, for UTIA tables,
-// which have no header, its size.
+// What a file holds, as far as its beginning tells (256 bytes are enough for all but the texts with
+// samples, whose headers may be longer) and, for UTIA tables, which have no header, its size.
 struct Content {
   enum class Kind {
     kUnknown,
-    kMerl,    // by the header alone
-    kTensor,  // of RGL
-    kJson,    // an object, in UTF-8
-    kText,    // any other
-    kForeign  // nothing that this program reads, or a picture
+    kMerl,     // by the header alone
+    kTensor,   // of RGL
+    kMbsdf,    // of NVIDIA MDL
+    kAstm,     // E1392-96
+    kCornell,  // scattered spectra
+    kCsv,      // samples with a header row
+    kJson,     // an object, in UTF-8
+    kText,     // any other
+    kForeign   // nothing that this program reads, or a picture
   };
   Kind kind = Kind::kUnknown;
   std::string name;  // "a PNG picture"; for text in UTF-16, also what to do; "" if unknown

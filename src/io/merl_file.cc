@@ -32,8 +32,7 @@ std::string Defect(std::string_view bytes, const MerlGrid& grid) {
   if (bytes.empty()) return "the file is empty; " + expected;
   if (const Content content = RecogniseContent(bytes);
       content.kind != Content::Kind::kUnknown && content.kind != Content::Kind::kMerl) {
-    return "this is " + content.name +
-           "; a measurement is a MERL .binary file, an RGL *_rgb.bsdf file, or synth:NAME";
+    return "this is " + content.name + "; " + expected;
   }
   if (bytes.size() < kHeaderSize) return "truncated: " + size + "; " + expected;
   Dimensions n;

@@ -4,15 +4,16 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "trilobe/io/measurement.h"
 #include "trilobe/io/synth.h"
 #include "trilobe/model/brdf_table.h"
 
 namespace trilobe {
 
-// A measurement by the name that a user types: a path to a MERL `.binary` or RGL `*_rgb.bsdf` file
-// (told apart by content), or `synth:NAME`. Noise and seed matter to `synth:` only, `extrapolated`
-// to RGL files.
+// A measurement by the name that a user types: a path to a file of one of MeasurementFormats(), or
+// `synth:NAME`. Noise and seed matter to `synth:` only, `extrapolated` to RGL files.
 // Throws Error.
 struct SourceOptions {
   double noise = 0.0;  // relative standard deviation of the multiplicative noise
@@ -21,19 +22,37 @@ struct SourceOptions {
   double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured
   bool extrapolated = false;  // what the authors of a file made up counts as measured
 };
+Measurement LoadMeasurement(const std::string& source, const SourceOptions& options = {});
+
+// The same where a table is needed. Throws Error for scattered data, too.
 BrdfTable LoadSource(const std::string& source, const SourceOptions& options = {});
 
 // Whether the source is synth:NAME, and if it is, what it names. Throws Error for an unknown NAME.
 bool IsSynthetic(std::string_view source);
 const SynthMaterial& SynthMaterialOf(std::string_view source);
 
-// The measurement in the bytes of a file, whose name `source` is. Throws Error.
+// The measurement in the bytes of a file, whose name `source` is. Its content tells the format; the
+// ending of the name decides only where the content is text that could be anything. Throws Error.
+Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
+                             const SourceOptions& options = {});
 BrdfTable ParseSource(std::string_view bytes, const std::string& source,
                       const SourceOptions& options = {});
 
-// What LoadSource and ParseSource do last: decides, by the options, which bins of a table that was
-// read count as measured.
+// What these do last: decides, by the options, which bins or samples that were read count as
+// measured.
 void DecideMeasured(const SourceOptions& options, BrdfTable* table);
+void DecideMeasured(const SourceOptions& options, Measurement* measurement);
+
+// A format of files that hold a measurement.
+struct MeasurementFormat {
+  std::string name;         // "merl"
+  std::string description;  // "a MERL .binary file"
+  std::string ending;       // ".binary": of such files' names
+  bool is_text = false;     // so that content may not tell
+  bool (*recognise)(std::string_view bytes) = nullptr;
+  Measurement (*read)(std::string_view bytes, const std::string& source, int num_threads) = nullptr;
+};
+const std::vector<MeasurementFormat>& MeasurementFormats();
 
 }  // namespace trilobe
 

@@ -33,6 +33,15 @@ PairError Summarize(std::vector<double> differences) {
 
 }  // namespace
 
+PairError ErrorOfPairs(std::span<const std::pair<Rgb, Rgb>> pairs) {
+  std::vector<double> differences;
+  differences.reserve(pairs.size() * kChannels);
+  for (const auto& [a, b] : pairs) {
+    for (int c = 0; c < kChannels; ++c) differences.push_back(RelativeDifference(a[c], b[c]));
+  }
+  return Summarize(std::move(differences));
+}
+
 BinCounts CountBins(const BrdfTable& table) {
   CheckTable(table);
   BinCounts counts{.total = table.grid.size()};

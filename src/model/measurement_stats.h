@@ -2,6 +2,8 @@
 #define TRILOBE_MODEL_MEASUREMENT_STATS_H_
 
 #include <functional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "trilobe/model/albedo.h"
@@ -41,6 +43,8 @@ struct PairError {
   double median = 0;
   double percentile_95 = 0;
 };
+
+PairError ErrorOfPairs(std::span<const std::pair<Rgb, Rgb>> pairs);
 
 // Exchange error of a table: bin (h, d, p) against (h, d, phi_d - 1 - p), where both are valid. The
 // two stand for swapped directions after a reflection in the plane of the half vector and the

@@ -204,10 +204,59 @@ TEST(ConvertTest, WritesAModelsReconstruction) {
   EXPECT_LT(score["relative_objective"], 1e-28);
 }
 
+// What info prints of scattered samples, and convert makes of them, is the same for each format.
+const char kCsv[] =
+    "theta_i,phi_i,theta_o,phi_o,r,g,b\n# a comment\n"
+    "10,0,70,0,1,2,3\n70,0,10,0,1,2,3.3\n10,0,20,0,4,5,6\n10,0,20,0,-1,5,6\n";
+
+TEST(ConvertTest, WritesSamplesAsCsv) {
+  const TemporaryFolder folder;
+  const std::string felt = folder / "felt.csv", copy = folder / "copy.csv";
+  const ProgramResult result =
+      RunProgram({"convert", "synth:felt", "--max_angle=20", "--out=" + felt});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const json table =
+      json::parse(RunProgram({"info", "synth:felt", "--max_angle=20", "--json"}).out);
+  const std::string valid = std::to_string(table["bins"]["valid"].get<int>());
+  EXPECT_EQ(result.out, "wrote " + felt + ": CSV, " + valid + " samples\n");
+  EXPECT_THAT(Contents(felt), StartsWith("# BRDF [1/sr] of " + valid + " pairs"));
+  const json read = json::parse(RunProgram({"info", felt, "--json"}).out);
+  EXPECT_EQ(read["samples"]["valid"], table["bins"]["valid"]);
+  EXPECT_EQ(read["min"], table["min"]);
+  EXPECT_EQ(read["max"], table["max"]);
+  // From CSV to CSV, all of it or a part.
+  EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy}).status, 0);
+  json again = json::parse(RunProgram({"info", copy, "--json"}).out);
+  EXPECT_EQ(again["samples"], read["samples"]);
+  EXPECT_EQ(again["reciprocity_error"], read["reciprocity_error"]);
+  EXPECT_EQ(RunProgram({"convert", felt, "--out=" + copy, "--max_angle=10"}).status, 0);
+  again = json::parse(RunProgram({"info", copy, "--json"}).out);
+  EXPECT_LT(again["samples"]["valid"], read["samples"]["valid"]);
+  // And from a model.
+  Write(folder / "model.json", kLambertianModel);
+  const ProgramResult model = RunProgram(
+      {"convert", folder / "model.json", "--max_angle=5", "--out=" + (folder / "model.CSV")});
+  EXPECT_EQ(model.status, 0) << model.err;
+  const json lambertian = json::parse(RunProgram({"info", folder / "model.CSV", "--json"}).out);
+  EXPECT_NEAR(lambertian["max"][2].get<double>(), 0.3, 1e-12);
+}
+
+TEST(ConvertTest, ScatteredSamplesHaveNoBins) {
+  const TemporaryFolder folder;
+  Write(folder / "x.csv", kCsv);
+  ExpectError(RunProgram({"convert", folder / "x.csv", "--out=" + (folder / "y.binary")}),
+              "x.csv: this command needs a table on the MERL grid, and this is a CSV file");
+  EXPECT_FALSE(std::filesystem::exists(folder / "y.binary"));
+  ExpectError(RunProgram({"convert", folder / "x.csv", "--out=" + (folder / "x.csv")}), "x.csv");
+  EXPECT_EQ(Contents(folder / "x.csv"), kCsv);
+  ExpectError(RunProgram({"score", folder / "x.csv", "synth:felt"}), "needs a table");
+}
+
 TEST(ConvertTest, RejectsBadInput) {
   ExpectError(RunProgram({"convert", "synth:foam"}), "needs --out=FILE");
+  ExpectError(RunProgram({"synth", "foam", "--out=x.CSV"}), "x.CSV: trilobe synth writes MERL");
   const TemporaryFolder folder;
-  for (const char* name : {"x.bsdf", "x.json", "x.CSV", "x.png", "x.hdr", "x.exr", "x.binary.gz"}) {
+  for (const char* name : {"x.bsdf", "x.json", "x.png", "x.hdr", "x.exr", "x.binary.gz"}) {
     for (const std::vector<std::string>& words :
          {std::vector<std::string>{"convert", "synth:foam"}, {"synth", "foam"}}) {
       std::vector<std::string> arguments = words;
@@ -374,6 +423,36 @@ TEST(InfoTest, DescribesAFileWithoutAnyValidBin) {
   const json info = json::parse(RunProgram({"info", folder / "lost.binary", "--json"}).out);
   EXPECT_EQ(info["bins"]["valid"], 0);
   EXPECT_TRUE(info["albedo"].is_null());
+}
+
+TEST(InfoTest, DescribesScatteredSamples) {
+  const TemporaryFolder folder;
+  Write(folder / "x.csv", kCsv);
+  const ProgramResult text = RunProgram({"info", folder / "x.csv"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(ContainsRegex("kind +CSV file of scattered samples\n"),
+                              ContainsRegex("samples +4\n +valid +3\n +lost .negative. +1\n"),
+                              ContainsRegex("theta_i +10 to 70 deg, 2 values\n"),
+                              ContainsRegex("reciprocity error +median 0 %,.* 1 pairs\n")));
+  const json info = json::parse(RunProgram({"info", folder / "x.csv", "--json"}).out);
+  EXPECT_EQ(info["samples"]["total"], 4);
+  EXPECT_EQ(info["samples"]["negative"], 1);
+  EXPECT_EQ(info["max_angle"], 70);
+  EXPECT_NEAR(info["theta_o"]["max"].get<double>(), 70, 1e-9);
+  EXPECT_EQ(info["max"], (json{4, 5, 6}));
+  EXPECT_EQ(info["reciprocity_error"]["pairs"], 1);
+  const json limited =
+      json::parse(RunProgram({"info", folder / "x.csv", "--json", "--max_angle=60"}).out);
+  EXPECT_EQ(limited["samples"]["beyond_max_angle"], 2);
+  EXPECT_TRUE(limited["reciprocity_error"]["median"].is_null());
+  ExpectError(RunProgram({"info", folder / "x.csv", "--out=" + (folder / "p")}),
+              "--out is for a picture of the bins of a table");
+  const ProgramResult none = RunProgram({"info", folder / "x.csv", "--max_angle=5"});
+  EXPECT_EQ(none.status, 0) << none.err;
+  EXPECT_THAT(none.out, ContainsRegex("valid +0\n"));
+  Write(folder / "bad.csv", std::string(kCsv) + "1,2,3,4,5,6,x\n");
+  ExpectError(RunProgram({"info", folder / "bad.csv"}),
+              "bad.csv: line 7, column 7 (b): 'x' is no number");
 }
 
 TEST(InfoTest, DescribesAModel) {

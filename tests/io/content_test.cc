@@ -41,6 +41,17 @@ TEST(Content, IsRecognisedByItsFirstBytes) {
   Check("", Kind::kUnknown, "");
   Check(merl, Kind::kMerl, "a MERL measurement");
   Check(std::string(kTensorMagic) + "\1", Kind::kTensor, "an RGL measurement");
+  Check("NVIDIA ARC MBSDF V1\nname=\"x\"\n", Kind::kMbsdf, "an MBSDF measurement");
+  const std::string csv = "# mine\n\n phi_i, theta_i ,r\r\n";
+  Check(csv, Kind::kCsv, "samples in CSV");
+  Check("\xEF\xBB\xBF" + csv, Kind::kCsv, "samples in CSV");
+  Check("a theta_i,phi_i\n", Kind::kText, "text");
+  Check("TITLE theta_i\n" + std::string(5000, '-') + "\nVARS theta_i,phi_i,theta_s,phi_s,R,G,B\n",
+        Kind::kAstm, "an ASTM E1392 measurement");
+  Check("TITLE VARS theta_i\n", Kind::kText, "text");
+  Check("# wls\n31\n\n# nm\n400 410\n", Kind::kCornell, "spectra as Cornell measured them");
+  Check("31\n1 2 3\n", Kind::kText, "text");
+  Check("1\n400\n", Kind::kText, "text");
   Check(kJson, Kind::kJson, "a JSON file");
   Check("\xEF\xBB\xBF \n" + kJson, Kind::kJson, "a JSON file");
   Check(Utf16("\xFF\xFE", kJson, true), Kind::kForeign, "a JSON file in UTF-16; save it as UTF-8");

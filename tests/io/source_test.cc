@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "tests/io/tensor_bytes.h"
 #include "tests/io/test_directory.h"
@@ -90,6 +92,82 @@ TEST(LoadSource, ErrorsSayWhatToDo) {
   WriteModel(ModelFile(), directory.Path("model.json"));
   EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Path("model.json")); }),
               AllOf(HasSubstr("model.json"), HasSubstr("this is a JSON file; a measurement is a")));
+}
+
+const char kCsv[] = "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,70,0,1,2,3\n10,0,20,0,4,5,6\n";
+
+TEST(LoadMeasurement, IsATableOrScattered) {
+  const TestDirectory directory;
+  const Measurement synthetic = LoadMeasurement("synth:foam", {.max_angle_deg = 40});
+  EXPECT_EQ(synthetic.kind, "synthetic measurement");
+  EXPECT_EQ(synthetic.source, "synth:foam");
+  ASSERT_TRUE(synthetic.table);
+  EXPECT_EQ(SamplesOf(synthetic).size(), CountsOf(synthetic).valid);
+  EXPECT_EQ(MaxAngleDegrees(synthetic), 40);
+  WriteMerl(*synthetic.table, directory.Path("foam.binary"));
+  EXPECT_EQ(LoadMeasurement(directory.Path("foam.binary")).kind, "MERL measurement");
+
+  TinyRgl file;
+  file.FillConstant(4, 1, 1);
+  const Measurement rgl = LoadMeasurement(directory.Make("b.bsdf", file.Bytes()));
+  EXPECT_EQ(rgl.kind, "RGL measurement, at MERL bins");
+  ASSERT_TRUE(rgl.table && rgl.rgl);
+
+  const std::string path = directory.Make("x", kCsv);  // told by its content
+  const Measurement csv = LoadMeasurement(path);
+  EXPECT_FALSE(csv.table);
+  EXPECT_EQ(csv.kind, "CSV file of scattered samples");
+  EXPECT_EQ(SamplesOf(csv).source, path);
+  EXPECT_EQ(SamplesOf(csv).size(), 2);
+  const Measurement limited = LoadMeasurement(path, {.max_angle_deg = 60});
+  EXPECT_EQ(CountsOf(limited).valid, 1);
+  EXPECT_EQ(CountsOf(limited).beyond_max_angle, 1);
+  EXPECT_EQ(MaxAngleDegrees(limited), 20);
+  EXPECT_EQ(SamplesOf(limited).rho, (std::vector<Rgb>{{4, 5, 6}}));
+}
+
+TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
+  const TestDirectory directory;
+  const std::string text = "theta,phi\n1,2\n";
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.CSV", text)); }),
+              HasSubstr("line 1: the header has no column theta_i"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.astm", text)); }),
+              HasSubstr("no line VARS"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.brdf", text)); }),
+              HasSubstr("line 1, column 1 (number of wavelengths): expected a number"));
+  for (const char* name : {"x.txt", "x.binary", "x.bsdf"}) {
+    EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make(name, text)); }),
+                HasSubstr("this is text; a measurement is a MERL .binary file, "))
+        << name;
+  }
+}
+
+TEST(LoadSource, NeedsATable) {
+  const TestDirectory directory;
+  const std::string path = directory.Make("x.csv", kCsv);
+  EXPECT_EQ(ErrorOf([&] { LoadSource(path); }),
+            path +
+                ": this command needs a table on the MERL grid, and this is a CSV file of "
+                "scattered samples; take a MERL or RGL file, or synth:NAME");
+  EXPECT_THAT(ErrorOf([&] { ParseSource(kCsv, "x.csv"); }), HasSubstr("needs a table"));
+}
+
+TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
+  TinyRgl file;
+  file.FillConstant(4, 1, 1);
+  const std::map<std::string, std::string> begins = {
+      {"merl", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12)},
+      {"rgl", file.Bytes()},
+      {"mbsdf", "NVIDIA ARC MBSDF V1\n"},
+      {"cornell", "31\n400 410\n"},
+      {"astm", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n"},
+      {"csv", kCsv}};
+  ASSERT_EQ(MeasurementFormats().size(), begins.size());
+  for (const MeasurementFormat& format : MeasurementFormats()) {
+    for (const auto& [name, bytes] : begins) {
+      EXPECT_EQ(format.recognise(bytes), format.name == name) << format.name << " of " << name;
+    }
+  }
 }
 
 }  // namespace

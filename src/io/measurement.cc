@@ -1,0 +1,178 @@
+#include "trilobe/io/measurement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "trilobe/base/error.h"
+
+namespace trilobe {
+namespace {
+
+Direction ToDirection(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
+
+// The smaller theta, the larger, and the angle between the azimuths [1e-6 rad]: the same for
+// samples that reciprocity makes equal.
+using ReciprocalKey = std::array<int64_t, 3>;
+
+struct KeyedSample {
+  ReciprocalKey key;
+  bool swapped;  // theta_i is the larger
+  int sample;
+};
+
+KeyedSample KeyOf(const SphericalAngles& angles, int sample) {
+  const auto round = [](double x) { return static_cast<int64_t>(std::llround(x * 1e6)); };
+  const int64_t i = round(angles.theta_i), o = round(angles.theta_o);
+  const double between = std::abs(std::remainder(angles.phi_o - angles.phi_i, 2 * kPi));
+  return {.key = {std::min(i, o), std::max(i, o), std::min(i, o) == 0 ? 0 : round(between)},
+          .swapped = i > o,
+          .sample = sample};
+}
+
+}  // namespace
+
+DirectionPair ToDirections(const SphericalAngles& angles) {
+  return {ToDirection(angles.theta_i, angles.phi_i), ToDirection(angles.theta_o, angles.phi_o)};
+}
+
+SphericalAngles ToSphericalAngles(const DirectionPair& pair) {
+  const auto& [wi, wo] = pair;
+  double phi = std::atan2(wo[1], wo[0]) - std::atan2(wi[1], wi[0]);
+  if (phi < 0) phi += 2 * kPi;
+  return {Theta(wi), 0, Theta(wo), phi};
+}
+
+BrdfSamples SamplesOf(const Measurement& measurement) {
+  if (measurement.table) return ValidSamples(*measurement.table);
+  if (measurement.samples.size() == 0) {
+    throw Error(measurement.source + ": no valid sample of " +
+                std::to_string(measurement.counts.total) +
+                ": nowhere are both directions above the surface and all values finite and >= 0, "
+                "within --max_angle; trilobe info counts why");
+  }
+  return measurement.samples;
+}
+
+const BrdfTable& TableOf(const Measurement& measurement) {
+  if (measurement.table) return *measurement.table;
+  throw Error(measurement.source + ": this command needs a table on the MERL grid, and this is a " +
+              measurement.kind + "; take a MERL or RGL file, or synth:NAME");
+}
+
+BrdfTable TableOf(Measurement&& measurement) {
+  TableOf(std::as_const(measurement));
+  return *std::move(measurement.table);
+}
+
+BinCounts CountsOf(const Measurement& measurement) {
+  return measurement.table ? CountBins(*measurement.table) : measurement.counts;
+}
+
+double MaxAngleDegrees(const Measurement& measurement) {
+  if (measurement.table) return MaxAngleDegrees(*measurement.table);
+  BrdfTable as_table;
+  as_table.max_theta = measurement.max_theta;
+  return MaxAngleDegrees(as_table);
+}
+
+void LimitAngles(double max_theta, Measurement* measurement) {
+  if (measurement->table) {
+    LimitAngles(max_theta, Unmeasured::kBeyondMaxAngle, &*measurement->table);
+    return;
+  }
+  constexpr double kRounding = 1e-9;  // of degrees that became radians: 60 are not beyond 60
+  const double largest = std::min(max_theta, measurement->max_theta);
+  std::vector<int> kept;
+  std::vector<SphericalAngles> angles;
+  measurement->max_theta = 0;
+  for (int j = 0; j < measurement->samples.size(); ++j) {
+    const SphericalAngles& at = measurement->angles[j];
+    const double theta = std::max(at.theta_i, at.theta_o);
+    if (theta > largest + kRounding) continue;
+    kept.push_back(j);
+    angles.push_back(at);
+    measurement->max_theta = std::max(measurement->max_theta, std::min(theta, largest));
+  }
+  const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
+  if (left_out == 0) return;
+  measurement->samples = Selected(measurement->samples, kept);
+  measurement->angles = std::move(angles);
+  measurement->counts.valid -= left_out;
+  measurement->counts.beyond_max_angle += left_out;
+}
+
+PairError ReciprocityError(const Measurement& scattered) {
+  std::vector<KeyedSample> keys;
+  keys.reserve(scattered.angles.size());
+  for (int j = 0; j < scattered.samples.size(); ++j) {
+    keys.push_back(KeyOf(scattered.angles[j], j));
+  }
+  std::ranges::stable_sort(keys, {}, &KeyedSample::key);
+  std::vector<std::pair<Rgb, Rgb>> pairs;
+  for (size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
+    std::array<Rgb, 2> mean{};
+    std::array<int, 2> count{};
+    for (; end < keys.size() && keys[end].key == keys[begin].key; ++end) {
+      const Rgb& rho = scattered.samples.rho[keys[end].sample];
+      const bool side = keys[end].swapped;
+      ++count[side];
+      for (int c = 0; c < kChannels; ++c) mean[side][c] += (rho[c] - mean[side][c]) / count[side];
+    }
+    if (count[0] == 0 || count[1] == 0) continue;
+    pairs.emplace_back(mean[0], mean[1]);
+  }
+  return ErrorOfPairs(pairs);
+}
+
+SampleCollector::SampleCollector(const std::string& source, const std::string& kind) {
+  measurement_.source = source;
+  measurement_.kind = kind;
+  measurement_.samples.source = source;
+  measurement_.max_theta = 0;
+}
+
+void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
+  // The horizon is below the surface, too; whoever takes the samples asks by the cosines of the
+  // half and difference angles.
+  const bool above = std::max(angles.theta_i, angles.theta_o) < kPi / 2;
+  const HalfDiffAngles half_diff = above ? ToHalfDiff(ToDirections(angles)) : HalfDiffAngles{};
+  const Cosines cosines = ToCosines(half_diff);
+  if (!above || !(cosines.i > 0 && cosines.o > 0)) {
+    LeaveOut(&BinCounts::below_surface);
+  } else if (!std::ranges::all_of(rho, [](double x) { return std::isfinite(x); })) {
+    LeaveOut(&BinCounts::non_finite);
+  } else if (std::ranges::any_of(rho, [](double x) { return x < 0; })) {
+    LeaveOut(&BinCounts::negative);
+  } else {
+    ++measurement_.counts.total;
+    ++measurement_.counts.valid;
+    measurement_.samples.angles.push_back(half_diff);
+    measurement_.samples.rho.push_back(rho);
+    measurement_.angles.push_back(angles);
+    measurement_.max_theta = std::max({measurement_.max_theta, angles.theta_i, angles.theta_o});
+  }
+}
+
+void SampleCollector::AddColor(const SphericalAngles& angles, const Rgb& rho) {
+  Rgb clipped = rho;
+  for (double& x : clipped) x = x < 0 ? 0 : x;
+  const int valid = measurement_.counts.valid;
+  Add(angles, clipped);
+  if (clipped != rho) measurement_.out_of_gamut += measurement_.counts.valid - valid;
+}
+
+void SampleCollector::LeaveOut(int BinCounts::*reason) {
+  ++measurement_.counts.total;
+  ++(measurement_.counts.*reason);
+}
+
+Measurement SampleCollector::Take() { return std::move(measurement_); }
+
+}  // namespace trilobe

@@ -1,0 +1,85 @@
+#ifndef TRILOBE_IO_MEASUREMENT_H_
+#define TRILOBE_IO_MEASUREMENT_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/model/brdf_samples.h"
+#include "trilobe/model/brdf_table.h"
+#include "trilobe/model/channels.h"
+#include "trilobe/model/directions.h"
+#include "trilobe/model/measurement_stats.h"
+
+namespace trilobe {
+
+class RglBrdf;
+
+// A pair of directions as a goniometer gives it [rad]: theta from the normal, phi about it.
+struct SphericalAngles {
+  double theta_i = 0;
+  double phi_i = 0;
+  double theta_o = 0;
+  double phi_o = 0;
+};
+DirectionPair ToDirections(const SphericalAngles& angles);
+SphericalAngles ToSphericalAngles(const DirectionPair& pair);  // phi_i = 0, phi_o from 0 to 2 pi
+
+// What was measured of a material, and where it comes from: a table where the data are on a MERL
+// grid, else scattered samples.
+struct Measurement {
+  std::string source;  // file name or synth:NAME, for messages and reports
+  std::string kind;    // "MERL measurement"
+  std::optional<BrdfTable> table = {};
+  std::shared_ptr<const RglBrdf> rgl = nullptr;  // what the table of an RGL file was made from
+
+  // Of scattered data:
+  BrdfSamples samples = {};                  // the valid ones
+  std::vector<SphericalAngles> angles = {};  // [samples.size()], with the order of wi and wo, which
+                                             // half and difference angles do not tell
+  BinCounts counts = {};       // samples of the file: all, valid ones, why others were left out
+  int out_of_gamut = 0;        // with a channel set to 0, as sRGB cannot show the colour
+  double max_theta = kPi / 2;  // [rad] no theta_i or theta_o of a valid sample is beyond this
+};
+
+// What a fit sees of it. Throws Error where nothing is valid.
+BrdfSamples SamplesOf(const Measurement& measurement);
+
+// The table. Throws Error, which says that a table is needed, where there is none.
+const BrdfTable& TableOf(const Measurement& measurement);
+BrdfTable TableOf(Measurement&& measurement);
+
+// Bins or samples: all, valid ones, and why the others are left out.
+BinCounts CountsOf(const Measurement& measurement);
+
+// theta_i and theta_o of what is valid are at most this, in degrees, to show.
+double MaxAngleDegrees(const Measurement& measurement);
+
+// From now on nothing is valid where theta_i or theta_o is beyond `max_theta` [rad].
+void LimitAngles(double max_theta, Measurement* measurement);
+
+// How far apart scattered samples are that were measured in both directions: those with
+// (theta_i, theta_o) against those with the two swapped, at the same angle between the azimuths, to
+// 1e-6. What was measured several times counts by its mean.
+PairError ReciprocityError(const Measurement& scattered);
+
+// Gathers scattered samples as a reader finds them, and counts what is not valid: a direction below
+// the surface, a value that is not finite, one below 0 (docs/method.md).
+class SampleCollector {
+ public:
+  SampleCollector(const std::string& source, const std::string& kind);
+  void Add(const SphericalAngles& angles, const Rgb& rho);  // [1/sr]
+  // A channel below 0, which no measured value is, becomes 0; for colours of valid spectra.
+  void AddColor(const SphericalAngles& angles, const Rgb& rho);
+  Measurement Take();
+
+ private:
+  void LeaveOut(int BinCounts::*reason);
+
+  Measurement measurement_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_MEASUREMENT_H_
