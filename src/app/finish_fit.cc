@@ -30,7 +30,7 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
 
 }  // namespace
 
-FinishedFit FinishFit(const Objective& objective, const BrdfTable& measured, FactorModel model,
+FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
   // What follows fits numbers anew, and must not lose what the weights of a robust fit have won.
   const Objective of =
@@ -46,7 +46,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable& measured, Fac
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
   if (options.max_numbers > 0 && !options.stop()) {
     const auto judge = [&](const FactorModel& candidate) {
-      return CompareOnSphere(measured, ContinuousModel(candidate), options.appearance).psnr_db;
+      return CompareOnSphere(*measured, ContinuousModel(candidate), options.appearance).psnr_db;
     };
     ChosenModel chosen = ChooseModel(
         of, fit.model, {.max_numbers = options.max_numbers, .judge = judge, .stop = options.stop});

@@ -35,7 +35,8 @@ struct FinishedFit {
   int chosen = -1;                              // which of them
 };
 
-FinishedFit FinishFit(const Objective& objective, const BrdfTable& measured, FactorModel model,
+// `measured`: what pictures are made of, which max_numbers needs; null where there is none.
+FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options);
 
 }  // namespace trilobe

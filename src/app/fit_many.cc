@@ -44,12 +44,17 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string extension = it->path().extension().string();
-    if (extension == ".binary" || extension == ".bsdf") found.push_back(it->path().string());
+    const std::string ending = it->path().extension().string();
+    if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
+        MeasurementFormats().end()) {
+      found.push_back(it->path().string());
+    }
   }
   if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
   if (found.empty()) {
-    throw Error("'" + folder + "' has no measurement: no file *.binary or *.bsdf");
+    std::string endings;
+    for (const MeasurementFormat& format : MeasurementFormats()) endings += " *" + format.ending;
+    throw Error("'" + folder + "' has no measurement, no file of these:" + endings);
   }
   std::ranges::sort(found);
   return found;
@@ -105,10 +110,13 @@ std::vector<FitOutcome> InShard(const std::vector<FitOutcome>& outcomes) {
 
 void TakeReport(const Json& report, FitOutcome* outcome) {
   const Json& sphere = report.at("appearance");
-  outcome->psnr_db = sphere.at("psnr_db").is_null() ? std::numeric_limits<double>::infinity()
-                                                    : sphere.at("psnr_db").get<double>();
-  outcome->mean_delta_e = sphere.at("mean_delta_e");
-  outcome->mean_color_error = sphere.at("mean_color_error");
+  outcome->has_picture = !sphere.is_null();
+  if (outcome->has_picture) {
+    outcome->psnr_db = sphere.at("psnr_db").is_null() ? std::numeric_limits<double>::infinity()
+                                                      : sphere.at("psnr_db").get<double>();
+    outcome->mean_delta_e = sphere.at("mean_delta_e");
+    outcome->mean_color_error = sphere.at("mean_color_error");
+  }
   outcome->objective = report.at("objective");
   outcome->numbers = report.at("stored_numbers");
   outcome->seconds = 0;
@@ -155,8 +163,8 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
 
 // "sphere 45.2 dB in the median, at least 33 (brass)", of those that have a model.
 std::string Summary(std::vector<FitOutcome> outcomes) {
-  std::erase_if(outcomes, [](const FitOutcome& outcome) { return !outcome.has_model(); });
-  if (outcomes.empty()) return "no model";
+  std::erase_if(outcomes, [](const FitOutcome& outcome) { return !outcome.has_picture; });
+  if (outcomes.empty()) return "no picture";
   std::ranges::sort(outcomes, {}, &FitOutcome::psnr_db);
   const FitOutcome& least = outcomes.front();
   return "sphere " + Text(outcomes[outcomes.size() / 2].psnr_db, 3) +
@@ -167,9 +175,12 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   std::cout << "[" << done << "/" << count << "] " << outcome.name << ": "
             << StateName(outcome.state);
   if (outcome.has_model()) {
-    std::cout << ", sphere " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
-              << Text(outcome.mean_delta_e, 2) << ", E " << Text(outcome.objective, 5) << ", "
-              << outcome.numbers << " numbers, " << Text(outcome.seconds, 3) << " s";
+    if (outcome.has_picture) {
+      std::cout << ", sphere " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
+                << Text(outcome.mean_delta_e, 2);
+    }
+    std::cout << ", E " << Text(outcome.objective, 5) << ", " << outcome.numbers << " numbers, "
+              << Text(outcome.seconds, 3) << " s";
   }
   if (!outcome.error.empty()) std::cout << ": " << outcome.error;
   std::cout << std::endl;

@@ -102,11 +102,16 @@ std::string FitsCsv(std::span<const FitOutcome> outcomes) {
   for (const FitOutcome& outcome : outcomes) {
     csv << CsvField(outcome.name) << ',' << CsvField(outcome.source) << ','
         << StateName(outcome.state) << ',';
-    if (outcome.has_model()) {
+    if (outcome.has_picture) {
       csv << outcome.psnr_db << ',' << outcome.mean_delta_e << ',' << outcome.mean_color_error
-          << ',' << outcome.objective << ',' << outcome.numbers << ',' << outcome.seconds;
+          << ',';
     } else {
-      csv << ",,,,,";
+      csv << ",,,";
+    }
+    if (outcome.has_model()) {
+      csv << outcome.objective << ',' << outcome.numbers << ',' << outcome.seconds;
+    } else {
+      csv << ",,";
     }
     csv << ',' << CsvField(outcome.error) << '\n';
   }
@@ -115,22 +120,23 @@ std::string FitsCsv(std::span<const FitOutcome> outcomes) {
 
 std::string FitsPage(std::span<const FitOutcome> outcomes) {
   std::vector<FitOutcome> fits;
-  std::ranges::copy_if(outcomes, std::back_inserter(fits), &FitOutcome::has_model);
+  std::ranges::copy_if(outcomes, std::back_inserter(fits), &FitOutcome::has_picture);
   std::ranges::stable_sort(fits, {}, &FitOutcome::psnr_db);
-  std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Fits</title>\n<style>" +
-      std::string(kStyle) + "</style>\n<h1>" + std::to_string(fits.size()) + " of " +
-      std::to_string(outcomes.size()) +
-      " measurements fitted</h1>\n<p>Measured (left) and fitted (right) on a sphere, the largest "
-      "difference first. Numbers: <a href=\"fits.csv\">fits.csv</a>.</p>\n";
+  std::ostringstream page;
+  page << "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Fits</title>\n<style>"
+       << kStyle << "</style>\n<h1>" << fits.size() << " of " << outcomes.size()
+       << " measurements in pictures</h1>\n<p>Measured (left) and fitted (right) on a sphere, the "
+          "largest difference first. Numbers: <a href=\"fits.csv\">fits.csv</a>.</p>\n";
   for (const FitOutcome& outcome : outcomes) {
-    if (outcome.has_model()) continue;
-    page += "<p class=\"failed\"><b>" + Escaped(outcome.name) + "</b> " + StateName(outcome.state) +
-            (outcome.error.empty() ? "" : ": " + Escaped(outcome.error)) + "</p>\n";
+    if (outcome.has_picture) continue;
+    page << "<p" << (outcome.has_model() ? "" : " class=\"failed\"") << "><b>"
+         << Escaped(outcome.name) << "</b> " << StateName(outcome.state)
+         << (outcome.error.empty() ? "" : ": ") << Escaped(outcome.error) << "</p>\n";
   }
-  page += "<main>\n";
-  for (const FitOutcome& outcome : fits) page += Figure(outcome);
-  return page + "</main></html>\n";
+  page << "<main>\n";
+  for (const FitOutcome& outcome : fits) page << Figure(outcome);
+  page << "</main></html>\n";
+  return page.str();
 }
 
 }  // namespace trilobe

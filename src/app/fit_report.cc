@@ -129,7 +129,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"rmse", score.rmse},
           {"mean_relative_error", score.mean_relative_error},
           {"mean_log_error", score.mean_log_error},
-          {"appearance", ToJson(report.appearance)},
+          {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
           {"light", ToJson(report.light)},
           {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
           {"seconds",
@@ -162,8 +162,10 @@ void Print(const FitReport& report) {
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
-            << Describe(report.finished) << Describe(report.appearance) << "light        "
-            << Describe(report.light) << "\n"
+            << Describe(report.finished)
+            << (report.appearance ? Describe(*report.appearance)
+                                  : "appearance   scattered samples make no picture\n")
+            << "light        " << Describe(report.light) << "\n"
             << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
             << " prepare, " << Text(seconds.init, 3) << " init, " << Text(seconds.solve, 3)
             << " solve, " << Text(seconds.finish, 3) << " finish, " << Text(seconds.score, 3)

@@ -41,7 +41,7 @@ struct FitReport {
   } finished;
   int stored_numbers = 0;
   ScoreReport score;
-  AppearanceReport appearance;
+  std::optional<AppearanceReport> appearance;  // none of scattered samples, which have no picture
   LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]

@@ -60,7 +60,7 @@ void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
 }
 
 FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const std::string& source,
-               const BrdfTable& measured, const Objective& objective, const std::string& run) {
+               const Measurement& measured, const Objective& objective, const std::string& run) {
   return {.solver = settings.solver->name,
           .init = settings.init,
           .weighting = settings.weighting.name,
@@ -104,24 +104,31 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
   Stopwatch stopwatch;
   SourceOptions source_options = settings.source;
   source_options.num_threads = num_threads;
-  BrdfTable measured;
+  Measurement measured;
   if (IsSynthetic(source)) {
-    measured = LoadSource(source, source_options);
+    measured = LoadMeasurement(source, source_options);
     report.key = FitKey(settings, source, "");
   } else {
     const std::string bytes = ReadFile(source);
-    measured = ParseSource(bytes, source, source_options);
+    measured = ParseMeasurement(bytes, source, source_options);
     report.key = FitKey(settings, source, bytes);
   }
   report.seconds.read = stopwatch.Lap();
-  report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured.grid);
-  const Objective objective(ValidSamples(measured), report.spec, settings.weighting, num_threads);
+  const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
+  if (table == nullptr && settings.finish.max_numbers > 0) {
+    throw Error(source +
+                ": --model=auto chooses by pictures, which scattered samples do not make; choose "
+                "--model=shared or independent");
+  }
+  BrdfSamples samples = SamplesOf(measured);
+  report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(samples.grid);
+  const Objective objective(std::move(samples), report.spec, settings.weighting, num_threads);
   report.seconds.prepare = stopwatch.Lap();
   FactorModel model = settings.start_model
                           ? *settings.start_model
                           : settings.start->make(objective, static_cast<uint64_t>(settings.seed));
   report.seconds.init = stopwatch.Lap();
-  report.bins = CountBins(measured);
+  report.bins = CountsOf(measured);
   if (folder != nullptr) folder->Open();
   on_begin();
   std::optional<UnsavedModel> unsaved;
@@ -148,7 +155,7 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
   FinishOptions finish = settings.finish;
   finish.appearance.num_threads = num_threads;
   finish.stop = [] { return InterruptGuard::signal() != 0; };
-  FinishedFit fit = FinishFit(objective, measured, std::move(model), finish);
+  FinishedFit fit = FinishFit(objective, table, std::move(model), finish);
   report.finished = {fit.tied, fit.candidates, fit.chosen};
   report.spec = fit.model.spec();
   report.stored_numbers =
@@ -160,7 +167,9 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
   unsaved.reset();
   report.seconds.finish = stopwatch.Lap();
 
-  report.appearance = CompareAppearance(measured, ContinuousModel(fit.model), finish.appearance);
+  if (table != nullptr) {
+    report.appearance = CompareAppearance(*table, ContinuousModel(fit.model), finish.appearance);
+  }
   report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
   report.seconds.score = stopwatch.Lap();
   report.peak_memory = PeakMemory();
@@ -179,19 +188,20 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
   if (settings.course) run->course.Write(folder->PathOf(kCourseName), objective);
   if (settings.reconstruction) {
-    WriteMerl(Reconstruct(run->file.model, run->file.fit.source, run->measured.grid, threads),
+    WriteMerl(Reconstruct(run->file.model, run->file.fit.source, objective.samples().grid, threads),
               folder->PathOf(kReconstructionName));
   }
+  const BrdfTable* const table = run->measured.table ? &*run->measured.table : nullptr;
   AppearanceOptions appearance = settings.finish.appearance;
   appearance.num_threads = threads;
   std::exception_ptr failure;
   try {
-    if (settings.pair) {
-      WriteSpherePair(run->measured, ContinuousModel(run->file.model), folder->PathOf(kPairName),
+    if (settings.pair && table != nullptr) {
+      WriteSpherePair(*table, ContinuousModel(run->file.model), folder->PathOf(kPairName),
                       appearance);
     }
     if (settings.plots) {
-      DrawPictures(run->file, &run->measured, report.summary.trace, folder->path(), appearance);
+      DrawPictures(run->file, table, report.summary.trace, folder->path(), appearance);
     }
   } catch (const Error&) {
     failure = std::current_exception();

@@ -13,7 +13,6 @@
 #include "trilobe/app/result_folder.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/brdf_table.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/model/weighting.h"
@@ -51,7 +50,7 @@ std::string FitKey(const FitSettings& settings, const std::string& source,
 
 // A fit that is through, and in its folder if it has one, as far as the model goes.
 struct FitRun {
-  BrdfTable measured;
+  Measurement measured;
   Objective objective;
   ModelFile file;
   FitReport report;

@@ -19,6 +19,8 @@
 namespace trilobe {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // Place of a sample's bin along each axis.
 struct BinPosition {
   int h, d, p;
@@ -37,43 +39,45 @@ std::vector<Rgb> ValuesAt(const AngularBrdf& brdf, const BrdfSamples& samples) {
   return values;
 }
 
-nlohmann::ordered_json ToJson(const ScoreReport& report, const AppearanceReport& appearance,
-                              const Objective& objective, const std::string& model_path) {
+Json ToJson(const ScoreReport& report, const std::optional<AppearanceReport>& appearance,
+            const Objective& objective, const std::string& model_path) {
   const BrdfSamples& samples = objective.samples();
-  nlohmann::ordered_json json = {{"model", model_path},
-                                 {"source", samples.source},
-                                 {"weighting", objective.weighting().name},
-                                 {"valid_samples", report.valid_samples},
-                                 {"objective", report.objective},
-                                 {"relative_objective", report.relative_objective},
-                                 {"psnr_db", report.psnr_db},
-                                 {"psnr_peak", report.psnr_peak},
-                                 {"rmse", report.rmse},
-                                 {"rmse_red", report.rmse_channel[0]},
-                                 {"rmse_green", report.rmse_channel[1]},
-                                 {"rmse_blue", report.rmse_channel[2]},
-                                 {"mean_relative_error", report.mean_relative_error},
-                                 {"mean_log_error", report.mean_log_error},
-                                 {"max_absolute_error", report.max_absolute_error},
-                                 {"appearance", ToJson(appearance)},
-                                 {"worst_bins", nlohmann::ordered_json::array()}};
+  Json json = {{"model", model_path},
+               {"source", samples.source},
+               {"weighting", objective.weighting().name},
+               {"valid_samples", report.valid_samples},
+               {"objective", report.objective},
+               {"relative_objective", report.relative_objective},
+               {"psnr_db", report.psnr_db},
+               {"psnr_peak", report.psnr_peak},
+               {"rmse", report.rmse},
+               {"rmse_red", report.rmse_channel[0]},
+               {"rmse_green", report.rmse_channel[1]},
+               {"rmse_blue", report.rmse_channel[2]},
+               {"mean_relative_error", report.mean_relative_error},
+               {"mean_log_error", report.mean_log_error},
+               {"max_absolute_error", report.max_absolute_error},
+               {"appearance", appearance ? ToJson(*appearance) : Json()},
+               {"worst_bins", Json::array()}};
   for (const WorstSample& worst : report.worst) {
-    const auto [h, d, p] = PositionOf(samples.grid, samples.bins[worst.sample]);
-    json["worst_bins"].push_back({{"h", h},
-                                  {"d", d},
-                                  {"p", p},
-                                  {"theta_h_deg", RadiansToDegrees(worst.angles.theta_h)},
-                                  {"theta_d_deg", RadiansToDegrees(worst.angles.theta_d)},
-                                  {"phi_d_deg", RadiansToDegrees(worst.angles.phi_d)},
-                                  {"channel", kChannelNames[worst.channel]},
-                                  {"measured", worst.measured},
-                                  {"fitted", worst.fitted},
-                                  {"weighted_squared_error", worst.error}});
+    Json place = Json::object();  // of a bin
+    if (samples.on_grid()) {
+      const auto [h, d, p] = PositionOf(samples.grid, samples.bins[worst.sample]);
+      place = {{"h", h}, {"d", d}, {"p", p}};
+    }
+    place.update({{"theta_h_deg", RadiansToDegrees(worst.angles.theta_h)},
+                  {"theta_d_deg", RadiansToDegrees(worst.angles.theta_d)},
+                  {"phi_d_deg", RadiansToDegrees(worst.angles.phi_d)},
+                  {"channel", kChannelNames[worst.channel]},
+                  {"measured", worst.measured},
+                  {"fitted", worst.fitted},
+                  {"weighted_squared_error", worst.error}});
+    json["worst_bins"].push_back(std::move(place));
   }
   return json;
 }
 
-void PrintTable(const ScoreReport& report, const AppearanceReport& appearance,
+void PrintTable(const ScoreReport& report, const std::optional<AppearanceReport>& appearance,
                 const Objective& objective, const std::string& model_path) {
   const BrdfSamples& samples = objective.samples();
   PrintLine("model", model_path);
@@ -90,7 +94,7 @@ void PrintTable(const ScoreReport& report, const AppearanceReport& appearance,
   PrintLine("mean log error", Text(report.mean_log_error));
   PrintLine("largest absolute error", Text(report.max_absolute_error) + " /sr");
   std::cout << "\n"
-            << Describe(appearance)
+            << (appearance ? Describe(*appearance) : "")
             << "\nworst bins by share of E\n"
                "  theta_h  theta_d    phi_d  channel  measured    fitted  share of E\n"
                "      deg      deg      deg               1/sr      1/sr           %\n";
@@ -117,21 +121,25 @@ int RunScore(std::span<const std::string> arguments) {
   } else {
     other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }
-  const BrdfTable table = LoadSource(arguments[1], SourceOptionsFromFlags());
-  const ModelSpec spec = other ? ModelSpec::SharedFactors(0, table.grid) : model.spec();
-  const Objective objective(ValidSamples(table), spec, weighting, threads);
+  const Measurement measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
+  const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
+  if (!FLAGS_out.empty()) TableOf(measured);  // or its error
+  BrdfSamples samples = SamplesOf(measured);
+  const ModelSpec spec = other ? ModelSpec::SharedFactors(0, samples.grid) : model.spec();
+  const Objective objective(std::move(samples), spec, weighting, threads);
   std::optional<TabulatedBrdf> tabulated;
   if (other) tabulated.emplace(*other);
   const AngularBrdf fitted = other ? Interpolated(*tabulated) : AngularBrdf(ContinuousModel(model));
   const ScoreReport report = other ? ScoreValues(objective, ValuesAt(fitted, objective.samples()))
                                    : ScoreModel(objective, model);
-  const AppearanceReport appearance = CompareAppearance(table, fitted, appearance_options);
+  std::optional<AppearanceReport> appearance;
+  if (table != nullptr) appearance = CompareAppearance(*table, fitted, appearance_options);
   if (FLAGS_json) {
     PrintJson(ToJson(report, appearance, objective, arguments[0]));
   } else {
     PrintTable(report, appearance, objective, arguments[0]);
   }
-  if (!FLAGS_out.empty()) WriteSpherePair(table, fitted, FLAGS_out, appearance_options);
+  if (!FLAGS_out.empty()) WriteSpherePair(*table, fitted, FLAGS_out, appearance_options);
   return 0;
 }
 

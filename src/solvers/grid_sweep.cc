@@ -13,7 +13,8 @@ const SplineCells& TimedSplineCells(const Objective& objective, PhaseSeconds* ph
 }  // namespace
 
 GridSweep::GridSweep(const Objective& objective, PhaseSeconds* phases)
-    : num_threads_(objective.num_threads()),
+    : Sweep(/*rounds=*/5),  // after the first, they cost next to nothing
+      num_threads_(objective.num_threads()),
       phases_(phases),
       cells_(*CHECK_NOTNULL(objective.folded()), objective.spec()),
       shadowing_(TimedSplineCells(objective, phases), objective.spec()) {}

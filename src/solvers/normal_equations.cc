@@ -100,6 +100,7 @@ void AddSecondDerivatives(const FactorModel& model, const SampleStencils& at, in
 }
 
 void Clear(int num_parameters, QuadraticModel* result) {
+  result->objective = 0;
   result->gradient.assign(num_parameters, 0.0);
   result->squared_lengths.assign(num_parameters, 0.0);
   result->H.assign(static_cast<size_t>(num_parameters) * num_parameters, 0.0);

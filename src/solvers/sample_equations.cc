@@ -158,19 +158,28 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
           derivatives.Add(kChannels * (1 + m) + c, lobe.D * lobe.F * K);
         }
         // A table that several lobes share comes once.
+        std::array<int, 3> first{};
         for (int m = 0; m < spec.lobes; ++m) {
           const LobeReadings lobe(model, at, m, c);
           const double K = lobe.G_i * lobe.G_o * at.inverse_cosines;
-          const int first = 1 + spec.lobes;
-          const auto add = [&](int offset, const Stencil& stencil, double scale) {
+          const auto add = [&](Factor factor, int offset, const Stencil& stencil, double scale) {
             for (int e = 0; e < stencil.size; ++e) {
-              derivatives.AddAmong(first, offset + stencil.index[e], stencil.weight[e] * scale);
+              derivatives.AddAmong(first[static_cast<int>(factor)], offset + stencil.index[e],
+                                   stencil.weight[e] * scale);
             }
           };
-          add(lobe.D_offset, at.D, lobe.s * lobe.F * K);
-          add(lobe.F_offset, at.F, lobe.s * lobe.D * K);
-          add(lobe.G_offset, at.G_i, lobe.s * lobe.D * lobe.F * lobe.G_o * at.inverse_cosines);
-          add(lobe.G_offset, at.G_o, lobe.s * lobe.D * lobe.F * lobe.G_i * at.inverse_cosines);
+          for (const Factor factor : kFactors) {
+            if (m == 0 || spec.sharing(factor).per_lobe) {
+              first[static_cast<int>(factor)] = derivatives.size();
+            }
+            if (factor == Factor::kD) add(factor, lobe.D_offset, at.D, lobe.s * lobe.F * K);
+            if (factor == Factor::kF) add(factor, lobe.F_offset, at.F, lobe.s * lobe.D * K);
+            if (factor == Factor::kG) {
+              const double y = lobe.s * lobe.D * lobe.F * at.inverse_cosines;
+              add(factor, lobe.G_offset, at.G_i, y * lobe.G_o);
+              add(factor, lobe.G_offset, at.G_o, y * lobe.G_i);
+            }
+          }
         }
         const double w = sample.weight[c], residual = rho - sample.rho[c];
         share.objective += w * residual * residual;

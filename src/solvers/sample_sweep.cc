@@ -61,7 +61,8 @@ SampleSweep::Readers SampleSweep::ReadersOf(const std::vector<WeightedSample>& s
 }
 
 SampleSweep::SampleSweep(const Objective& objective, PhaseSeconds* phases)
-    : spec_(objective.spec()),
+    : Sweep(/*rounds=*/1),  // each costs as much as the first
+      spec_(objective.spec()),
       num_samples_(objective.samples().size()),
       phases_(phases),
       samples_(objective.weighted_samples()),
@@ -88,14 +89,14 @@ SampleSweep::SampleSweep(const Objective& objective, PhaseSeconds* phases)
   resize(Factor::kF, &F_);
   resize(Factor::kG, &G_i_);
   resize(Factor::kG, &G_o_);
+  for (int c = 0; c < kChannels; ++c) {
+    for (int m = 0; m < spec_.lobes; ++m) {
+      const int G = spec_.table(Factor::kG, m, c);
+      lobes_[c][m] = {D_[spec_.table(Factor::kD, m, c)].data(),
+                      F_[spec_.table(Factor::kF, m, c)].data(), G_i_[G].data(), G_o_[G].data()};
+    }
+  }
 }
-
-double SampleSweep::K(int m, int c, int j) const {
-  const int t = spec_.table(Factor::kG, m, c);
-  return G_i_[t][j] * G_o_[t][j] * inverse_cosines_[j];
-}
-double SampleSweep::D(int m, int c, int j) const { return D_[spec_.table(Factor::kD, m, c)][j]; }
-double SampleSweep::F(int m, int c, int j) const { return F_[spec_.table(Factor::kF, m, c)][j]; }
 
 void SampleSweep::Evaluate(const FactorModel& model) {
   const ScopedTimer timer(&phases_->evaluating);

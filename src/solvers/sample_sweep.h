@@ -32,6 +32,10 @@ class SampleSweep : public Sweep {
   };
   // What of a model a sample reads, table by table. [num_tables][samples]
   using Readings = std::vector<std::vector<double>>;
+  // Those of the tables that serve a lobe and channel. [samples]
+  struct LobeReadings {
+    const double *D = nullptr, *F = nullptr, *G_i = nullptr, *G_o = nullptr;
+  };
 
   void UpdateBlocks(double E, int rounds, const OnElement& on_block, FactorModel* model) override;
   void UpdateG(const OnElement& on_element, FactorModel* model) override;
@@ -44,9 +48,12 @@ class SampleSweep : public Sweep {
   void Evaluate(const FactorModel& model);
 
   // What a lobe reads in a channel at sample j, without the factors that are left out.
-  double K(int m, int c, int j) const;  // G G / (cos cos)
-  double D(int m, int c, int j) const;
-  double F(int m, int c, int j) const;
+  double K(int m, int c, int j) const {  // G G / (cos cos)
+    const LobeReadings& lobe = lobes_[c][m];
+    return lobe.G_i[j] * lobe.G_o[j] * inverse_cosines_[j];
+  }
+  double D(int m, int c, int j) const { return lobes_[c][m].D[j]; }
+  double F(int m, int c, int j) const { return lobes_[c][m].F[j]; }
 
   // Puts elements in which rho of a channel is linear, one a lobe or table, where E is lowest:
   // respond(j, c, v) sets by how much each moves rho. `samples` are those that any of them moves,
@@ -73,6 +80,7 @@ class SampleSweep : public Sweep {
   std::array<std::vector<double>, kChannels> weight_, residual_;  // rho* - rho
   std::vector<double> inverse_cosines_;
   Readings D_, F_, G_i_, G_o_;
+  std::array<std::array<LobeReadings, kMaxLobes>, kChannels> lobes_;
 };
 
 }  // namespace trilobe

@@ -7,12 +7,12 @@ namespace trilobe {
 
 void Sweep::InBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model) {
   // What other numbers do to E: docs/solvers.md.
-  constexpr int kElementSweeps = 3, kRounds = 5;
+  constexpr int kElementSweeps = 3;
   if (last.iteration < kElementSweeps) {
     (*this)(on_block, model);
     return;
   }
-  UpdateBlocks(last.objective, kRounds, on_block, model);
+  UpdateBlocks(last.objective, rounds_, on_block, model);
   UpdateG(on_block, model);
 }
 

@@ -33,10 +33,14 @@ class Sweep {
   void Project(double E, FactorModel* model) { UpdateBlocks(E, 1, nullptr, model); }
 
  protected:
-  Sweep() = default;
+  // `rounds`: how often InBlocks updates the blocks.
+  explicit Sweep(int rounds) : rounds_(rounds) {}
   virtual void UpdateBlocks(double E, int rounds, const OnElement& on_block,
                             FactorModel* model) = 0;
   virtual void UpdateG(const OnElement& on_element, FactorModel* model) = 0;
+
+ private:
+  const int rounds_;
 };
 
 // From exact sums where samples are on a grid (GridSweep), else from the samples (SampleSweep).

@@ -175,7 +175,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   EXPECT_EQ(std::ranges::count(table, '\n'), 4);
   EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt,fitted,"));
   EXPECT_THAT(table, HasSubstr("\ntorn," + data + "/torn.binary,failed,,,,,,,"));
-  EXPECT_THAT(page, HasSubstr("<h1>2 of 3 measurements fitted</h1>"));
+  EXPECT_THAT(page, HasSubstr("<h1>2 of 3 measurements in pictures</h1>"));
   EXPECT_THAT(page, HasSubstr("src=\"a%20%26%20b/pair.png\""));
   EXPECT_THAT(page, HasSubstr("<b>a &amp; b</b>"));
 

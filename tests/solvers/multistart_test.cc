@@ -243,9 +243,9 @@ TEST_P(Multistart, FitsScatteredSamples) {
   SolverOptions options = Iterations(10);
   options.starts = 10;
   const SolverSummary summary = Solve(objective, options, &model);
-  EXPECT_THAT(Names(summary), testing::IsSupersetOf({"given", "swept"}));
+  EXPECT_THAT(Names(summary), testing::Contains("given"));
   if (GetParam() == std::string("multistart")) {
-    EXPECT_THAT(Names(summary), testing::Contains("grown"));
+    EXPECT_THAT(Names(summary), testing::IsSupersetOf({"grown", "swept"}));
   }
   EXPECT_EQ(summary.iterations, 10);
   EXPECT_LT(summary.final_objective, summary.initial_objective);

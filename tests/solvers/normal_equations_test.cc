@@ -76,6 +76,7 @@ TEST(NormalEquations, OfScatteredSamplesEqualLiteral) {
         for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
           by_threads.emplace_back();
           equations.Evaluate(model, hessian, &by_threads.back());
+          equations.Evaluate(model, hessian, &by_threads.back());  // anew, in the same place
           EvaluateLiterally(objective, model, hessian, &expected);
           ExpectEqual(by_threads.back(), expected, name + (zeros ? ", with zeros" : ""));
         }
