@@ -496,10 +496,10 @@ def _psnr_figure(rows):
         len(scenes), len(databases), squeeze=False, sharey=True,
         figsize=(3 + 0.19 * sum(width_of.values()), 4.4 * len(scenes)),
         gridspec_kw={"width_ratios": [width_of[database] for database in databases]})
-    fitted = _order(rows)
-    styles = dict(zip(fitted, zip((plots.BLACK, plots.VERMILION, plots.ORANGE, plots.BLUE,
-                                   plots.GREEN, plots.PURPLE, plots.SKY, plots.GREY, "#AA8800",
-                                   "#666666", "#BBBBBB"), "os^Dv*PXd<>")))
+    fitted = [fit for fit in _order(rows) if fit not in FACTORS]
+    colours = (plots.BLACK, plots.VERMILION, plots.ORANGE, plots.BLUE, plots.GREEN, plots.PURPLE,
+               plots.SKY, plots.GREY)
+    styles = dict(zip(fitted, zip(itertools.cycle(colours), itertools.cycle("os^Dv*PXd<>"))))
     for line, scene in zip(panels, scenes):
         for axes, database in zip(line, databases):
             part = groups.get((scene, database), [])

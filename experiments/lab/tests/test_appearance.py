@@ -75,6 +75,12 @@ class PathsTest(FolderTest):
         numpy.testing.assert_allclose((radiance / density[:, None]).mean(axis=0),
                                       (exact * cell[..., None]).sum(axis=(0, 1)), rtol=5e-3)
 
+    def test_a_direction_that_is_too_long_by_rounding_is_one_all_the_same(self):
+        paths = load("light_paths")
+        up = numpy.array([[0.0, 1 + 1e-12, 0.0]])
+        for of in paths.Environment(paths.sky()).radiance_and_density(up):
+            self.assertTrue(numpy.isfinite(of).all() and (of > 0).all())
+
 
 class TablesTest(FolderTest):
     def test_a_table_is_read_as_it_was_written(self):
@@ -123,9 +129,9 @@ class TablesTest(FolderTest):
         h, d, p = 20, 15, 40
         cos_i, cos_o = (of[h, d, p] for of in merl.cosines())
         tan = numpy.tan(merl.angles()[0][h, d, p])
-        numpy.testing.assert_allclose(table[h, d, p], numpy.array([0.1, 0.2, 0.3]) / numpy.pi
-                                      + numpy.array([0.03, 0.02, 0.01]) * numpy.exp(-tan ** 2 / .04)
-                                      / (4 * numpy.pi * .04 * numpy.sqrt(cos_i * cos_o)), rtol=1e-5)
+        lobe = numpy.exp(-tan ** 2 / 0.04) / (4 * numpy.pi * 0.04 * numpy.sqrt(cos_i * cos_o))
+        expected = numpy.array([0.1, 0.2, 0.3]) / numpy.pi + numpy.array([0.03, 0.02, 0.01]) * lobe
+        numpy.testing.assert_allclose(table[h, d, p], expected * [1, 1.15, 1.66], rtol=1e-5)
         self.assertEqual(table[80, 80, 0, 0], -1)
 
 
