@@ -6,7 +6,7 @@ import pathlib
 
 from PIL import Image
 
-from lab import fits, stats, tables
+from lab import fits, merl, stats, tables
 from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
@@ -43,6 +43,7 @@ def _published(setting, judged):
                     f"npf/{source.name}/below", pathlib.Path(__file__).with_name("score_below"),
                     (str(setting.program()), source.path, str(BELOW), COMPRESSIVE, FOLDER,
                      Product(judged[source.name], "model.json"), Product(model, "model.json")),
+                    modules=(pathlib.Path(merl.__file__),),
                     labels={"material": source.name, "run": "below"}))
     return scores
 

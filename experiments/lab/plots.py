@@ -28,6 +28,7 @@ SOLVERS = {
     "lm_plain": (PURPLE, "-."),
     "awls": (VERMILION, "-"),
     "awls_literal": (VERMILION, "--"),
+    "awls_gss": (VERMILION, ":"),
     "awls_block": (SKY, "-"),
     "awls_accelerated": (GREY, "-"),
 }

@@ -93,3 +93,11 @@ def order(decreases):
     orders = [math.log(c / b) / math.log(b / a)
               for a, b, c in zip(decreases, decreases[1:], decreases[2:]) if a > b > c > 0]
     return statistics.median(orders[-5:]) if orders else math.nan
+
+
+def rank_correlation(a, b):
+    """Spearman's: the correlation of ranks, which equal values share; nan of fewer than two."""
+    def ranks(values):
+        _, places, counts = numpy.unique(values, return_inverse=True, return_counts=True)
+        return (numpy.cumsum(counts) - (counts - 1) / 2)[places]
+    return float(numpy.corrcoef(ranks(a), ranks(b))[0, 1]) if len(a) > 1 else math.nan

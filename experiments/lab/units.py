@@ -43,6 +43,7 @@ class Unit:
     arguments: tuple  # of str, which may hold FOLDER, and of Product
     product: str = "stdout.txt"  # the file without which the command has failed
     timeout_s: float | None = None
+    modules: tuple = ()  # of paths: files that the program reads besides, whose bytes count
     # What the unit is to its experiment, {"material": "chrome", "solver": "awls"}; not in its key.
     labels: dict = dataclasses.field(default_factory=dict, compare=False)
 
@@ -60,6 +61,7 @@ class Unit:
                 parts.append([argument.unit.key, argument.file])
             else:
                 parts.append(_with_hash(argument))
+        parts += [file_hash(module) for module in self.modules]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
     @property

@@ -15,6 +15,7 @@
   X(Awls)                          \
   X(AwlsBlock)                     \
   X(AwlsAccelerated)               \
+  X(AwlsGss)                       \
   X(AwlsLiteral)                   \
   X(Hybrid)                        \
   X(Newton)                        \

@@ -19,11 +19,13 @@ inline bool UpdatesElements(const SolverEntry& solver) {
 // Whether a solver reports its updates within an iteration to SolverOptions::on_element.
 inline bool ReportsUpdates(const SolverEntry& solver) {
   return UpdatesElements(solver) || solver.name == "awls_block" ||
-         solver.name == "awls_accelerated";
+         solver.name == "awls_accelerated" || solver.name == "awls_gss";
 }
 
+// Whether the filter comes after a sweep, so that E may rise; in awls_gss it is part of a step that
+// does not raise E.
 inline bool FiltersG(const SolverEntry& solver) {
-  return std::ranges::count(solver.options, "g_filter_sigma") > 0;
+  return solver.name != "awls_gss" && std::ranges::count(solver.options, "g_filter_sigma") > 0;
 }
 
 // Ceres adds up the cost, on which its decisions depend, in the order in which threads finish.

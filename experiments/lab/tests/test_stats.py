@@ -42,6 +42,14 @@ class StatsTest(unittest.TestCase):
     def test_geometric_mean(self):
         self.assertAlmostEqual(stats.geometric_mean([1, 4]), 2)
 
+    def test_rank_correlation_is_of_the_order_alone(self):
+        self.assertAlmostEqual(stats.rank_correlation([1, 2, 3, 9], [-1, 0, 7, 8]), 1)
+        self.assertAlmostEqual(stats.rank_correlation([1, 2, 3], [3, 2, 1]), -1)
+        # Ranks 1, 2.5, 2.5, 4 and 1, 2, 3, 4.
+        self.assertAlmostEqual(stats.rank_correlation([1, 2, 2, 3], [1, 2, 3, 4]),
+                               4.5 / math.sqrt(4.5 * 5))
+        self.assertTrue(math.isnan(stats.rank_correlation([1], [1])))
+
 
 if __name__ == "__main__":
     unittest.main()

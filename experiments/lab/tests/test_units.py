@@ -65,6 +65,15 @@ class UnitsTest(FolderTest):
         self.program.chmod(0o755)
         self.assertFalse(self.store.is_done(self.unit("a")))
 
+    def test_modules_of_a_program_count_by_what_is_in_them(self):
+        module = self.folder / "module.py"
+        module.write_text("1")
+        folder = self.store.make(self.unit("a", modules=(module,)))
+        self.assertNotEqual(self.store.folder(self.unit("a")), folder)
+        self.assertTrue(self.store.is_done(self.unit("a", modules=(module,))))
+        module.write_text("2")
+        self.assertFalse(self.store.is_done(self.unit("a", modules=(module,))))
+
     def test_files_count_by_what_is_in_them(self):
         data, copy = self.folder / "data", self.folder / "copy"
         for file in (data, copy):
