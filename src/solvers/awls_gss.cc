@@ -135,13 +135,13 @@ FactorModel Between(const FactorModel& from, const FactorModel& to, double t) {
 // and F as in awls; G as LinearShadowing has it, smoothed, and taken back along the line to where
 // E is lowest should that have raised it.
 class AwlsGss : public Solver {
- public:
-  SolverSummary Solve(const Objective& objective, const SolverOptions& options,
-                      FactorModel* model) const override {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
     Run run("awls_gss", objective, options, model);
     if (objective.folded() == nullptr) {
       throw Error(objective.samples().source +
-                  ": solver awls_gss needs samples on a MERL grid; use --solver=awls_literal");
+                  ": solver awls_gss needs samples on a MERL grid; use --solver=awls");
     }
     CellSums cells(*objective.folded(), objective.spec());
     const LinearShadowing shadowing(*objective.folded());
@@ -163,7 +163,6 @@ class AwlsGss : public Solver {
     return run.Finish();
   }
 
- private:
   // Returns E.
   static double UpdateG(const Objective& objective, const LinearShadowing& shadowing, double sigma,
                         FactorModel* model) {

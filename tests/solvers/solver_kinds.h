@@ -16,6 +16,9 @@ inline bool UpdatesElements(const SolverEntry& solver) {
   return solver.name == "awls" || solver.name == "awls_literal";
 }
 
+// Whether a solver refuses scattered samples: as it was published, it knows a grid alone.
+inline bool NeedsAGrid(const SolverEntry& solver) { return solver.name == "awls_gss"; }
+
 // Whether a solver reports its updates within an iteration to SolverOptions::on_element.
 inline bool ReportsUpdates(const SolverEntry& solver) {
   return UpdatesElements(solver) || solver.name == "awls_block" ||

@@ -127,6 +127,13 @@ TEST(Solver, AllFitScatteredSamples) {
   const Objective objective(samples, spec, FindWeighting("uniform"));
   for (const SolverEntry& entry : kLibrarySolvers) {
     const std::string& solver = entry.name;
+    if (NeedsAGrid(entry)) {
+      FactorModel model = RandomModel(spec, 1);
+      const std::vector<double> before(model.parameters().begin(), model.parameters().end());
+      EXPECT_THROW(MakeSolver(solver)->Solve(objective, {}, &model), Error);
+      EXPECT_THAT(model.parameters(), testing::ElementsAreArray(before));
+      continue;
+    }
     FactorModel model = RandomModel(spec, 1);
     SolverOptions options;
     options.max_iterations = 10;
