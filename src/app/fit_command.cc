@@ -167,7 +167,7 @@ int RunFitOfOne(const std::string& source) {
       source, settings, threads, into, [&] { guard.emplace(); }, show);
   progress.reset();
   Print(run.report);
-  if (run.interrupted) std::cout << "interrupted  this is the best model so far\n";
+  if (run.report.interrupted) std::cout << "interrupted  this is the best model so far\n";
   if (into == nullptr) {
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
@@ -179,7 +179,8 @@ int RunFitOfOne(const std::string& source) {
     }
     std::cout << "written      " << Joined(run.report.files) << " in " << FLAGS_out << "\n";
   }
-  return run.interrupted ? 128 + InterruptGuard::signal() : 0;  // as a shell reports such an end
+  return run.report.interrupted ? 128 + InterruptGuard::signal()
+                                : 0;  // as a shell reports such an end
 }
 
 // A scene says what is fitted and, by its budgets, what models come out.

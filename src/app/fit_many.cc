@@ -130,7 +130,7 @@ bool IsFinished(const ResultFolder& folder, const std::string& key, FitOutcome* 
   try {
     const std::string path = folder.PathOf("report.json");
     const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
-    if (report.at("key") != key || report.at("stop_reason") == "interrupted" ||
+    if (report.at("key") != key || report.at("interrupted") ||
         report.at("run") != ReadModel(folder.PathOf("model.json")).fit.run) {
       return false;
     }
@@ -158,7 +158,8 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
       source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
   WriteRest(&run, settings, folder);
   TakeReport(ToJson(run.report), outcome);
-  outcome->state = run.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
+  outcome->state =
+      run.report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
 }
 
 // "sphere 45.2 dB in the median, at least 33 (brass)", of those that have a model.

@@ -144,6 +144,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"program", fit.program},
           {"date", fit.date},
           {"key", report.key},
+          {"interrupted", report.interrupted},
           {"run", fit.run},
           {"files", report.files}};
 }

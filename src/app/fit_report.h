@@ -28,6 +28,7 @@ struct FitReport {
   FitInfo fit;
   std::string key;                 // what a repetition has in common: FitKey
   std::vector<std::string> files;  // of the run, in its folder
+  bool interrupted = false;        // by a signal: the solver, or what comes after it
   ModelSpec spec;
   double noise = 0;  // of the source
   int64_t seed = 0;

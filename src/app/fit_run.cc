@@ -173,12 +173,12 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
   report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
   report.seconds.score = stopwatch.Lap();
   report.peak_memory = PeakMemory();
+  report.interrupted = InterruptGuard::signal() != 0;
   return {.measured = std::move(measured),
           .objective = std::move(fit.objective),
           .file = std::move(file),
           .report = std::move(report),
-          .course = std::move(course),
-          .interrupted = InterruptGuard::signal() != 0};
+          .course = std::move(course)};
 }
 
 void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {

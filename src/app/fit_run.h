@@ -55,7 +55,6 @@ struct FitRun {
   ModelFile file;
   FitReport report;
   Course course;
-  bool interrupted = false;
 };
 
 // Reads a measurement, fits it, writes the model into `folder` (none if null), and only then scores

@@ -224,6 +224,48 @@ TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
   EXPECT_THAT(rest.out, ::testing::Not(HasSubstr("rubber: kept")));  // it had been cut short
 }
 
+// Samples on no grid: the same commands, but for what takes a picture.
+TEST(FitScattered, FitsAndScoresACsvFile) {
+  const TemporaryFolder folder;
+  const std::string csv = folder / "felt.csv", out = folder / "out";
+  std::string text = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+  for (int i = 5; i < 80; i += 15) {
+    for (int o = 5; o < 80; o += 15) {
+      for (int phi = 0; phi <= 180; phi += 30) {
+        text += std::to_string(i) + ",0," + std::to_string(o) + "," + std::to_string(phi) +
+                ",0.1,0.2," + std::to_string(0.3 + 0.001 * (i + o)) + "\n";
+      }
+    }
+  }
+  std::ofstream(csv) << text;
+  const ProgramResult fit =
+      RunProgram({"fit", csv, "--solver=newton", "--max_iterations=5", "--lobes=1", "--plots",
+                  "--reconstruction", "--out=" + out});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("scattered samples make no picture"));
+  EXPECT_THAT(Names(out),
+              UnorderedElementsAre("model.json", "trace.csv", "report.json",
+                                   "reconstruction.binary", "factors.png", "trace.png"));
+  const nlohmann::json report = Json(out + "/report.json");
+  EXPECT_TRUE(report["appearance"].is_null());
+  EXPECT_EQ(report["valid_samples"], 175);
+  const ProgramResult score = RunProgram({"score", out + "/model.json", csv, "--json"});
+  ASSERT_EQ(score.status, 0) << score.err;
+  const nlohmann::json scored = nlohmann::json::parse(score.out);
+  EXPECT_EQ(scored["objective"], report["objective"]);
+  EXPECT_TRUE(scored["appearance"].is_null());
+  EXPECT_FALSE(scored["worst_bins"][0].contains("h"));
+
+  ExpectRefusal(RunProgram({"fit", csv, "--model=auto", "--out=" + (folder / "o")}),
+                "chooses by pictures");
+  ExpectRefusal(RunProgram({"score", out + "/model.json", csv, "--out=" + (folder / "x.png")}),
+                "needs a table");
+  const ProgramResult many =
+      RunProgram({"fit", csv, "synth:copper", "--solver=awls", "--lobes=1", "--max_iterations=1",
+                  "--max_angle=30", "--out=" + (folder / "many")});
+  EXPECT_EQ(many.status, 0) << many.out << many.err;
+}
+
 TEST(FitMany, BadUseIsAnError) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "empty");
