@@ -371,9 +371,6 @@ const std::vector<StiffCase>& StiffCases() {
        [] { return WrongStart(1e6, 1e-6, 1, 1); }},
       {"weight_decades", "weights 1/(rho + 0.001)^2 over twelve decades, 2 % noise", WeightDecades},
       {"denormal_tail", "the last bins of D below 1e-308", DenormalTail},
-      {"denormal_values", "all values below 1e-308: squares are 0", [] { return InUnits(1e-312); }},
-      {"denormal_energy", "values of 1e-157: their squares lose digits, E is below 1e-308",
-       [] { return InUnits(1e-157); }},
       {"float_storage", "two lobes without error, stored in single precision", FloatStorage},
   };
   return cases;

@@ -12,6 +12,7 @@
 #include "trilobe/app/describe.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/print.h"
+#include "trilobe/app/result_folder.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/plots.h"
@@ -22,6 +23,9 @@
 
 namespace trilobe {
 namespace {
+
+// Of what was measured; empty if nobody asked for it.
+std::string PicturePath() { return FLAGS_out.empty() ? "" : FLAGS_out + "/measured.png"; }
 
 using Json = nlohmann::ordered_json;
 
@@ -91,7 +95,7 @@ void DescribeTable(const Measurement& measurement) {
           [&](const DirectionPair& pair) { return brdf.Measured(pair); });
     }
   }
-  const std::string picture = FLAGS_out.empty() ? "" : FLAGS_out + "/measured.png";
+  const std::string picture = PicturePath();
   if (!picture.empty()) {
     MakeDirectories(FLAGS_out);
     DrawMeasured(table, picture);
@@ -219,6 +223,7 @@ void DescribeScattered(const Measurement& measurement) {
 }  // namespace
 
 void DescribeMeasurement(const std::string& source) {
+  if (!FLAGS_out.empty()) Inputs({source}).CheckOutput(PicturePath());
   const Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
   if (measurement.table) {
     DescribeTable(measurement);

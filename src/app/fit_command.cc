@@ -20,7 +20,9 @@
 #include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/io/file.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/scene/fit_cache.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
@@ -138,6 +140,9 @@ FitSettings SettingsFromFlags() {
     settings.start_model = StartFromFile();
     settings.inputs.push_back(FLAGS_init);
   }
+  for (const std::string& input : settings.inputs) {
+    settings.key += ContentHash(ReadFile(input)) + "\n";
+  }
   return settings;
 }
 
@@ -153,7 +158,7 @@ int RunFitOfOne(const std::string& source) {
   if (!FLAGS_out.empty()) {
     std::vector<std::string> inputs = settings.inputs;
     inputs.push_back(source);
-    folder.emplace(FLAGS_out, FitFileNames(), Inputs(inputs));
+    folder.emplace(FLAGS_out, FitFileNames(), FitFolderMarks(), Inputs(inputs));
   }
   ResultFolder* const into = folder ? &*folder : nullptr;
   const int threads = ThreadsFromFlags();
@@ -163,7 +168,7 @@ int RunFitOfOne(const std::string& source) {
     if (!progress) progress.emplace(settings.options(SpecFromFlags({})));
     progress->Show(record);
   };
-  FitRun run = RunOneFit(
+  FitRun run = *RunOneFit(
       source, settings, threads, into, [&] { guard.emplace(); }, show);
   progress.reset();
   Print(run.report);

@@ -3,11 +3,13 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -44,7 +46,9 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string ending = it->path().extension().string();
+    std::string ending = it->path().extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (it->path().filename() == kTableName) continue;  // of an earlier run
     if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
         MeasurementFormats().end()) {
       found.push_back(it->path().string());
@@ -80,7 +84,7 @@ std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
   std::vector<FitOutcome> outcomes;
   for (const std::string& source : sources) {
     const std::string name = NameOf(source);
-    if (name.empty() || name == "." || name == "..") {
+    if (name.empty() || name == "." || name == ".." || name == kTableName || name == kPageName) {
       throw Error("'" + source + "' gives no name for a folder; rename it");
     }
     const auto [other, is_new] = source_of.emplace(name, source);
@@ -154,12 +158,13 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
     outcome->state = FitOutcome::State::kKept;
     return;
   }
-  FitRun run = RunOneFit(
+  std::optional<FitRun> run = RunOneFit(
       source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
-  WriteRest(&run, settings, folder);
-  TakeReport(ToJson(run.report), outcome);
+  if (!run) return;
+  WriteRest(&*run, settings, folder);
+  TakeReport(ToJson(run->report), outcome);
   outcome->state =
-      run.report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
+      run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
 }
 
 // "sphere 45.2 dB in the median, at least 33 (brass)", of those that have a model.
@@ -192,15 +197,17 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
   settings.pair = true;
-  std::vector<FitOutcome> outcomes = InShard(ListSources(arguments));
+  settings.key += "pair\n";
+  const std::vector<FitOutcome> all = ListSources(arguments);
   std::vector<std::string> read = settings.inputs;
-  for (const FitOutcome& outcome : outcomes) read.push_back(outcome.source);
+  for (const FitOutcome& outcome : all) read.push_back(outcome.source);
   const Inputs inputs(read);
+  std::vector<FitOutcome> outcomes = InShard(all);
   std::vector<ResultFolder> folders;
   for (const FitOutcome& outcome : outcomes) {
-    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), inputs);
+    folders.emplace_back(out + "/" + outcome.name, FitFileNames(), FitFolderMarks(), inputs);
   }
-  const ResultFolder summary(out, {kTableName, kPageName}, inputs);
+  const ResultFolder summary(out, {kTableName, kPageName}, {kTableName, kPageName}, inputs);
   summary.Open();
 
   const InterruptGuard guard;
@@ -218,6 +225,9 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
     } catch (const std::bad_alloc&) {
       outcome.state = FitOutcome::State::kFailed;
       outcome.error = "out of memory; try fewer --threads";
+    } catch (const std::exception& error) {
+      outcome.state = FitOutcome::State::kFailed;
+      outcome.error = std::string("internal error: ") + error.what();
     }
     const std::lock_guard<std::mutex> lock(mutex);
     progress.Clear();

@@ -82,22 +82,27 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
 
 const std::vector<std::string>& FitFileNames() {
   static const std::vector<std::string> names = {
-      kModelName,    kTraceName,   kReportName,   kCourseName, kReconstructionName,
+      kReportName,   kModelName,   kTraceName,    kCourseName, kReconstructionName,
       "factors.png", "slices.png", "spheres.png", "trace.png", kPairName};
   return names;
+}
+
+const std::vector<std::string>& FitFolderMarks() {
+  static const std::vector<std::string> marks = {kModelName, kReportName};
+  return marks;
 }
 
 std::string FitKey(const FitSettings& settings, const std::string& source,
                    const std::string& bytes) {
   std::string text = Program() + "\n" + settings.key;
   text += IsSynthetic(source) ? source : ContentHash(bytes);
-  for (const std::string& input : settings.inputs) text += ContentHash(ReadFile(input));
   return ContentHash(text);
 }
 
-FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num_threads,
-                 ResultFolder* folder, const std::function<void()>& on_begin,
-                 const std::function<void(const IterationRecord&)>& on_iteration) {
+std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& settings,
+                                int num_threads, ResultFolder* folder,
+                                const std::function<void()>& on_begin,
+                                const std::function<void(const IterationRecord&)>& on_iteration) {
   FitReport report;
   report.noise = settings.source.noise;
   report.seed = settings.seed;
@@ -129,6 +134,7 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
                           : settings.start->make(objective, static_cast<uint64_t>(settings.seed));
   report.seconds.init = stopwatch.Lap();
   report.bins = CountsOf(measured);
+  if (InterruptGuard::signal() != 0) return std::nullopt;
   if (folder != nullptr) folder->Open();
   on_begin();
   std::optional<UnsavedModel> unsaved;
@@ -151,6 +157,7 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
     FactorModel canonical = model;
     Canonicalize(objective.coverage(), &canonical);
     WriteModelInto({canonical, DeadParameters(objective.coverage()), report.fit}, folder);
+    unsaved.reset();
   }
   FinishOptions finish = settings.finish;
   finish.appearance.num_threads = num_threads;
@@ -174,11 +181,11 @@ FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num
   report.seconds.score = stopwatch.Lap();
   report.peak_memory = PeakMemory();
   report.interrupted = InterruptGuard::signal() != 0;
-  return {.measured = std::move(measured),
-          .objective = std::move(fit.objective),
-          .file = std::move(file),
-          .report = std::move(report),
-          .course = std::move(course)};
+  return FitRun{.measured = std::move(measured),
+                .objective = std::move(fit.objective),
+                .file = std::move(file),
+                .report = std::move(report),
+                .course = std::move(course)};
 }
 
 void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
@@ -205,6 +212,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
     }
   } catch (const Error&) {
     failure = std::current_exception();
+    report.key.clear();  // not what such a fit leaves
   }
   report.files = folder->Files();
   report.files.emplace_back(kReportName);

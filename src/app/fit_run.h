@@ -37,11 +37,14 @@ struct FitSettings {
   bool course = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail
   std::vector<std::string> inputs;  // files that all fits read
-  std::string key;                  // all of this but the measurement, as text
+  std::string key;                  // all of this but the measurement, files by their content
 };
 
 // Names of all files that a fit may leave in its folder.
 const std::vector<std::string>& FitFileNames();
+
+// Of these every such folder has one.
+const std::vector<std::string>& FitFolderMarks();
 
 // What the result depends on: settings, the measurement's content, the program's version.
 // 32 hexadecimal digits.
@@ -58,11 +61,13 @@ struct FitRun {
 };
 
 // Reads a measurement, fits it, writes the model into `folder` (none if null), and only then scores
-// it. A signal ends it early, with the best model so far. `on_begin` is called when it has read all
-// and there begins to be something to lose; an InterruptGuard must live from then on. Throws Error.
-FitRun RunOneFit(const std::string& source, const FitSettings& settings, int num_threads,
-                 ResultFolder* folder, const std::function<void()>& on_begin,
-                 const std::function<void(const IterationRecord&)>& on_iteration);
+// it. A signal ends it early, with the best model so far, or with nothing while it reads.
+// `on_begin` is called when it has read all and there begins to be something to lose; an
+// InterruptGuard must live from then on. Throws Error.
+std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& settings,
+                                int num_threads, ResultFolder* folder,
+                                const std::function<void()>& on_begin,
+                                const std::function<void(const IterationRecord&)>& on_iteration);
 
 // Writes the other files, the report last: where it is, all are. If a picture cannot be drawn, the
 // others are written before Error is thrown.

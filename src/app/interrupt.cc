@@ -1,6 +1,7 @@
 #include "trilobe/app/interrupt.h"
 
 #include <atomic>
+#include <exception>
 
 namespace trilobe {
 namespace {
@@ -25,6 +26,7 @@ extern "C" void OnSignal(int signal) {
 void Catch(int signal, struct sigaction* old) {
   struct sigaction action {};
   action.sa_handler = OnSignal;
+  action.sa_flags = SA_RESTART;
   sigaction(signal, nullptr, old);
   if (old->sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
 }
@@ -53,7 +55,9 @@ int InterruptGuard::signal() { return caught_signal; }
 UnsavedModel::UnsavedModel() { ++unsaved_models; }
 
 UnsavedModel::~UnsavedModel() {
-  if (--unsaved_models == 0 && signals_caught > 1) EndBy(caught_signal);
+  // An error on its way ends the program anyway, and says where the model is.
+  const bool failed = std::uncaught_exceptions() > 0;
+  if (--unsaved_models == 0 && signals_caught > 1 && !failed) EndBy(caught_signal);
 }
 
 }  // namespace trilobe

@@ -34,25 +34,42 @@ Inputs::Inputs(const std::vector<std::string>& paths) {
   }
 }
 
-void Inputs::CheckOutput(const std::string& path) const {
+void Inputs::CheckNotRead(const std::string& path) const {
   struct stat status {};
-  if (stat(path.c_str(), &status) == 0) {
-    const auto input = name_of_.find({status.st_dev, status.st_ino});
-    if (input != name_of_.end()) {
-      throw Error("writing '" + path + "' would destroy '" + input->second +
-                  "', which this command reads; give another --out");
-    }
-  }
-  CheckWritable(path);
+  if (stat(path.c_str(), &status) != 0) return;
+  const auto input = name_of_.find({status.st_dev, status.st_ino});
+  if (input == name_of_.end()) return;
+  throw Error("writing '" + path + "' would destroy '" + input->second +
+              "', which this command reads; give another --out");
 }
 
-ResultFolder::ResultFolder(std::string path, std::vector<std::string> names, const Inputs& inputs)
+void Inputs::CheckOutput(const std::string& path) const {
+  CheckNotRead(path);
+  CheckWritable(path);
+  std::error_code ignored;
+  SweepTemporaryFiles(std::filesystem::absolute(path, ignored).parent_path());
+}
+
+ResultFolder::ResultFolder(std::string path, std::vector<std::string> names,
+                           const std::vector<std::string>& marks, const Inputs& inputs)
     : path_(std::move(path)), names_(std::move(names)), run_(RandomDigits()) {
   std::error_code ignored;
   if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_directory(path_, ignored)) {
     throw Error("cannot write into '" + path_ + "': it is not a folder; give another --out");
   }
-  for (const std::string& name : names_) inputs.CheckOutput(PathOf(name));
+  for (const std::string& name : names_) {
+    inputs.CheckNotRead(PathOf(name));
+    CheckWritable(PathOf(name));
+  }
+  const std::vector<std::string> files = Files();
+  const bool ours = std::ranges::any_of(marks, [&](const std::string& mark) {
+    return std::ranges::find(files, mark) != files.end();
+  });
+  if (!files.empty() && !ours) {
+    throw Error("'" + PathOf(files.front()) +
+                "' is not of a run of this command, which would remove it; move it away, or give "
+                "another --out");
+  }
 }
 
 void ResultFolder::Open() const {
@@ -60,10 +77,19 @@ void ResultFolder::Open() const {
   SweepTemporaryFiles(path_);
 }
 
+void ResultFolder::WriteAhead(const std::string& name,
+                              const std::function<void(std::ostream&)>& write) {
+  WriteFile(PathOf(name), write);
+  ahead_.push_back(name);
+}
+
 void ResultFolder::Write(const std::string& name, const std::function<void(std::ostream&)>& write) {
-  WriteFile(PathOf(name), write, [&] {
-    if (!begun_) RemoveEarlierRun(name);
-  });
+  if (begun_) {
+    WriteFile(PathOf(name), write);
+    return;
+  }
+  ahead_.push_back(name);
+  WriteFile(PathOf(name), write, [&] { RemoveEarlierRun(); });
   begun_ = true;
 }
 
@@ -76,10 +102,11 @@ std::vector<std::string> ResultFolder::Files() const {
   return files;
 }
 
-void ResultFolder::RemoveEarlierRun(const std::string& except) const {
+// The file that says that a run is complete goes first.
+void ResultFolder::RemoveEarlierRun() const {
   for (const std::string& name : names_) {
     std::error_code error;
-    if (name == except) continue;
+    if (std::ranges::find(ahead_, name) != ahead_.end()) continue;
     std::filesystem::remove(PathOf(name), error);
     if (error) {
       throw Error("cannot remove '" + PathOf(name) + "' of an earlier run: " + error.message());

@@ -19,8 +19,10 @@ class Inputs {
   explicit Inputs(const std::vector<std::string>& paths);
 
   // Throws Error if `path` is one of them, under whatever name or link, or if no file can be
-  // written there, as far as can be known now.
+  // written there, as far as can be known now. Removes what killed runs have left beside it.
   void CheckOutput(const std::string& path) const;
+  // The former alone.
+  void CheckNotRead(const std::string& path) const;
 
  private:
   std::map<std::pair<dev_t, ino_t>, std::string> name_of_;
@@ -33,8 +35,11 @@ class Inputs {
 class ResultFolder {
  public:
   // `names`: of all files that a run, this or an earlier one, may leave in the folder. Makes
-  // nothing yet. Throws Error where one of them is an input or cannot be written (CheckOutput).
-  ResultFolder(std::string path, std::vector<std::string> names, const Inputs& inputs);
+  // nothing yet. The first is the one that a complete run writes last. Throws Error where one of
+  // them is an input or cannot be written, and where a folder has some but none of `marks`, of
+  // which every run leaves one: then they are somebody else's.
+  ResultFolder(std::string path, std::vector<std::string> names,
+               const std::vector<std::string>& marks, const Inputs& inputs);
 
   const std::string& path() const { return path_; }
   std::string PathOf(const std::string& name) const { return path_ + "/" + name; }
@@ -43,6 +48,8 @@ class ResultFolder {
   // Makes the folder, and removes what a killed run has left of its temporary files.
   void Open() const;
 
+  // Writes a file of the run while all of the earlier one is still there; it stays when that goes.
+  void WriteAhead(const std::string& name, const std::function<void(std::ostream&)>& write);
   // Writes a file of the run, the first time in the place of the earlier run. After that, others
   // may write theirs.
   void Write(const std::string& name, const std::function<void(std::ostream&)>& write);
@@ -51,12 +58,13 @@ class ResultFolder {
   std::vector<std::string> Files() const;
 
  private:
-  void RemoveEarlierRun(const std::string& except) const;
+  void RemoveEarlierRun() const;
 
   std::string path_;
   std::vector<std::string> names_;
   std::string run_;
   bool begun_ = false;
+  std::vector<std::string> ahead_;  // the first files of the run
 };
 
 }  // namespace trilobe

@@ -54,20 +54,29 @@ FitCache CacheFromFlags() {
 // Names of the files that the scene leaves in its folder, and of those that an earlier one has left
 // there by what its plan says.
 std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& folder) {
-  std::set<std::string> names = {kPlanName, kPlanTextName};
+  std::set<std::string> names = {kPlanTextName};
   for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
   const std::string plan = folder + "/" + kPlanName;
   try {
     const auto earlier = nlohmann::json::parse(ReadJsonText(plan, plan + ": not a plan"));
-    for (const std::string file : earlier.at("files")) {
-      if (file.find('/') == std::string::npos) names.insert(file);
+    if (earlier.contains("files")) {
+      for (const std::string file : earlier.at("files")) {
+        if (file.find('/') == std::string::npos) names.insert(file);
+      }
+    } else {  // of an earlier version
+      for (const auto& material : earlier.at("materials")) {
+        names.insert(material.at("name").get<std::string>() + ".json");
+      }
     }
+    names.erase(kPlanName);
   } catch (const Error&) {
     // There was none.
   } catch (const nlohmann::json::exception&) {
     throw Error("'" + plan + "' is not a plan of `trilobe fit --scene`; give another --out");
   }
-  return {names.begin(), names.end()};
+  std::vector<std::string> in_order = {kPlanName};
+  in_order.insert(in_order.end(), names.begin(), names.end());
+  return in_order;
 }
 
 }  // namespace
@@ -150,12 +159,12 @@ int RunSceneFit(const std::string& path) {
   const SceneFitSettings settings = SceneSettingsFromFlags();
   Scene scene = ReadScene(path);
   const std::vector<std::string> names = SceneFileNames(scene, out);
-  ResultFolder folder(out, names, Inputs(FilesOf(scene)));
+  ResultFolder folder(out, names, {kPlanName}, Inputs(FilesOf(scene)));
   folder.Open();
-  const auto write_plan = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
+  const auto plan_text = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
     plan["run"] = folder.run();
     plan["files"] = files;
-    folder.Write(kPlanName, [&](std::ostream& to) { to << plan.dump(2) << "\n"; });
+    return plan.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   };
   bool begun = false;
   const SceneRun run = RunScene(std::move(scene), settings, [&](const MaterialFit& fit) {
@@ -163,7 +172,11 @@ int RunSceneFit(const std::string& path) {
     file.fit.run = folder.run();
     const std::string text = FormatModel(file);
     // Should the program be killed, the next run knows by this what there may be.
-    if (!std::exchange(begun, true)) write_plan({{"unfinished", true}}, names);
+    if (!begun) {
+      const std::string plan = plan_text({{"unfinished", true}}, names);
+      folder.WriteAhead(kPlanName, [&](std::ostream& to) { to << plan; });
+      begun = true;
+    }
     folder.Write(fit.name + ".json", [&](std::ostream& to) { to << text; });
   });
   std::ostringstream text;
@@ -171,12 +184,14 @@ int RunSceneFit(const std::string& path) {
   std::cout << text.str();
   if (!run.fits.empty()) {
     folder.Write(kPlanTextName, [&](std::ostream& to) { to << text.str(); });
-    write_plan(PlanToJson(run), folder.Files());
+    const std::string plan = plan_text(PlanToJson(run), folder.Files());
+    folder.Write(kPlanName, [&](std::ostream& to) { to << plan; });
     std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
               << kPlanTextName << " in " << out << "\n";
   }
   if (run.interrupted != 0) {
-    std::cout << "interrupted: the same command goes on with the others\n";
+    std::cout << "interrupted"
+              << (FLAGS_nocache ? "" : ": the same command goes on with the others") << "\n";
     return 128 + run.interrupted;
   }
   return run.failures.empty() ? 0 : kSomeFailed;

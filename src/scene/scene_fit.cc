@@ -402,6 +402,8 @@ std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings&
       results[k].error = error.what();
     } catch (const std::bad_alloc&) {
       results[k].error = "out of memory; try fewer threads";
+    } catch (const std::exception& error) {
+      results[k].error = std::string("internal error: ") + error.what();
     }
   });
   return results;

@@ -124,6 +124,27 @@ TEST(Outputs, AreNeverInputs) {
   }
 }
 
+TEST(Outputs, APictureOfAMeasurementDoesNotReplaceIt) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "measured.png";
+  ASSERT_EQ(RunProgram({"synth", "felt", "--out=" + (folder / "felt")}).status, 0);
+  std::filesystem::rename(folder / "felt", file);
+  std::filesystem::create_symlink(file, folder / "link");
+  for (const std::string& source : {file, folder / "link"}) {
+    ExpectRefusal(RunProgram({"info", source, "--out=" + (folder / "")}), "would destroy '");
+  }
+  EXPECT_GT(std::filesystem::file_size(file), 30e6);
+}
+
+// Names that a run uses are common ones; without a run of ours in the folder they are somebody's.
+TEST(FitFolder, LeavesFilesOfNoRunAlone) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "course.csv") << "mine";
+  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt", "--out=" + (folder / "")})),
+                "course.csv' is not of a run of this command");
+  EXPECT_EQ(Contents(folder / "course.csv"), "mine");
+}
+
 TEST(Outputs, AreCheckedBeforeTheWork) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "model.json");
@@ -203,6 +224,33 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   const ProgramResult all = RunProgram(command);
   EXPECT_THAT(all.out, HasSubstr("] felt: kept"));
   EXPECT_THAT(all.out, HasSubstr("] a & b: kept"));
+}
+
+TEST(FitMany, WhatIsNotWholeIsFittedAgain) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  // By itself, without the thumbnail that a page needs.
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--out=" + out + "/felt"})).status, 0);
+  const std::vector<std::string> command =
+      Quick({"fit", "synth:felt", "--shard=1/1", "--plots", "--out=" + out});
+  const ProgramResult without = RunProgram(command, {"PATH=/nowhere"});
+  EXPECT_EQ(without.status, 3);
+  EXPECT_THAT(without.out, HasSubstr("felt: failed: pictures need gnuplot"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/felt/pair.png"));
+  const ProgramResult with = RunProgram(command);
+  EXPECT_EQ(with.status, 0);
+  EXPECT_THAT(with.out, HasSubstr("felt: fitted"));
+  EXPECT_THAT(RunProgram(command).out, HasSubstr("felt: kept"));
+}
+
+// A folder may hold measurements and their fits, and be given again.
+TEST(FitMany, FitsAFolderIntoItself) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "few.CSV") << "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,20,180,1,1,1\n"
+                                       "20,0,20,180,1,1,1\n30,0,10,90,1,1,1\n";
+  const std::vector<std::string> command = Quick({"fit", folder / "", "--out=" + (folder / "")});
+  EXPECT_THAT(RunProgram(command).out, HasSubstr("[1/1] few: fitted"));
+  EXPECT_THAT(RunProgram(command).out, HasSubstr("[1/1] few: kept"));
 }
 
 TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {

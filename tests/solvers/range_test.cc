@@ -64,7 +64,8 @@ void ExpectRightFit(const SolverEntry& solver, const Objective& objective) {
   EXPECT_TRUE(std::isfinite(summary.diagnosis->optimality));
   EXPECT_NO_THROW(CheckNumbers(model));
   const ScoreReport score = ScoreModel(objective, model);
-  EXPECT_LT(score.relative_objective, 0.01);
+  // G between nodes is linear for awls_gss, so that it ends higher than the others.
+  EXPECT_LT(score.relative_objective, solver.name == "awls_gss" ? 0.02 : 0.01);
   EXPECT_GT(score.psnr_db, 15);
   EXPECT_LT(score.psnr_db, 80);
 }
