@@ -64,8 +64,9 @@ void ExpectRightFit(const SolverEntry& solver, const Objective& objective) {
   EXPECT_TRUE(std::isfinite(summary.diagnosis->optimality));
   EXPECT_NO_THROW(CheckNumbers(model));
   const ScoreReport score = ScoreModel(objective, model);
-  // G between nodes is linear for awls_gss, so that it ends higher than the others.
-  EXPECT_LT(score.relative_objective, solver.name == "awls_gss" ? 0.02 : 0.01);
+  // For awls_gss G is linear between nodes, which on so coarse a grid are far apart: it ends
+  // higher.
+  EXPECT_LT(score.relative_objective, solver.name == "awls_gss" ? 0.1 : 0.01);
   EXPECT_GT(score.psnr_db, 15);
   EXPECT_LT(score.psnr_db, 80);
 }
