@@ -68,12 +68,14 @@ std::string CsvField(const std::string& text) {
 
 std::string Figure(const FitOutcome& outcome) {
   const std::string folder = Address(outcome.name);
-  return "<figure><a href=\"" + folder + "/report.json\"><img src=\"" + folder +
-         "/pair.png\" loading=\"lazy\" alt=\"" + Escaped(outcome.name) +
-         ": measured and fitted\"></a>\n<figcaption><b>" + Escaped(outcome.name) + "</b>PSNR " +
-         Text(outcome.psnr_db, 3) + " dB, CIELAB difference " + Text(outcome.mean_delta_e, 2) +
-         ", mean colour off by " + Text(100 * outcome.mean_color_error, 2) +
-         " %</figcaption></figure>\n";
+  std::ostringstream figure;
+  figure << R"(<figure><a href=")" << folder << R"(/report.json"><img src=")" << folder
+         << R"(/pair.png" loading="lazy" alt=")" << Escaped(outcome.name)
+         << ": measured and fitted\"></a>\n<figcaption><b>" << Escaped(outcome.name) << "</b>PSNR "
+         << Text(outcome.psnr_db, 3) << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2)
+         << ", mean colour off by " << Text(100 * outcome.mean_color_error, 2)
+         << " %</figcaption></figure>\n";
+  return figure.str();
 }
 
 }  // namespace
