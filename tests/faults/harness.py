@@ -379,8 +379,8 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="begin with this trial, to repeat one that failed")
     options = parser.parse_args()
     harness = Harness(options.program, options.seed)
-    failures = 0
-    with harness.workshop():
+    failures = done = 0
+    with harness.workshop(), contextlib.suppress(KeyboardInterrupt):
         for k in range(options.first, options.first + options.trials):
             harness.random = random.Random(f"{options.seed}/{k}")
             try:
@@ -388,6 +388,7 @@ def main():
             except (Broken, OSError, ValueError, KeyError, subprocess.SubprocessError) as error:
                 failures += 1
                 print(f"trial {k}: {type(error).__name__}: {error}", flush=True)
+            done += 1
             if sys.stderr.isatty():
                 print(f"\r\033[K{k + 1 - options.first} of {options.trials} trials", end="", file=sys.stderr)
     if sys.stderr.isatty():
@@ -396,7 +397,7 @@ def main():
         print(f"{count:5}  {what}")
     for why, count in harness.skipped.items():
         print(f"{count:5}  skipped: {why}")
-    print(f"{options.trials} trials with seed {options.seed}: {failures} broke a promise")
+    print(f"{done} trials with seed {options.seed}: {failures} broke a promise")
     return 1 if failures else 0
 
 
