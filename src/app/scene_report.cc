@@ -123,8 +123,9 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
       << Text(run.seconds, 3) << " seconds side by side on " << run.threads << " threads"
       << (run.reused > 0 ? ", reckoned from what the parts took when they were made" : "") << "\n";
   for (const MaterialFit& fit : run.fits) PrintDecisions(run, fit, out);
-  for (const auto& [material, error] : run.failures)
+  for (const auto& [material, error] : run.failures) {
     out << "\n" << material << " failed: " << error << "\n";
+  }
 }
 
 Json PlanToJson(const SceneRun& run) {

@@ -379,6 +379,9 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="begin with this trial, to repeat one that failed")
     options = parser.parse_args()
     harness = Harness(options.program, options.seed)
+    # Started in the background of a script, it would ignore Ctrl-C; stopped, it prints what it has.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
     failures = done = 0
     with harness.workshop(), contextlib.suppress(KeyboardInterrupt):
         for k in range(options.first, options.first + options.trials):
