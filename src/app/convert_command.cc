@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <iostream>
 #include <string>
 
@@ -9,6 +6,7 @@
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/io/csv_file.h"
+#include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
@@ -17,13 +15,6 @@
 
 namespace trilobe {
 namespace {
-
-bool EndsInCsv(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".csv";
-}
 
 Measurement MeasurementOf(const std::string& source, const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
@@ -37,7 +28,7 @@ Measurement MeasurementOf(const std::string& source, const SourceOptions& option
 
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
-  const bool csv = EndsInCsv(FLAGS_out);
+  const bool csv = EndingOf(FLAGS_out) == ".csv";
   const std::string out = csv ? FLAGS_out : RequiredMerlOut("convert");
   Inputs({source}).CheckOutput(out);
   const Measurement measurement = MeasurementOf(source, SourceOptionsFromFlags());

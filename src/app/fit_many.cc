@@ -3,7 +3,6 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -46,8 +45,7 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::string ending = it->path().extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string ending = EndingOf(it->path().string());
     if (it->path().filename() == kTableName) continue;  // of an earlier run
     if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
         MeasurementFormats().end()) {
@@ -129,12 +127,13 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
   }
 }
 
-// Whether the folder has what a fit of this key leaves, whole and of one run.
-bool IsFinished(const ResultFolder& folder, const std::string& key, FitOutcome* outcome) {
+// Whether the folder has what this fit leaves, whole and of one run. The measurement, of which the
+// key is made, is read only where all else holds.
+bool IsFinished(const FitSettings& settings, const ResultFolder& folder, FitOutcome* outcome) {
   try {
     const std::string path = folder.PathOf("report.json");
     const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
-    if (report.at("key") != key || report.at("interrupted") ||
+    if (report.at("interrupted") ||
         report.at("run") != ReadModel(folder.PathOf("model.json")).fit.run) {
       return false;
     }
@@ -142,6 +141,9 @@ bool IsFinished(const ResultFolder& folder, const std::string& key, FitOutcome* 
     for (const std::string name : report.at("files")) {
       if (std::ranges::find(files, name) == files.end()) return false;
     }
+    const std::string& source = outcome->source;
+    const std::string bytes = IsSynthetic(source) ? "" : ReadFile(source);
+    if (report.at("key") != FitKey(settings, source, bytes)) return false;
     TakeReport(report, outcome);
     return true;
   } catch (const Error&) {
@@ -152,14 +154,12 @@ bool IsFinished(const ResultFolder& folder, const std::string& key, FitOutcome* 
 }
 
 void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* outcome) {
-  const std::string& source = outcome->source;
-  if (IsFinished(*folder, FitKey(settings, source, IsSynthetic(source) ? "" : ReadFile(source)),
-                 outcome)) {
+  if (IsFinished(settings, *folder, outcome)) {
     outcome->state = FitOutcome::State::kKept;
     return;
   }
   std::optional<FitRun> run = RunOneFit(
-      source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
+      outcome->source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
   if (!run) return;
   WriteRest(&*run, settings, folder);
   TakeReport(ToJson(run->report), outcome);
@@ -219,15 +219,9 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
     FitOutcome& outcome = outcomes[k];
     try {
       FitOrKeep(settings, &folders[k], &outcome);
-    } catch (const Error& error) {
+    } catch (const std::exception& exception) {
       outcome.state = FitOutcome::State::kFailed;
-      outcome.error = error.what();
-    } catch (const std::bad_alloc&) {
-      outcome.state = FitOutcome::State::kFailed;
-      outcome.error = "out of memory; try fewer --threads";
-    } catch (const std::exception& error) {
-      outcome.state = FitOutcome::State::kFailed;
-      outcome.error = std::string("internal error: ") + error.what();
+      outcome.error = MessageOf(exception);
     }
     const std::lock_guard<std::mutex> lock(mutex);
     progress.Clear();

@@ -1,14 +1,13 @@
 #include "trilobe/app/inputs.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <iterator>
 #include <string_view>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/content.h"
+#include "trilobe/io/file.h"
 
 namespace trilobe {
 
@@ -30,9 +29,7 @@ std::string RequiredMerlOut(const std::string& command) {
       ".exr",  ".tif",  ".tiff", ".pdf", ".svg", ".npy", ".npz",  ".mat", ".h5",
       ".xml",  ".zip",  ".gz",   ".tgz", ".xz",  ".bz2", ".zst",  ".7z",  ".tar"};
   std::string out = RequiredOut(command, "FILE");
-  std::string ending = std::filesystem::path(out).extension();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = EndingOf(out);
   if (std::ranges::find(kOthers, ending) != std::end(kOthers)) {
     throw Error("--out=" + out + ": trilobe " + command + " writes MERL data, and the ending '" +
                 ending + "' says another format; end the name in .binary");

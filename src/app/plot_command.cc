@@ -24,8 +24,9 @@ int RunPlot(std::span<const std::string> arguments) {
   const std::string folder = RequiredOut("plot", "DIR");
   std::vector<std::string> read(arguments.begin(), arguments.end());
   for (const std::string& path : {FLAGS_trace, FLAGS_probe}) read.push_back(path);
+  const Inputs inputs(read);
   for (const char* const name : {"factors.png", "slices.png", "spheres.png", "trace.png"}) {
-    Inputs(read).CheckOutput(folder + "/" + name);
+    inputs.CheckOutput(folder + "/" + name);
   }
   const ModelFile file = ReadModel(arguments[0]);
   std::optional<BrdfTable> measured;

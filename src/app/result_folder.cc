@@ -3,11 +3,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
-#include <random>
 #include <utility>
 
 #include "trilobe/base/error.h"
@@ -15,17 +12,6 @@
 #include "trilobe/io/source.h"
 
 namespace trilobe {
-namespace {
-
-std::string RandomDigits() {
-  std::random_device random;
-  std::array<char, 17> digits;
-  std::snprintf(digits.data(), digits.size(), "%08x%08x", random(), random());
-  return digits.data();
-}
-
-}  // namespace
-
 Inputs::Inputs(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     struct stat status {};

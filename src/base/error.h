@@ -1,7 +1,10 @@
 #ifndef TRILOBE_BASE_ERROR_H_
 #define TRILOBE_BASE_ERROR_H_
 
+#include <exception>
+#include <new>
 #include <stdexcept>
+#include <string>
 
 namespace trilobe {
 
@@ -12,6 +15,15 @@ class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// What to tell, in one line, of what ended one of many pieces of work while the others go on.
+inline std::string MessageOf(const std::exception& exception) {
+  if (dynamic_cast<const Error*>(&exception) != nullptr) return exception.what();
+  if (dynamic_cast<const std::bad_alloc*>(&exception) != nullptr) {
+    return "out of memory; try fewer threads";
+  }
+  return std::string("internal error: ") + exception.what();
+}
 
 }  // namespace trilobe
 

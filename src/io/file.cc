@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -84,12 +86,9 @@ constexpr std::string_view kTemporaryMark = ".trilobe-tmp-";
 constexpr size_t kTemporaryDigits = 16;
 
 std::string TemporaryName(const std::filesystem::path& target) {
-  std::random_device random;
-  std::array<char, kTemporaryDigits + 1> digits;
-  std::snprintf(digits.data(), digits.size(), "%08x%08x", random(), random());
   // So that the whole is no longer than a file's name may be.
   const std::string name = target.filename().string().substr(0, 200);
-  return target.parent_path() / ("." + name + std::string(kTemporaryMark) + digits.data());
+  return target.parent_path() / ("." + name + std::string(kTemporaryMark) + RandomDigits());
 }
 
 bool IsTemporaryName(std::string_view name) {
@@ -168,6 +167,20 @@ std::string ResolveTarget(const std::string& path) {
 }
 
 }  // namespace
+
+std::string RandomDigits() {
+  std::random_device random;
+  std::array<char, kTemporaryDigits + 1> digits;
+  std::snprintf(digits.data(), digits.size(), "%08x%08x", random(), random());
+  return digits.data();
+}
+
+std::string EndingOf(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
 
 std::string ReadFile(const std::string& path) {
   // O_NONBLOCK keeps the call from waiting for a writer when the path is a named pipe.

@@ -7,6 +7,12 @@
 
 namespace trilobe {
 
+// 16 hexadecimal digits that nobody else has, for names.
+std::string RandomDigits();
+
+// The ending of a file's name in lower case, as ".csv"; "" if it has none.
+std::string EndingOf(const std::string& path);
+
 // The bytes of a file. Throws Error: missing, a directory, unreadable, changed while read.
 std::string ReadFile(const std::string& path);
 

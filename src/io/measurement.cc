@@ -76,10 +76,7 @@ BinCounts CountsOf(const Measurement& measurement) {
 }
 
 double MaxAngleDegrees(const Measurement& measurement) {
-  if (measurement.table) return MaxAngleDegrees(*measurement.table);
-  BrdfTable as_table;
-  as_table.max_theta = measurement.max_theta;
-  return MaxAngleDegrees(as_table);
+  return MaxAngleDegrees(measurement.table ? measurement.table->max_theta : measurement.max_theta);
 }
 
 void LimitAngles(double max_theta, Measurement* measurement) {

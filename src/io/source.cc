@@ -1,8 +1,6 @@
 #include "trilobe/io/source.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <memory>
 
 #include "trilobe/base/error.h"
@@ -53,13 +51,6 @@ std::string WhatMeasurementsAre() {
   std::string text;
   for (const MeasurementFormat& format : MeasurementFormats()) text += format.description + ", ";
   return text + "or synth:NAME";
-}
-
-std::string EndingOf(const std::string& source) {
-  std::string ending = std::filesystem::path(source).extension();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
 }
 
 const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source) {

@@ -50,10 +50,12 @@ std::vector<bool> ValidBins(const BrdfTable& table) {
   return valid;
 }
 
-double MaxAngleDegrees(const BrdfTable& table) {
+double MaxAngleDegrees(double max_theta) {
   constexpr double kDigits = 1e9;
-  return std::round(RadiansToDegrees(table.max_theta) * kDigits) / kDigits;
+  return std::round(RadiansToDegrees(max_theta) * kDigits) / kDigits;
 }
+
+double MaxAngleDegrees(const BrdfTable& table) { return MaxAngleDegrees(table.max_theta); }
 
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
   CheckTable(*table);

@@ -62,7 +62,9 @@ inline Unmeasured ReasonOf(const BrdfTable& table, int bin) {
   return table.unmeasured.empty() ? Unmeasured::kNo : table.unmeasured[bin];
 }
 
-// table.max_theta in degrees, to show: 60 where the user said 60, whatever radians made of it.
+// An angle, table.max_theta, in degrees, to show: 60 where the user said 60, whatever radians made
+// of it.
+double MaxAngleDegrees(double max_theta);
 double MaxAngleDegrees(const BrdfTable& table);
 
 // From now on nothing is measured where theta_i or theta_o, at the centre of a bin above the

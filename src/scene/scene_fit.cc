@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <new>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
@@ -398,12 +397,8 @@ std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings&
       const std::lock_guard<std::mutex> lock(mutex);
       if (fit) on_done(*fit);
       results[k].fit = std::move(fit);
-    } catch (const Error& error) {
-      results[k].error = error.what();
-    } catch (const std::bad_alloc&) {
-      results[k].error = "out of memory; try fewer threads";
-    } catch (const std::exception& error) {
-      results[k].error = std::string("internal error: ") + error.what();
+    } catch (const std::exception& exception) {
+      results[k].error = MessageOf(exception);
     }
   });
   return results;

@@ -1,9 +1,12 @@
 #ifndef TRILOBE_SOLVERS_BOUNDED_QUADRATIC_H_
 #define TRILOBE_SOLVERS_BOUNDED_QUADRATIC_H_
 
+#include <array>
+#include <cstddef>
 #include <span>
 
 #include "trilobe/model/model_spec.h"
+#include "trilobe/solvers/element_step.h"
 
 namespace trilobe {
 
@@ -25,6 +28,27 @@ inline constexpr int kMaxBoundedUnknowns = 1 + kMaxLobes;
 // (BestElement).
 void MinimizeBounded(std::span<const double> H, std::span<const double> g, double E,
                      std::span<double> x);
+
+// The same for elements wherever they stand, one of them by BestElement: moves them, and says by
+// how much. False if none moved. H, g, E as above. steps: [elements.size()].
+inline bool MoveToMinimum(std::span<const double> H, std::span<const double> g, double E,
+                          std::span<double* const> elements, double* steps) {
+  const size_t size = elements.size();
+  std::array<double, kMaxBoundedUnknowns> x;
+  for (size_t k = 0; k < size; ++k) x[k] = *elements[k];
+  if (size == 1) {
+    x[0] = BestElement(x[0], {.c1 = -2 * g[0], .c2 = H[0]});
+  } else {
+    MinimizeBounded(H, g, E, {x.data(), size});
+  }
+  bool any = false;
+  for (size_t k = 0; k < size; ++k) {
+    steps[k] = x[k] - *elements[k];
+    *elements[k] = x[k];
+    any |= steps[k] != 0;
+  }
+  return any;
+}
 
 }  // namespace trilobe
 

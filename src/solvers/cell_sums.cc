@@ -124,22 +124,11 @@ void CellSums::Update(const Block& block, const Moved& moved, std::span<double* 
       }
     }
   });
-  std::array<double, kMaxElements> x{}, delta{};
-  for (int k = 0; k < size; ++k) x[k] = *elements[k];
-  if (size == 1) {
-    x[0] = BestElement(x[0], {.c1 = -2 * g[0], .c2 = H[0]});
-  } else {
-    MinimizeBounded({H.data(), static_cast<size_t>(size) * size},
-                    {g.data(), static_cast<size_t>(size)}, E,
-                    {x.data(), static_cast<size_t>(size)});
+  const auto count = static_cast<size_t>(size);
+  std::array<double, kMaxElements> delta{};
+  if (!MoveToMinimum({H.data(), count * count}, {g.data(), count}, E, elements, delta.data())) {
+    return;
   }
-  bool any = false;
-  for (int k = 0; k < size; ++k) {
-    delta[k] = x[k] - *elements[k];
-    *elements[k] = x[k];
-    any |= delta[k] != 0;
-  }
-  if (!any) return;
   for_each_cell([&](int h, int d, int c) {
     const MovedLobes v = moved(h, d, c);
     double* const b_hdc = mutable_b(h, d, c);

@@ -1,6 +1,8 @@
 #ifndef TRILOBE_SOLVERS_GRID_SWEEP_H_
 #define TRILOBE_SOLVERS_GRID_SWEEP_H_
 
+#include <optional>
+
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective.h"
 #include "trilobe/solvers/cell_sums.h"
@@ -16,7 +18,7 @@ namespace trilobe {
 // no further pass.
 class GridSweep : public Sweep {
  public:
-  // The objective's samples must be on a grid. Times go to *phases.
+  // The objective, which must outlive the sweep, has its samples on a grid. Times go to *phases.
   GridSweep(const Objective& objective, PhaseSeconds* phases);
 
   void operator()(const OnElement& on_element, FactorModel* model) override;
@@ -26,10 +28,10 @@ class GridSweep : public Sweep {
   void UpdateG(const OnElement& on_element, FactorModel* model) override;
   void AccumulateCells(const FactorModel& model);
 
-  const int num_threads_;
+  const Objective& objective_;
   PhaseSeconds* const phases_;
   CellSums cells_;
-  ShadowingSums shadowing_;
+  std::optional<ShadowingSums> shadowing_;  // once G is updated; projections do without
 };
 
 }  // namespace trilobe

@@ -21,7 +21,6 @@ constexpr int kMaxTerms = 1 + kMaxLobes * (1 + 4 * Stencil::kMaxSize);
 // Those of one sample and channel, each parameter once.
 class Terms {
  public:
-  void Clear() { size_ = 0; }
   void Add(int parameter, double value) { terms_[size_++] = {parameter, value}; }
   // The same for a parameter that may be among those from `first` on.
   void AddAmong(int first, int parameter, double value) {
@@ -31,6 +30,12 @@ class Terms {
       return;
     }
     Add(parameter, value);
+  }
+  // The entries of a table that begins at `offset`, times `scale`.
+  void AddStencil(int first, int offset, const Stencil& stencil, double scale) {
+    for (int k = 0; k < stencil.size; ++k) {
+      AddAmong(first, offset + stencil.index[k], stencil.weight[k] * scale);
+    }
   }
   int size() const { return size_; }
   std::span<const Term> terms() const { return {terms_.data(), static_cast<size_t>(size_)}; }
@@ -42,9 +47,10 @@ class Terms {
 
 // What one lobe reads in one channel.
 struct LobeReadings {
-  double s, D, F, G_i, G_o;
-  int D_offset, F_offset, G_offset;
+  double s = 0, D = 0, F = 0, G_i = 0, G_o = 0;
+  int D_offset = 0, F_offset = 0, G_offset = 0;
 
+  LobeReadings() = default;
   LobeReadings(const FactorModel& model, const SampleStencils& at, int m, int c)
       : s(model.s(m)[c]),
         D(at.D(model.D(m, c))),
@@ -97,14 +103,10 @@ struct SampleEquations::Share {
                             double scale) {
     Terms D, F, G;  // G: d (G_i G_o)
     const Term s{s_parameter, 1};
-    for (int k = 0; k < at.D.size; ++k) D.Add(lobe.D_offset + at.D.index[k], at.D.weight[k]);
-    for (int k = 0; k < at.F.size; ++k) F.Add(lobe.F_offset + at.F.index[k], at.F.weight[k]);
-    for (int k = 0; k < at.G_i.size; ++k) {
-      G.AddAmong(0, lobe.G_offset + at.G_i.index[k], at.G_i.weight[k] * lobe.G_o);
-    }
-    for (int k = 0; k < at.G_o.size; ++k) {
-      G.AddAmong(0, lobe.G_offset + at.G_o.index[k], at.G_o.weight[k] * lobe.G_i);
-    }
+    D.AddStencil(0, lobe.D_offset, at.D, 1);
+    F.AddStencil(0, lobe.F_offset, at.F, 1);
+    G.AddStencil(0, lobe.G_offset, at.G_i, lobe.G_o);
+    G.AddStencil(0, lobe.G_offset, at.G_o, lobe.G_i);
     const double scaled = scale * at.inverse_cosines, K = lobe.G_i * lobe.G_o;
     AddOuter(scaled * lobe.F * K, {&s, 1}, D.terms());
     AddOuter(scaled * lobe.D * K, {&s, 1}, F.terms());
@@ -125,6 +127,44 @@ struct SampleEquations::Share {
       }
     }
   }
+
+  void AddChannel(const FactorModel& model, const WeightedSample& sample, int c, Hessian hessian) {
+    const ModelSpec& spec = model.spec();
+    const SampleStencils& at = sample.stencils;
+    std::array<LobeReadings, kMaxLobes> lobes;
+    double rho = model.d()[c];
+    Terms derivatives;
+    derivatives.Add(c, 1);
+    for (int m = 0; m < spec.lobes; ++m) {
+      const LobeReadings& lobe = lobes[m] = LobeReadings(model, at, m, c);
+      const double K = lobe.G_i * lobe.G_o * at.inverse_cosines;
+      rho += lobe.s * lobe.D * lobe.F * K;
+      derivatives.Add(kChannels * (1 + m) + c, lobe.D * lobe.F * K);
+    }
+    int first[3] = {};  // term of a factor's table; one that several lobes share comes once
+    for (int m = 0; m < spec.lobes; ++m) {
+      const LobeReadings& lobe = lobes[m];
+      const double K = lobe.G_i * lobe.G_o * at.inverse_cosines;
+      const double y = lobe.s * lobe.D * lobe.F * at.inverse_cosines;
+      const auto first_of = [&](Factor factor) {
+        int& term = first[static_cast<int>(factor)];
+        if (m == 0 || spec.sharing(factor).per_lobe) term = derivatives.size();
+        return term;
+      };
+      derivatives.AddStencil(first_of(Factor::kD), lobe.D_offset, at.D, lobe.s * lobe.F * K);
+      derivatives.AddStencil(first_of(Factor::kF), lobe.F_offset, at.F, lobe.s * lobe.D * K);
+      const int first_of_G = first_of(Factor::kG);
+      derivatives.AddStencil(first_of_G, lobe.G_offset, at.G_i, y * lobe.G_o);
+      derivatives.AddStencil(first_of_G, lobe.G_offset, at.G_o, y * lobe.G_i);
+    }
+    const double w = sample.weight[c], residual = rho - sample.rho[c];
+    objective += w * residual * residual;
+    Add(derivatives, w, residual);
+    if (hessian == Hessian::kGaussNewton) return;
+    for (int m = 0; m < spec.lobes; ++m) {
+      AddSecondDerivatives(lobes[m], at, kChannels * (1 + m) + c, w * residual);
+    }
+  }
 };
 
 SampleEquations::SampleEquations(const Objective& objective) : objective_(objective) {
@@ -137,60 +177,13 @@ SampleEquations::~SampleEquations() = default;
 
 void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   const std::vector<WeightedSample>& samples = objective_.weighted_samples();
-  const ModelSpec& spec = model.spec();
-  const size_t n = spec.num_parameters(), count = shares_.size();
+  const size_t n = model.spec().num_parameters(), count = shares_.size();
   ParallelFor(static_cast<int>(count), objective_.num_threads(), [&](int k) {
     Share& share = *shares_[k];
     share.Reset(n);
-    Terms derivatives;
     const size_t end = samples.size() * (k + 1) / count;
     for (size_t j = samples.size() * k / count; j < end; ++j) {
-      const WeightedSample& sample = samples[j];
-      const SampleStencils& at = sample.stencils;
-      for (int c = 0; c < kChannels; ++c) {
-        double rho = model.d()[c];
-        derivatives.Clear();
-        derivatives.Add(c, 1);
-        for (int m = 0; m < spec.lobes; ++m) {
-          const LobeReadings lobe(model, at, m, c);
-          const double K = lobe.G_i * lobe.G_o * at.inverse_cosines;
-          rho += lobe.s * lobe.D * lobe.F * K;
-          derivatives.Add(kChannels * (1 + m) + c, lobe.D * lobe.F * K);
-        }
-        // A table that several lobes share comes once.
-        std::array<int, 3> first{};
-        for (int m = 0; m < spec.lobes; ++m) {
-          const LobeReadings lobe(model, at, m, c);
-          const double K = lobe.G_i * lobe.G_o * at.inverse_cosines;
-          const auto add = [&](Factor factor, int offset, const Stencil& stencil, double scale) {
-            for (int e = 0; e < stencil.size; ++e) {
-              derivatives.AddAmong(first[static_cast<int>(factor)], offset + stencil.index[e],
-                                   stencil.weight[e] * scale);
-            }
-          };
-          for (const Factor factor : kFactors) {
-            if (m == 0 || spec.sharing(factor).per_lobe) {
-              first[static_cast<int>(factor)] = derivatives.size();
-            }
-            if (factor == Factor::kD) add(factor, lobe.D_offset, at.D, lobe.s * lobe.F * K);
-            if (factor == Factor::kF) add(factor, lobe.F_offset, at.F, lobe.s * lobe.D * K);
-            if (factor == Factor::kG) {
-              const double y = lobe.s * lobe.D * lobe.F * at.inverse_cosines;
-              add(factor, lobe.G_offset, at.G_i, y * lobe.G_o);
-              add(factor, lobe.G_offset, at.G_o, y * lobe.G_i);
-            }
-          }
-        }
-        const double w = sample.weight[c], residual = rho - sample.rho[c];
-        share.objective += w * residual * residual;
-        share.Add(derivatives, w, residual);
-        if (hessian == Hessian::kNewton) {
-          for (int m = 0; m < spec.lobes; ++m) {
-            share.AddSecondDerivatives(LobeReadings(model, at, m, c), at, kChannels * (1 + m) + c,
-                                       w * residual);
-          }
-        }
-      }
+      for (int c = 0; c < kChannels; ++c) share.AddChannel(model, samples[j], c, hessian);
     }
   });
   for (const auto& share : shares_) {

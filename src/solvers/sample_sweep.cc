@@ -127,7 +127,7 @@ void SampleSweep::Update(std::span<const int> samples, std::span<const double> w
                          ModelSpec::ChannelRange channels, const Respond& respond,
                          std::span<double* const> elements, double E, double* steps) {
   const int size = static_cast<int>(elements.size());
-  std::array<double, kMaxBoundedUnknowns> g{}, v{}, x{};
+  std::array<double, kMaxBoundedUnknowns> g{}, v{};
   std::array<double, kMaxBoundedUnknowns * kMaxBoundedUnknowns> H{};
   for (int c = channels.begin; c < channels.end; ++c) {
     for (size_t n = 0; n < samples.size(); ++n) {
@@ -142,23 +142,10 @@ void SampleSweep::Update(std::span<const int> samples, std::span<const double> w
     }
   }
   for (int k = 0; k < size; ++k) {
-    x[k] = *elements[k];
     for (int l = 0; l < k; ++l) H[k * size + l] = H[l * size + k];
   }
-  if (size == 1) {
-    x[0] = BestElement(x[0], {.c1 = -2 * g[0], .c2 = H[0]});
-  } else {
-    MinimizeBounded({H.data(), static_cast<size_t>(size) * size},
-                    {g.data(), static_cast<size_t>(size)}, E,
-                    {x.data(), static_cast<size_t>(size)});
-  }
-  bool any = false;
-  for (int k = 0; k < size; ++k) {
-    steps[k] = x[k] - *elements[k];
-    *elements[k] = x[k];
-    any |= steps[k] != 0;
-  }
-  if (!any) return;
+  const auto count = static_cast<size_t>(size);
+  if (!MoveToMinimum({H.data(), count * count}, {g.data(), count}, E, elements, steps)) return;
   for (int c = channels.begin; c < channels.end; ++c) {
     for (size_t n = 0; n < samples.size(); ++n) {
       const int j = samples[n];
