@@ -180,8 +180,8 @@ void DescribeScattered(const Measurement& measurement) {
     throw Error("--out is for a picture of the bins of a table; " + measurement.source + " is a " +
                 measurement.kind);
   }
-  const AngleRange theta_i = RangeOf(measurement.angles, &SphericalAngles::theta_i);
-  const AngleRange theta_o = RangeOf(measurement.angles, &SphericalAngles::theta_o);
+  const AngleRange theta_i = RangeOf(measurement.samples.directions, &SphericalAngles::theta_i);
+  const AngleRange theta_o = RangeOf(measurement.samples.directions, &SphericalAngles::theta_o);
   const ValueRange range = RangeOf(measurement.samples.rho);
   const PairError reciprocity = ReciprocityError(measurement);
   const BinCounts& counts = measurement.counts;

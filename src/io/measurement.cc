@@ -11,12 +11,6 @@
 namespace trilobe {
 namespace {
 
-Direction ToDirection(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
-double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
-
 // The smaller theta, the larger, and the angle between the azimuths [1e-6 rad]: the same for
 // samples that reciprocity makes equal.
 using ReciprocalKey = std::array<int64_t, 3>;
@@ -37,17 +31,6 @@ KeyedSample KeyOf(const SphericalAngles& angles, int sample) {
 }
 
 }  // namespace
-
-DirectionPair ToDirections(const SphericalAngles& angles) {
-  return {ToDirection(angles.theta_i, angles.phi_i), ToDirection(angles.theta_o, angles.phi_o)};
-}
-
-SphericalAngles ToSphericalAngles(const DirectionPair& pair) {
-  const auto& [wi, wo] = pair;
-  double phi = std::atan2(wo[1], wo[0]) - std::atan2(wi[1], wi[0]);
-  if (phi < 0) phi += 2 * kPi;
-  return {Theta(wi), 0, Theta(wo), phi};
-}
 
 BrdfSamples SamplesOf(const Measurement& measurement) {
   if (measurement.table) return ValidSamples(*measurement.table);
@@ -87,29 +70,26 @@ void LimitAngles(double max_theta, Measurement* measurement) {
   constexpr double kRounding = 1e-9;  // of degrees that became radians: 60 are not beyond 60
   const double largest = std::min(max_theta, measurement->max_theta);
   std::vector<int> kept;
-  std::vector<SphericalAngles> angles;
   measurement->max_theta = 0;
   for (int j = 0; j < measurement->samples.size(); ++j) {
-    const SphericalAngles& at = measurement->angles[j];
+    const SphericalAngles& at = measurement->samples.directions[j];
     const double theta = std::max(at.theta_i, at.theta_o);
     if (theta > largest + kRounding) continue;
     kept.push_back(j);
-    angles.push_back(at);
     measurement->max_theta = std::max(measurement->max_theta, std::min(theta, largest));
   }
   const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
   if (left_out == 0) return;
   measurement->samples = Selected(measurement->samples, kept);
-  measurement->angles = std::move(angles);
   measurement->counts.valid -= left_out;
   measurement->counts.beyond_max_angle += left_out;
 }
 
 PairError ReciprocityError(const Measurement& scattered) {
   std::vector<KeyedSample> keys;
-  keys.reserve(scattered.angles.size());
+  keys.reserve(scattered.samples.directions.size());
   for (int j = 0; j < scattered.samples.size(); ++j) {
-    keys.push_back(KeyOf(scattered.angles[j], j));
+    keys.push_back(KeyOf(scattered.samples.directions[j], j));
   }
   std::ranges::stable_sort(keys, {}, &KeyedSample::key);
   std::vector<std::pair<Rgb, Rgb>> pairs;
@@ -152,7 +132,7 @@ void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
     ++measurement_.counts.valid;
     measurement_.samples.angles.push_back(half_diff);
     measurement_.samples.rho.push_back(rho);
-    measurement_.angles.push_back(angles);
+    measurement_.samples.directions.push_back(angles);
     measurement_.max_theta = std::max({measurement_.max_theta, angles.theta_i, angles.theta_o});
   }
 }
