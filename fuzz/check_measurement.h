@@ -13,13 +13,13 @@ inline void CheckScattered(const Measurement& measurement) {
   const BinCounts& counts = measurement.counts;
   CheckSamples(measurement.samples);
   if (measurement.table || counts.valid != measurement.samples.size() ||
-      measurement.angles.size() != measurement.samples.rho.size() ||
+      measurement.samples.directions.size() != measurement.samples.rho.size() ||
       counts.valid + counts.below_surface + counts.non_finite + counts.negative + counts.missing +
               counts.extrapolated + counts.beyond_nodes !=
           counts.total) {
     std::abort();
   }
-  for (const SphericalAngles& angles : measurement.angles) {
+  for (const SphericalAngles& angles : measurement.samples.directions) {
     if (!(angles.theta_i <= measurement.max_theta && angles.theta_o <= measurement.max_theta)) {
       std::abort();
     }

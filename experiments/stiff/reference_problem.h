@@ -88,7 +88,7 @@ class ReferenceProblem {
   static Real Weight(const std::string& name, const Real& rho, const Real& cos_i);
   void ReadSpline(const Real& theta, Real Node::*weight, Sample* sample) const;
   Real NodeAngle(int k) const {
-    return (k + Real{0.5}) / spec_.g_nodes * boost::math::constants::half_pi<Real>();
+    return (k + Real{0.5}) / spec_.g_axis.size * boost::math::constants::half_pi<Real>();
   }
   Lobe LobeAt(const VectorOf<Real>& x, const Sample& sample, int m, int c) const;
   Real Residual(const VectorOf<Real>& x, const Sample& sample, int c) const;
@@ -167,8 +167,8 @@ Real ReferenceProblem<Real>::Weight(const std::string& name, const Real& rho, co
 template <typename Real>
 void ReferenceProblem<Real>::ReadSpline(const Real& theta, Real Node::*weight,
                                         Sample* sample) const {
-  const int last = spec_.g_nodes - 1;
-  const Real place = theta / boost::math::constants::half_pi<Real>() * spec_.g_nodes - Real{0.5};
+  const int last = spec_.g_axis.size - 1;
+  const Real place = theta / boost::math::constants::half_pi<Real>() * spec_.g_axis.size - Real{0.5};
   const auto add = [&](int index, const Real& amount) {
     for (Node& node : sample->nodes) {
       if (node.index != index) continue;

@@ -193,9 +193,9 @@ void DescribeScattered(const Measurement& measurement) {
     throw Error("--out is for a picture of the bins of a table; " + measurement.source + " is a " +
                 measurement.kind);
   }
-  const AngleRange theta_i = RangeOf(measurement.angles, &SphericalAngles::theta_i);
-  const AngleRange phi_i = RangeOf(measurement.angles, &SphericalAngles::phi_i);
-  const AngleRange theta_o = RangeOf(measurement.angles, &SphericalAngles::theta_o);
+  const AngleRange theta_i = RangeOf(measurement.samples.directions, &SphericalAngles::theta_i);
+  const AngleRange phi_i = RangeOf(measurement.samples.directions, &SphericalAngles::phi_i);
+  const AngleRange theta_o = RangeOf(measurement.samples.directions, &SphericalAngles::theta_o);
   std::optional<Anisotropy> anisotropy;
   if (measurement.anisotropic) anisotropy = AnisotropyOfAny(measurement);
   const ValueRange range = RangeOf(measurement.samples.rho);

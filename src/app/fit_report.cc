@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 // The value of --model that stands for a spec, which a model file may have brought.
 std::string ModelName(const ModelSpec& spec) {
-  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
+  const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
   if (spec == ModelSpec::SharedFactors(spec.lobes, grid)) return "shared";
   if (spec == ModelSpec::IndependentG(grid)) return "independent";
   return "other";

@@ -124,7 +124,7 @@ SolverOptions SolverOptionsFromFlags(const SolverEntry& solver, const ModelSpec&
   options.relative_decrease_tolerance = FLAGS_tolerance;
   options.optimality_tolerance = FLAGS_optimality_tolerance;
   options.diagnose = FLAGS_diagnose;
-  options.g_filter_sigma = FLAGS_g_filter * spec.g_nodes / 90;
+  options.g_filter_sigma = FLAGS_g_filter * spec.g_axis.size / 90;
   options.positivity = FindChoice(
       "positivity", FLAGS_positivity,
       {Positivity::kActiveSet, Positivity::kBounds, Positivity::kSquares}, PositivityName);

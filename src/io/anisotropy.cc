@@ -30,7 +30,7 @@ Anisotropy AnisotropyOf(const Measurement& scattered) {
   const std::vector<Rgb>& rho = scattered.samples.rho;
   std::vector<KeyedSample> keys;
   for (int j = 0; j < scattered.samples.size(); ++j) {
-    keys.push_back(KeyOf(scattered.angles[j], j));
+    keys.push_back(KeyOf(scattered.samples.directions[j], j));
   }
   std::ranges::stable_sort(keys, {}, &KeyedSample::key);
   Anisotropy anisotropy;
@@ -42,7 +42,7 @@ Anisotropy AnisotropyOf(const Measurement& scattered) {
       for (int c = 0; c < kChannels; ++c) mean[c] += (rho[keys[end].sample][c] - mean[c]) / count;
     }
     if (end - begin == 1) continue;
-    const SphericalAngles& at = scattered.angles[keys[begin].sample];
+    const SphericalAngles& at = scattered.samples.directions[keys[begin].sample];
     const double cosines = std::cos(at.theta_i) * std::cos(at.theta_o);
     for (size_t k = begin; k < end; ++k) {
       for (int c = 0; c < kChannels; ++c) {

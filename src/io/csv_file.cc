@@ -36,6 +36,15 @@ std::array<size_t, kColumns> ColumnsOf(const TextLines& lines,
   return columns;
 }
 
+// With phi_i = 0 and phi_o from 0 to 360 degrees.
+SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
+  SphericalAngles at = ToSphericalAngles(ToDirections(angles));
+  at.phi_o -= at.phi_i;
+  at.phi_i = 0;
+  if (at.phi_o < 0) at.phi_o += 2 * kPi;
+  return at;
+}
+
 }  // namespace
 
 Measurement ParseCsv(std::string_view text, const std::string& source) {
@@ -66,7 +75,7 @@ int WriteCsv(const Measurement& measurement, const std::string& path) {
     std::array<char, kColumns * 32> row;  // the longest double has 24 characters
     for (int j = 0; j < samples.size(); ++j) {
       const SphericalAngles at =
-          of_table ? ToSphericalAngles(ToDirections(samples.Angles(j))) : measurement.angles[j];
+          of_table ? FromIncidentPlane(samples.Angles(j)) : samples.directions[j];
       const double numbers[kColumns] = {RadiansToDegrees(at.theta_i),
                                         RadiansToDegrees(at.phi_i),
                                         RadiansToDegrees(at.theta_o),

@@ -84,7 +84,7 @@ NodeValues ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& gri
   const auto nodes = static_cast<size_t>(grid.nodes());
   NodeValues values{std::vector<Rgb>(nodes * nodes), std::vector<bool>(nodes * nodes)};
   for (int j = 0; j < scattered.samples.size(); ++j) {
-    const SphericalAngles& at = scattered.angles[j];
+    const SphericalAngles& at = scattered.samples.directions[j];
     const auto i = grid.Find(at.theta_i, at.phi_i), o = grid.Find(at.theta_o, at.phi_o);
     const auto fail = [&](const std::string& problem) {
       std::ostringstream message;

@@ -12,12 +12,6 @@
 namespace trilobe {
 namespace {
 
-Direction ToDirection(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
-double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
-
 // The same for samples that reciprocity makes equal [1e-6 rad]: the smaller theta, the larger, and
 // the angle between the azimuths; or, where azimuths matter, theta and phi of the smaller direction
 // and of the larger.
@@ -54,26 +48,12 @@ KeyedSample KeyOf(const SphericalAngles& angles, bool anisotropic, int sample) {
 void Keep(const std::vector<int>& kept, int BinCounts::*reason, Measurement* measurement) {
   const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
   if (left_out == 0) return;
-  std::vector<SphericalAngles> angles;
-  for (const int j : kept) angles.push_back(measurement->angles[j]);
   measurement->samples = Selected(measurement->samples, kept);
-  measurement->angles = std::move(angles);
   measurement->counts.valid -= left_out;
   measurement->counts.*reason += left_out;
 }
 
 }  // namespace
-
-DirectionPair ToDirections(const SphericalAngles& angles) {
-  return {ToDirection(angles.theta_i, angles.phi_i), ToDirection(angles.theta_o, angles.phi_o)};
-}
-
-SphericalAngles ToSphericalAngles(const DirectionPair& pair) {
-  const auto& [wi, wo] = pair;
-  double phi = std::atan2(wo[1], wo[0]) - std::atan2(wi[1], wi[0]);
-  if (phi < 0) phi += 2 * kPi;
-  return {Theta(wi), 0, Theta(wo), phi};
-}
 
 BrdfSamples SamplesOf(const Measurement& measurement) {
   if (measurement.table) return ValidSamples(*measurement.table);
@@ -115,7 +95,7 @@ void LimitAngles(double max_theta, Measurement* measurement) {
   std::vector<int> kept;
   measurement->max_theta = 0;
   for (int j = 0; j < measurement->samples.size(); ++j) {
-    const SphericalAngles& at = measurement->angles[j];
+    const SphericalAngles& at = measurement->samples.directions[j];
     const double theta = std::max(at.theta_i, at.theta_o);
     if (theta > largest + kRounding) continue;
     kept.push_back(j);
@@ -149,9 +129,9 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
 
 PairError ReciprocityError(const Measurement& scattered) {
   std::vector<KeyedSample> keys;
-  keys.reserve(scattered.angles.size());
+  keys.reserve(scattered.samples.directions.size());
   for (int j = 0; j < scattered.samples.size(); ++j) {
-    keys.push_back(KeyOf(scattered.angles[j], scattered.anisotropic, j));
+    keys.push_back(KeyOf(scattered.samples.directions[j], scattered.anisotropic, j));
   }
   std::ranges::stable_sort(keys, {}, &KeyedSample::key);
   std::vector<std::pair<Rgb, Rgb>> pairs;
@@ -194,7 +174,7 @@ void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
     ++measurement_.counts.valid;
     measurement_.samples.angles.push_back(half_diff);
     measurement_.samples.rho.push_back(rho);
-    measurement_.angles.push_back(angles);
+    measurement_.samples.directions.push_back(angles);
     measurement_.max_theta = std::max({measurement_.max_theta, angles.theta_i, angles.theta_o});
   }
 }
@@ -217,7 +197,7 @@ Measurement SampleCollector::Take() { return std::move(measurement_); }
 Measurement SampleCollector::TakeByAzimuths() {
   constexpr double kSame = 1e-6;  // [rad]
   const SphericalAngles* first = nullptr;
-  for (const SphericalAngles& at : measurement_.angles) {
+  for (const SphericalAngles& at : measurement_.samples.directions) {
     if (at.theta_i < kSame) continue;
     if (first == nullptr) first = &at;
     if (std::abs(std::remainder(at.phi_i - first->phi_i, 2 * kPi)) > kSame) {

@@ -17,16 +17,6 @@ namespace trilobe {
 
 class RglBrdf;
 
-// A pair of directions as a goniometer gives it [rad]: theta from the normal, phi about it.
-struct SphericalAngles {
-  double theta_i = 0;
-  double phi_i = 0;
-  double theta_o = 0;
-  double phi_o = 0;
-};
-DirectionPair ToDirections(const SphericalAngles& angles);
-SphericalAngles ToSphericalAngles(const DirectionPair& pair);  // phi_i = 0, phi_o from 0 to 2 pi
-
 // What was measured of a material, and where it comes from: a table where the data are on a MERL
 // grid, else scattered samples.
 struct Measurement {
@@ -38,9 +28,7 @@ struct Measurement {
   std::vector<std::string> notes = {};           // one sentence each: what looks wrong in the data
 
   // Of scattered data:
-  BrdfSamples samples = {};                  // the valid ones
-  std::vector<SphericalAngles> angles = {};  // [samples.size()], with the order of wi and wo, which
-                                             // half and difference angles do not tell
+  BrdfSamples samples = {};    // the valid ones, with their directions
   BinCounts counts = {};       // samples of the file: all, valid ones, why others were left out
   int out_of_gamut = 0;        // with a channel set to 0, as sRGB cannot show the colour
   double max_theta = kPi / 2;  // [rad] no theta_i or theta_o of a valid sample is beyond this

@@ -53,6 +53,13 @@ OrderedJson TablesToJson(const FactorModel& model, const TableLayout& layout, Fa
     std::vector<double> values;
     for (const int entry : nodes) values.push_back(table[entry]);
     OrderedJson numbers = FiniteNumbers(values, FactorName(factor));
+    const Axis& axis = spec.axis(factor);
+    if (nodes.size() == table.size() && axis.polar()) {
+      numbers = OrderedJson::array();
+      for (size_t begin = 0; begin < table.size(); begin += axis.phi_nodes) {
+        numbers.push_back(FiniteNumbers(table.subspan(begin, axis.phi_nodes), FactorName(factor)));
+      }
+    }
     if (nodes.size() < table.size()) {
       numbers = {{"size", table.size()}, {"nodes", nodes}, {"values", std::move(numbers)}};
     }
@@ -102,11 +109,21 @@ std::string FormatModel(const ModelFile& file) {
   OrderedJson json;
   json["format"] = kModelFormat;
   json["version"] = kModelVersion;
-  json["kind"] = kModelKind;
+  json["kind"] = spec.anisotropic() ? kAnisotropicKind : kIsotropicKind;
   json["lobes"] = spec.lobes;
   for (const Factor factor : kFactors) {
     const auto [per_lobe, per_channel] = spec.sharing(factor);
     json["sharing"][FactorName(factor)] = {{"per_lobe", per_lobe}, {"per_channel", per_channel}};
+  }
+  if (spec.anisotropic()) {
+    for (const Factor factor : {Factor::kD, Factor::kG}) {
+      const Axis& axis = spec.axis(factor);
+      if (!axis.polar()) throw Error("cannot store a model that is anisotropic in part only");
+      std::vector<double> phi(axis.phi_nodes);
+      for (int b = 0; b < axis.phi_nodes; ++b) phi[b] = 360.0 * b / axis.phi_nodes;
+      json["theta_nodes"][FactorName(factor)] = axis.theta;
+      json["phi_nodes"][FactorName(factor)] = std::move(phi);
+    }
   }
   const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
   CheckLayout(layout, spec);

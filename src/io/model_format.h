@@ -7,7 +7,8 @@ namespace trilobe {
 
 inline constexpr const char* kModelFormat = "trilobe-model";
 inline constexpr int kModelVersion = 1;
-inline constexpr const char* kModelKind = "isotropic";
+inline constexpr const char* kIsotropicKind = "isotropic";
+inline constexpr const char* kAnisotropicKind = "anisotropic";
 
 // Calls visit(key, member) for every member.
 template <typename Info, typename Visitor>

@@ -150,8 +150,8 @@ std::string AlbedoPanel(const LobeLight& light) {
 
 void DrawFactors(const ModelFile& file, const std::string& path) {
   const ModelSpec& spec = file.model.spec();
-  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
-  const CatmullRom spline(spec.g_nodes);
+  const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
+  const CatmullRom spline(spec.g_axis.size);
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
   const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), file.model);
   constexpr double kLeft = 0.085, kRight = 0.975, kBottom = 0.075, kTop = 0.865;  // of the canvas

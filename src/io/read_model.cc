@@ -37,6 +37,8 @@ class Node {
     return {json_[index], key_ + "[" + std::to_string(index) + "]", source_};
   }
 
+  const std::string& source() const { return source_; }
+
   const Node& CheckObject() const {
     CheckType(Type::kObject, "an object");
     return *this;
@@ -99,8 +101,8 @@ TableSharing& Sharing(Factor factor, ModelSpec* spec) {
   return factor == Factor::kD ? spec->D : factor == Factor::kF ? spec->F : spec->G;
 }
 
-int& TableSize(Factor factor, ModelSpec* spec) {
-  return factor == Factor::kD ? spec->d_bins : factor == Factor::kF ? spec->f_bins : spec->g_nodes;
+Axis& AxisOf(Factor factor, ModelSpec* spec) {
+  return factor == Factor::kD ? spec->d_axis : factor == Factor::kF ? spec->f_axis : spec->g_axis;
 }
 
 // The tables of one factor in the order of their numbers, out of their nest of lobes and channels.
@@ -136,18 +138,69 @@ size_t TableEntries(const Node& table) {
   return table["size"].Integer(kMaxTableSize);
 }
 
+// The nodes of D or G of an anisotropic model: those that the file says, or UTIA's.
+Axis ReadPolarAxis(const Node& root, Factor factor) {
+  Axis axis = Axis::Utia();
+  if (root.has("theta_nodes")) {
+    const Node list = root["theta_nodes"].CheckObject()[FactorName(factor)];
+    if (list.ArraySize() < 1 || list.ArraySize() > 90) list.Fail("must have 1 to 90 entries");
+    axis.theta.resize(list.ArraySize());
+    list.Numbers(axis.theta);
+    for (size_t k = 0; k < axis.theta.size(); ++k) {
+      if (!(axis.theta[k] < 90 && (k == 0 || axis.theta[k] > axis.theta[k - 1]))) {
+        list[k].Fail("must be above the one before it, and below 90 degrees");
+      }
+    }
+  }
+  if (root.has("phi_nodes")) {
+    const Node list = root["phi_nodes"].CheckObject()[FactorName(factor)];
+    if (list.ArraySize() < 1 || list.ArraySize() > 720) list.Fail("must have 1 to 720 entries");
+    axis.phi_nodes = static_cast<int>(list.ArraySize());
+    for (int k = 0; k < axis.phi_nodes; ++k) {
+      if (std::abs(list[k].Number() - 360.0 * k / axis.phi_nodes) > 1e-6) {
+        list[k].Fail("must be " + std::to_string(360.0 * k / axis.phi_nodes) +
+                     ": azimuths are evenly spaced from 0");
+      }
+    }
+  }
+  axis.size = static_cast<int>(axis.theta.size()) * axis.phi_nodes;
+  if (axis.size < 4 || axis.size > kMaxTableSize) {
+    throw Error(root.source() + ": key 'theta_nodes' and 'phi_nodes' make tables " +
+                FactorName(factor) + " of " + std::to_string(axis.size) +
+                " entries; they need 4 to " + std::to_string(kMaxTableSize));
+  }
+  return axis;
+}
+
+void CheckPolarTable(const Node& table, const Axis& axis) {
+  if (table.is_object()) {
+    if (static_cast<int>(TableEntries(table)) != axis.size) {
+      table["size"].Fail("must be " + std::to_string(axis.size) + ", as there are nodes");
+    }
+    return;
+  }
+  table.CheckArraySize(axis.theta.size());
+  for (size_t a = 0; a < axis.theta.size(); ++a) table[a].CheckArraySize(axis.phi_nodes);
+}
+
 // The shape of the model, bounded before anything is allocated.
 ModelSpec ReadSpec(const Node& root) {
   ModelSpec spec;
   spec.lobes = root["lobes"].Integer(kMaxLobes);
   ReadSharing(root, &spec);
+  const bool anisotropic = root["kind"].String() == kAnisotropicKind;
   for (const Factor factor : kFactors) {
     const std::vector<Node> tables =
         TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes);
+    if (anisotropic && factor != Factor::kF) {
+      AxisOf(factor, &spec) = ReadPolarAxis(root, factor);
+      for (const Node& table : tables) CheckPolarTable(table, spec.axis(factor));
+      continue;
+    }
     if (tables.empty()) continue;
     const size_t size = TableEntries(tables[0]);
-    if (size < 4 || size > kMaxTableSize) {
-      tables[0].Fail("must have at least 4 and at most " + std::to_string(kMaxTableSize) +
+    if (size < 4 || size > kMaxBins) {
+      tables[0].Fail("must have at least 4 and at most " + std::to_string(kMaxBins) +
                      " entries, not " + std::to_string(size));
     }
     for (const Node& table : tables) {
@@ -157,7 +210,7 @@ ModelSpec ReadSpec(const Node& root) {
         table["size"].Fail("must be " + std::to_string(size) + ", as in the first table");
       }
     }
-    TableSize(factor, &spec) = static_cast<int>(size);
+    AxisOf(factor, &spec).size = static_cast<int>(size);
   }
   return spec;
 }
@@ -170,10 +223,17 @@ bool ReadChannels(const Node& node, std::span<double> values) {
 }
 
 // The nodes of a table, whose numbers go to their entries.
-std::vector<int> ReadTable(const Node& node, std::span<double> table) {
+std::vector<int> ReadTable(const Node& node, const Axis& axis, std::span<double> table) {
   std::vector<int> entries;
   if (!node.is_object()) {
-    node.Numbers(table);
+    if (axis.polar()) {
+      const size_t phi_nodes = axis.phi_nodes;
+      for (size_t a = 0; a < axis.theta.size(); ++a) {
+        node[a].Numbers(table.subspan(a * phi_nodes, phi_nodes));
+      }
+    } else {
+      node.Numbers(table);
+    }
     for (size_t k = 0; k < table.size(); ++k) entries.push_back(static_cast<int>(k));
     return entries;
   }
@@ -207,7 +267,7 @@ void ReadNumbers(const Node& root, ModelFile* file) {
     const std::vector<Node> tables =
         TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes);
     for (int k = 0; k < static_cast<int>(tables.size()); ++k) {
-      layout.of(factor, k) = ReadTable(tables[k], model.table(factor, k));
+      layout.of(factor, k) = ReadTable(tables[k], spec.axis(factor), model.table(factor, k));
     }
   }
   if (layout == TableLayout::Full(spec)) return;
@@ -268,9 +328,10 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
                          std::to_string(kModelVersion) +
                          (version > kModelVersion ? "; update it" : ""));
   }
-  if (root["kind"].String() != kModelKind) {
-    root["kind"].Fail("must be \"" + std::string(kModelKind) +
-                      "\", the only kind this program reads");
+  const std::string kind = root["kind"].String();
+  if (kind != kIsotropicKind && kind != kAnisotropicKind) {
+    root["kind"].Fail("must be \"" + std::string(kIsotropicKind) + "\" or \"" + kAnisotropicKind +
+                      "\", the kinds this program reads");
   }
   ModelFile file;
   ReadNumbers(root, &file);

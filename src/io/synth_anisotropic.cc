@@ -7,7 +7,7 @@
 namespace trilobe {
 namespace {
 
-Direction HalfVector(const DirectionPair& pair) {
+Direction UnitHalf(const DirectionPair& pair) {
   Direction h{pair.wi[0] + pair.wo[0], pair.wi[1] + pair.wo[1], pair.wi[2] + pair.wo[2]};
   const double length = std::hypot(h[0], h[1], h[2]);
   for (double& x : h) x /= length;
@@ -34,7 +34,7 @@ struct Ward {
   Rgb diffuse_color = {1, 1, 1}, specular_color = {1, 1, 1};
 
   Rgb operator()(const DirectionPair& pair) const {
-    const Direction h = HalfVector(pair);
+    const Direction h = UnitHalf(pair);
     const double slopes = (Square(h[0] / a.x) + Square(h[1] / a.y)) / Square(h[2]);
     const double lobe =
         rho_s * std::exp(-slopes) / (4 * kPi * a.x * a.y * std::sqrt(pair.wi[2] * pair.wo[2]));
@@ -59,7 +59,7 @@ struct AnisotropicGgx {
   Rgb f0{}, base{};
 
   Rgb operator()(const DirectionPair& pair) const {
-    const Direction h = HalfVector(pair);
+    const Direction h = UnitHalf(pair);
     const double d = 1 / (kPi * alpha.x * alpha.y *
                           Square(Square(h[0] / alpha.x) + Square(h[1] / alpha.y) + Square(h[2])));
     const auto smith = [this](const Direction& w) {

@@ -32,6 +32,7 @@ void CheckSizes(const BrdfSamples& samples) {
     check("angles", samples.angles.size());
   }
   if (!samples.multiplicity.empty()) check("multiplicities", samples.multiplicity.size());
+  if (!samples.directions.empty()) check("pairs of directions", samples.directions.size());
 }
 
 // One pass over bins that ascend. Both directions are above the surface at the centre of a bin
@@ -76,6 +77,9 @@ void CheckAngles(const BrdfSamples& samples) {
     const Cosines cosines = ToCosines(samples.angles[j]);
     if (!(cosines.i > 0 && cosines.o > 0)) {
       FailAt(samples, j, "has a direction below the surface");
+    }
+    if (!samples.directions.empty() && !IsAboveSurface(samples.directions[j])) {
+      FailAt(samples, j, "has a direction that is none, or below the surface");
     }
   }
 }
@@ -164,6 +168,7 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
       selected.angles.push_back(samples.angles[j]);
     }
     selected.rho.push_back(samples.rho[j]);
+    if (!samples.directions.empty()) selected.directions.push_back(samples.directions[j]);
     if (!samples.multiplicity.empty()) selected.multiplicity.push_back(samples.multiplicity[j]);
   }
   return selected;
@@ -179,7 +184,10 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
   const MerlGrid& grid = samples.grid;
   std::vector<int> kept;
   for (int j = 0; j < samples.size(); ++j) {
-    int phase = j;
+    // Multiples of the golden ratio: evenly spread over any regular order of directions.
+    constexpr double kGolden = 0.6180339887498949;
+    const double place = j * kGolden;
+    int phase = static_cast<int>((place - std::floor(place)) * stride);
     if (samples.on_grid()) {
       const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
       // Primes, which have no common factor with a smaller stride, so that neighbouring rows

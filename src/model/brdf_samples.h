@@ -23,6 +23,9 @@ struct BrdfSamples {
   // [n], or empty where all are 1: what the weighting's weight of a sample is multiplied by, finite
   // and >= 0; how often the sample counts.
   std::vector<double> multiplicity = {};
+  // Scattered samples may know their directions besides, with the order of wi and wo and their
+  // azimuths, which `angles` do not tell and anisotropic models ask for: [n], or empty.
+  std::vector<SphericalAngles> directions = {};
 
   int size() const { return static_cast<int>(rho.size()); }
   bool on_grid() const { return angles.empty(); }
@@ -46,7 +49,8 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
 
 // About one in `stride` >= 1 of them, for a cheap look at the same problem: on a grid, of each
 // (theta_h, theta_d) every stride-th phi_d and its mirror, 180 degrees - phi_d, beginning with
-// another one in each row. At least one, where there is any. Throws Error for other strides.
+// another one in each row; of scattered ones evenly spread over their order. At least one, where
+// there is any. Throws Error for other strides.
 BrdfSamples Thinned(const BrdfSamples& samples, int stride);
 
 }  // namespace trilobe

@@ -8,10 +8,12 @@ namespace trilobe {
 
 ContinuousModel::ContinuousModel(const FactorModel& model)
     : model_(model),
-      grid_{.theta_h = model.spec().d_bins, .theta_d = model.spec().f_bins},
-      spline_(model.spec().g_nodes),
+      grid_{.theta_h = model.spec().d_axis.size, .theta_d = model.spec().f_axis.size},
+      spline_(model.spec().g_axis.size),
       cosine_(CosinePieces(spline_)),
-      g_(ShadowingPieces(model)) {}
+      g_(ShadowingPieces(model)) {
+  CheckIsotropic(model.spec(), "a function of half and difference angles");
+}
 
 Rgb ContinuousModel::operator()(const Stencil& D, const Stencil& F, const Cosines& cosines) const {
   const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));

@@ -16,7 +16,7 @@ namespace trilobe {
 // The same value as Evaluate(model, ScatteredStencils(...)), to rounding.
 class ContinuousModel {
  public:
-  // Keeps a reference to `model`, which must outlive it.
+  // Keeps a reference to `model`, which must outlive it. Throws Error for an anisotropic one.
   explicit ContinuousModel(const FactorModel& model);
 
   // BRDF [1/sr] where D and F are read through these stencils. Cosines in (0, 1].

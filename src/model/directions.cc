@@ -6,6 +6,16 @@
 #include "trilobe/base/error.h"
 
 namespace trilobe {
+namespace {
+
+Direction ToDirection(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
+double Phi(const Direction& w) { return std::atan2(w[1], w[0]); }
+
+}  // namespace
 
 void CheckAngles(const HalfDiffAngles& angles) {
   constexpr double kMaxTheta = kPi / 2 + 1e-6;
@@ -48,6 +58,29 @@ HalfDiffAngles ToHalfDiff(const DirectionPair& pair) {
   if (phi_d < 0) phi_d += kPi;
   if (phi_d >= kPi) phi_d -= kPi;
   return {std::atan2(sin_h, h[2]), std::atan2(std::hypot(dx, y), dz), phi_d};
+}
+
+bool IsAboveSurface(const SphericalAngles& angles) {
+  const auto above = [](double theta, double phi) {
+    return theta >= 0 && theta < kPi / 2 && std::isfinite(phi);
+  };
+  return above(angles.theta_i, angles.phi_i) && above(angles.theta_o, angles.phi_o);
+}
+
+DirectionPair ToDirections(const SphericalAngles& angles) {
+  return {ToDirection(angles.theta_i, angles.phi_i), ToDirection(angles.theta_o, angles.phi_o)};
+}
+
+SphericalAngles ToSphericalAngles(const DirectionPair& pair) {
+  return {Theta(pair.wi), Phi(pair.wi), Theta(pair.wo), Phi(pair.wo)};
+}
+
+PolarAngles HalfVector(const DirectionPair& pair) {
+  const auto& [wi, wo] = pair;
+  const Direction h{wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  constexpr double kAtNormal = 1e-9;
+  const double theta = Theta(h);
+  return {theta, theta <= kAtNormal ? 0 : Phi(h)};
 }
 
 Cosines ToCosines(const HalfDiffAngles& angles) {

@@ -39,6 +39,27 @@ DirectionPair ToDirections(const HalfDiffAngles& angles);
 // The inverse, up to a rotation about the normal. wi and wo must not be opposite.
 HalfDiffAngles ToHalfDiff(const DirectionPair& pair);
 
+// A pair of directions as a goniometer gives it [rad]: theta from the normal, phi from x towards y.
+struct SphericalAngles {
+  double theta_i = 0;
+  double phi_i = 0;
+  double theta_o = 0;
+  double phi_o = 0;
+};
+// Finite, and theta_i and theta_o from 0 to below 90 degrees.
+bool IsAboveSurface(const SphericalAngles& angles);
+DirectionPair ToDirections(const SphericalAngles& angles);
+SphericalAngles ToSphericalAngles(const DirectionPair& pair);  // phi from -pi to pi
+
+// A direction in polar coordinates [rad].
+struct PolarAngles {
+  double theta = 0;
+  double phi = 0;
+};
+// The half vector of two directions above the surface; its phi is 0 where it is within 1e-9 of the
+// normal.
+PolarAngles HalfVector(const DirectionPair& pair);
+
 // cos theta_i and cos theta_o, straight from the angles:
 // cos theta_{i,o} = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
 struct Cosines {

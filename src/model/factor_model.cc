@@ -12,7 +12,7 @@
 namespace trilobe {
 namespace {
 
-// The cosine goes through the same spline as G: over cos theta_k (docs/method.md).
+// Where G is a spline, the cosine goes through the same one: over cos theta_k (docs/method.md).
 double SplinedCosine(const CatmullRom& spline, const Stencil& stencil) {
   double sum = 0;
   for (int k = 0; k < stencil.size; ++k) {
@@ -22,7 +22,7 @@ double SplinedCosine(const CatmullRom& spline, const Stencil& stencil) {
 }
 
 void SetCosineStencils(const ModelSpec& spec, const Cosines& cosines, SampleStencils* stencils) {
-  const CatmullRom spline(spec.g_nodes);
+  const CatmullRom spline(spec.g_axis.size);
   stencils->G_i = spline.StencilAt(std::acos(cosines.i));
   stencils->G_o = spline.StencilAt(std::acos(cosines.o));
   stencils->inverse_cosines =
@@ -72,6 +72,7 @@ void CheckCoverage(std::span<const double> coverage, const FactorModel& model) {
 }
 
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin) {
+  CheckIsotropic(spec, "a MERL grid, which knows no azimuths,");
   SampleStencils stencils;
   stencils.D = PointStencil(bin / (grid.theta_d * grid.phi_d));
   stencils.F = PointStencil(bin / grid.phi_d % grid.theta_d);
@@ -80,11 +81,29 @@ SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin
 }
 
 SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles) {
-  const MerlGrid grid{.theta_h = spec.d_bins, .theta_d = spec.f_bins};
+  CheckIsotropic(spec, "a pair of directions without azimuths");
   SampleStencils stencils;
-  stencils.D = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), spec.d_bins);
-  stencils.F = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), spec.f_bins);
+  stencils.D = spec.d_axis.At(angles.theta_h, 0);
+  stencils.F = spec.f_axis.At(angles.theta_d, 0);
   SetCosineStencils(spec, ToCosines(angles), &stencils);
+  return stencils;
+}
+
+SampleStencils ScatteredStencils(const ModelSpec& spec, const SphericalAngles& angles) {
+  const DirectionPair pair = ToDirections(angles);
+  const HalfDiffAngles half_diff = ToHalfDiff(pair);
+  if (!spec.anisotropic()) return ScatteredStencils(spec, half_diff);
+  const PolarAngles half = HalfVector(pair);
+  SampleStencils stencils;
+  stencils.D = spec.d_axis.At(half.theta, half.phi);
+  stencils.F = spec.f_axis.At(half_diff.theta_d, 0);
+  if (spec.g_axis.rule == Axis::Rule::kSpline) {
+    SetCosineStencils(spec, ToCosines(half_diff), &stencils);
+    return stencils;
+  }
+  stencils.G_i = spec.g_axis.At(angles.theta_i, angles.phi_i);
+  stencils.G_o = spec.g_axis.At(angles.theta_o, angles.phi_o);
+  stencils.inverse_cosines = 1 / (std::cos(angles.theta_i) * std::cos(angles.theta_o));
   return stencils;
 }
 
@@ -100,7 +119,10 @@ double Evaluate(const FactorModel& model, const SampleStencils& stencils, int ch
 
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions) {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
-  const SampleStencils stencils = ScatteredStencils(model.spec(), ToHalfDiff(directions));
+  const ModelSpec& spec = model.spec();
+  const SampleStencils stencils = spec.anisotropic()
+                                      ? ScatteredStencils(spec, ToSphericalAngles(directions))
+                                      : ScatteredStencils(spec, ToHalfDiff(directions));
   return {Evaluate(model, stencils, 0), Evaluate(model, stencils, 1), Evaluate(model, stencils, 2)};
 }
 

@@ -83,20 +83,24 @@ void CheckCoverage(std::span<const double> coverage, const FactorModel& model);
 //   d + sum_m s (D . stencil) (F . stencil) (G . theta_i) (G . theta_o) * inverse_cosines.
 struct SampleStencils {
   Stencil D, F, G_i, G_o;
-  double inverse_cosines = 0;  // 1 / (cos theta_i cos theta_o), splined as G is (docs/method.md)
+  // 1 / (cos theta_i cos theta_o), splined as G is where that is a spline (docs/method.md).
+  double inverse_cosines = 0;
 };
 
 // Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/method.md). The grid's
-// theta_h, theta_d resolution is that of the spec's D and F.
+// theta_h, theta_d resolution is that of the spec's D and F. Throws Error for an anisotropic spec.
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);
 
-// Stencils at any directions: D linear between bin centres in sqrt(theta_h), F linear in theta_d.
+// Stencils at any directions, as the axes have it (Axis::At). Angles without azimuths do for
+// isotropic specs only; Error for others.
 SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles);
+SampleStencils ScatteredStencils(const ModelSpec& spec, const SphericalAngles& angles);
 
 // BRDF of one channel [1/sr].
 double Evaluate(const FactorModel& model, const SampleStencils& stencils, int channel);
 
-// BRDF [1/sr] for any pair of directions; 0 where either is below the surface. Throws Error where
+// BRDF [1/sr] for any pair of directions, x being where an anisotropic material's azimuths begin; 0
+// where either is below the surface. Throws Error where
 // one is not a number.
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions);
 

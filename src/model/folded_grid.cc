@@ -120,7 +120,7 @@ std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline) {
 
 std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model) {
   const ModelSpec& spec = model.spec();
-  const CatmullRom spline(spec.g_nodes);
+  const CatmullRom spline(spec.g_axis.size);
   std::vector<std::vector<CatmullRom::Piece>> pieces;
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
     pieces.push_back(spline.Pieces(model.table(Factor::kG, t)));

@@ -5,7 +5,6 @@
 #include <functional>
 #include <numeric>
 
-#include "trilobe/model/catmull_rom.h"
 #include "trilobe/model/directions.h"
 #include "trilobe/model/lobe_light.h"
 #include "trilobe/model/with_lobes.h"
@@ -13,14 +12,21 @@
 namespace trilobe {
 namespace {
 
-// Solid angle of each theta_h bin projected on the surface:
-// integral of cos sin dtheta dphi = pi (sin^2 upper - sin^2 lower).
-std::vector<double> ProjectedBinAngles(int bins) {
-  const MerlGrid grid{.theta_h = bins};
-  std::vector<double> angles(bins);
-  for (int i = 0; i < bins; ++i) {
-    const double a = grid.ThetaH(i), b = grid.ThetaH(i + 1);
-    angles[i] = kPi * std::sin(b - a) * std::sin(b + a);  // sin^2 b - sin^2 a, without cancellation
+// sin^2 b - sin^2 a, without cancellation.
+double DifferenceOfSquaredSines(double a, double b) { return std::sin(b - a) * std::sin(b + a); }
+
+// Solid angle that each entry of D stands for, projected on the surface:
+// integral of cos sin dtheta dphi = phi width (sin^2 upper - sin^2 lower) / 2.
+std::vector<double> ProjectedAngles(const Axis& axis) {
+  std::vector<double> angles(axis.size);
+  const MerlGrid grid{.theta_h = axis.size};
+  for (int i = 0; i < axis.size; ++i) {
+    if (axis.polar()) {
+      const auto [begin, end, width] = axis.CellOf(i);
+      angles[i] = width / 2 * DifferenceOfSquaredSines(begin, end);
+    } else {
+      angles[i] = kPi * DifferenceOfSquaredSines(grid.ThetaH(i), grid.ThetaH(i + 1));
+    }
   }
   return angles;
 }
@@ -57,14 +63,51 @@ void FillDeadBins(std::span<const double> coverage, size_t looked_at, std::span<
   }
 }
 
+// Around each ring of one theta linearly between live nodes; a ring without any is as the one
+// inside it, or, where there is none, as the one outside it.
+void FillDeadNodes(const Axis& axis, std::span<const double> coverage, std::span<double> table) {
+  const int columns = axis.phi_nodes, rings = axis.size / columns;
+  std::vector<bool> filled(rings, false);
+  for (int a = 0; a < rings; ++a) {
+    const auto ring = table.subspan(a * columns, columns);
+    const auto live = [&](int b) { return coverage[a * columns + b % columns] > 0; };
+    int first = 0;
+    while (first < columns && !live(first)) ++first;
+    filled[a] = first < columns;
+    for (int left = first, b = first + 1; filled[a] && b <= first + columns; ++b) {
+      if (!live(b)) continue;
+      for (int gap = left + 1; gap < b; ++gap) {
+        const double t = static_cast<double>(gap - left) / (b - left);
+        ring[gap % columns] = (1 - t) * ring[left % columns] + t * ring[b % columns];
+      }
+      left = b;
+    }
+  }
+  const auto copy = [&](int from, int to) {
+    if (from < 0 || from >= rings || !filled[from] || filled[to]) return;
+    std::ranges::copy(table.subspan(from * columns, columns), table.begin() + to * columns);
+    filled[to] = true;
+  };
+  for (int a = 1; a < rings; ++a) copy(a - 1, a);
+  for (int a = rings - 2; a >= 0; --a) copy(a + 1, a);
+}
+
+void FillDead(const Axis& axis, std::span<const double> coverage, size_t looked_at,
+              std::span<double> table) {
+  if (axis.polar()) {
+    FillDeadNodes(axis, coverage, table);
+  } else {
+    FillDeadBins(coverage, looked_at, table);
+  }
+}
+
 // Fills the dead nodes of G from G / cos theta of the live ones.
-void ContinueShadowing(std::span<const double> coverage, const CatmullRom& spline,
-                       std::span<double> G) {
+void ContinueShadowing(const Axis& axis, std::span<const double> coverage, std::span<double> G) {
   std::vector<double> ratio(G.begin(), G.end());
-  for (int k = 0; k < spline.nodes(); ++k) ratio[k] /= std::cos(spline.NodeAngle(k));
-  FillDeadBins(coverage, kLookedAt, ratio);
-  for (int k = 0; k < spline.nodes(); ++k) {
-    if (!(coverage[k] > 0)) G[k] = ratio[k] * std::cos(spline.NodeAngle(k));
+  for (int k = 0; k < axis.size; ++k) ratio[k] /= std::cos(axis.Theta(k));
+  FillDead(axis, coverage, kLookedAt, ratio);
+  for (int k = 0; k < axis.size; ++k) {
+    if (!(coverage[k] > 0)) G[k] = ratio[k] * std::cos(axis.Theta(k));
   }
 }
 
@@ -95,8 +138,8 @@ void Normalize(Factor factor, int index, std::span<const double> norm_weights, d
 
 }  // namespace
 
-double ProjectedIntegral(std::span<const double> D) {
-  return WeightedSum(ProjectedBinAngles(static_cast<int>(D.size())), D);
+double ProjectedIntegral(const Axis& axis, std::span<const double> D) {
+  return WeightedSum(ProjectedAngles(axis), D);
 }
 
 std::vector<bool> DeadParameters(std::span<const double> coverage) {
@@ -129,9 +172,9 @@ void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
       const auto weights = coverage.subspan(model->TableOffset(factor, t), table.size());
       const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
       if (!(total > 0)) continue;  // no data at all for these channels: nothing to normalise by
-      FillDeadBins(weights, 1, table);
+      FillDead(spec.axis(factor), weights, 1, table);
       if (factor == Factor::kD) {
-        Normalize(factor, t, ProjectedBinAngles(spec.d_bins), 1, model);
+        Normalize(factor, t, ProjectedAngles(spec.d_axis), 1, model);
       } else {
         Normalize(factor, t, weights, total, model);
       }
@@ -153,8 +196,8 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
       light = ComputeLobeLight(coverage, *model);
     }
   }
-  const CatmullRom spline(spec.g_nodes);
-  const std::vector<double> visible = VisibleSolidAngles(spec.d_bins);
+  const std::vector<double> half_vectors =
+      spec.d_axis.polar() ? ProjectedAngles(spec.d_axis) : VisibleSolidAngles(spec.d_axis.size);
   for (const Factor factor : kFactors) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {
       const std::span<double> table = model->table(factor, t);
@@ -163,17 +206,17 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
       const bool any = std::ranges::any_of(covered, [](double w) { return w > 0; });
       if (!any) continue;
       if (factor == Factor::kG) {
-        ContinueShadowing(covered, spline, table);
+        ContinueShadowing(spec.g_axis, covered, table);
       } else {
-        FillDeadBins(covered, kLookedAt, table);
+        FillDead(spec.axis(factor), covered, kLookedAt, table);
       }
       if (factor == Factor::kD) {
-        Normalize(factor, t, visible, 1, model);
+        Normalize(factor, t, half_vectors, 1, model);
         continue;
       }
       std::span<const double> weights = std::span(light.through).subspan(offset, table.size());
       double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-      if (!(total > 0)) {  // no light at all
+      if (spec.anisotropic() || !(total > 0)) {  // or no light at all
         weights = covered;
         total = std::accumulate(weights.begin(), weights.end(), 0.0);
       }

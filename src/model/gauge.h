@@ -12,9 +12,10 @@ namespace trilobe {
 // places. The canonical form, in which models are stored, fixes both by what a lobe reflects
 // (docs/method.md), so that entries that hardly any light goes through have no say:
 // - each D integrates to 1 over the solid angle of half vectors, weighted by how much of the
-//   directions there is above the surface (VisibleSolidAngles);
+//   directions there is above the surface (VisibleSolidAngles); over the projected solid angle
+//   where the model is anisotropic;
 // - each F and each G has mean 1, weighted by the light that goes through its entries
-//   (LobeLight::through);
+//   (LobeLight::through); by coverage where the model is anisotropic;
 // - s carries the magnitude: 4 s is the albedo of a lobe whose F and G are 1. A lobe whose factors
 //   vanish gets s = 0, its vanished tables 1 everywhere before normalisation;
 // - the lobe that reflects most comes first.
@@ -31,8 +32,8 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model,
 // weighted by coverage and D by the projected solid angle; lobes keep their places.
 void NormalizeScale(std::span<const double> coverage, FactorModel* model);
 
-// Integral of D over the projected hemisphere, D constant in each bin.
-double ProjectedIntegral(std::span<const double> D);
+// Integral of D over the projected hemisphere, D constant in each bin, or in the cell of each node.
+double ProjectedIntegral(const Axis& axis, std::span<const double> D);
 
 // Makes the parameters of `to` that no data touch those of `from`, a model of the same spec.
 void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from, FactorModel* to);

@@ -5,18 +5,58 @@
 #include <string>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/catmull_rom.h"
 #include "trilobe/model/merl_grid.h"
 
 namespace trilobe {
 namespace {
 
-// Of phi_d, over [0, 90 degrees]: the other half holds the exchanged directions.
+// Of phi_d, over [0, 90 degrees]: of isotropic models the other half holds the exchanged
+// directions.
 constexpr int kPhiSteps = 12;
 
-MerlGrid GridOf(const ModelSpec& spec) {
-  return {.theta_h = spec.d_bins, .theta_d = spec.f_bins, .phi_d = 2 * kPhiSteps};
-}
+// Pairs of directions whose half vectors are at an entry of D, and theta_d in a bin of F.
+class Cells {
+ public:
+  explicit Cells(const ModelSpec& spec)
+      : spec_(spec),
+        grid_{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size, .phi_d = 2 * kPhiSteps} {}
+
+  // Of anisotropic models wi and wo exchanged are half a turn of phi_d away.
+  int phi_steps() const { return spec_.d_axis.polar() ? 2 * kPhiSteps : kPhiSteps; }
+
+  // The measure of a pair's share, in some unit.
+  double SolidAngle(int h, int d) const {
+    if (!spec_.d_axis.polar()) return grid_.SolidAngle(h, d);
+    const auto [begin, end, width] = spec_.d_axis.CellOf(h);
+    const double theta_d = grid_.ThetaD(d + 0.5);
+    return width * (std::cos(begin) - std::cos(end)) * std::sin(theta_d) * std::cos(theta_d);
+  }
+
+  struct Pair {
+    Cosines cosines;
+    Stencil G_i, G_o;
+  };
+  // Whether both directions are above the surface; if so, how they read G.
+  bool At(int h, int d, int p, Pair* pair) const {
+    HalfDiffAngles angles = grid_.Center(0, d, p);
+    angles.theta_h = spec_.d_axis.Theta(h);
+    pair->cosines = ToCosines(angles);
+    if (!(pair->cosines.i > 0 && pair->cosines.o > 0)) return false;
+    double phi_i = 0, phi_o = 0;
+    if (spec_.g_axis.polar()) {
+      const SphericalAngles at = ToSphericalAngles(ToDirections(angles));
+      phi_i = at.phi_i + spec_.d_axis.Phi(h);
+      phi_o = at.phi_o + spec_.d_axis.Phi(h);
+    }
+    pair->G_i = spec_.g_axis.At(std::acos(pair->cosines.i), phi_i);
+    pair->G_o = spec_.g_axis.At(std::acos(pair->cosines.o), phi_o);
+    return true;
+  }
+
+ private:
+  const ModelSpec& spec_;
+  const MerlGrid grid_;
+};
 
 double Mean(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
 
@@ -45,8 +85,7 @@ double LobeLight::DiffuseShare() const {
 LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model) {
   CheckCoverage(coverage, model);
   const ModelSpec& spec = model.spec();
-  const MerlGrid grid = GridOf(spec);
-  const CatmullRom spline(spec.g_nodes);
+  const Cells cells(spec);
   LobeLight light;
   light.lobes.resize(spec.lobes);
   light.through.assign(model.parameters().size(), 0.0);
@@ -64,16 +103,15 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
     return true;
   };
   double all = 0;
-  for (int h = 0; h < grid.theta_h; ++h) {
+  for (int h = 0; h < spec.d_axis.size; ++h) {
     if (!live(Factor::kD, h)) continue;
-    for (int d = 0; d < grid.theta_d; ++d) {
+    for (int d = 0; d < spec.f_axis.size; ++d) {
       if (!live(Factor::kF, d)) continue;
-      const double solid_angle = grid.SolidAngle(h, d);
-      for (int p = 0; p < kPhiSteps; ++p) {
-        const Cosines cosines = ToCosines(grid.Center(h, d, p));
-        if (!(cosines.i > 0 && cosines.o > 0)) continue;
-        const Stencil G_i = spline.StencilAt(std::acos(cosines.i));
-        const Stencil G_o = spline.StencilAt(std::acos(cosines.o));
+      const double solid_angle = cells.SolidAngle(h, d);
+      for (int p = 0; p < cells.phi_steps(); ++p) {
+        Cells::Pair pair;
+        if (!cells.At(h, d, p, &pair)) continue;
+        const auto& [cosines, G_i, G_o] = pair;
         if (!all_live(G_i) || !all_live(G_o)) continue;
         const double white = solid_angle * cosines.i * cosines.o;
         all += white;

@@ -21,9 +21,15 @@ const char* FactorName(Factor factor) {
 ModelSpec ModelSpec::SharedFactors(int lobes, const MerlGrid& grid) {
   ModelSpec spec;
   spec.lobes = lobes;
-  spec.d_bins = grid.theta_h;
-  spec.f_bins = grid.theta_d;
-  spec.g_nodes = grid.theta_d;
+  spec.d_axis.size = grid.theta_h;
+  spec.f_axis.size = grid.theta_d;
+  spec.g_axis.size = grid.theta_d;
+  return spec;
+}
+
+ModelSpec ModelSpec::Anisotropic(int lobes) {
+  ModelSpec spec = SharedFactors(lobes);
+  spec.d_axis = spec.g_axis = Axis::Utia();
   return spec;
 }
 
@@ -63,13 +69,21 @@ void CheckSpec(const ModelSpec& spec) {
     throw Error("lobes is " + std::to_string(spec.lobes) + "; it must be from 0 to " +
                 std::to_string(kMaxLobes));
   }
-  for (const Factor factor : kFactors) {
-    if (spec.table_size(factor) < 4 || spec.table_size(factor) > kMaxTableSize) {
-      throw Error(std::string(FactorName(factor)) + " tables have " +
-                  std::to_string(spec.table_size(factor)) + " entries; they need 4 to " +
-                  std::to_string(kMaxTableSize));
-    }
+  for (const Factor factor : kFactors) CheckAxis(spec.axis(factor), FactorName(factor));
+  if (spec.f_axis.rule != Axis::Rule::kTheta) {
+    throw Error("F tables must be over bins of theta_d");
   }
+  for (const Axis::Rule rule : {spec.d_axis.rule, spec.g_axis.rule}) {
+    if (rule == Axis::Rule::kTheta) throw Error("only F tables may be over bins of theta_d");
+  }
+  if (spec.d_axis.rule == Axis::Rule::kSpline || spec.g_axis.rule == Axis::Rule::kRootTheta) {
+    throw Error("a D table cannot be a spline, nor a G table one over the root of theta_h");
+  }
+}
+
+void CheckIsotropic(const ModelSpec& spec, const char* wants) {
+  if (!spec.anisotropic()) return;
+  throw Error(std::string(wants) + " wants an isotropic model, and this one is anisotropic");
 }
 
 }  // namespace trilobe

@@ -3,13 +3,13 @@
 
 #include <string>
 
+#include "trilobe/model/axis.h"
 #include "trilobe/model/channels.h"
 #include "trilobe/model/merl_grid.h"
 
 namespace trilobe {
 
 inline constexpr int kMaxLobes = 8;
-inline constexpr int kMaxTableSize = 1024;
 
 // Whether a factor has a table of its own for each lobe, and for each colour channel.
 struct TableSharing {
@@ -22,31 +22,36 @@ enum class Factor { kD, kF, kG };
 inline constexpr Factor kFactors[] = {Factor::kD, Factor::kF, Factor::kG};
 const char* FactorName(Factor factor);  // "D", "F", "G"
 
-// The shape of a model rho_C = d_C + sum_m s_C^m D(theta_h) F(theta_d) G(theta_i) G(theta_o) /
-// (cos theta_i cos theta_o): how many lobes, which table is shared by what, how long tables are.
-// The paper's isotropic model and the one that it compares with are two values of this type.
+// The shape of a model rho_C = d_C + sum_m s_C^m D(h) F(theta_d) G(wi) G(wo) / (cos theta_i cos
+// theta_o): how many lobes, which table is shared by what, where the entries of tables stand. The
+// paper's isotropic and anisotropic models and the one that it compares with are values of it.
 struct ModelSpec {
   int lobes = 3;  // 0 (Lambertian) to kMaxLobes
   TableSharing D{.per_lobe = true, .per_channel = false};
   TableSharing F{.per_lobe = false, .per_channel = true};
   TableSharing G{.per_lobe = true, .per_channel = false};
-  int d_bins = 90;  // D: one entry a theta_h bin of the MERL grid
-  int f_bins = 90;  // F: one entry a theta_d bin
-  int g_nodes =
-      90;  // G: nodes at theta = (k + 1/2) 90/g_nodes degrees, a Catmull-Rom spline between
+  Axis d_axis{.rule = Axis::Rule::kRootTheta};  // of theta_h, or of (theta_h, phi_h)
+  Axis f_axis{.rule = Axis::Rule::kTheta};      // of theta_d
+  Axis g_axis{.rule = Axis::Rule::kSpline};     // of theta, or of (theta, phi)
 
   // `lobes` lobes with D, G shared by the channels, F shared by the lobes (paper eq. 3):
   // 822 numbers for three lobes on the MERL grid.
   static ModelSpec SharedFactors(int lobes, const MerlGrid& grid = {});
+  // The same with D and G over azimuths, too, on the nodes of UTIA's directions (paper eq. 4):
+  // 2,010 numbers for three lobes.
+  static ModelSpec Anisotropic(int lobes);
   // One lobe, nothing shared between channels (Bagher et al. 2016): 816 numbers.
   static ModelSpec IndependentG(const MerlGrid& grid = {});
 
   const TableSharing& sharing(Factor factor) const {
     return factor == Factor::kD ? D : factor == Factor::kF ? F : G;
   }
-  int table_size(Factor factor) const {
-    return factor == Factor::kD ? d_bins : factor == Factor::kF ? f_bins : g_nodes;
+  const Axis& axis(Factor factor) const {
+    return factor == Factor::kD ? d_axis : factor == Factor::kF ? f_axis : g_axis;
   }
+  int table_size(Factor factor) const { return axis(factor).size; }
+  // Whether values change when the material is turned about its normal.
+  bool anisotropic() const { return d_axis.polar() || g_axis.polar(); }
   int num_tables(Factor factor) const;
 
   // The channels that a table serves: [begin, end).
@@ -72,9 +77,12 @@ struct ModelSpec {
   bool operator==(const ModelSpec&) const = default;
 };
 
-// Throws Error unless the lobes are in [0, kMaxLobes] and every table has 4 to kMaxTableSize
-// entries.
+// Throws Error unless the lobes are in [0, kMaxLobes] and the axes are in order (CheckAxis), F one
+// of theta_d alone.
 void CheckSpec(const ModelSpec& spec);
+
+// Throws Error, which says what `wants` it, if the spec is anisotropic.
+void CheckIsotropic(const ModelSpec& spec, const char* wants);
 
 // Throws Error unless a model with the spec `is` is one of the spec `wanted`.
 void CheckSameSpec(const ModelSpec& is, const ModelSpec& wanted);

@@ -15,13 +15,20 @@
 namespace trilobe {
 namespace {
 
-void CheckBins(const ModelSpec& spec, const MerlGrid& grid) {
+// Samples on a grid read the tables bin by bin; scattered ones read any tables.
+void CheckReadable(const ModelSpec& spec, const BrdfSamples& samples) {
   CheckSpec(spec);
-  if (spec.d_bins != grid.theta_h || spec.f_bins != grid.theta_d) {
-    throw Error("the model has " + std::to_string(spec.d_bins) + " D bins and " +
-                std::to_string(spec.f_bins) + " F bins, but the measurement's grid has " +
+  const MerlGrid& grid = samples.grid;
+  if (samples.on_grid()) {
+    CheckIsotropic(spec, "a measurement on a MERL grid, which knows no azimuths,");
+    if (spec.d_axis.size == grid.theta_h && spec.f_axis.size == grid.theta_d) return;
+    throw Error("the model has " + std::to_string(spec.d_axis.size) + " D bins and " +
+                std::to_string(spec.f_axis.size) + " F bins, but the measurement's grid has " +
                 std::to_string(grid.theta_h) + " and " + std::to_string(grid.theta_d) +
                 "; fit this measurement with a model of its own grid");
+  }
+  if (spec.anisotropic() && samples.directions.empty()) {
+    throw Error(samples.source + ": the samples' azimuths are not known; fit an isotropic model");
   }
 }
 
@@ -67,7 +74,7 @@ BrdfSamples Checked(BrdfSamples samples, const ModelSpec& spec, int num_threads)
   if (samples.size() == 0) {
     throw Error(samples.source + ": no sample; an objective needs one or more");
   }
-  CheckBins(spec, samples.grid);
+  CheckReadable(spec, samples);
   CheckSamples(samples);
   CheckRange(samples);
   return samples;
@@ -105,9 +112,9 @@ CoverageByChannel ScatteredCoverage(const std::vector<WeightedSample>& samples,
   CoverageByChannel coverage;
   for (int c = 0; c < kChannels; ++c) {
     FactorCoverage& of = coverage[c];
-    of.D.assign(spec.d_bins, 0.0);
-    of.F.assign(spec.f_bins, 0.0);
-    of.G.assign(spec.g_nodes, 0.0);
+    of.D.assign(spec.d_axis.size, 0.0);
+    of.F.assign(spec.f_axis.size, 0.0);
+    of.G.assign(spec.g_axis.size, 0.0);
     for (const WeightedSample& sample : samples) {
       const auto add = [w = sample.weight[c]](const Stencil& stencil, std::vector<double>* table) {
         for (int k = 0; k < stencil.size; ++k) {
@@ -156,7 +163,8 @@ struct Objective::Prepared {
         weighting(ForSamples(weights, samples)) {
     bool nonnegative = true;
     if (samples.on_grid()) {
-      folded = std::make_unique<FoldedGrid>(Fold(samples, spec.g_nodes, weighting, num_threads));
+      folded =
+          std::make_unique<FoldedGrid>(Fold(samples, spec.g_axis.size, weighting, num_threads));
       measured_energy = folded->measured_energy;
       coverage = FoldedCoverage(*folded);
       for (const std::vector<double>& w : folded->weight) {
@@ -178,8 +186,9 @@ struct Objective::Prepared {
   WeightedSample Sample(int j) const {
     const HalfDiffAngles angles = samples.Angles(j);
     WeightedSample sample;
-    sample.stencils = samples.on_grid() ? GridStencils(spec, samples.grid, samples.bins[j])
-                                        : ScatteredStencils(spec, angles);
+    sample.stencils = samples.on_grid()    ? GridStencils(spec, samples.grid, samples.bins[j])
+                      : spec.anisotropic() ? ScatteredStencils(spec, samples.directions[j])
+                                           : ScatteredStencils(spec, angles);
     sample.rho = samples.rho[j];
     sample.weight = weighting({sample.rho, ToCosines(angles), samples.SolidAngle(j)});
     for (double& w : sample.weight) w *= samples.Multiplicity(j);
@@ -219,8 +228,10 @@ Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting
 
 Objective::Objective(const Objective& other, const ModelSpec& spec)
     : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
-  CheckBins(spec, samples().grid);
-  if (spec.g_nodes != other.spec_.g_nodes) {
+  CheckReadable(spec, samples());
+  const bool same_axes = std::ranges::all_of(
+      kFactors, [&](Factor factor) { return spec.axis(factor) == other.spec_.axis(factor); });
+  if (!same_axes) {
     prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
   }
   coverage_ = CoverageOfParameters(prepared_->coverage, spec);

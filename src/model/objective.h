@@ -25,13 +25,14 @@ struct WeightedSample {
 class Objective {
  public:
   // Throws Error if there is no sample, or one that is none (CheckSamples), if the largest value is
-  // below 1e-50/sr, but not 0, or above 1e50/sr, if the spec's tables do not fit the samples' grid,
-  // if a weight is no number >= 0 or so extreme that E would leave the range of a double, or if
-  // num_threads is below 1.
+  // below 1e-50/sr, but not 0, or above 1e50/sr, if the samples cannot read the spec's tables:
+  // those on a grid its bins only, those without azimuths isotropic ones only; if a weight is no
+  // number >= 0 or so extreme that E would leave the range of a double, or if num_threads is
+  // below 1.
   Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
             int num_threads = 1);
 
-  // The same samples for models of another spec. Where G has as many nodes, all that was prepared
+  // The same samples for models of another spec. Where its axes are the same, all that was prepared
   // is shared, and this costs next to nothing. Throws Error as above.
   Objective(const Objective& other, const ModelSpec& spec);
 

@@ -19,8 +19,8 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
                                  int num_threads) {
   CheckSamples(samples);
   const ModelSpec& spec = model.spec();
-  const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_bins &&
-                        samples.grid.theta_d == spec.f_bins;
+  const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
+                        samples.grid.theta_d == spec.f_axis.size;
   const ContinuousModel evaluate(model);
   std::vector<Rgb> rho(samples.rho.size());
   ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {

@@ -1,6 +1,8 @@
 #include "trilobe/model/split_lobe.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -10,18 +12,33 @@
 namespace trilobe {
 namespace {
 
-// The share of each bin that stays with the narrow part: a smooth step from 1 to 0 at the theta_h
-// that halves the integral of sqrt(D) sin theta_h. The root weighs the flanks of a lobe, which a
-// second one is to take over, against its peak.
-std::vector<double> NarrowShare(std::span<const double> D) {
+// Solid angle that an entry of D stands for, in some unit.
+double SolidAngle(const Axis& axis, int entry) {
+  if (axis.polar()) {
+    const auto [begin, end, width] = axis.CellOf(entry);
+    return std::cos(begin) - std::cos(end);
+  }
+  const MerlGrid grid{.theta_h = axis.size};
+  return std::sin(grid.ThetaH(entry + 0.5)) * (grid.ThetaH(entry + 1) - grid.ThetaH(entry));
+}
+
+// Entries from the lobe's middle outwards: by theta_h, or, where a lobe need not be round, by D.
+std::vector<int> Outwards(const Axis& axis, std::span<const double> D) {
+  std::vector<int> order(axis.size);
+  std::iota(order.begin(), order.end(), 0);
+  if (axis.polar()) std::ranges::stable_sort(order, std::greater(), [&](int k) { return D[k]; });
+  return order;
+}
+
+// The share of each entry that stays with the narrow part: a smooth step from 1 to 0 at the one
+// that halves the integral of sqrt(D). The root weighs the flanks of a lobe, which a second one is
+// to take over, against its peak.
+std::vector<double> NarrowShare(const Axis& axis, std::span<const double> D) {
   constexpr double kSteepness = 8;
-  const int bins = static_cast<int>(D.size());
-  const MerlGrid grid{.theta_h = bins};
-  std::vector<double> u(bins);
+  std::vector<double> u(axis.size);
   double sum = 0;
-  for (int h = 0; h < bins; ++h) {
-    const double width = grid.ThetaH(h + 1) - grid.ThetaH(h);
-    sum += std::sqrt(D[h]) * std::sin(grid.ThetaH(h + 0.5)) * width;
+  for (const int h : Outwards(axis, D)) {
+    sum += std::sqrt(D[h]) * SolidAngle(axis, h);
     u[h] = sum;
   }
   for (double& x : u) {
@@ -44,7 +61,7 @@ FactorModel SplitLobe(const FactorModel& model, int lobe) {
   for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
     for (int c = 0; c < kChannels; ++c) {
       if (spec.table(Factor::kD, lobe, c) != t) continue;
-      const std::vector<double> share = NarrowShare(result.table(Factor::kD, t));
+      const std::vector<double> share = NarrowShare(spec.d_axis, result.table(Factor::kD, t));
       const std::span<double> narrow = result.table(Factor::kD, t);
       const std::span<double> wide = result.table(Factor::kD, spec.table(Factor::kD, added, c));
       for (size_t h = 0; h < share.size(); ++h) {

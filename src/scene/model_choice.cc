@@ -80,7 +80,7 @@ std::vector<int> LastLiveNodes(const Objective& objective) {
   const FactorModel layout(spec);
   std::vector<int> last;
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    int node = spec.g_nodes - 1;
+    int node = spec.g_axis.size - 1;
     while (node > 0 && !(objective.coverage()[layout.TableOffset(Factor::kG, t) + node] > 0)) {
       --node;
     }
@@ -94,8 +94,8 @@ std::vector<int> LastLiveNodes(const Objective& objective) {
 // cosine.
 void ContinueShadowing(const std::vector<int>& last_live, PrunedModel* pruned) {
   const ModelSpec& spec = pruned->model.spec();
-  const CatmullRom spline(spec.g_nodes);
-  const int end = spec.g_nodes - 1;
+  const CatmullRom spline(spec.g_axis.size);
+  const int end = spec.g_axis.size - 1;
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
     const int last = last_live[t];
     std::vector<int>& nodes = pruned->layout.of(Factor::kG, t);
@@ -143,7 +143,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
   const auto thin = [&](const std::string& name, const Objective& of, const FactorModel& model) {
     const std::vector<int> last_live = LastLiveNodes(of);
     const auto continued = 2 * static_cast<int>(std::ranges::count_if(
-                                   last_live, [&](int k) { return k < of.spec().g_nodes - 1; }));
+                                   last_live, [&](int k) { return k < of.spec().g_axis.size - 1; }));
     PruneOptions prune;
     prune.lobes = prune.colour = false;
     // Not where next to nothing would be left.

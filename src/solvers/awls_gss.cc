@@ -60,7 +60,7 @@ class LinearShadowing {
   void Update(int table, FactorModel* model) const {
     const ModelSpec& spec = model->spec();
     const std::vector<double> amplitudes = LobeAmplitudes(folded_.grid, *model);
-    ChainSums sums(spec.g_nodes);
+    ChainSums sums(spec.g_axis.size);
     const auto [first, last] = spec.channels(Factor::kG, table);
     for (int c = first; c < last; ++c) AddChannel(table, c, *model, amplitudes, &sums);
     const std::span<double> G = model->table(Factor::kG, table);

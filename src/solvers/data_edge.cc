@@ -70,6 +70,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
   TableLayout layout = TableLayout::Full(spec);
   bool any = false;
   for (const Factor factor : factors) {
+    if (spec.axis(factor).polar()) continue;  // nodes end where data do
     for (int t = 0; t < spec.num_tables(factor); ++t) {
       const auto coverage = std::span(objective.coverage())
                                 .subspan(model->TableOffset(factor, t), spec.table_size(factor));

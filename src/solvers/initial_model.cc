@@ -71,42 +71,57 @@ void SetSpecularWeights(const std::vector<WeightedSample>& samples, FactorModel*
   }
 }
 
-Table GgxDistribution(int bins, double alpha) {
-  const MerlGrid grid{.theta_h = bins};
-  Table D(bins);
-  for (int h = 0; h < bins; ++h) {
-    const double cos_h = std::cos(grid.ThetaH(h + 0.5));
+Table GgxDistribution(const Axis& axis, double alpha) {
+  Table D(axis.size);
+  for (int h = 0; h < axis.size; ++h) {
+    const double cos_h = std::cos(axis.Theta(h));
     const double t = (alpha * alpha - 1) * cos_h * cos_h + 1;
     D[h] = alpha * alpha / (kPi * t * t);
   }
   return D;
 }
 
-// Smith's masking of a tabulated distribution (Ashikhmin et al. 2000; Heitz 2014):
-// G1(theta) = cos theta * integral D cos theta_h d omega_h / integral D max(0, w.h) d omega_h.
-Table SmithShadowing(const Table& D, int nodes) {
-  const int bins = static_cast<int>(D.size());
-  const MerlGrid grid{.theta_h = bins};
+// Microfacet normals of an entry of D: a ring of them where it is a bin of theta_h.
+struct Facets {
+  double theta;             // [rad]
+  std::vector<double> phi;  // [rad]
+  double solid_angle;       // of each
+};
+
+Facets FacetsOf(const Axis& axis, int entry) {
+  const double theta = axis.Theta(entry);
+  if (axis.polar()) {
+    const auto [begin, end, width] = axis.CellOf(entry);
+    return {theta, {axis.Phi(entry)}, width * (std::cos(begin) - std::cos(end))};
+  }
   constexpr int kPhi = 64;
-  const double normalization = ProjectedIntegral(D);
-  Table G(nodes, 1.0);
+  const MerlGrid grid{.theta_h = axis.size};
+  Facets ring{theta, std::vector<double>(kPhi),
+              std::sin(theta) * (grid.ThetaH(entry + 1) - grid.ThetaH(entry)) * (2 * kPi / kPhi)};
+  for (int p = 0; p < kPhi; ++p) ring.phi[p] = (p + 0.5) * (2 * kPi / kPhi);
+  return ring;
+}
+
+// Smith's masking of a tabulated distribution (Ashikhmin et al. 2000; Heitz 2014):
+// G1(w) = cos theta * integral D cos theta_h d omega_h / integral D max(0, w.h) d omega_h.
+Table SmithShadowing(const ModelSpec& spec, const Table& D) {
+  const double normalization = ProjectedIntegral(spec.d_axis, D);
+  Table G(spec.g_axis.size, 1.0);
   if (!(normalization > 0)) return G;
-  for (int k = 0; k < nodes; ++k) {
-    const double theta = (k + 0.5) / nodes * (kPi / 2);
+  std::vector<Facets> facets;
+  for (int h = 0; h < spec.d_axis.size; ++h) facets.push_back(FacetsOf(spec.d_axis, h));
+  for (int k = 0; k < spec.g_axis.size; ++k) {
+    const double theta = spec.g_axis.Theta(k), phi_w = spec.g_axis.Phi(k);
     double area = 0;
-    for (int h = 0; h < bins; ++h) {
-      const double theta_h = grid.ThetaH(h + 0.5);
-      const double solid_angle =
-          std::sin(theta_h) * (grid.ThetaH(h + 1) - grid.ThetaH(h)) * (2 * kPi / kPhi);
+    for (int h = 0; h < spec.d_axis.size; ++h) {
       double sum = 0;
-      for (int p = 0; p < kPhi; ++p) {
-        const double phi = (p + 0.5) * (2 * kPi / kPhi);
-        sum += std::max(0.0, std::sin(theta) * std::sin(theta_h) * std::cos(phi) +
-                                 std::cos(theta) * std::cos(theta_h));
+      for (const double phi : facets[h].phi) {
+        sum += std::max(0.0, std::sin(theta) * std::sin(facets[h].theta) * std::cos(phi - phi_w) +
+                                 std::cos(theta) * std::cos(facets[h].theta));
       }
-      area += D[h] * solid_angle * sum;
+      area += D[h] * facets[h].solid_angle * sum;
     }
-    G[k] = std::min(1.0, std::cos(theta) * normalization / area);
+    if (area > 0) G[k] = std::min(1.0, std::cos(theta) * normalization / area);
   }
   return G;
 }
@@ -129,8 +144,8 @@ FactorModel FromDistributions(const Objective& objective, const std::vector<Tabl
   std::ranges::copy(Quantile(samples, 0.1), model.d().begin());
   for (int m = 0; m < spec.lobes; ++m) {
     SetTable(Factor::kD, m, D[m], &model);
-    SetTable(Factor::kF, m, SchlickFresnel(spec.f_bins), &model);
-    SetTable(Factor::kG, m, SmithShadowing(D[m], spec.g_nodes), &model);
+    SetTable(Factor::kF, m, SchlickFresnel(spec.f_axis.size), &model);
+    SetTable(Factor::kG, m, SmithShadowing(spec, D[m]), &model);
   }
   SetSpecularWeights(samples, &model);
   return model;
@@ -160,30 +175,38 @@ FactorModel AnalyticModel(const Objective& objective, uint64_t /*seed*/) {
   const ModelSpec& spec = objective.spec();
   std::vector<Table> D;
   for (int m = 0; m < spec.lobes; ++m) {
-    D.push_back(GgxDistribution(spec.d_bins, SpreadRoughness(m, spec.lobes)));
+    D.push_back(GgxDistribution(spec.d_axis, SpreadRoughness(m, spec.lobes)));
   }
   return FromDistributions(objective, D);
 }
 
+int Nearest(const Stencil& stencil) {
+  int k = 0;
+  for (int other = 1; other < stencil.size; ++other) {
+    if (stencil.weight[other] > stencil.weight[k]) k = other;
+  }
+  return stencil.index[k];
+}
+
 // Mean over theta_d <= 45 degrees and the channels of (rho* - d) cos theta_i cos theta_o: what is
-// left of a lobe there is its D, up to a factor. [d_bins]
+// left of a lobe there is its D, up to a factor. [d_axis.size]
 Table HighlightProfile(const Objective& objective) {
   const std::vector<WeightedSample> samples = Selection(objective);
   const Rgb d = Quantile(samples, 0.1);
-  const int bins = objective.spec().d_bins, f_limit = objective.spec().f_bins / 2;
+  const Axis& axis = objective.spec().d_axis;
+  const int bins = axis.size, f_limit = objective.spec().f_axis.size / 2;
   Table sum(bins, 0.0), count(bins, 0.0);
   for (const WeightedSample& sample : samples) {
     if (sample.stencils.F.index[0] >= f_limit) continue;
-    const int h = sample.stencils.D.index[0];
+    const int h = axis.polar() ? Nearest(sample.stencils.D) : sample.stencils.D.index[0];
     for (int c = 0; c < kChannels; ++c) {
       sum[h] += std::max(0.0, sample.rho[c] - d[c]) / sample.stencils.inverse_cosines;
       count[h] += 1;
     }
   }
-  double last = 0;
   for (int h = bins - 1; h >= 0; --h) {  // an empty bin repeats its outer neighbour
-    if (count[h] > 0) last = sum[h] / count[h];
-    sum[h] = last;
+    const int outer = h + axis.phi_nodes;
+    sum[h] = count[h] > 0 ? sum[h] / count[h] : outer < bins ? sum[outer] : 0;
   }
   return sum;
 }
@@ -213,7 +236,7 @@ FactorModel RoughnessModel(const Objective& objective, std::mt19937_64* engine) 
   const ModelSpec& spec = objective.spec();
   std::vector<Table> D;
   for (int m = 0; m < spec.lobes; ++m) {
-    D.push_back(GgxDistribution(spec.d_bins, 0.02 * std::pow(50.0, Uniform(engine))));
+    D.push_back(GgxDistribution(spec.d_axis, 0.02 * std::pow(50.0, Uniform(engine))));
   }
   return FromDistributions(objective, D);
 }

@@ -59,14 +59,14 @@ class JointRows::Layout {
         first_D(kChannels * (1 + spec.lobes)),
         num_near(first_D + spec.num_tables(Factor::kD)),
         num_far(spec.num_tables(Factor::kF)),
-        padded_nodes(spec.g_nodes + 2),
+        padded_nodes(spec.g_axis.size + 2),
         line_size((max_row + kBatch - 1) / kBatch * kBatch),
         basis((1 + spec.lobes + 3) / 4 * 4),
         sums_size((basis + 1) * basis),
         tables(spec.num_tables(Factor::kG)) {
-    const CatmullRom spline(spec.g_nodes);
+    const CatmullRom spline(spec.g_axis.size);
     columns = {WeightsOfNodes(spline, 0), WeightsOfNodes(spline, 1),
-               WeightsOfNodes(spline, spec.g_nodes - 2)};
+               WeightsOfNodes(spline, spec.g_axis.size - 2)};
     for (int t = 0; t < static_cast<int>(tables.size()); ++t) {
       OfTable& table = tables[t];
       table.near_line.assign(num_near, -1);
@@ -197,8 +197,8 @@ void JointRows::ReadRow(const FactorModel& model, const Pieces& G, int h, int d,
   of.interval_o = &folded_.interval_o[begin];
   const double *const t_i = &folded_.t_i[begin], *const t_o = &folded_.t_o[begin];
 
-  SplineWeights(size, layout.columns, spec.g_nodes - 2, of.interval_i, t_i, of.B_i.data());
-  SplineWeights(size, layout.columns, spec.g_nodes - 2, of.interval_o, t_o, of.B_o.data());
+  SplineWeights(size, layout.columns, spec.g_axis.size - 2, of.interval_i, t_i, of.B_i.data());
+  SplineWeights(size, layout.columns, spec.g_axis.size - 2, of.interval_o, t_o, of.B_o.data());
   for (size_t t = 0; t < G.size(); ++t) {
     ReadTable(size, G[t].data(), of.interval_i, of.interval_o, t_i, t_o,
               &folded_.inverse_cosines[begin], of.K[t].data(), of.H_i[t].data(), of.H_o[t].data());
@@ -345,7 +345,7 @@ void JointRows::MoveNear(const FactorModel& model, int h, Share* share,
            &row[model.TableOffset(Factor::kD, i) + h]);
     }
     result->squared_lengths[k] = row[k];
-    for (int d = 0; d < spec.f_bins; ++d) {
+    for (int d = 0; d < spec.f_axis.size; ++d) {
       double* const D_F =
           &share->D_F[(static_cast<size_t>(d) * layout.num_near + near) * layout.num_far];
       for (int f = 0; f < layout.num_far; ++f) {
@@ -357,9 +357,9 @@ void JointRows::MoveNear(const FactorModel& model, int h, Share* share,
       if (table.near_line[near] < 0) continue;
       double* sum = share->near_G.data() + table.near_begin + table.near_line[near];
       double* const to = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
-      for (int node = -1; node <= spec.g_nodes; ++node, sum += table.near_lines) {
+      for (int node = -1; node <= spec.g_axis.size; ++node, sum += table.near_lines) {
         const double value = std::exchange(*sum, 0.0);
-        if (node >= 0 && node < spec.g_nodes) to[node] = value;
+        if (node >= 0 && node < spec.g_axis.size) to[node] = value;
       }
     }
   }
@@ -404,7 +404,7 @@ void JointRows::SetFar(const FactorModel& model, Hessian hessian, int d,
       if (table.far_line[f] < 0) continue;
       const double* const sums = sum.FarG(layout, d) + table.far_begin + table.far_line[f];
       double* const to = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
-      for (int node = 0; node < layout.spec.g_nodes; ++node) {
+      for (int node = 0; node < layout.spec.g_axis.size; ++node) {
         to[node] = sums[(1 + node) * table.far_lines];
       }
     }
@@ -434,7 +434,7 @@ void JointRows::SetNear(const FactorModel& model, QuadraticModel* result) const 
     const Layout::OfTable& table = layout.tables[t];
     const int offset = model.TableOffset(Factor::kG, static_cast<int>(t));
     const double* const sums = sum.near_G.data() + table.near_begin;
-    for (int node = 0; node < layout.spec.g_nodes; ++node) {
+    for (int node = 0; node < layout.spec.g_axis.size; ++node) {
       const double* const of_node = sums + (1 + node) * table.near_lines;
       result->gradient[offset + node] = of_node[table.gradient_line];
       for (int k = 0; k < layout.first_D; ++k) {

@@ -164,7 +164,7 @@ struct JointShadowing::Share {
 };
 
 JointShadowing::JointShadowing(const SplineCells& samples, const ModelSpec& spec)
-    : samples_(samples), spec_(spec), spline_(spec.g_nodes), padded_nodes_(spec.g_nodes + 2) {
+    : samples_(samples), spec_(spec), spline_(spec.g_axis.size), padded_nodes_(spec.g_axis.size + 2) {
   const int tables = spec.num_tables(Factor::kG);
   for (int t = 0; t < tables; ++t) {
     for (int u = t; u < tables; ++u) {
@@ -191,11 +191,11 @@ JointShadowing::~JointShadowing() = default;
 
 std::vector<JointShadowing::Side> JointShadowing::MakeSides(const FactorModel& model) const {
   const int tables = spec_.num_tables(Factor::kG);
-  std::vector<Side> sides(spec_.g_nodes - 1);
+  std::vector<Side> sides(spec_.g_axis.size - 1);
   const auto set = [](const Degree6& polynomial, int node, Degree6s* of) {
     for (int k = 0; k < kSecond; ++k) of->term[k][node] = polynomial[k];
   };
-  for (int interval = 0; interval < spec_.g_nodes - 1; ++interval) {
+  for (int interval = 0; interval < spec_.g_axis.size - 1; ++interval) {
     Side& side = sides[interval];
     const auto B = spline_.WeightPolynomials(interval);
     side.B = WeightsOfNodes(spline_, interval);
@@ -203,7 +203,7 @@ std::vector<JointShadowing::Side> JointShadowing::MakeSides(const FactorModel& m
     for (int a = 0; a < 4; ++a) {
       const int node = interval - 1 + a;
       for (int b = 0; b < 4; ++b) set(Product(B[a], B[b]), b, &side.BB[a]);
-      if (node < 0 || node >= spec_.g_nodes) continue;
+      if (node < 0 || node >= spec_.g_axis.size) continue;
       for (int t = 0; t < tables; ++t) {
         for (int k = 0; k < 4; ++k) G[t][k] += B[a][k] * model.table(Factor::kG, t)[node];
       }
@@ -321,16 +321,16 @@ void JointShadowing::SetPair(size_t pair, const Pass& pass, QuadraticModel* resu
   const size_t n = result->gradient.size();
   const int first_t = pass.model.TableOffset(Factor::kG, t);
   const int first_u = pass.model.TableOffset(Factor::kG, u);
-  for (int k = 0; k < spec_.g_nodes; ++k) {
+  for (int k = 0; k < spec_.g_axis.size; ++k) {
     double* const row = &result->H[(first_t + k) * n + first_u];
     const auto set = [&, same = t == u](const double* sums, int l) {
       row[l] += sums[(1 + k) * nodes + 1 + l];
       if (same) row[l] += sums[(1 + l) * nodes + 1 + k];
     };
-    for (int l = t == u ? k : 0; l < spec_.g_nodes; ++l) set(across, l);
+    for (int l = t == u ? k : 0; l < spec_.g_axis.size; ++l) set(across, l);
     if (t == u) result->squared_lengths[first_t + k] = row[k];
     if (!curvature) continue;
-    for (int l = k; l < spec_.g_nodes; ++l) set(curvature_sums, l);
+    for (int l = k; l < spec_.g_axis.size; ++l) set(curvature_sums, l);
   }
 }
 

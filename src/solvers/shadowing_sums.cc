@@ -44,7 +44,7 @@ void AddWeights(int size, const double* __restrict w, const double* __restrict y
 }  // namespace
 
 ShadowingSums::ShadowingSums(const SplineCells& samples, const ModelSpec& spec)
-    : spec_(spec), samples_(samples), terms_(samples.cells.size()), quartics_(spec.g_nodes) {}
+    : spec_(spec), samples_(samples), terms_(samples.cells.size()), quartics_(spec.g_axis.size) {}
 
 SplineMoments ShadowingSums::CellMoments(const SplineCells::Cell& cell, const FactorModel& model,
                                          int table, const Pieces& G,
@@ -106,7 +106,7 @@ void ShadowingSums::UpdateTable(int table,
                                 const std::function<void(const FactorModel&)>& on_element,
                                 FactorModel* model) {
   const std::span<double> G = model->table(Factor::kG, table);
-  for (int k = 0; k < spec_.g_nodes; ++k) {
+  for (int k = 0; k < spec_.g_axis.size; ++k) {
     quartics_.UpdateNode(k, G);
     if (on_element) on_element(*model);
   }

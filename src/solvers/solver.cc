@@ -107,6 +107,7 @@ SolverSummary Solver::Solve(const Objective& objective, const SolverOptions& opt
   CheckSameSpec(model->spec(), objective.spec());
   CheckNumbers(*model);
   CheckOptions(options);
+  if (options.g_filter_sigma > 0) CheckIsotropic(objective.spec(), "the Gaussian filter on G");
   return DoSolve(objective, options, model);
 }
 

@@ -49,7 +49,7 @@ TEST(MbsdfFile, ReadsCellsAtTheirCentres) {
     const Measurement measurement = Parse(begin + Colours());
     ASSERT_EQ(measurement.counts.valid, 12);
     // theta_in 1, theta_out 0, phi 2.
-    const SphericalAngles angles = measurement.angles[8];
+    const SphericalAngles angles = measurement.samples.directions[8];
     EXPECT_DOUBLE_EQ(RadiansToDegrees(angles.theta_i), 67.5);
     EXPECT_DOUBLE_EQ(RadiansToDegrees(angles.theta_o), 22.5);
     EXPECT_DOUBLE_EQ(RadiansToDegrees(angles.phi_o - angles.phi_i), 150);
@@ -104,7 +104,7 @@ TEST(MbsdfFile, ReadsPublishedMeasurements) {
   // The brightest direction of theta_in = 41 degrees is the mirror's.
   int brightest = 0;
   for (int j = 0; j < blue.samples.size(); ++j) {
-    if (std::abs(blue.angles[j].theta_i - DegreesToRadians(41)) > 1e-9) continue;
+    if (std::abs(blue.samples.directions[j].theta_i - DegreesToRadians(41)) > 1e-9) continue;
     if (blue.samples.rho[j][1] > blue.samples.rho[brightest][1]) brightest = j;
   }
   EXPECT_LT(blue.samples.angles[brightest].theta_h, DegreesToRadians(4));

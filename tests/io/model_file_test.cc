@@ -325,12 +325,59 @@ TEST(ModelFile, RefusesNumbersThatAreNoneOrNegative) {
   }
 }
 
+TEST(ModelFile, AnAnisotropicModelHasRingsOfAzimuths) {
+  ModelSpec finer = ModelSpec::Anisotropic(2);
+  finer.d_axis = Axis::Polar({0, 2.5, 10, 40, 80}, 60);
+  ModelSpec independent = ModelSpec::IndependentG();
+  independent.d_axis = independent.g_axis = Axis::Polar({5, 50}, 3);
+  for (const ModelSpec& spec :
+       {ModelSpec::Anisotropic(3), ModelSpec::Anisotropic(0), finer, independent}) {
+    const ModelFile file = RandomModel(spec);
+    const std::string text = FormatModel(file);
+    EXPECT_TRUE(SameBits(ParseModel(text, "model.json").model, file.model));
+  }
+  json document = json::parse(FormatModel(RandomModel(ModelSpec::Anisotropic(3))));
+  EXPECT_EQ(document["kind"], "anisotropic");
+  for (const char* const factor : {"D", "G"}) {
+    ASSERT_EQ(document[factor].size(), 3);
+    ASSERT_EQ(document[factor][2].size(), 6);
+    EXPECT_EQ(document[factor][2][5].size(), 48);
+    EXPECT_EQ(document["theta_nodes"][factor], json({0, 15, 30, 45, 60, 75}));
+    EXPECT_EQ(document["phi_nodes"][factor][47], 352.5);
+  }
+  // A file that does not say its nodes has UTIA's.
+  document.erase("theta_nodes");
+  document.erase("phi_nodes");
+  EXPECT_EQ(ParseModel(document.dump(), "model.json").model.spec(), ModelSpec::Anisotropic(3));
+}
+
+TEST(ModelFile, RefusesAnisotropicTablesThatHaveOtherNodes) {
+  const auto error_after = [](const std::function<void(json*)>& change) {
+    json document = json::parse(FormatModel(RandomModel(ModelSpec::Anisotropic(3))));
+    change(&document);
+    return ErrorOfText(document.dump());
+  };
+  EXPECT_THAT(error_after([](json* d) { (*d)["D"][1].erase(5); }),
+              HasSubstr("key 'D[1]' must have 6 entries, not 5"));
+  EXPECT_THAT(error_after([](json* d) { (*d)["G"][2][3].push_back(1); }),
+              HasSubstr("key 'G[2][3]' must have 48 entries, not 49"));
+  EXPECT_THAT(error_after([](json* d) { (*d)["theta_nodes"]["D"][3] = 15; }),
+              HasSubstr("key 'theta_nodes.D[3]' must be above the one before it"));
+  EXPECT_THAT(error_after([](json* d) { (*d)["theta_nodes"]["D"][5] = 90; }),
+              HasSubstr("below 90 degrees"));
+  EXPECT_THAT(error_after([](json* d) { (*d)["phi_nodes"]["G"][1] = 8; }),
+              HasSubstr("key 'phi_nodes.G[1]' must be 7.5"));
+  EXPECT_THAT(error_after([](json* d) { (*d)["theta_nodes"]["G"] = json::array({0}); }),
+              HasSubstr("key 'G[0]' must have 1 entries"));
+}
+
 TEST(ModelFile, RefusesOtherFormatsKindsAndVersions) {
   const auto error_of = [](const char* key, const json& value) {
     return ErrorAfter([&](json* document) { (*document)[key] = value; });
   };
   EXPECT_THAT(error_of("format", "other"), HasSubstr("key 'format' must be \"trilobe-model\""));
-  EXPECT_THAT(error_of("kind", "anisotropic"), HasSubstr("key 'kind' must be \"isotropic\""));
+  EXPECT_THAT(error_of("kind", "bivariate"),
+              HasSubstr("key 'kind' must be \"isotropic\" or \"anisotropic\""));
   EXPECT_THAT(error_of("version", 2), AllOf(HasSubstr("key 'version' is 2"), HasSubstr("update")));
   EXPECT_THAT(error_of("version", 0), HasSubstr("key 'version' is 0"));
 }
@@ -357,7 +404,8 @@ TEST(ModelFile, RefusesAFileThatIsTooLarge) {
 // The largest model that there is, with a number on a line each.
 TEST(ModelFile, TheLimitsHoldTheLargestModel) {
   ModelSpec spec{.lobes = kMaxLobes};
-  spec.d_bins = spec.f_bins = spec.g_nodes = kMaxTableSize;
+  spec.f_axis.size = kMaxBins;
+  spec.d_axis = spec.g_axis = Axis::Polar({0, 15, 30, 45, 60, 65, 70, 75}, kMaxTableSize / 8);
   spec.D = spec.F = spec.G = {.per_lobe = true, .per_channel = true};
   ModelFile file{FactorModel(spec), std::vector<bool>(spec.num_parameters(), true), {}};
   for (double& x : file.model.parameters()) x = 0.12345678901234567;

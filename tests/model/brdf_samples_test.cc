@@ -51,9 +51,9 @@ TEST(Thinned, IsAPartOfTheSamplesInTheirOrder) {
         };
         while (next < samples.size() && !same()) ++next;
         ASSERT_LT(next, samples.size()) << "stride " << stride << ", sample " << j;
-        if (scattered) {
-          EXPECT_EQ(next, j * stride);
-        }
+      }
+      if (scattered) {
+        EXPECT_NEAR(thinned.size(), 1.0 * samples.size() / stride, 2);
       }
       if (stride == 1) {
         EXPECT_EQ(thinned.size(), samples.size());

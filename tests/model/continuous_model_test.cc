@@ -81,7 +81,7 @@ TEST(ContinuousModelTest, DoesNotClamp) {
   for (double& g : model.table(Factor::kG, 0)) g = 0;
   model.table(Factor::kG, 0)[5] = 1;
   const ContinuousModel continuous(model);
-  const double step = kPi / 2 / model.spec().g_nodes, node = 5.5 * step;
+  const double step = kPi / 2 / model.spec().g_axis.size, node = 5.5 * step;
   double lowest = 0;
   for (double beside = -2.5; beside <= 2.5; beside += 0.1) {
     const double theta_o = node + beside * step;

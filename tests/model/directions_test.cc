@@ -42,8 +42,8 @@ TEST(Directions, AreUnitVectorsWhoseBisectorIsTheHalfVector) {
 TEST(Directions, ByHand) {
   // theta_h = 30 degrees in the xz plane, theta_d = 45, phi_d = 90: the difference vector points to
   // y, so that both directions share the half vector's share of x and z.
-  const auto [wi, wo] =
-      ToDirections({DegreesToRadians(30), DegreesToRadians(45), DegreesToRadians(90)});
+  const auto [wi, wo] = ToDirections(
+      HalfDiffAngles{DegreesToRadians(30), DegreesToRadians(45), DegreesToRadians(90)});
   const double half = std::sqrt(0.5);
   EXPECT_NEAR(wi[0], half * 0.5, 1e-15);
   EXPECT_NEAR(wi[1], half, 1e-15);
@@ -102,7 +102,7 @@ TEST(Directions, MirroredPhiExchangesTheta) {
 
 TEST(Directions, PhiStaysInRange) {
   for (const double phi : {0.0, 1e-17, 0.1, 3.0, kPi - 1e-9, std::nextafter(kPi, 0.0)}) {
-    const HalfDiffAngles back = ToHalfDiff(ToDirections({0.4, 0.6, phi}));
+    const HalfDiffAngles back = ToHalfDiff(ToDirections(HalfDiffAngles{0.4, 0.6, phi}));
     EXPECT_GE(back.phi_d, 0);
     EXPECT_LT(back.phi_d, kPi);
   }

@@ -23,7 +23,8 @@ TEST(FactorModel, StartsAtZero) {
 
 TEST(FactorModel, RefusesABadSpec) {
   EXPECT_THROW(FactorModel(ModelSpec::SharedFactors(9)), Error);
-  EXPECT_THROW(FactorModel(ModelSpec{.d_bins = 2}), Error);
+  EXPECT_THROW(FactorModel(ModelSpec{.d_axis = {.rule = Axis::Rule::kRootTheta, .size = 2}}),
+               Error);
 }
 
 // [ d | s | D | F | G ]: the accessors walk over all numbers once, in this order.
@@ -96,7 +97,7 @@ TEST(FactorModel, EvaluatesThePapersEquation) {
 TEST(FactorModel, ScatteredReadingIsLinearInDAndF) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   // A quarter of the way from D bin 2 to 3 in sqrt(theta_h), half way from F bin 4 to 5.
-  const SampleStencils at = ScatteredStencils(spec, {kGrid.ThetaH(2.75), kGrid.ThetaD(5.0), 1.0});
+  const SampleStencils at = ScatteredStencils(spec, HalfDiffAngles{kGrid.ThetaH(2.75), kGrid.ThetaD(5.0), 1.0});
   EXPECT_NEAR(at.D.WeightOf(2), 0.75, 1e-14);
   EXPECT_NEAR(at.D.WeightOf(3), 0.25, 1e-14);
   EXPECT_NEAR(at.F.WeightOf(4), 0.5, 1e-14);

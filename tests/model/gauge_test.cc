@@ -89,7 +89,8 @@ void ExpectNormalized(const Objective& objective, const FactorModel& model,
   const ModelSpec& spec = model.spec();
   const std::span<const double> coverage = objective.coverage();
   for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
-    EXPECT_NEAR(ProjectedIntegral(model.table(Factor::kD, t)), 1, 1e-12) << what;
+    EXPECT_NEAR(ProjectedIntegral(model.spec().d_axis, model.table(Factor::kD, t)), 1, 1e-12)
+        << what;
   }
   for (const Factor factor : {Factor::kF, Factor::kG}) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {
@@ -103,11 +104,11 @@ void ExpectNormalized(const Objective& objective, const FactorModel& model,
 TEST(Gauge, ProjectedIntegralUsesTheTrueBinWidths) {
   // The whole projected hemisphere, and its part within theta_h < 22.5 degrees: the first half of
   // the MERL bins.
-  EXPECT_NEAR(ProjectedIntegral(std::vector<double>(90, 1.0)), kPi, 1e-14);
+  EXPECT_NEAR(ProjectedIntegral(ModelSpec().d_axis, std::vector<double>(90, 1.0)), kPi, 1e-14);
   std::vector<double> half(90, 0.0);
   std::fill_n(half.begin(), 45, 2.0);
-  EXPECT_NEAR(ProjectedIntegral(half), 2 * kPi * std::pow(std::sin(DegreesToRadians(22.5)), 2),
-              1e-14);
+  EXPECT_NEAR(ProjectedIntegral(ModelSpec().d_axis, half),
+              2 * kPi * std::pow(std::sin(DegreesToRadians(22.5)), 2), 1e-14);
 }
 
 TEST(Gauge, CanonicalFormChangesNoValue) {
@@ -190,7 +191,7 @@ TEST(Gauge, DeadBinsAreFilledFromTheirNeighbours) {
   const auto G = model.table(Factor::kG, 1);
   ASSERT_TRUE(dead[model.TableOffset(Factor::kG, 1) + 8]);
   // G / cos theta goes on as it is.
-  const CatmullRom spline(spec.g_nodes);
+  const CatmullRom spline(spec.g_axis.size);
   std::vector<double> last_G;
   for (int k = 3; k < 8; ++k) last_G.push_back(G[k] / std::cos(spline.NodeAngle(k)));
   std::ranges::sort(last_G);

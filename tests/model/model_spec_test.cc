@@ -91,12 +91,15 @@ TEST(ModelSpec, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(CheckSpec(ModelSpec::SharedFactors(-1)), Error);
   EXPECT_THROW(CheckSpec(ModelSpec::SharedFactors(kMaxLobes + 1)), Error);
   // Longer tables would overflow the indices of the folded grid.
-  EXPECT_NO_THROW(CheckSpec(ModelSpec{.g_nodes = kMaxTableSize}));
-  EXPECT_THROW(CheckSpec(ModelSpec{.g_nodes = kMaxTableSize + 1}), Error);
-  for (int ModelSpec::*size : {&ModelSpec::d_bins, &ModelSpec::f_bins, &ModelSpec::g_nodes}) {
+  const auto with_nodes = [](int nodes) {
+    return ModelSpec{.g_axis = {.rule = Axis::Rule::kSpline, .size = nodes}};
+  };
+  EXPECT_NO_THROW(CheckSpec(with_nodes(kMaxBins)));
+  EXPECT_THROW(CheckSpec(with_nodes(kMaxBins + 1)), Error);
+  for (Axis ModelSpec::*axis : {&ModelSpec::d_axis, &ModelSpec::f_axis, &ModelSpec::g_axis}) {
     for (const int bad : {3, 0, -90}) {
       ModelSpec spec;
-      spec.*size = bad;
+      (spec.*axis).size = bad;
       EXPECT_THROW(CheckSpec(spec), Error);
     }
   }

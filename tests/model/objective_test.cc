@@ -91,9 +91,9 @@ TEST(Objective, IsTheSameMadeFromOneOfAnotherSpec) {
   };
   for (const auto& [name, spec] : TestSpecs(kOdd)) EXPECT_TRUE(expect_same(spec, name));
   ModelSpec finer = first.spec();
-  finer.g_nodes += 3;
+  finer.g_axis.size += 3;
   EXPECT_FALSE(expect_same(finer, "finer G"));
-  ++finer.d_bins;
+  ++finer.d_axis.size;
   EXPECT_THROW(Objective(first, finer), Error);
 }
 
@@ -202,10 +202,10 @@ TEST(Objective, RefusesAnotherGrid) {
   EXPECT_THAT(ErrorOf(samples, ModelSpec::SharedFactors(3)),
               testing::AllOf(testing::HasSubstr("90 D bins"), testing::HasSubstr("10 and 12")));
   ModelSpec f_differs = ModelSpec::SharedFactors(1, kOdd);
-  f_differs.f_bins = 13;
+  f_differs.f_axis.size = 13;
   EXPECT_NE(ErrorOf(samples, f_differs), "");
   ModelSpec g_differs = ModelSpec::SharedFactors(1, kOdd);
-  g_differs.g_nodes = 31;  // the spline's own resolution
+  g_differs.g_axis.size = 31;  // the spline's own resolution
   EXPECT_EQ(ErrorOf(samples, g_differs), "");
   EXPECT_THAT(ErrorOf(samples, ModelSpec::SharedFactors(20, kOdd)),
               testing::HasSubstr("lobes is 20"));

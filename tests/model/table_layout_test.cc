@@ -39,7 +39,7 @@ TEST(TableLayout, IsLinearBetweenNodesAndConstantBeyond) {
   EXPECT_EQ(std::vector<double>(D.begin(), D.end()), (std::vector<double>{4, 4, 3, 2, 1, 0}));
   for (const double g : G) EXPECT_EQ(g, 7);
   EXPECT_EQ(model.s(0)[2], 5);
-  const int dropped = (6 - 2) + (model.spec().g_nodes - 1) + 2;
+  const int dropped = (6 - 2) + (model.spec().g_axis.size - 1) + 2;
   EXPECT_EQ(layout.num_numbers(model.spec()), model.spec().num_parameters() - dropped);
   EXPECT_EQ(layout.num_places(model.spec()), 3);
 }

@@ -32,7 +32,7 @@ void ExpectNear(const Rgb& actual, const Rgb& expected) {
 }
 
 DirectionPair At(double h, double d, double p) {
-  return ToDirections({kGrid.ThetaH(h), kGrid.ThetaD(d), kGrid.PhiD(p)});
+  return ToDirections(HalfDiffAngles{kGrid.ThetaH(h), kGrid.ThetaD(d), kGrid.PhiD(p)});
 }
 
 TEST(TabulatedBrdfTest, GivesTheBinThatContainsTheDirections) {

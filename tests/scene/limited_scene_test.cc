@@ -60,7 +60,7 @@ TEST(LimitedScene, LeavesOutTheEntriesThatNothingReads) {
   }
   EXPECT_GT(coverage(Factor::kD, 0), 0);
   EXPECT_GT(coverage(Factor::kF, 0), 0);
-  EXPECT_EQ(coverage(Factor::kG, spec.g_nodes - 1), 0);
+  EXPECT_EQ(coverage(Factor::kG, spec.g_axis.size - 1), 0);
 }
 
 }  // namespace

@@ -40,17 +40,17 @@ FactorModel Material(const ModelSpec& spec) {
       const double width = kWidths[m % 2] * (spec.D.per_channel ? 1 + 0.4 * c : 1);
       const double grazing = spec.F.per_channel ? 1 + c : 2;
       model.s(m)[c] = m + 1;
-      for (int k = 0; k < spec.d_bins; ++k) {
+      for (int k = 0; k < spec.d_axis.size; ++k) {
         model.table(Factor::kD, D)[k] = std::exp(-std::pow(k / width, 2)) / width;
       }
-      for (int k = 0; k < spec.f_bins; ++k) {
-        const double t = (k + 0.5) / spec.f_bins;
+      for (int k = 0; k < spec.f_axis.size; ++k) {
+        const double t = (k + 0.5) / spec.f_axis.size;
         // One lobe rises towards grazing angles, the other falls.
         const bool falls = spec.F.per_lobe && m % 2 == 1;
         model.table(Factor::kF, F)[k] = falls ? 1.3 - t : 0.3 + grazing * t * t;
       }
-      for (int k = 0; k < spec.g_nodes; ++k) {
-        model.table(Factor::kG, G)[k] = std::cos((k + 0.5) / spec.g_nodes * (0.3 + 0.5 * m));
+      for (int k = 0; k < spec.g_axis.size; ++k) {
+        model.table(Factor::kG, G)[k] = std::cos((k + 0.5) / spec.g_axis.size * (0.3 + 0.5 * m));
       }
     }
   }
@@ -224,9 +224,9 @@ TEST(ModelChoice, FinishesWhatItDoesNotThin) {
   }
   for (int t = 0; t < result.model.spec().num_tables(Factor::kG); ++t) {
     const auto G = result.model.table(Factor::kG, t);
-    int last = spec.g_nodes - 1;
+    int last = spec.g_axis.size - 1;
     while (objective.coverage()[result.model.TableOffset(Factor::kG, t) + last] == 0) --last;
-    ASSERT_LT(last, spec.g_nodes - 1);
+    ASSERT_LT(last, spec.g_axis.size - 1);
     EXPECT_EQ(G[last], G[last - 1]) << t;
   }
 }
@@ -242,20 +242,20 @@ TEST(ModelChoice, ThinnedShadowingGoesOnBeyondTheData) {
   ASSERT_THAT(chosen.candidates[chosen.chosen].name, testing::HasSubstr("thinned"));
   const ModelSpec& spec = chosen.model.spec();
   const Objective objective(fit.objective, spec);
-  const CatmullRom spline(spec.g_nodes);
+  const CatmullRom spline(spec.g_axis.size);
   int checked = 0;
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    int last = spec.g_nodes - 1;
+    int last = spec.g_axis.size - 1;
     const int offset = chosen.model.TableOffset(Factor::kG, t);
     while (!(objective.coverage()[offset + last] > 0)) --last;
-    ASSERT_LT(last, spec.g_nodes - 1);
+    ASSERT_LT(last, spec.g_axis.size - 1);
     const auto G = chosen.model.table(Factor::kG, t);
     if (!(G[last] > 0)) continue;
     ++checked;
-    EXPECT_NEAR(G[spec.g_nodes - 1] / G[last],
-                std::cos(spline.NodeAngle(spec.g_nodes - 1)) / std::cos(spline.NodeAngle(last)),
+    EXPECT_NEAR(G[spec.g_axis.size - 1] / G[last],
+                std::cos(spline.NodeAngle(spec.g_axis.size - 1)) / std::cos(spline.NodeAngle(last)),
                 1e-12);
-    for (int k = last + 1; k < spec.g_nodes; ++k) EXPECT_LT(G[k], G[k - 1]);
+    for (int k = last + 1; k < spec.g_axis.size; ++k) EXPECT_LT(G[k], G[k - 1]);
   }
   EXPECT_GT(checked, 0);
 }

@@ -103,7 +103,7 @@ TEST(NodeElimination, KeepsItsLimits) {
   const TableLayout layout = TableLayout::Full(fit.model.spec());
   const std::vector<Elimination> all =
       OrderOfElimination(fit.at, fit.model, layout, NoLimits(1000));
-  EXPECT_EQ(all.size(), 8 - 1 + 3 * (8 - 1) + fit.model.spec().g_nodes - 1);
+  EXPECT_EQ(all.size(), 8 - 1 + 3 * (8 - 1) + fit.model.spec().g_axis.size - 1);
   for (size_t k = 1; k < all.size(); ++k) EXPECT_GE(all[k].rise, all[k - 1].rise);
   EliminationLimits limits{.max_rise = all[10].rise, .max_count = 1000};
   const size_t within = OrderOfElimination(fit.at, fit.model, layout, limits).size();

@@ -29,19 +29,19 @@ FactorModel Material(int lobes, bool grey) {
     model.d()[c] = 0.1 * colour(c);
     if (lobes == 0) continue;
     const auto F = model.table(Factor::kF, c);
-    for (int k = 0; k < spec.f_bins; ++k) {
-      F[k] = 0.3 / colour(c) + std::pow((k + 0.5) / spec.f_bins, 4);
+    for (int k = 0; k < spec.f_axis.size; ++k) {
+      F[k] = 0.3 / colour(c) + std::pow((k + 0.5) / spec.f_axis.size, 4);
     }
   }
   constexpr double kWidths[] = {1, 3, 7};
   for (int m = 0; m < lobes; ++m) {
     for (int c = 0; c < kChannels; ++c) model.s(m)[c] = (m + 1) * colour(grey ? 0 : c);
     const auto D = model.table(Factor::kD, m), G = model.table(Factor::kG, m);
-    for (int k = 0; k < spec.d_bins; ++k) {
+    for (int k = 0; k < spec.d_axis.size; ++k) {
       D[k] = std::exp(-std::pow(k / kWidths[m], 2)) / kWidths[m];
     }
-    for (int k = 0; k < spec.g_nodes; ++k) {
-      G[k] = std::cos((k + 0.5) / spec.g_nodes * (0.2 + 0.6 * m));
+    for (int k = 0; k < spec.g_axis.size; ++k) {
+      G[k] = std::cos((k + 0.5) / spec.g_axis.size * (0.2 + 0.6 * m));
     }
   }
   return model;
@@ -227,12 +227,12 @@ TEST(Prune, EverySwitchLeavesItsPartAlone) {
   options.shadowing = false;
   pruned = Prune(fit.objective, fit.model, options);
   EXPECT_EQ(pruned.model.spec().G, spec.G);
-  for (const auto& nodes : pruned.layout.nodes[2]) EXPECT_EQ(nodes.size(), spec.g_nodes);
+  for (const auto& nodes : pruned.layout.nodes[2]) EXPECT_EQ(nodes.size(), spec.g_axis.size);
   options = kGenerous;
   options.tables = false;
   pruned = Prune(fit.objective, fit.model, options);
-  for (const auto& nodes : pruned.layout.nodes[0]) EXPECT_EQ(nodes.size(), spec.d_bins);
-  for (const auto& nodes : pruned.layout.nodes[1]) EXPECT_EQ(nodes.size(), spec.f_bins);
+  for (const auto& nodes : pruned.layout.nodes[0]) EXPECT_EQ(nodes.size(), spec.d_axis.size);
+  for (const auto& nodes : pruned.layout.nodes[1]) EXPECT_EQ(nodes.size(), spec.f_axis.size);
   options.lobes = options.colour = options.shadowing = false;
   pruned = Prune(fit.objective, fit.model, options);
   EXPECT_EQ(pruned.numbers, spec.num_parameters());

@@ -108,7 +108,7 @@ TEST(AwlsEquality, AnySplineResolution) {
   const BrdfTable table = Synthesize(FindSynthMaterial("aluminium"), 0.1, 1, kGrid);
   for (const int nodes : {4, 5, 23}) {
     ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
-    spec.g_nodes = nodes;
+    spec.g_axis.size = nodes;
     const Objective objective = MakeObjective(table, spec);
     const FactorModel start = FindInitialModel("analytic").make(objective, 1);
     ExpectSameSweeps(objective, start, Sweeps(20), std::to_string(nodes) + " nodes");

@@ -32,7 +32,7 @@ struct Linear {
 // A table of G of one channel, each node in turn where E is lowest as G(theta_i) or, if `o`, as
 // G(theta_o), with the other held; E as the sum over all samples, literally.
 std::vector<double> Swept(const Objective& objective, const FactorModel& model, int c, bool o) {
-  const int nodes = model.spec().g_nodes;
+  const int nodes = model.spec().g_axis.size;
   const CatmullRom spline(nodes);
   std::vector<double> cosines(nodes);
   for (int k = 0; k < nodes; ++k) cosines[k] = std::cos(spline.NodeAngle(k));

@@ -27,12 +27,12 @@ BrdfTable Measured(int lobes, double max_degrees, double noise = 0.01) {
   for (int m = 0; m < lobes; ++m) {
     std::ranges::fill(model.s(m), 1 + m);
     const auto D = model.table(Factor::kD, m), G = model.table(Factor::kG, m);
-    for (int k = 0; k < spec.d_bins; ++k) D[k] = std::exp(-std::pow(k / (3.0 + 4 * m), 2));
-    for (int k = 0; k < spec.g_nodes; ++k) G[k] = std::cos((k + 0.5) / spec.g_nodes * (0.5 + m));
+    for (int k = 0; k < spec.d_axis.size; ++k) D[k] = std::exp(-std::pow(k / (3.0 + 4 * m), 2));
+    for (int k = 0; k < spec.g_axis.size; ++k) G[k] = std::cos((k + 0.5) / spec.g_axis.size * (0.5 + m));
   }
   for (int t = 0; t < spec.num_tables(Factor::kF); ++t) {
     const auto F = model.table(Factor::kF, t);
-    for (int k = 0; k < spec.f_bins; ++k) F[k] = 0.2 + std::pow((k + 0.5) / spec.f_bins, 5);
+    for (int k = 0; k < spec.f_axis.size; ++k) F[k] = 0.2 + std::pow((k + 0.5) / spec.f_axis.size, 5);
   }
   BrdfTable table = TableOf(model, kGrid);
   Random random(1);
@@ -289,7 +289,7 @@ TEST(DataEdge, EntriesAreNotTiedToADeadOne) {
   const auto D_tail = [&] {
     const std::vector<double> coverage = MakeObjective(measured, spec).coverage();
     return PoorTail(
-        std::span(coverage).subspan(FactorModel(spec).TableOffset(Factor::kD, 0), spec.d_bins));
+        std::span(coverage).subspan(FactorModel(spec).TableOffset(Factor::kD, 0), spec.d_axis.size));
   };
   // Three entries apart, so that neither counts as poor beside the other.
   const int dead = D_tail().begin - 1;
@@ -301,7 +301,7 @@ TEST(DataEdge, EntriesAreNotTiedToADeadOne) {
   FactorModel model = Fitted(objective);
   ASSERT_TRUE(TieEntriesAtDataEdge(objective, &model));
   const auto D = model.table(Factor::kD, 0);
-  for (int k = dead; k < spec.d_bins; ++k) EXPECT_EQ(D[k], D[dead - 1]) << k;
+  for (int k = dead; k < spec.d_axis.size; ++k) EXPECT_EQ(D[k], D[dead - 1]) << k;
 }
 
 TEST(DataEdge, NothingToTieWithoutLobesOrWeights) {

@@ -1,0 +1,136 @@
+#include "trilobe/model/axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "trilobe/base/error.h"
+#include "trilobe/model/catmull_rom.h"
+#include "trilobe/model/directions.h"
+#include "trilobe/model/merl_grid.h"
+
+namespace trilobe {
+namespace {
+
+// A place between two neighbouring nodes: `t` in [0, 1) of the way from the lower to the upper.
+struct Between {
+  int lower, upper;
+  double t;
+};
+
+constexpr double kAtNode = 1e-9;
+
+double Snapped(double t) { return t < kAtNode ? 0 : t > 1 - kAtNode ? 1 : t; }
+
+Between Whole(Between at) {
+  if (at.t == 1) return {at.upper, at.upper, 0};
+  return at.t == 0 ? Between{at.lower, at.lower, 0} : at;
+}
+
+Between LocateTheta(const std::vector<double>& nodes, double degrees) {
+  const int last = static_cast<int>(nodes.size()) - 1;
+  if (degrees <= nodes.front()) return {0, 0, 0};
+  if (degrees >= nodes.back()) return {last, last, 0};
+  const auto upper = std::ranges::upper_bound(nodes, degrees);
+  const int a = static_cast<int>(upper - nodes.begin()) - 1;
+  return Whole({a, a + 1, Snapped((degrees - nodes[a]) / (nodes[a + 1] - nodes[a]))});
+}
+
+Between LocatePhi(int nodes, double radians) {
+  const double turns = radians / (2 * kPi);
+  const double place = (turns - std::floor(turns)) * nodes;
+  const double floor = std::floor(place);
+  const int b = static_cast<int>(floor) % nodes;
+  return Whole({b, (b + 1) % nodes, Snapped(place - floor)});
+}
+
+Stencil PolarStencil(const Axis& axis, double theta, double phi) {
+  if (!(std::isfinite(theta) && std::isfinite(phi))) {
+    throw Error("theta or phi of a direction is not a finite number");
+  }
+  const Between a = LocateTheta(axis.theta, RadiansToDegrees(theta));
+  const Between b = LocatePhi(axis.phi_nodes, phi);
+  Stencil stencil;
+  const auto add = [&](int row, int column, double weight) {
+    if (weight == 0) return;
+    stencil.index[stencil.size] = row * axis.phi_nodes + column;
+    stencil.weight[stencil.size++] = weight;
+  };
+  add(a.lower, b.lower, (1 - a.t) * (1 - b.t));
+  add(a.lower, b.upper, (1 - a.t) * b.t);
+  add(a.upper, b.lower, a.t * (1 - b.t));
+  add(a.upper, b.upper, a.t * b.t);
+  return stencil;
+}
+
+}  // namespace
+
+Axis Axis::Polar(std::vector<double> theta_degrees, int phi_nodes) {
+  const int size = static_cast<int>(theta_degrees.size()) * phi_nodes;
+  return {.rule = Rule::kPolar,
+          .size = size,
+          .theta = std::move(theta_degrees),
+          .phi_nodes = phi_nodes};
+}
+
+Axis Axis::Utia() { return Polar({0, 15, 30, 45, 60, 75}, 48); }
+
+Stencil Axis::At(double theta_radians, double phi_radians) const {
+  switch (rule) {
+    case Rule::kRootTheta:
+      return LinearStencil(MerlGrid{.theta_h = size}.ThetaHCoordinate(theta_radians), size);
+    case Rule::kTheta:
+      return LinearStencil(MerlGrid{.theta_d = size}.ThetaDCoordinate(theta_radians), size);
+    case Rule::kSpline:
+      return CatmullRom(size).StencilAt(theta_radians);
+    case Rule::kPolar:
+      return PolarStencil(*this, theta_radians, phi_radians);
+  }
+  return {};
+}
+
+double Axis::Theta(int entry) const {
+  if (polar()) return DegreesToRadians(theta[entry / phi_nodes]);
+  if (rule == Rule::kRootTheta) return MerlGrid{.theta_h = size}.ThetaH(entry + 0.5);
+  return (entry + 0.5) / size * (kPi / 2);
+}
+
+double Axis::Phi(int entry) const {
+  return polar() ? entry % phi_nodes * (2 * kPi / phi_nodes) : 0;
+}
+
+Axis::Cell Axis::CellOf(int entry) const {
+  const int a = entry / phi_nodes, last = static_cast<int>(theta.size()) - 1;
+  const double inner = a > 0 ? theta[a] - theta[a - 1] : last > 0 ? theta[1] - theta[0] : 180;
+  const double outer = a < last ? theta[a + 1] - theta[a] : inner;
+  return {DegreesToRadians(std::max(theta[a] - inner / 2, 0.0)),
+          DegreesToRadians(std::min(theta[a] + outer / 2, 90.0)), 2 * kPi / phi_nodes};
+}
+
+void CheckAxis(const Axis& axis, const char* name) {
+  const auto fail = [&](const std::string& problem) {
+    throw Error(std::string(name) + " tables " + problem);
+  };
+  const int max_size = axis.polar() ? kMaxTableSize : kMaxBins;
+  if (axis.size < 4 || axis.size > max_size) {
+    fail("have " + std::to_string(axis.size) + " entries; they need 4 to " +
+         std::to_string(max_size));
+  }
+  if (!axis.polar()) return;
+  const std::vector<double>& theta = axis.theta;
+  if (theta.empty() || axis.phi_nodes < 1 ||
+      static_cast<int64_t>(theta.size()) * axis.phi_nodes != axis.size) {
+    fail("of " + std::to_string(axis.size) + " entries cannot have " +
+         std::to_string(theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes");
+  }
+  // Said so that a NaN fails it.
+  const auto not_below = [](double a, double b) { return !(a < b); };
+  const bool ascend = std::ranges::adjacent_find(theta, not_below) == theta.end();
+  if (!(ascend && theta.front() >= 0 && theta.back() < 90)) {
+    fail("have nodes theta that do not ascend from 0 degrees or more to below 90");
+  }
+}
+
+}  // namespace trilobe

@@ -1,0 +1,149 @@
+// Every solver on the anisotropic model (paper eq. 4).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/model/anisotropic_samples.h"
+#include "tests/solvers/solver_kinds.h"
+#include "tests/test_util.h"
+#include "trilobe/model/objective.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/normal_equations.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// Few nodes, so that the literal solvers take their time in a test.
+ModelSpec SmallSpec(int lobes) {
+  ModelSpec spec = ModelSpec::Anisotropic(lobes);
+  spec.d_axis = Axis::Polar({0, 15, 30, 45}, 6);
+  spec.f_axis.size = 8;
+  spec.g_axis = Axis::Polar({0, 15, 30, 45}, 6);
+  return spec;
+}
+
+// A ridge across the x axis.
+FactorModel Cloth(const ModelSpec& spec) {
+  FactorModel model = RandomModel(spec, 1, 0.1);
+  for (int m = 0; m < spec.lobes; ++m) {
+    const auto D = model.table(Factor::kD, m);
+    for (int k = 0; k < spec.d_axis.size; ++k) {
+      const double along = std::sin(spec.d_axis.Theta(k)) * std::cos(spec.d_axis.Phi(k) + m);
+      D[k] *= std::exp(-std::pow(along / (0.15 + 0.15 * m), 2)) + 0.01;
+    }
+  }
+  return model;
+}
+
+Objective NoisyObjective(const ModelSpec& spec, int num_threads = 1) {
+  return {PolarSamples(Cloth(spec), 4, 6, 0.2), spec, FindWeighting("appearance"), num_threads};
+}
+
+TEST(Anisotropic, NormalEquationsAreTheLiteralOnes) {
+  const ModelSpec spec = SmallSpec(2);
+  const Objective objective = NoisyObjective(spec, 2);
+  const FactorModel model = RandomModel(spec, 2);
+  for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
+    QuadraticModel fast, literal;
+    NormalEquations(objective).Evaluate(model, hessian, &fast);
+    EvaluateLiterally(objective, model, hessian, &literal);
+    ASSERT_EQ(fast.H.size(), literal.H.size());
+    double largest = 0;
+    for (const double h : literal.H) largest = std::max(largest, std::abs(h));
+    for (size_t k = 0; k < fast.H.size(); ++k) {
+      ASSERT_NEAR(fast.H[k], literal.H[k], 1e-12 * largest);
+    }
+    EXPECT_NEAR(fast.objective / literal.objective, 1, 1e-12);
+  }
+}
+
+TEST(Anisotropic, AwlsIsTheLiteralOne) {
+  const ModelSpec spec = SmallSpec(2);
+  const Objective objective = NoisyObjective(spec);
+  const FactorModel start = FindInitialModel("random").make(objective, 3);
+  FactorModel fast = start, literal = start;
+  const SolverOptions options{.max_iterations = 10, .relative_decrease_tolerance = 0};
+  const auto fast_run = MakeSolver("awls")->Solve(objective, options, &fast);
+  const auto literal_run = MakeSolver("awls_literal")->Solve(objective, options, &literal);
+  ASSERT_EQ(fast_run.trace.size(), literal_run.trace.size());
+  for (size_t k = 0; k < fast_run.trace.size(); ++k) {
+    const double E = literal_run.trace[k].objective;
+    EXPECT_NEAR(fast_run.trace[k].objective, E, 1e-9 * E) << k;
+  }
+  EXPECT_LT(literal_run.final_objective, 0.5 * literal_run.initial_objective);
+}
+
+TEST(Anisotropic, AwlsNeverRaisesEElementByElement) {
+  const ModelSpec spec = SmallSpec(3);
+  const Objective objective = NoisyObjective(spec);
+  FactorModel model = FindInitialModel("random").make(objective, 4);
+  double last = objective.Value(model);
+  int updates = 0;
+  SolverOptions options{.max_iterations = 2, .relative_decrease_tolerance = 0};
+  options.on_element = [&](const FactorModel& now) {
+    const double E = objective.Value(now);
+    EXPECT_LE(E, last * (1 + 1e-12)) << updates;
+    last = E;
+    ++updates;
+  };
+  MakeSolver("awls")->Solve(objective, options, &model);
+  EXPECT_GE(updates, 2 * 100);
+}
+
+TEST(Anisotropic, EverySolverFits) {
+  const ModelSpec spec = SmallSpec(2);
+  const Objective objective = NoisyObjective(spec, 2);
+  const double floor = objective.Value(Cloth(spec));  // what the noise alone leaves, about
+  for (const SolverEntry& solver : kLibrarySolvers) {
+    if (NeedsAGrid(solver)) continue;
+    FactorModel model = FindInitialModel("highlight").make(objective, 1);
+    const SolverOptions options{.max_iterations = kSanitized ? 5 : 60};
+    const SolverSummary summary = solver.make()->Solve(objective, options, &model);
+    EXPECT_LT(summary.final_objective, (kSanitized ? 3 : 1.25) * floor) << solver.name;
+    EXPECT_NEAR(objective.Value(model) / summary.final_objective, 1, 1e-9) << solver.name;
+  }
+}
+
+TEST(Anisotropic, SameBitsForAnyNumberOfThreads) {
+  const ModelSpec spec = SmallSpec(2);
+  for (const char* const name : {"auto", "awls", "lm"}) {
+    FactorModel first;
+    for (const int threads : {1, 2, 3}) {
+      const Objective objective = NoisyObjective(spec, threads);
+      FactorModel model = FindInitialModel("analytic").make(objective, 1);
+      MakeSolver(name)->Solve(objective, {.max_iterations = 15}, &model);
+      if (threads == 1) first = model;
+      EXPECT_TRUE(std::ranges::equal(model.parameters(), first.parameters())) << name << threads;
+    }
+  }
+}
+
+// The model's own data come back from a start near it.
+TEST(Anisotropic, RecoversItsOwnDataExactly) {
+  const ModelSpec spec = SmallSpec(2);
+  const FactorModel truth = Cloth(spec);
+  const Objective objective(PolarSamples(truth, 4, 6), spec, FindWeighting("appearance"), 2);
+  FactorModel model = truth;
+  Random random(5);
+  for (double& x : model.parameters()) x *= random.LogNormal(0.05);
+  const SolverSummary summary =
+      MakeSolver("newton")->Solve(objective, {.relative_decrease_tolerance = 0}, &model);
+  EXPECT_LT(summary.final_objective, 1e-18 * objective.MeasuredEnergy());
+}
+
+TEST(Anisotropic, StartsAreOfTheDataAndPositive) {
+  const ModelSpec spec = ModelSpec::Anisotropic(3);
+  const Objective objective(UtiaSamples(Cloth(spec)), spec, FindWeighting("appearance"), 2);
+  for (const InitialModel& init : InitialModels()) {
+    const FactorModel model = init.make(objective, 1);
+    EXPECT_LT(objective.Value(model), 30 * objective.MeasuredEnergy()) << init.name;
+    for (const double x : model.parameters()) ASSERT_TRUE(std::isfinite(x) && x >= 0) << init.name;
+  }
+}
+
+}  // namespace
+}  // namespace trilobe
