@@ -14,7 +14,9 @@ inline void CheckScattered(const Measurement& measurement) {
   CheckSamples(measurement.samples);
   if (measurement.table || counts.valid != measurement.samples.size() ||
       measurement.samples.directions.size() != measurement.samples.rho.size() ||
-      counts.valid + counts.below_surface + counts.non_finite + counts.negative != counts.total) {
+      counts.valid + counts.below_surface + counts.non_finite + counts.negative + counts.missing +
+              counts.extrapolated + counts.beyond_nodes !=
+          counts.total) {
     std::abort();
   }
   for (const SphericalAngles& angles : measurement.samples.directions) {

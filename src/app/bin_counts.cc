@@ -8,6 +8,7 @@ std::vector<LeftOut> ReasonsOf(const BinCounts& counts) {
   return {{"below the surface", "below_surface", counts.below_surface},
           {"NaN or infinite", "non_finite", counts.non_finite},
           {"lost (negative)", "negative", counts.negative},
+          {"without a value", "missing", counts.missing},
           {"extrapolated by authors", "extrapolated", counts.extrapolated},
           {"beyond the last theta_i", "beyond_nodes", counts.beyond_nodes},
           {"beyond --max_angle", "beyond_max_angle", counts.beyond_max_angle}};

@@ -5,12 +5,9 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/result_folder.h"
-#include "trilobe/io/csv_file.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/merl_file.h"
+#include "trilobe/app/write_measurement.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
@@ -28,19 +25,15 @@ Measurement MeasurementOf(const std::string& source, const SourceOptions& option
 
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
-  const bool csv = EndingOf(FLAGS_out) == ".csv";
-  const std::string out = csv ? FLAGS_out : RequiredMerlOut("convert");
+  const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
-  const Measurement measurement = MeasurementOf(source, SourceOptionsFromFlags());
-  if (csv) {
-    std::cout << "wrote " << out << ": CSV, " << WriteCsv(measurement, out) << " samples\n";
-    return 0;
+  const SourceOptions options = SourceOptionsFromFlags();
+  const Measurement measurement = MeasurementOf(source, options);
+  for (const std::string& note : measurement.notes) {
+    std::cerr << "trilobe: " << source << ": " << note << "\n";
   }
-  const BrdfTable& table = TableOf(measurement);
-  WriteMerl(table, out);
-  const BinCounts bins = CountBins(table);
-  std::cout << "wrote " << out << ": MERL layout, " << bins.valid << " of " << bins.total
-            << " bins valid\n";
+  const std::string written = WriteMeasurement(measurement, out, options.num_threads);
+  std::cout << "wrote " << out << ": " << written << "\n";
   return 0;
 }
 
@@ -63,9 +56,11 @@ Command ConvertCommand() {
           "invalid, "
           "too, whatever the input. Scattered samples have no bins: that is an error.\nTo a FILE "
           "that ends in .csv it writes the valid samples, scattered ones too, a row each, with all "
-          "their\ndigits; a whole table takes some 130 MB. A FILE whose ending says another "
-          "format, as .bsdf does, is an\nerror.",
-      .flags = {"out", "noise", "seed", "max_angle", "extrapolated", "threads"},
+          "their\ndigits; a whole table takes some 130 MB. To a FILE that ends in .bin it writes "
+          "the input at the\ndirections of the UTIA database, -1 where it was not measured; "
+          "scattered samples must stand at them.\nA FILE whose ending says another format, as "
+          ".bsdf does, is an error.",
+      .flags = WithSourceFlags({"out"}),
       .run = RunConvert};
 }
 

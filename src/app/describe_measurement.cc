@@ -14,10 +14,12 @@
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/base/error.h"
+#include "trilobe/io/anisotropy.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/rgl_file.h"
 #include "trilobe/io/source.h"
+#include "trilobe/io/utia_file.h"
 #include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/tabulated_brdf.h"
 
@@ -175,13 +177,27 @@ ValueRange RangeOf(const std::vector<Rgb>& values) {
   return range;
 }
 
+// An RGL file's own directions differ from phi_i to phi_i; on a grid they do not.
+Anisotropy AnisotropyOfAny(const Measurement& measurement) {
+  return AnisotropyOf(measurement.rgl ? AtNodes(measurement, kUtiaGrid, ThreadsFromFlags())
+                                      : measurement);
+}
+
+Json ToJson(const Anisotropy& anisotropy) {
+  return {{"samples", anisotropy.samples},
+          {"share", anisotropy.samples > 0 ? Json(anisotropy.share) : Json()}};
+}
+
 void DescribeScattered(const Measurement& measurement) {
   if (!FLAGS_out.empty()) {
     throw Error("--out is for a picture of the bins of a table; " + measurement.source + " is a " +
                 measurement.kind);
   }
   const AngleRange theta_i = RangeOf(measurement.samples.directions, &SphericalAngles::theta_i);
+  const AngleRange phi_i = RangeOf(measurement.samples.directions, &SphericalAngles::phi_i);
   const AngleRange theta_o = RangeOf(measurement.samples.directions, &SphericalAngles::theta_o);
+  std::optional<Anisotropy> anisotropy;
+  if (measurement.anisotropic) anisotropy = AnisotropyOfAny(measurement);
   const ValueRange range = RangeOf(measurement.samples.rho);
   const PairError reciprocity = ReciprocityError(measurement);
   const BinCounts& counts = measurement.counts;
@@ -192,10 +208,13 @@ void DescribeScattered(const Measurement& measurement) {
                {"out_of_gamut", measurement.out_of_gamut},
                {"max_angle", MaxAngleDegrees(measurement)},
                {"theta_i", ToJson(theta_i)},
+               {"phi_i", ToJson(phi_i)},
                {"theta_o", ToJson(theta_o)},
                {"min", range.min},
                {"max", range.max},
-               {"reciprocity_error", ToJson(reciprocity)}});
+               {"reciprocity_error", ToJson(reciprocity)},
+               {"anisotropy", anisotropy ? ToJson(*anisotropy) : Json()},
+               {"notes", measurement.notes}});
     return;
   }
   PrintLine("file", measurement.source);
@@ -214,10 +233,19 @@ void DescribeScattered(const Measurement& measurement) {
            std::to_string(angles.values) + (angles.values == 1 ? " value" : " values");
   };
   PrintLine("theta_i", text(theta_i));
+  if (anisotropy) PrintLine("phi_i", text(phi_i));
   PrintLine("theta_o", text(theta_o));
   PrintLine("smallest value, RGB", Text(range.min) + " /sr");
   PrintLine("largest value, RGB", Text(range.max) + " /sr");
   Print("reciprocity error", reciprocity);
+  if (anisotropy) {
+    PrintLine("anisotropy", anisotropy->samples == 0
+                                ? "unknown: no sample was measured with the material turned"
+                                : Text(100 * anisotropy->share, 3) +
+                                      " % of the energy is not in the mean over all turns, " +
+                                      std::to_string(anisotropy->samples) + " samples");
+  }
+  for (const std::string& note : measurement.notes) PrintLine("note", note);
 }
 
 }  // namespace

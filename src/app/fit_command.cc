@@ -91,12 +91,11 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
                                             "cache",   "nocache", "probe"};
 
 std::vector<std::string> FitFlags() {
-  std::vector<std::string> flags = {"solver", "init",        "weighting", "model",
-                                    "robust", "max_numbers", "lobes"};
+  std::vector<std::string> flags =
+      WithSourceFlags({"solver", "init", "weighting", "model", "robust", "max_numbers", "lobes"});
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(),
-               {"threads", "noise", "seed", "max_angle", "extrapolated", "out", "reconstruction",
-                "course", "plots", "probe", "shard", "scene", "cache", "nocache"});
+  flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "probe", "shard", "scene",
+                             "cache", "nocache"});
   return flags;
 }
 

@@ -63,7 +63,7 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
 }
 
 std::string NameOf(const std::string& source) {
-  if (IsSynthetic(source)) return SynthMaterialOf(source).name;
+  if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
   return fs::path(source).stem().string();
 }
 

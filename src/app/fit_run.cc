@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <utility>
@@ -119,6 +120,9 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     report.key = FitKey(settings, source, bytes);
   }
   report.seconds.read = stopwatch.Lap();
+  for (const std::string& note : measured.notes) {
+    std::cerr << "trilobe: " << source << ": " << note << "\n";
+  }
   const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
   if (table == nullptr && settings.finish.max_numbers > 0) {
     throw Error(source +

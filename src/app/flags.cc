@@ -8,6 +8,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/source.h"
+#include "trilobe/io/utia_file.h"
 #include "trilobe/model/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
@@ -17,11 +18,17 @@ DEFINE_int64(
     "a solver");
 DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
 DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
+DEFINE_double(missing, 0,
+              "share of the measured bins or samples to leave out at random, by --seed, from 0 up "
+              "to 1: how would a fit do with fewer?");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
 DEFINE_bool(extrapolated, false,
             "of an RGL file, also take what its authors did not measure but extrapolated, and what "
             "lies beyond its last theta_i");
+DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
+              "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
+              "(docs/file-formats.md)");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/method.md)");
 DEFINE_string(out, "", "where to write: a file or, for fit, info and plot, a folder");
@@ -59,10 +66,20 @@ SourceOptions SourceOptionsFromFlags() {
                 " is no largest angle; give degrees above 0, up to 90");
   }
   return {.noise = FLAGS_noise,
+          .missing = FLAGS_missing,
           .seed = static_cast<uint64_t>(FLAGS_seed),
           .num_threads = ThreadsFromFlags(),
           .max_angle_deg = FLAGS_max_angle,
-          .extrapolated = FLAGS_extrapolated};
+          .extrapolated = FLAGS_extrapolated,
+          .radiometry = FLAGS_radiometry};
+}
+
+std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {
+  for (const char* flag :
+       {"noise", "missing", "seed", "max_angle", "extrapolated", "radiometry", "threads"}) {
+    others.push_back(flag);
+  }
+  return others;
 }
 
 }  // namespace trilobe

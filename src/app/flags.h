@@ -12,7 +12,9 @@ DECLARE_int32(threads);
 DECLARE_int32(lobes);
 DECLARE_int64(seed);
 DECLARE_double(noise);
+DECLARE_double(missing);
 DECLARE_double(max_angle);
+DECLARE_string(radiometry);
 DECLARE_bool(extrapolated);
 DECLARE_string(weighting);
 DECLARE_string(out);
@@ -33,8 +35,10 @@ std::string FlagHelp(const std::string& flag);
 // --threads, with 0 meaning all cores. Throws Error if negative.
 int ThreadsFromFlags();
 
-// What says how a source is read: for LoadSource. Throws Error for bad values.
+// What says how a source is read: for LoadSource. Throws Error for bad values. And the names of
+// these flags.
 SourceOptions SourceOptionsFromFlags();
+std::vector<std::string> WithSourceFlags(std::vector<std::string> others);
 
 }  // namespace trilobe
 

@@ -36,9 +36,11 @@ Command InfoCommand() {
           "directional albedo over\ntheta_i with the angle where it passes 1, all of what was "
           "measured. With --out=DIR it draws\nDIR/measured.png: how many of the bins are valid, "
           "over theta_i and theta_o.\nScattered samples: how many are valid and why the others are "
-          "not, their angles and values, and how\nfar those with swapped directions differ.\nA "
+          "not, their angles and values, how\nfar those with swapped directions differ and, where "
+          "azimuths matter, how much of the energy the mean\nover all turns of the sample leaves "
+          "out; with --out=DIR a picture of all pairs of directions.\nA "
           "model file: its tables, coefficients, how it was fitted, and its albedo.",
-      .flags = {"json", "out", "noise", "seed", "max_angle", "extrapolated", "threads"},
+      .flags = WithSourceFlags({"json", "out"}),
       .run = RunInfo};
 }
 

@@ -22,17 +22,19 @@ std::string RequiredOut(const std::string& command, const std::string& what) {
   return FLAGS_out;
 }
 
-std::string RequiredMerlOut(const std::string& command) {
+std::string RequiredMeasurementOut(const std::string& command) {
   // Of formats that other programs would take the file for.
   constexpr std::string_view kOthers[] = {
-      ".bsdf", ".json", ".csv",  ".txt", ".png", ".jpg", ".jpeg", ".hdr", ".pic",
-      ".exr",  ".tif",  ".tiff", ".pdf", ".svg", ".npy", ".npz",  ".mat", ".h5",
-      ".xml",  ".zip",  ".gz",   ".tgz", ".xz",  ".bz2", ".zst",  ".7z",  ".tar"};
+      ".bsdf", ".json", ".txt", ".png", ".jpg", ".jpeg", ".hdr", ".pic", ".exr",
+      ".tif",  ".tiff", ".pdf", ".svg", ".npy", ".npz",  ".mat", ".h5",  ".xml",
+      ".zip",  ".gz",   ".tgz", ".xz",  ".bz2", ".zst",  ".7z",  ".tar"};
   std::string out = RequiredOut(command, "FILE");
   const std::string ending = EndingOf(out);
   if (std::ranges::find(kOthers, ending) != std::end(kOthers)) {
     throw Error("--out=" + out + ": trilobe " + command + " writes MERL data, and the ending '" +
-                ending + "' says another format; end the name in .binary");
+                ending +
+                "' says another format; end the name in .binary, in .bin for UTIA's directions, or "
+                "in .csv");
   }
   return out;
 }

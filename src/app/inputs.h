@@ -12,9 +12,9 @@ bool IsModelFile(const std::string& path);
 // --out, or an Error that says what it is for: "trilobe synth needs --out=FILE".
 std::string RequiredOut(const std::string& command, const std::string& what);
 
-// The same for a command that writes MERL data; also an Error where the name's ending says another
-// format, as that of "felt.bsdf" does.
-std::string RequiredMerlOut(const std::string& command);
+// The same for a command that writes a measurement, as WriteMeasurement does; also an Error where
+// the name's ending says another format, as that of "felt.bsdf" does.
+std::string RequiredMeasurementOut(const std::string& command);
 
 }  // namespace trilobe
 

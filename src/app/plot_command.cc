@@ -44,20 +44,19 @@ int RunPlot(std::span<const std::string> arguments) {
 }  // namespace
 
 Command PlotCommand() {
-  return {
-      .name = "plot",
-      .summary = "draw a model's factors, its fit to a measurement, and a trace",
-      .arguments = "MODEL [SOURCE]",
-      .min_arguments = 1,
-      .max_arguments = 2,
-      .details =
-          "Writes PNG pictures into the folder --out, by gnuplot:\n"
-          "  factors.png  D, F, G and the coefficients d, s\n"
-          "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
-          "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
-          "  trace.png    E over iterations and seconds (with --trace)",
-      .flags = {"out", "trace", "probe", "noise", "seed", "max_angle", "extrapolated", "threads"},
-      .run = RunPlot};
+  return {.name = "plot",
+          .summary = "draw a model's factors, its fit to a measurement, and a trace",
+          .arguments = "MODEL [SOURCE]",
+          .min_arguments = 1,
+          .max_arguments = 2,
+          .details =
+              "Writes PNG pictures into the folder --out, by gnuplot:\n"
+              "  factors.png  D, F, G and the coefficients d, s\n"
+              "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
+              "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
+              "  trace.png    E over iterations and seconds (with --trace)",
+          .flags = WithSourceFlags({"out", "trace", "probe"}),
+          .run = RunPlot};
 }
 
 }  // namespace trilobe

@@ -158,8 +158,7 @@ Command ScoreCommand() {
           "rho*|/(rho* + 0.001); the\nmean of |log((1 + rho cos)/(1 + rho* cos))|; and the ten "
           "bins with the largest share of E.\nWith --json, one JSON object; a PSNR that is not "
           "finite (an exact fit) is null there.",
-      .flags = {"json", "weighting", "probe", "out", "noise", "seed", "max_angle", "extrapolated",
-                "threads"},
+      .flags = WithSourceFlags({"json", "weighting", "probe", "out"}),
       .run = RunScore};
 }
 

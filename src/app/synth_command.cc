@@ -1,11 +1,13 @@
+#include <algorithm>
 #include <iostream>
+#include <string>
 
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
-#include "trilobe/io/merl_file.h"
+#include "trilobe/app/write_measurement.h"
 #include "trilobe/io/source.h"
 #include "trilobe/io/synth.h"
 
@@ -14,17 +16,22 @@ namespace {
 
 int RunSynth(std::span<const std::string> arguments) {
   if (arguments.empty()) {
+    size_t width = 0;
     for (const SynthMaterial& material : SynthMaterials()) {
-      std::cout << "  " << material.name << std::string(12 - material.name.size(), ' ')
-                << material.description << "\n";
+      width = std::max(width, material.name.size() + 2);
+    }
+    for (const SynthMaterial& material : SynthMaterials()) {
+      std::cout << "  " << material.name << std::string(width - material.name.size(), ' ')
+                << material.description << (material.anisotropic ? "; anisotropic" : "") << "\n";
     }
     return 0;
   }
-  const SynthMaterial& material = FindSynthMaterial(arguments[0]);
-  const std::string out = RequiredMerlOut("synth");
+  const std::string source = "synth:" + arguments[0];
+  const SynthMaterial& material = SynthSourceOf(source).material;
+  const std::string out = RequiredMeasurementOut("synth");
   Inputs().CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
-  WriteMerl(Synthesize(material, options.noise, options.seed, {}, options.num_threads), out);
+  WriteMeasurement(LoadMeasurement(source, options), out, options.num_threads);
   std::cout << "wrote " << out << ": " << material.description << ", noise " << Text(options.noise)
             << ", seed " << options.seed << "\n";
   return 0;
@@ -35,17 +42,22 @@ int RunSynth(std::span<const std::string> arguments) {
 Command SynthCommand() {
   return {
       .name = "synth",
-      .summary = "write a synthetic measurement in MERL layout, or list the materials",
-      .arguments = "[NAME]",
+      .summary = "write a synthetic measurement, or list the materials",
+      .arguments = "[NAME[@THETASxPHIS]]",
       .min_arguments = 0,
       .max_arguments = 1,
       .details =
           "Without NAME, lists the materials. With NAME, writes the material at the bin centres "
           "of a\nMERL .binary file (35 MB) to --out. --noise multiplies each value by log-normal "
           "noise of that\nrelative standard deviation and loses a few grazing bins, as in real "
-          "measurements; the same\n--seed gives the same file. Wherever a SOURCE is asked for, "
-          "synth:NAME gives the same data\nwithout a file.",
-      .flags = {"out", "noise", "seed", "threads"},
+          "measurements; the same\n--seed gives the same file. --missing leaves out a share of it "
+          "at random. Wherever a "
+          "SOURCE is asked\nfor, synth:NAME gives the same data without a file.\nAnisotropic "
+          "materials come at the 288 x 288 pairs of directions of the UTIA database, to a FILE "
+          "that\nends in .bin or .csv. @THETASxPHIS makes another grid of directions, for a .csv: "
+          "synth:linen@9x36 has\ntheta every 10 and phi every 10 degrees. Isotropic materials "
+          "take it, too.",
+      .flags = {"out", "noise", "missing", "seed", "threads"},
       .run = RunSynth};
 }
 

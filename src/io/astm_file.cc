@@ -112,7 +112,7 @@ Measurement ParseAstm(std::string_view text, const std::string& source) {
     throw Error(source + ": " + std::to_string(read) + " lines of data, and NUM_POINTS announces " +
                 points + "; get the file once more");
   }
-  return collector.Take();
+  return collector.TakeByAzimuths();
 }
 
 }  // namespace trilobe

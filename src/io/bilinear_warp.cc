@@ -1,6 +1,7 @@
 #include "trilobe/io/bilinear_warp.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace trilobe {
@@ -10,6 +11,25 @@ double Lerp(double t, double a, double b) { return (1 - t) * a + t * b; }
 
 // Integral from 0 to t of the linear function that is a at 0 and b at 1.
 double LinearIntegral(double t, double a, double b) { return t * (a + 0.5 * t * (b - a)); }
+
+// The t in [0, 1] at which that integral is `value`, in the form that does not cancel; 0 where the
+// function vanishes.
+double InverseLinearIntegral(double value, double a, double b) {
+  const double root = std::sqrt(std::max(a * a + 2 * value * (b - a), 0.0));
+  return a + root > 0 ? std::clamp(2 * value / (a + root), 0.0, 1.0) : 0.0;
+}
+
+// Where `value` lies in running integrals at the nodes 0 .. count-1: the last interval that begins
+// at or below it.
+template <typename Integral>
+int FindInterval(int count, double value, const Integral& integral) {
+  int begin = 0, end = count - 1;
+  while (end - begin > 1) {
+    const int middle = (begin + end) / 2;
+    (integral(middle) <= value ? begin : end) = middle;
+  }
+  return begin;
+}
 
 }  // namespace
 
@@ -86,6 +106,23 @@ SquarePoint BilinearWarp::Invert(const SliceBlend& blend, const SquarePoint& poi
   const double x = total > 0 ? part / total : point.x;
   const double y = below + LinearIntegral(v, total_row, total_next);
   return {std::clamp(x, 0.0, 1.0), std::clamp(y, 0.0, 1.0)};
+}
+
+SquarePoint BilinearWarp::Sample(int slice, const SquarePoint& uniform) const {
+  const int rows = density_.rows, columns = density_.columns;
+  const double* marginal = &marginal_[slice * rows];
+  const int row = FindInterval(rows, uniform.y, [&](int r) { return marginal[r]; });
+  const double* integral = &row_integral_[(slice * rows + row) * columns];
+  const double* p = &density_.values[(slice * rows + row) * columns];
+  const double v = InverseLinearIntegral(uniform.y - marginal[row], integral[columns - 1],
+                                         integral[2 * columns - 1]);
+  const auto along_row = [&](int c) { return Lerp(v, integral[c], integral[c + columns]); };
+  const double part = uniform.x * along_row(columns - 1);
+  const int column = FindInterval(columns, part, along_row);
+  const double u =
+      InverseLinearIntegral(part - along_row(column), Lerp(v, p[column], p[column + columns]),
+                            Lerp(v, p[column + 1], p[column + columns + 1]));
+  return {(column + u) / (columns - 1), (row + v) / (rows - 1)};
 }
 
 }  // namespace trilobe

@@ -63,6 +63,10 @@ class BilinearWarp {
   // On a row where p vanishes x is undefined, and u itself is taken. In [0, 1]^2.
   SquarePoint Invert(const SliceBlend& blend, const SquarePoint& point) const;
 
+  // Its inverse for one slice: the point that the slice sends to `uniform` in [0, 1]^2. Where the
+  // density vanishes there are several; one of them.
+  SquarePoint Sample(int slice, const SquarePoint& uniform) const;
+
  private:
   BilinearStack density_;
   std::vector<double> row_integral_;  // [slices][rows][columns]: along the row up to each node

@@ -56,9 +56,6 @@ constexpr Signature kSignatures[] = {
     {"\x28\xB5\x2F\xFD"sv, Kind::kForeign, "a Zstandard file; unpack it"},
 };
 
-// Directions of incidence by directions of reflection, 6 elevations by 48 azimuths each, by colour.
-constexpr size_t kUtiaSize = sizeof(double) * 288 * 288 * 3;
-
 // Printable characters and white space in UTF-8. A binary table is not: it has zeros.
 bool LooksLikeText(std::string_view bytes) {
   for (std::string_view rest = bytes.substr(0, 64); !rest.empty();) {
@@ -117,6 +114,14 @@ bool LooksLikeAstm(std::string_view text) {
   return false;
 }
 
+// The first of the keys, with the only value that it has.
+bool LooksLikeZemax(std::string_view text) {
+  const std::string_view line = TakeSignificantLine(&text);
+  constexpr std::string_view kKey = "Source", kValue = "Measured";
+  return line.starts_with(kKey) && line.ends_with(kValue) &&
+         Trimmed(line.substr(kKey.size())) == kValue;
+}
+
 // The number of wavelengths alone on its line, then the first of them [nm].
 bool LooksLikeCornell(std::string_view text) {
   const auto number_at_begin = [](std::string_view line, bool alone) {
@@ -142,13 +147,13 @@ Content RecogniseContent(std::string_view bytes) {
     if (first != std::string_view::npos && bytes[first] == '{') return {Kind::kJson, "a JSON file"};
     std::string_view rest = bytes;
     if (HasCell(TakeSignificantLine(&rest), "theta_i")) return {Kind::kCsv, "samples in CSV"};
+    if (LooksLikeZemax(bytes)) return {Kind::kZemax, "a Zemax BSDF"};
     if (LooksLikeAstm(bytes)) return {Kind::kAstm, "an ASTM E1392 measurement"};
     if (LooksLikeCornell(bytes)) return {Kind::kCornell, "spectra as Cornell measured them"};
     return {Kind::kText, "text"};
   }
   if (bytes.size() == kUtiaSize) {
-    return {Kind::kForeign,
-            "a UTIA table (288 x 288 x 3 doubles, by its size), which cannot be read yet"};
+    return {Kind::kUtia, "a UTIA measurement (288 x 288 x 3 doubles, by its size)"};
   }
   return {};
 }

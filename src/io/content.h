@@ -1,6 +1,7 @@
 #ifndef TRILOBE_IO_CONTENT_H_
 #define TRILOBE_IO_CONTENT_H_
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace trilobe {
 
 inline constexpr std::string_view kTensorMagic("tensor_file\0", 12);
 inline constexpr std::string_view kMbsdfMagic = "NVIDIA ARC MBSDF V1\n";
+// Bytes of a UTIA table, which has no header: directions of incidence by directions of reflection,
+// 6 elevations by 48 azimuths each, by colour.
+inline constexpr size_t kUtiaSize = sizeof(double) * 288 * 288 * 3;
 
 // What a file holds, as far as its beginning tells (256 bytes are enough for all but the texts with
 // samples, whose headers may be longer) and, for UTIA tables, which have no header, its size.
@@ -17,6 +21,8 @@ struct Content {
     kMerl,     // by the header alone
     kTensor,   // of RGL
     kMbsdf,    // of NVIDIA MDL
+    kUtia,     // by the size alone
+    kZemax,    // tabular BSDF
     kAstm,     // E1392-96
     kCornell,  // scattered spectra
     kCsv,      // samples with a header row

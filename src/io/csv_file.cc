@@ -61,7 +61,7 @@ Measurement ParseCsv(std::string_view text, const std::string& source) {
     collector.Add(ReadAngles(lines, names, numbers, angle_columns, kPi / 180),
                   {numbers[at[4]], numbers[at[5]], numbers[at[6]]});
   }
-  return collector.Take();
+  return collector.TakeByAzimuths();
 }
 
 int WriteCsv(const Measurement& measurement, const std::string& path) {

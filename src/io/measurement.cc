@@ -7,27 +7,50 @@
 #include <utility>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/counter_random.h"
 
 namespace trilobe {
 namespace {
 
-// The smaller theta, the larger, and the angle between the azimuths [1e-6 rad]: the same for
-// samples that reciprocity makes equal.
-using ReciprocalKey = std::array<int64_t, 3>;
+// The same for samples that reciprocity makes equal [1e-6 rad]: the smaller theta, the larger, and
+// the angle between the azimuths; or, where azimuths matter, theta and phi of the smaller direction
+// and of the larger.
+using ReciprocalKey = std::array<int64_t, 4>;
 
 struct KeyedSample {
   ReciprocalKey key;
-  bool swapped;  // theta_i is the larger
+  bool swapped;  // the incident direction is the larger
   int sample;
 };
 
-KeyedSample KeyOf(const SphericalAngles& angles, int sample) {
+KeyedSample KeyOf(const SphericalAngles& angles, bool anisotropic, int sample) {
   const auto round = [](double x) { return static_cast<int64_t>(std::llround(x * 1e6)); };
+  if (anisotropic) {
+    using Rounded = std::pair<int64_t, int64_t>;
+    const auto rounded = [&](double theta, double phi) {
+      const double turns = phi / (2 * kPi);
+      const int64_t turned = round((turns - std::floor(turns)) * 2 * kPi);
+      return Rounded(round(theta), round(theta) == 0 || turned == round(2 * kPi) ? 0 : turned);
+    };
+    const Rounded i = rounded(angles.theta_i, angles.phi_i);
+    const Rounded o = rounded(angles.theta_o, angles.phi_o);
+    const auto& [a, b] = std::minmax(i, o);
+    return {.key = {a.first, a.second, b.first, b.second}, .swapped = i > o, .sample = sample};
+  }
   const int64_t i = round(angles.theta_i), o = round(angles.theta_o);
   const double between = std::abs(std::remainder(angles.phi_o - angles.phi_i, 2 * kPi));
-  return {.key = {std::min(i, o), std::max(i, o), std::min(i, o) == 0 ? 0 : round(between)},
+  return {.key = {std::min(i, o), std::max(i, o), std::min(i, o) == 0 ? 0 : round(between), 0},
           .swapped = i > o,
           .sample = sample};
+}
+
+// Leaves only these samples, and counts the others as left out for this reason.
+void Keep(const std::vector<int>& kept, int BinCounts::*reason, Measurement* measurement) {
+  const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
+  if (left_out == 0) return;
+  measurement->samples = Selected(measurement->samples, kept);
+  measurement->counts.valid -= left_out;
+  measurement->counts.*reason += left_out;
 }
 
 }  // namespace
@@ -78,18 +101,37 @@ void LimitAngles(double max_theta, Measurement* measurement) {
     kept.push_back(j);
     measurement->max_theta = std::max(measurement->max_theta, std::min(theta, largest));
   }
-  const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
-  if (left_out == 0) return;
-  measurement->samples = Selected(measurement->samples, kept);
-  measurement->counts.valid -= left_out;
-  measurement->counts.beyond_max_angle += left_out;
+  Keep(kept, &BinCounts::beyond_max_angle, measurement);
+}
+
+void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
+  if (share == 0) return;
+  if (!(share > 0 && share < 1)) {
+    throw Error("the share of missing directions is " + std::to_string(share) +
+                "; it must be from 0 up to 1");
+  }
+  // Not the numbers that noise of the same seed is made of.
+  const auto is_lost = [&](uint64_t k) { return UniformAt(~seed, k) < share; };
+  if (measurement->table) {
+    BrdfTable& table = *measurement->table;
+    const std::vector<bool> valid = ValidBins(table);
+    for (int bin = 0; bin < table.grid.size(); ++bin) {
+      for (int c = 0; c < kChannels && valid[bin] && is_lost(bin); ++c) table.stored[c][bin] = -1;
+    }
+    return;
+  }
+  std::vector<int> kept;
+  for (int j = 0; j < measurement->samples.size(); ++j) {
+    if (!is_lost(j)) kept.push_back(j);
+  }
+  Keep(kept, &BinCounts::missing, measurement);
 }
 
 PairError ReciprocityError(const Measurement& scattered) {
   std::vector<KeyedSample> keys;
   keys.reserve(scattered.samples.directions.size());
   for (int j = 0; j < scattered.samples.size(); ++j) {
-    keys.push_back(KeyOf(scattered.samples.directions[j], j));
+    keys.push_back(KeyOf(scattered.samples.directions[j], scattered.anisotropic, j));
   }
   std::ranges::stable_sort(keys, {}, &KeyedSample::key);
   std::vector<std::pair<Rgb, Rgb>> pairs;
@@ -151,5 +193,19 @@ void SampleCollector::LeaveOut(int BinCounts::*reason) {
 }
 
 Measurement SampleCollector::Take() { return std::move(measurement_); }
+
+Measurement SampleCollector::TakeByAzimuths() {
+  constexpr double kSame = 1e-6;  // [rad]
+  const SphericalAngles* first = nullptr;
+  for (const SphericalAngles& at : measurement_.samples.directions) {
+    if (at.theta_i < kSame) continue;
+    if (first == nullptr) first = &at;
+    if (std::abs(std::remainder(at.phi_i - first->phi_i, 2 * kPi)) > kSame) {
+      measurement_.anisotropic = true;
+      break;
+    }
+  }
+  return Take();
+}
 
 }  // namespace trilobe

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_IO_MEASUREMENT_H_
 #define TRILOBE_IO_MEASUREMENT_H_
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,7 +23,9 @@ struct Measurement {
   std::string source;  // file name or synth:NAME, for messages and reports
   std::string kind;    // "MERL measurement"
   std::optional<BrdfTable> table = {};
-  std::shared_ptr<const RglBrdf> rgl = nullptr;  // what the table of an RGL file was made from
+  std::shared_ptr<const RglBrdf> rgl = nullptr;  // what the data of an RGL file were made from
+  bool anisotropic = false;                      // azimuths matter, not only how far apart they are
+  std::vector<std::string> notes = {};           // one sentence each: what looks wrong in the data
 
   // Of scattered data:
   BrdfSamples samples = {};    // the valid ones, with their directions
@@ -47,9 +50,15 @@ double MaxAngleDegrees(const Measurement& measurement);
 // From now on nothing is valid where theta_i or theta_o is beyond `max_theta` [rad].
 void LimitAngles(double max_theta, Measurement* measurement);
 
+// Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had
+// been lost: a table marks them as it marks lost bins, and of samples they are missing. Throws
+// Error for other shares.
+void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement);
+
 // How far apart scattered samples are that were measured in both directions: those with
-// (theta_i, theta_o) against those with the two swapped, at the same angle between the azimuths, to
-// 1e-6. What was measured several times counts by its mean.
+// (theta_i, theta_o) against those with the two swapped, at the same angle between the azimuths or,
+// where azimuths matter, at the same azimuths, to 1e-6. What was measured several times counts by
+// its mean.
 PairError ReciprocityError(const Measurement& scattered);
 
 // Gathers scattered samples as a reader finds them, and counts what is not valid: a direction below
@@ -60,11 +69,14 @@ class SampleCollector {
   void Add(const SphericalAngles& angles, const Rgb& rho);  // [1/sr]
   // A channel below 0, which no measured value is, becomes 0; for colours of valid spectra.
   void AddColor(const SphericalAngles& angles, const Rgb& rho);
+  // Counts a sample that the file itself marks as none.
+  void LeaveOut(int BinCounts::*reason);
   Measurement Take();
+  // The same of a format that does not say whether azimuths matter: they do where light comes from
+  // several, at theta_i > 0.
+  Measurement TakeByAzimuths();
 
  private:
-  void LeaveOut(int BinCounts::*reason);
-
   Measurement measurement_;
 };
 

@@ -1,6 +1,7 @@
 #include "trilobe/io/rgl_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -20,6 +21,7 @@ namespace trilobe {
 struct RglBrdf::Tables {
   std::vector<double> phi_i;    // [p], ascending [rad]; one if isotropic
   std::vector<double> theta_i;  // [t], ascending [rad]
+  int symmetry;                 // 1, or 2 or 4 where phi_i is the last half or quarter of a circle
   BilinearStack ndf;            // [1]: density of microfacet normals
   BilinearStack sigma;          // [1]: projected area of the microfacets
   BilinearWarp vndf;            // [p t]: visible normals, to uniform coordinates
@@ -106,6 +108,47 @@ SliceBlend Neighbours(const std::vector<double>& nodes, double x) {
   return blend;
 }
 
+// Files may leave out what a symmetry of the material repeats. 2: turned by 180 degrees it looks
+// the same, and phi_i is from -180 to 0 degrees; 4: also mirrored at the x or the y axis, and phi_i
+// is from -180 to -90 (so Mitsuba's `measured`, by the same authors).
+int SymmetryOf(const TensorFile& file, const std::vector<double>& phi_i) {
+  const double span = phi_i.back() - phi_i.front();
+  constexpr double kSame = 1e-3;
+  if (phi_i.size() == 1 || std::abs(span - 2 * kPi) <= kSame) return 1;
+  for (const int symmetry : {2, 4}) {
+    if (std::abs(span - 2 * kPi / symmetry) <= kSame && std::abs(phi_i.front() + kPi) <= kSame) {
+      return symmetry;
+    }
+  }
+  file.Fail("phi_i",
+            "must have one entry, or reach once around the circle, or from -180 to 0 or -90 "
+            "degrees");
+}
+
+// The signs of x and y by which the symmetry takes wi into the part of the circle that is stored.
+std::array<double, 2> FoldingSigns(int symmetry, const Direction& wi) {
+  if (symmetry == 1) return {1, 1};
+  const double y = wi[1] < 0 ? 1 : -1;
+  return {symmetry == 4 ? (wi[0] < 0 ? 1 : -1) : y, y};
+}
+
+// The directions that the symmetry makes of stored ones: copy 0 is themselves, 1 turns by 180
+// degrees, 2 and 3 mirror at the x and y axes.
+SphericalAngles Copied(const SphericalAngles& at, int copy) {
+  const auto of = [copy](double phi) {
+    return copy == 0 ? phi : copy == 1 ? phi + kPi : copy == 2 ? -phi : kPi - phi;
+  };
+  return {at.theta_i, of(at.phi_i), at.theta_o, of(at.phi_o)};
+}
+
+Direction FromAngles(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+Direction WithSigns(const Direction& w, const std::array<double, 2>& signs) {
+  return {signs[0] * w[0], signs[1] * w[1], w[2]};
+}
+
 }  // namespace
 
 RglBrdf::RglBrdf(std::unique_ptr<const Tables> tables) : tables_(std::move(tables)) {}
@@ -117,10 +160,7 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   const TensorFile file(bytes, source);
   const std::vector<double> phi_i = ReadAngles(file, "phi_i", -2 * kPi, 2 * kPi);
   const std::vector<double> theta_i = ReadAngles(file, "theta_i", 0, kPi / 2);
-  // Files may leave out what a symmetry of the material repeats; that is not undone here.
-  if (phi_i.size() > 1 && std::abs(phi_i.back() - phi_i.front() - 2 * kPi) > 1e-3) {
-    file.Fail("phi_i", "must have one entry, or reach once around the circle");
-  }
+  const int symmetry = SymmetryOf(file, phi_i);
   if (file.Byte("jacobian") == 0) {
     file.Fail("jacobian", "is 0: values without the microfacet Jacobian cannot be read");
   }
@@ -132,8 +172,9 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   BilinearStack rgb = ReadStack(file, "rgb", {p, t, kChannels});
   RglMask mask(file, theta_i, p * t, rgb.rows, rgb.columns);
   return RglBrdf(std::make_unique<const Tables>(
-      Tables{phi_i, theta_i, ReadNonNegative(file, "ndf", {}), ReadNonNegative(file, "sigma", {}),
-             BilinearWarp(std::move(vndf)), std::move(rgb), std::move(mask)}));
+      Tables{phi_i, theta_i, symmetry, ReadNonNegative(file, "ndf", {}),
+             ReadNonNegative(file, "sigma", {}), BilinearWarp(std::move(vndf)), std::move(rgb),
+             std::move(mask)}));
 }
 
 bool RglBrdf::isotropic() const { return tables_->phi_i.size() == 1; }
@@ -141,15 +182,17 @@ bool RglBrdf::isotropic() const { return tables_->phi_i.size() == 1; }
 double RglBrdf::max_theta() const { return tables_->mask.max_theta(); }
 
 RglBrdf::Value RglBrdf::LookUp(const DirectionPair& directions) const {
-  const auto& [wi, wo] = directions;
-  if (!(wi[2] > 0 && wo[2] > 0)) return {};
+  if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {};
+  const auto signs = FoldingSigns(tables_->symmetry, directions.wi);
+  const Direction wi = WithSigns(directions.wi, signs), wo = WithSigns(directions.wo, signs);
   const Direction half = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
   const double theta_i = Theta(wi), phi_i = Phi(wi);
   const SquarePoint u_i = ToSquare(theta_i, phi_i);
   const SquarePoint u_m = ToSquare(Theta(half), isotropic() ? Phi(half) - phi_i : Phi(half));
 
   SliceBlend blend;  // over (phi_i, theta_i)
-  const double around = std::floor((phi_i - tables_->phi_i.front()) / (2 * kPi));
+  const double around =
+      tables_->symmetry > 1 ? 0 : std::floor((phi_i - tables_->phi_i.front()) / (2 * kPi));
   const SliceBlend over_phi = Neighbours(tables_->phi_i, phi_i - 2 * kPi * around);
   const SliceBlend over_theta = Neighbours(tables_->theta_i, theta_i);
   for (int a = 0; a < over_phi.count; ++a) {
@@ -176,6 +219,60 @@ RglBrdf::Value RglBrdf::LookUp(const DirectionPair& directions) const {
         value > 0 ? std::min(value * factor, std::numeric_limits<double>::max()) : 0.0;
   }
   return looked_up;
+}
+
+Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const {
+  const Tables& t = *tables_;
+  const auto thetas = static_cast<int>(t.theta_i.size());
+  const int rows = t.rgb.rows, columns = t.rgb.columns;
+  // A circle ends where it begins, and so does a half of one, turned. The ends of a quarter are
+  // their own mirror images.
+  const auto last = static_cast<int>(t.phi_i.size()) - 1;
+  const int phis = t.symmetry == 4 ? last + 1 : last;
+  SampleCollector collector(source, "RGL measurement, anisotropic, at its own directions");
+  for (int slice = 0; slice < phis * thetas; ++slice) {
+    const double phi_i = t.phi_i[slice / thetas], theta_i = t.theta_i[slice % thetas];
+    const bool at_end = slice / thetas == 0 || slice / thetas == last;
+    const int copies = t.symmetry == 4 && at_end ? 2 : t.symmetry;
+    const Direction wi = FromAngles(theta_i, phi_i);
+    const SquarePoint u_i = ToSquare(theta_i, phi_i);
+    SliceBlend blend;
+    blend.Add(slice, 1);
+    // The last row stands for the same azimuths as the first, and so do all rows at theta_m = 0.
+    for (int node = 0; node < (rows - 1) * columns; ++node) {
+      const int row = node / columns, column = node % columns;
+      if (column == 0 && row > 0) continue;
+      const SquarePoint x = {static_cast<double>(column) / (columns - 1),
+                             static_cast<double>(row) / (rows - 1)};
+      const SquarePoint u_m = t.vndf.Sample(slice, x);
+      const Direction m = FromAngles(u_m.x * u_m.x * (kPi / 2), (u_m.y - 0.5) * (2 * kPi));
+      const double cos_d = wi[0] * m[0] + wi[1] * m[1] + wi[2] * m[2];
+      const Direction wo = {2 * cos_d * m[0] - wi[0], 2 * cos_d * m[1] - wi[1],
+                            2 * cos_d * m[2] - wi[2]};
+      const double divisor = 4 * t.sigma.At(0, u_i) * wo[2];
+      const bool above = wi[2] > 0 && wo[2] > 0 && cos_d > 0;
+      Rgb rho{};
+      for (int channel = 0; channel < kChannels && divisor > 0; ++channel) {
+        const double value = t.rgb.At(slice * kChannels + channel, x) * t.ndf.At(0, u_m) / divisor;
+        rho[channel] = value > 0 ? std::min(value, std::numeric_limits<double>::max()) : 0.0;
+      }
+      const double theta_o = Theta(wo);
+      for (int copy = 0; copy < copies; ++copy) {
+        if (!above) {
+          collector.LeaveOut(&BinCounts::below_surface);
+        } else if (!extrapolated && std::max(theta_i, theta_o) > t.mask.max_theta() + kRounding) {
+          collector.LeaveOut(&BinCounts::beyond_nodes);
+        } else if (!extrapolated && !t.mask.Measured(blend, x)) {
+          collector.LeaveOut(&BinCounts::extrapolated);
+        } else {
+          collector.Add(Copied({theta_i, phi_i, theta_o, Phi(wo)}, copy), rho);
+        }
+      }
+    }
+  }
+  Measurement measurement = collector.Take();
+  measurement.anisotropic = true;
+  return measurement;
 }
 
 bool LooksLikeRgl(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "trilobe/io/measurement.h"
 #include "trilobe/model/brdf_table.h"
 #include "trilobe/model/channels.h"
 #include "trilobe/model/directions.h"
@@ -22,6 +23,12 @@ class RglBrdf {
   ~RglBrdf();
 
   bool isotropic() const;  // one phi_i in the file
+
+  // An anisotropic material as scattered samples, at the nodes of the file itself: from each
+  // theta_i and phi_i the outgoing directions that the nodes of `rgb` stand for, with what the file
+  // leaves out since a symmetry repeats it. Those that were not measured are left out, unless
+  // `extrapolated`.
+  Measurement Sample(const std::string& source, bool extrapolated) const;
 
   // theta_i of the last nodes that were measured, at most 90 degrees [rad]. Beyond it the material
   // was not measured.

@@ -12,6 +12,8 @@
 #include "trilobe/io/mbsdf_file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/synth.h"
+#include "trilobe/io/utia_file.h"
+#include "trilobe/io/zemax_file.h"
 #ifdef TRILOBE_RGL
 #include "trilobe/io/rgl_file.h"
 #endif
@@ -26,23 +28,36 @@ bool Is(std::string_view bytes) {
   return RecogniseContent(bytes).kind == kKind;
 }
 
-Measurement ReadMerl(std::string_view bytes, const std::string& source, int /*num_threads*/) {
+Measurement ReadMerl(std::string_view bytes, const std::string& source,
+                     const SourceOptions& /*options*/) {
   return {.source = source, .kind = "MERL measurement", .table = ParseMerl(bytes, source)};
 }
 
 #ifdef TRILOBE_RGL
-Measurement ReadRgl(std::string_view bytes, const std::string& source, int num_threads) {
+Measurement ReadRgl(std::string_view bytes, const std::string& source,
+                    const SourceOptions& options) {
   auto rgl = std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source));
+  if (!rgl->isotropic()) {
+    Measurement measurement = rgl->Sample(source, options.extrapolated);
+    measurement.rgl = std::move(rgl);
+    return measurement;
+  }
   return {.source = source,
           .kind = "RGL measurement, at MERL bins",
-          .table = TabulateRgl(*rgl, source, {}, num_threads),
+          .table = TabulateRgl(*rgl, source, {}, options.num_threads),
           .rgl = rgl};
 }
 #endif
 
-// A reader that has no use for threads.
+Measurement ReadUtia(std::string_view bytes, const std::string& source,
+                     const SourceOptions& options) {
+  return ParseUtia(bytes, source, options.radiometry);
+}
+
+// A reader that has no use for options.
 template <Measurement (*kParse)(std::string_view, const std::string&)>
-Measurement Read(std::string_view bytes, const std::string& source, int /*num_threads*/) {
+Measurement Read(std::string_view bytes, const std::string& source,
+                 const SourceOptions& /*options*/) {
   return kParse(bytes, source);
 }
 
@@ -59,10 +74,11 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
       formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
   if (found != formats.end()) return *found;
   const Content content = RecogniseContent(bytes);
-  if (content.kind == Content::Kind::kText) {
+  const bool is_text = content.kind == Content::Kind::kText;
+  if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
     found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
-      return format.is_text && format.ending == ending;
+      return format.is_text == is_text && format.ending == ending;
     });
     if (found != formats.end()) return *found;
   }
@@ -83,6 +99,8 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
       {"rgl", "an RGL *_rgb.bsdf file", ".bsdf", false, Is<Kind::kTensor>, ReadRgl},
 #endif
       {"mbsdf", "an MDL .mbsdf file", ".mbsdf", false, Is<Kind::kMbsdf>, Read<ParseMbsdf>},
+      {"utia", "a UTIA .bin file", ".bin", false, Is<Kind::kUtia>, ReadUtia},
+      {"zemax", "a Zemax .bsdf file", ".bsdf", true, Is<Kind::kZemax>, Read<ParseZemax>},
       {"cornell", "a Cornell .brdf file of spectra", ".brdf", true, Is<Kind::kCornell>,
        Read<ParseCornell>},
       {"astm", "an ASTM E1392 .astm file", ".astm", true, Is<Kind::kAstm>, Read<ParseAstm>},
@@ -93,8 +111,12 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
 
 bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
 
-const SynthMaterial& SynthMaterialOf(std::string_view source) {
-  return FindSynthMaterial(source.substr(kSynth.size()));
+SynthSource SynthSourceOf(std::string_view source) {
+  const std::string_view name = source.substr(kSynth.size());
+  const size_t at = name.find('@');
+  const SynthMaterial& material = FindSynthMaterial(name.substr(0, at));
+  if (at != std::string_view::npos) return {material, ParseHemisphereGrid(name.substr(at + 1))};
+  return {material, material.anisotropic ? std::optional(kUtiaGrid) : std::nullopt};
 }
 
 void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
@@ -106,6 +128,7 @@ void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
 }
 
 void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
+  LeaveOutAtRandom(options.missing, options.seed, measurement);
   if (measurement->table) {
     DecideMeasured(options, &*measurement->table);
   } else {
@@ -115,7 +138,7 @@ void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
 
 Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
                              const SourceOptions& options) {
-  Measurement measurement = FormatOf(bytes, source).read(bytes, source, options.num_threads);
+  Measurement measurement = FormatOf(bytes, source).read(bytes, source, options);
   DecideMeasured(options, &measurement);
   return measurement;
 }
@@ -127,11 +150,19 @@ BrdfTable ParseSource(std::string_view bytes, const std::string& source,
 
 Measurement LoadMeasurement(const std::string& source, const SourceOptions& options) {
   if (!IsSynthetic(source)) return ParseMeasurement(ReadFile(source), source, options);
-  Measurement measurement{.source = source,
-                          .kind = "synthetic measurement",
-                          .table = Synthesize(SynthMaterialOf(source), options.noise, options.seed,
-                                              {}, options.num_threads)};
-  measurement.table->source = source;
+  const auto [material, grid] = SynthSourceOf(source);
+  Measurement measurement;
+  if (grid) {
+    measurement =
+        SynthesizeSamples(material, options.noise, options.seed, *grid, options.num_threads);
+    measurement.source = measurement.samples.source = source;
+  } else {
+    measurement = {
+        .source = source,
+        .kind = "synthetic measurement",
+        .table = Synthesize(material, options.noise, options.seed, {}, options.num_threads)};
+    measurement.table->source = source;
+  }
   DecideMeasured(options, &measurement);
   return measurement;
 }

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
+#include <optional>
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/named.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/io/counter_random.h"
+#include "trilobe/io/synth_anisotropic.h"
 
 namespace trilobe {
 namespace {
@@ -146,24 +150,6 @@ Rgb Rubber(const DirectionPair& pair) {
 
 // --- The measurement ----------------------------------------------------------------------------
 
-// Uniform in (0, 1), a pure function of its arguments, so that bins can be made in any order:
-// SplitMix64 (Steele, Lea, Flood 2014) at position `counter` of the stream `seed`.
-double Uniform(uint64_t seed, uint64_t counter) {
-  const auto mix = [](uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
-    return x ^ (x >> 31);
-  };
-  const uint64_t bits = mix(mix(seed) + counter * 0x9e3779b97f4a7c15U);
-  return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;
-}
-
-// Standard normal (Box and Muller 1958).
-double Normal(uint64_t seed, uint64_t counter) {
-  const double radius = std::sqrt(-2 * std::log(Uniform(seed, 2 * counter)));
-  return radius * std::cos(2 * kPi * Uniform(seed, 2 * counter + 1));
-}
-
 // Share of the bins that a goniometer loses: none up to 80 degrees from the normal, then linearly
 // up to 30 % at the horizon.
 double LossProbability(double min_cosine) {
@@ -171,10 +157,29 @@ double LossProbability(double min_cosine) {
   return 0.3 * std::max(std::acos(min_cosine) - kStart, 0.0) / (kPi / 2 - kStart);
 }
 
-}  // namespace
+void CheckNoise(double noise) {
+  if (noise >= 0 && noise <= 1) return;
+  throw Error("noise is " + std::to_string(noise) + "; it must be from 0 to 1");
+}
 
-const std::vector<SynthMaterial>& SynthMaterials() {
-  static const std::vector<SynthMaterial> materials = {
+// A material as measured at the pair of directions number `index`; nothing where it is lost.
+std::optional<Rgb> Measure(const SynthMaterial& material, const DirectionPair& pair, double noise,
+                           uint64_t seed, uint64_t index) {
+  // Counters 8 index .. 8 index + 7: a pair of uniforms a channel, and one for the loss.
+  const uint64_t counter = 4 * index;
+  const double min_cosine = std::min(pair.wi[2], pair.wo[2]);
+  if (noise > 0 && UniformAt(seed, 2 * (counter + 3)) < LossProbability(min_cosine)) return {};
+  Rgb rho = material.brdf(pair);
+  // exp(sigma z - sigma^2/2) has mean 1 and relative standard deviation `noise`.
+  const double sigma = std::sqrt(std::log1p(noise * noise));
+  for (int c = 0; c < kChannels && noise > 0; ++c) {
+    rho[c] *= std::exp(sigma * NormalAt(seed, counter + c) - sigma * sigma / 2);
+  }
+  return rho;
+}
+
+std::vector<SynthMaterial> AllMaterials() {
+  std::vector<SynthMaterial> materials = {
       {"plastic", "glossy blue plastic: rough dielectric coat over a diffuse base", Plastic},
       {"car-paint", "red metallic paint: diffuse base, broad flakes, narrow clear coat", CarPaint},
       {"copper", "sand-blasted copper: one coloured conductor lobe", Copper},
@@ -184,6 +189,14 @@ const std::vector<SynthMaterial>& SynthMaterials() {
       {"foam", "cream foam: rough diffuser that is brighter towards the light", Foam},
       {"rubber", "black rubber: dark, with a broad highlight", Rubber},
   };
+  std::ranges::move(AnisotropicMaterials(), std::back_inserter(materials));
+  return materials;
+}
+
+}  // namespace
+
+const std::vector<SynthMaterial>& SynthMaterials() {
+  static const std::vector<SynthMaterial> materials = AllMaterials();
   return materials;
 }
 
@@ -193,31 +206,49 @@ const SynthMaterial& FindSynthMaterial(std::string_view name) {
 
 BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
                      const MerlGrid& grid, int num_threads) {
-  if (!(noise >= 0 && noise <= 1)) {
-    throw Error("noise is " + std::to_string(noise) + "; it must be from 0 to 1");
+  CheckNoise(noise);
+  if (material.anisotropic) {
+    throw Error("synth:" + material.name +
+                " is anisotropic, which a MERL table cannot hold; use it as scattered samples");
   }
-  // exp(sigma z - sigma^2/2) has mean 1 and relative standard deviation `noise`.
-  const double sigma = std::sqrt(std::log1p(noise * noise));
   BrdfTable table = MakeInvalidTable("synth:" + material.name, grid);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     const int row = grid.theta_d * grid.phi_d;
     for (int bin = h * row; bin < (h + 1) * row; ++bin) {
       const HalfDiffAngles center = grid.Center(bin);
       const Cosines cosines = ToCosines(center);
-      const double min_cosine = std::min(cosines.i, cosines.o);
-      if (!(min_cosine > 0)) continue;
-      // Counters 8 bin .. 8 bin + 7: a pair of uniforms a channel, and one for the loss.
-      const uint64_t counter = 4 * static_cast<uint64_t>(bin);
-      if (noise > 0 && Uniform(seed, 2 * (counter + 3)) < LossProbability(min_cosine)) continue;
-      const Rgb rho = material.brdf(ToDirections(center));
-      for (int c = 0; c < kChannels; ++c) {
-        const double factor =
-            noise > 0 ? std::exp(sigma * Normal(seed, counter + c) - sigma * sigma / 2) : 1.0;
-        table.SetValue(c, bin, rho[c] * factor);
-      }
+      if (!(std::min(cosines.i, cosines.o) > 0)) continue;
+      const auto rho = Measure(material, ToDirections(center), noise, seed, bin);
+      for (int c = 0; c < kChannels && rho; ++c) table.SetValue(c, bin, (*rho)[c]);
     }
   });
   return table;
+}
+
+Measurement SynthesizeSamples(const SynthMaterial& material, double noise, uint64_t seed,
+                              const HemisphereGrid& grid, int num_threads) {
+  CheckNoise(noise);
+  const auto nodes = static_cast<size_t>(grid.nodes());
+  std::vector<std::optional<Rgb>> measured(nodes * nodes);
+  ParallelFor(grid.nodes(), num_threads, [&](int i) {
+    for (size_t o = 0; o < nodes; ++o) {
+      const size_t index = i * nodes + o;
+      measured[index] =
+          Measure(material, ToDirections(grid.Angles(i, static_cast<int>(o))), noise, seed, index);
+    }
+  });
+  SampleCollector collector("synth:" + material.name, "synthetic measurement, scattered");
+  for (size_t index = 0; index < measured.size(); ++index) {
+    if (measured[index]) {
+      collector.Add(grid.Angles(static_cast<int>(index / nodes), static_cast<int>(index % nodes)),
+                    *measured[index]);
+    } else {
+      collector.LeaveOut(&BinCounts::missing);
+    }
+  }
+  Measurement measurement = collector.Take();
+  measurement.anisotropic = true;
+  return measurement;
 }
 
 }  // namespace trilobe

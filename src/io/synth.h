@@ -6,6 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "trilobe/io/hemisphere_grid.h"
+#include "trilobe/io/measurement.h"
+#include "trilobe/model/albedo.h"
 #include "trilobe/model/brdf_table.h"
 #include "trilobe/model/channels.h"
 #include "trilobe/model/directions.h"
@@ -17,7 +20,8 @@ namespace trilobe {
 struct SynthMaterial {
   std::string name;
   std::string description;
-  Rgb (*brdf)(const DirectionPair&) = nullptr;  // [1/sr]; both directions above the surface
+  BrdfFunction brdf;         // [1/sr]; both directions above the surface
+  bool anisotropic = false;  // changes when it is turned about the normal
 };
 
 // All of them, the default one (that `./run` fits) first.
@@ -29,9 +33,14 @@ const SynthMaterial& FindSynthMaterial(std::string_view name);
 // A measurement of it as a gonioreflectometer would give it: each value multiplied by log-normal
 // noise of relative standard deviation `noise`, the same for the same seed; with
 // noise, also a few grazing bins are lost (invalid), as in the MERL files.
-// Throws Error unless noise is in [0, 1].
+// Throws Error unless noise is in [0, 1], and for anisotropic materials, which do not fit a MERL
+// table.
 BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
                      const MerlGrid& grid = {}, int num_threads = 1);
+
+// The same as scattered samples, at all pairs of nodes of a grid; what is lost is missing.
+Measurement SynthesizeSamples(const SynthMaterial& material, double noise, uint64_t seed,
+                              const HemisphereGrid& grid, int num_threads = 1);
 
 }  // namespace trilobe
 

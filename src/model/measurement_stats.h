@@ -19,6 +19,7 @@ struct BinCounts {
   int below_surface = 0;  // a direction is below the surface at the centre
   int non_finite = 0;     // above it, but a channel is NaN or infinite
   int negative = 0;       // above it and finite, but a channel is below 0: marked as lost
+  int missing = 0;        // above it, but the file has no value there
   // None of these, but not measured (Unmeasured).
   int extrapolated = 0;
   int beyond_nodes = 0;

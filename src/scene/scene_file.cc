@@ -252,7 +252,7 @@ std::string ReadSource(const Node& node, const std::string& scene_file) {
   std::string source = node.String();
   if (IsSynthetic(source)) {
     try {
-      SynthMaterialOf(source);
+      SynthSourceOf(source);
     } catch (const Error& error) {
       node.Fail(error.what());
     }

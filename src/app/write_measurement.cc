@@ -1,0 +1,28 @@
+#include "trilobe/app/write_measurement.h"
+
+#include "trilobe/io/csv_file.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/merl_file.h"
+#include "trilobe/io/utia_file.h"
+#include "trilobe/model/measurement_stats.h"
+
+namespace trilobe {
+
+std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
+                             int num_threads) {
+  const auto counts_text = [](const BinCounts& counts, const std::string& what) {
+    return std::to_string(counts.valid) + " of " + std::to_string(counts.total) + what;
+  };
+  const std::string ending = EndingOf(path);
+  if (ending == ".csv") return "CSV, " + std::to_string(WriteCsv(measurement, path)) + " samples";
+  if (ending == ".bin") {
+    const Measurement at_nodes = AtNodes(measurement, kUtiaGrid, num_threads);
+    WriteUtia(at_nodes, path);
+    return "UTIA layout, " + counts_text(at_nodes.counts, " pairs of directions valid");
+  }
+  const BrdfTable& table = TableOf(measurement);
+  WriteMerl(table, path);
+  return "MERL layout, " + counts_text(CountBins(table), " bins valid");
+}
+
+}  // namespace trilobe
