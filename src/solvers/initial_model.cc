@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <span>
 
 #include "trilobe/base/named.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/model/with_axes.h"
+#include "trilobe/solvers/sweep.h"
 
 namespace trilobe {
 namespace {
@@ -227,6 +230,78 @@ FactorModel HighlightModel(const Objective& objective, uint64_t seed) {
   return FromDistributions(objective, D);
 }
 
+// Lobes of the shape of the measured highlight: anisotropic GGX (Walter et al. 2007, Heitz 2014)
+// whose slopes have the second moments of the profile's, and twice and half their width.
+FactorModel MomentsModel(const Objective& objective, uint64_t seed) {
+  const ModelSpec& spec = objective.spec();
+  const Axis& axis = spec.d_axis;
+  const Table profile = HighlightProfile(objective);
+  // Of slopes (tan theta cos phi, tan theta sin phi), weighted by the area of facets. A GGX
+  // distribution has no second moments: where its tail is cut off at a slope of 1 they are near
+  // alpha^2 / 2 for the roughnesses of highlights that nodes resolve.
+  double total = 0, xx = 0, xy = 0, yy = 0;
+  for (int k = 0; k < axis.size; ++k) {
+    const double theta = axis.Theta(k), slope = std::tan(theta);
+    if (slope > 1) continue;
+    const Facets facets = FacetsOf(axis, k);
+    const double weight =
+        profile[k] * facets.solid_angle * static_cast<double>(facets.phi.size()) * std::cos(theta);
+    const double x = slope * std::cos(axis.Phi(k)), y = slope * std::sin(axis.Phi(k));
+    total += weight;
+    if (axis.polar()) {
+      xx += weight * x * x;
+      xy += weight * x * y;
+      yy += weight * y * y;
+    } else {
+      xx += weight * slope * slope / 2;
+      yy += weight * slope * slope / 2;
+    }
+  }
+  if (!(total > 0)) return AnalyticModel(objective, seed);
+  // Principal axes of the moments.
+  const double angle = std::atan2(2 * xy, xx - yy) / 2, c = std::cos(angle), s = std::sin(angle);
+  const auto alpha_of = [&](double moment) {
+    return std::clamp(std::sqrt(2 * std::max(moment, 0.0) / total), 0.02, 1.0);
+  };
+  const double along = alpha_of(c * c * xx + 2 * c * s * xy + s * s * yy);
+  const double across = alpha_of(s * s * xx - 2 * c * s * xy + c * c * yy);
+  std::vector<Table> D(spec.lobes, Table(axis.size));
+  for (int m = 0; m < spec.lobes; ++m) {
+    const double width = std::exp2(m - (spec.lobes - 1) / 2.0);
+    const double a = std::min(width * along, 1.0), b = std::min(width * across, 1.0);
+    for (int k = 0; k < axis.size; ++k) {
+      const double theta = axis.Theta(k), phi = axis.Phi(k) - angle;
+      const double cos2 = std::cos(theta) * std::cos(theta);
+      // Where phi is not known, the slope is the mean over it.
+      const double u2 = axis.polar()
+                            ? std::pow(std::cos(phi) / a, 2) + std::pow(std::sin(phi) / b, 2)
+                            : (1 / (a * a) + 1 / (b * b)) / 2;
+      const double t = cos2 + (1 - cos2) * u2;
+      D[m][k] = 1 / (kPi * a * b * t * t);
+    }
+  }
+  return FromDistributions(objective, D);
+}
+
+// The isotropic model of the same samples, fitted a little, and freed: every azimuth begins alike.
+FactorModel FreedModel(const Objective& objective, uint64_t seed) {
+  constexpr int kSweeps = 10, kStride = 4;
+  const ModelSpec& spec = objective.spec();
+  ModelSpec round = spec;
+  if (spec.anisotropic()) {
+    const ModelSpec isotropic;
+    round.d_axis = isotropic.d_axis;
+    round.g_axis = isotropic.g_axis;
+  }
+  const Objective thinned(Thinned(objective.samples(), kStride), round, objective.weighting(), 1);
+  FactorModel model = HighlightModel(thinned, seed);
+  PhaseSeconds phases;
+  const std::unique_ptr<Sweep> sweep = MakeSweep(thinned, &phases);
+  for (int k = 0; k < kSweeps; ++k) (*sweep)(nullptr, &model);
+  Canonicalize(thinned.coverage(), &model);  // which gives unobserved entries a value
+  return WithAxes(model, spec);
+}
+
 // Uniform in [0, 1). The standard leaves std::uniform_real_distribution's method open; this is the
 // same everywhere.
 double Uniform(std::mt19937_64* engine) { return static_cast<double>((*engine)() >> 11) * 0x1p-53; }
@@ -262,6 +337,10 @@ const std::vector<InitialModel>& InitialModels() {
        AnalyticModel},
       {"highlight", "D from the measured highlight, averaged over theta_d <= 45 degrees",
        HighlightModel},
+      {"moments", "anisotropic GGX lobes with the second moments of the measured highlight",
+       MomentsModel},
+      {"freed", "the isotropic model, fitted a little to a part of the data, and freed",
+       FreedModel},
       {"constant", "all tables 1", ConstantModel},
       {"roughness", "as analytic, with random roughnesses (--seed)", RoughnessModel},
       {"random", "GGX lobes of random roughness, every number times a random factor (--seed)",

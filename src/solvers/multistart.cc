@@ -8,6 +8,7 @@
 
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/split_lobe.h"
+#include "trilobe/model/with_axes.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/joint_step.h"
 #include "trilobe/solvers/run.h"
@@ -58,7 +59,10 @@ class Starts {
  private:
   // In the order of what they have won for the time that they take (docs/solvers.md).
   void EnterOne(int number) {
-    if (number == 0) {
+    if (objective_.spec().anisotropic() && number > 0 && number < 4) {
+      constexpr const char* kNames[] = {"freed", "moments", "highlight"};
+      EnterInitial(kNames[number - 1], seed_, kNames[number - 1]);
+    } else if (number == 0) {
       race_->Enter("given", [this] { return given_; });
     } else if (number == 2) {
       EnterInitial("highlight", seed_, "highlight");
@@ -134,12 +138,22 @@ double ExpectedMismatch(const Objective& thinned) {
   return 2 * thinned.spec().num_parameters() / std::max(values, 1.0);
 }
 
+// A model on the axes of an objective; what no data touch there is that of `given`.
+FactorModel OnAxesOf(const Objective& objective, const FactorModel& model,
+                     const FactorModel& given) {
+  if (model.spec() == objective.spec()) return model;
+  FactorModel result = WithAxes(model, objective.spec());
+  CopyDeadParameters(objective.coverage(), given, &result);
+  return result;
+}
+
 // The legs one by one, then joint steps on all samples from the best point.
 void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
              Run* run) {
   // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
   std::optional<JointStepper> stepper;
-  const auto begin_at = [&](const FactorModel& model) {
+  const auto begin_at = [&](const FactorModel& from) {
+    const FactorModel model = OnAxesOf(objective, from, given);
     stepper.emplace(objective, JointStepper::Curvature::kByProgress,
                     JointStepper::Trial::kProjected, &run->summary().phases);
     stepper->Restart(model);
@@ -158,8 +172,13 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
                               .objective = better ? stepper->E() : run->best_objective()});
   };
   {
-    StartRace race(objective, kThinned, stop);
-    Starts starts(objective, given, run->options().seed, &race, stop);
+    // A model with many azimuths begins as one with few.
+    const ModelSpec first_look = WithFewerAzimuths(objective.spec());
+    const bool coarser = !(first_look == objective.spec());
+    const Objective looked_at = coarser ? Objective(objective, first_look) : objective;
+    const FactorModel at_first = OnAxesOf(looked_at, given, WithAxes(given, first_look));
+    StartRace race(looked_at, kThinned, stop);
+    Starts starts(looked_at, at_first, run->options().seed, &race, stop);
     for (const Leg& leg : legs) {
       starts.EnterUpTo(leg.starts);
       race.Advance(leg.tries);
@@ -177,7 +196,7 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
       const bool large = mismatch > kLargeMismatch + ExpectedMismatch(race.thinned());
-      if (large && &leg != &legs.back()) race.ThinLess();
+      if (large && !coarser && &leg != &legs.back()) race.ThinLess();
     }
     run->summary().starts = race.Results();
     run->summary().phases += race.phases();
