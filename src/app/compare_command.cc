@@ -68,6 +68,7 @@ PrunedScene FromRun(const std::string& path) {
   PrunedScene pruned{.settings = SceneSettingsFromFlags()};
   Scene scene = ReadScene(path);
   CheckOut(scene, {});
+  const InterruptGuard guard;
   SceneRun run = RunScene(std::move(scene), pruned.settings, [](const MaterialFit&) {});
   if (run.interrupted != 0) throw Error("interrupted; the same command goes on from the cache");
   if (!run.failures.empty()) {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "trilobe/app/command.h"
+#include "trilobe/app/interrupt.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/scene_report.h"
 #include "trilobe/app/scene_run.h"
@@ -12,6 +13,7 @@ namespace {
 
 int RunPlan(std::span<const std::string> arguments) {
   const SceneFitSettings settings = SceneSettingsFromFlags();
+  const InterruptGuard guard;
   const SceneRun run = RunScene(ReadScene(arguments[0]), settings, [](const MaterialFit&) {});
   if (FLAGS_json) {
     PrintJson(PlanToJson(run));

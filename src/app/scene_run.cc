@@ -129,7 +129,6 @@ SceneFitSettings SceneSettingsFromFlags() {
 SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done) {
   SceneRun run{.scene = std::move(scene), .threads = ThreadsFromFlags()};
-  const InterruptGuard guard;
   JobProgress progress(run.scene.materials.size(), "materials");
   Stopwatch stopwatch;
   const std::vector<MaterialResult> results =
@@ -167,6 +166,7 @@ int RunSceneFit(const std::string& path) {
     return plan.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   };
   bool begun = false;
+  const InterruptGuard guard;  // until the plan says what there is
   const SceneRun run = RunScene(std::move(scene), settings, [&](const MaterialFit& fit) {
     ModelFile file = fit.file;
     file.fit.run = folder.run();

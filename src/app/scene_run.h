@@ -37,7 +37,7 @@ struct SceneRun {
 
 // Fits the scene. With a terminal it shows how far it is; Ctrl-C keeps what is finished. `on_done`
 // sees each material when it is finished, one at a time. A material that fails does not stop the
-// others.
+// others. An InterruptGuard must live.
 SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done);
 

@@ -249,9 +249,9 @@ class Harness:
             return f"{name} {moment}"
         require(process.returncode in (0, 128 + number, -number), f"{name}: status {process.returncode}: {err}")
         if process.returncode == -number:
-            # Ended by the signal itself: nothing was begun.
-            for folder, (run, _) in runs.items():
-                require(run == dropped.get(folder), f"{name} ended a run that had begun, folder {folder}")
+            # Ended by the signal itself: nothing was begun, or all was done.
+            for folder, (run, sealed) in runs.items():
+                require(sealed or run == dropped.get(folder), f"{name} ended a run that had begun, folder {folder}")
         elif command.kind == "one":
             run, sealed = runs["."]
             require(sealed and run != dropped.get("."), f"{name} was caught, but the model was not kept")
