@@ -12,21 +12,15 @@
 namespace trilobe {
 namespace {
 
-// sin^2 b - sin^2 a, without cancellation.
-double DifferenceOfSquaredSines(double a, double b) { return std::sin(b - a) * std::sin(b + a); }
-
 // Solid angle that each entry of D stands for, projected on the surface:
 // integral of cos sin dtheta dphi = phi width (sin^2 upper - sin^2 lower) / 2.
 std::vector<double> ProjectedAngles(const Axis& axis) {
   std::vector<double> angles(axis.size);
   const MerlGrid grid{.theta_h = axis.size};
   for (int i = 0; i < axis.size; ++i) {
-    if (axis.polar()) {
-      const auto [begin, end, width] = axis.CellOf(i);
-      angles[i] = width / 2 * DifferenceOfSquaredSines(begin, end);
-    } else {
-      angles[i] = kPi * DifferenceOfSquaredSines(grid.ThetaH(i), grid.ThetaH(i + 1));
-    }
+    const auto [a, b, width] =
+        axis.polar() ? axis.CellOf(i) : Axis::Cell{grid.ThetaH(i), grid.ThetaH(i + 1), 2 * kPi};
+    angles[i] = width / 2 * std::sin(b - a) * std::sin(b + a);  // without cancellation
   }
   return angles;
 }
