@@ -132,14 +132,15 @@ TEST(CsvFile, CountsWhatIsNotValid) {
 }
 
 TEST(CsvFile, FindsReciprocalPairs) {
-  const Measurement measurement = Parse(kHeader +
-                                        "20,0,50,30,1,1,1\n"
-                                        "20,0,50,-30,3,3,3\n"  // the mirror image: mean 2
-                                        "50,10,20,40,4,4,4\n"  // swapped, turned by 10 degrees
-                                        "20,0,50,31,9,9,9\n"   // no partner
-                                        "40,0,40,90,1,1,1\n"   // its own
-                                        "0,0,30,0,1,1,1\n"
-                                        "30,77,0,0,1,1,1\n");  // where phi means nothing
+  Measurement measurement = Parse(kHeader +
+                                  "20,0,50,30,1,1,1\n"
+                                  "20,0,50,-30,3,3,3\n"  // the mirror image: mean 2
+                                  "50,10,20,40,4,4,4\n"  // swapped, turned by 10 degrees
+                                  "20,0,50,31,9,9,9\n"   // no partner
+                                  "40,0,40,90,1,1,1\n"   // its own
+                                  "0,0,30,0,1,1,1\n"
+                                  "30,77,0,0,1,1,1\n");  // where phi means nothing
+  measurement.anisotropic = false;                       // as of a material of which that is known
   const PairError error = ReciprocityError(measurement);
   EXPECT_EQ(error.pairs, 2);
   EXPECT_DOUBLE_EQ(error.median, 0);

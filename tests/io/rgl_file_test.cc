@@ -292,6 +292,14 @@ TinyRgl FileOf(const std::function<Rgb(const DirectionPair&)>& brdf, double phi_
   for (float& value : file.ndf) value += 0.5F;
   for (float& value : file.sigma) value += 0.5F;
   for (float& value : file.vndf) value += 0.1F;
+  // A circle ends where it begins, and the normal has one azimuth.
+  for (std::vector<float>* table : {&file.ndf, &file.sigma}) {
+    std::copy_n(table->begin(), file.columns, table->begin() + file.columns);
+  }
+  for (size_t slice = 0; slice < file.phi_i.size() * file.theta_i.size(); ++slice) {
+    const auto first = file.vndf.begin() + slice * file.rows * file.columns;
+    std::copy_n(first, file.columns, first + (file.rows - 1) * file.columns);
+  }
   constexpr int kFine = 240;  // a multiple of the cells of the density
   const auto bilinear = [](const float* values, int rows, int columns, double x, double y) {
     const int r = std::min(static_cast<int>(y * (rows - 1)), rows - 2);
@@ -372,7 +380,10 @@ TEST(RglFile, SamplesAnAnisotropicMaterialAtItsNodes) {
     const Rgb expected = Grained(pair), looked_up = brdf.Evaluate(pair);
     for (int c = 0; c < kChannels; ++c) {
       EXPECT_NEAR(measurement.samples.rho[j][c], expected[c], 1e-5 * (1 + expected[c])) << j;
-      EXPECT_NEAR(looked_up[c], expected[c], 1e-3 * (1 + expected[c])) << j;
+      // At theta_i = 0 a direction does not tell which phi_i it came from.
+      if (pair.wi[2] < 1) {
+        EXPECT_NEAR(looked_up[c], expected[c], 1e-3 * (1 + expected[c])) << j;
+      }
     }
   }
   const Measurement loaded = ParseMeasurement(file.Bytes(), "tiny.bsdf");
@@ -407,7 +418,10 @@ TEST(RglFile, UndoesTheSymmetriesThatFilesLeaveOut) {
       const Rgb expected = expected_brdf(pair), looked_up = brdf.Evaluate(pair);
       for (int c = 0; c < kChannels; ++c) {
         EXPECT_NEAR(measurement.samples.rho[j][c], expected[c], 1e-5 * (1 + expected[c])) << j;
-        EXPECT_NEAR(looked_up[c], expected[c], 1e-3 * (1 + expected[c])) << j;
+        // Between the parts of the circle that repeat, phi_i may be the node on either side.
+        if (std::min(std::abs(pair.wi[0]), std::abs(pair.wi[1])) > 1e-6) {
+          EXPECT_NEAR(looked_up[c], expected[c], 1e-3 * (1 + expected[c])) << j;
+        }
       }
     }
     EXPECT_THAT(quadrants, testing::Each(testing::Gt(50)));

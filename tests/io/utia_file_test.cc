@@ -158,8 +158,10 @@ TEST(UtiaFile, HasNoPlaceForOtherDirections) {
             "of the grid, whose steps are 15 deg in theta and 7.5 deg in phi");
   EXPECT_THAT(error_of({15, 5, 30, 0}), HasSubstr("15, 5, 15, 0 deg is at no node"));
   EXPECT_THAT(error_of({15, 0, 15, 0}), HasSubstr("is there twice"));
-  EXPECT_EQ(error_of({15, -7.5, 75, 360}), "");
-  EXPECT_THAT(directory.Names(), ElementsAre("x.bin"));
+  EXPECT_THAT(directory.Names(), IsEmpty());
+  SampleCollector collector("x.csv", "list");
+  collector.Add({DegreesToRadians(15), DegreesToRadians(-7.5), 0, 2 * kPi}, {1, 2, 3});
+  EXPECT_NO_THROW(WriteUtia(collector.Take(), directory.Path("x.bin")));
 }
 
 // A file with its numbers in an order in which somebody else might have written them.

@@ -44,11 +44,12 @@ TEST(ZemaxFile, AnglesAreAboutTheMirrorDirection) {
   const Measurement measurement = Parse(kBegin + kAngles + kData);
   EXPECT_EQ(measurement.kind, "Zemax BSDF file of scattered samples");
   EXPECT_TRUE(measurement.anisotropic);
-  // 1 + 3 x 1 samples a rotation above the surface, one of them a gap; 3 x 1 below it.
+  // A rotation has 1 + 3 samples around the mirror direction and 3 far from it, of which azimuth 0
+  // is above the surface; in all, 3 gaps.
   EXPECT_EQ(measurement.counts.total, 14);
   EXPECT_EQ(measurement.counts.valid, 7);
-  EXPECT_EQ(measurement.counts.missing, 1);
-  EXPECT_EQ(measurement.counts.below_surface, 6);
+  EXPECT_EQ(measurement.counts.missing, 3);
+  EXPECT_EQ(measurement.counts.below_surface, 4);
   std::vector<double> values;
   for (const Rgb& rho : measurement.samples.rho) {
     EXPECT_THAT(rho, ElementsAre(rho[0], rho[0], rho[0]));
