@@ -15,6 +15,7 @@
 #include "trilobe/app/fit_run.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/interrupt.h"
+#include "trilobe/app/model_flags.h"
 #include "trilobe/app/progress.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/app/scene_run.h"
@@ -30,11 +31,6 @@ DEFINE_string(
     init, "analytic",
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
-DEFINE_string(
-    model, "shared",
-    "shared: D and G shared by the channels, F by the lobes (Peng et al.); independent: "
-    "one lobe, nothing shared (Bagher et al.); auto: what looks best within --max_numbers "
-    "(docs/model-choice.md)");
 DEFINE_int32(max_numbers, 822, "with --model=auto: how many numbers the model may store");
 DEFINE_double(
     robust, 0,
@@ -50,21 +46,6 @@ DEFINE_bool(plots, false, "also draw the pictures of `trilobe plot` into DIR");
 namespace trilobe {
 namespace {
 
-ModelSpec SpecFromFlags(const MerlGrid& grid) {
-  if (FLAGS_model == "independent") {
-    if (!IsDefault("lobes") && FLAGS_lobes != 1) {
-      throw Error("--model=independent has one lobe; leave out --lobes");
-    }
-    return ModelSpec::IndependentG(grid);
-  }
-  if (FLAGS_model != "shared" && FLAGS_model != "auto") {
-    throw Error("unknown model '" + FLAGS_model + "'; known: shared, independent, auto");
-  }
-  const ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes, grid);
-  CheckSpec(spec);
-  return spec;
-}
-
 // The starting point is a file where --init is not a name but something like a path.
 bool InitIsFile() {
   for (const InitialModel& init : InitialModels()) {
@@ -75,13 +56,16 @@ bool InitIsFile() {
          std::filesystem::exists(FLAGS_init, ignored);
 }
 
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
 FactorModel StartFromFile() {
   FactorModel model = ReadModel(FLAGS_init).model;
-  const ModelSpec& spec = model.spec();
-  if ((!IsDefault("lobes") || !IsDefault("model")) && !(spec == SpecFromFlags({}))) {
-    throw Error(FLAGS_init +
-                " does not have the lobes and sharing that --lobes and --model ask "
-                "for; leave these flags out to fit the file's own");
+  if (ModelIsGiven()) {
+    throw Error(FLAGS_init + " brings its own lobes and tables; leave out " + Joined(ModelFlags()));
   }
   return model;
 }
@@ -92,7 +76,8 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags =
-      WithSourceFlags({"solver", "init", "weighting", "model", "robust", "max_numbers", "lobes"});
+      WithSourceFlags({"solver", "init", "weighting", "robust", "max_numbers"});
+  for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "probe", "shard", "scene",
                              "cache", "nocache"});
@@ -120,14 +105,15 @@ FitSettings SettingsFromFlags() {
   if (!init_is_file) settings.start = &FindInitialModel(FLAGS_init);
   if (!(FLAGS_robust >= 0 && FLAGS_robust <= 1e6)) throw Error("--robust must be from 0 to 1e6");
   if (FLAGS_max_numbers < 1) throw Error("--max_numbers must be at least 1");
-  if (FLAGS_model != "auto" && !IsDefault("max_numbers")) {
+  if (!ChoosesModel() && !IsDefault("max_numbers")) {
     throw Error("--max_numbers goes with --model=auto");
   }
   settings.finish = {.robust = FLAGS_robust,
-                     .max_numbers = FLAGS_model == "auto" ? FLAGS_max_numbers : 0,
+                     .max_numbers = ChoosesModel() ? FLAGS_max_numbers : 0,
                      .appearance = AppearanceOptionsFromFlags()};
   settings.spec = SpecFromFlags;
-  SolverOptionsFromFlags(*settings.solver, SpecFromFlags({}));
+  CheckModelFlags();
+  SolverOptionsFromFlags(*settings.solver, ModelSpec());
   settings.source = SourceOptionsFromFlags();
   settings.seed = FLAGS_seed;
   settings.course = FLAGS_course;
@@ -145,12 +131,6 @@ FitSettings SettingsFromFlags() {
   return settings;
 }
 
-std::string Joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 int RunFitOfOne(const std::string& source) {
   const FitSettings settings = SettingsFromFlags();
   std::optional<ResultFolder> folder;
@@ -164,7 +144,7 @@ int RunFitOfOne(const std::string& source) {
   std::optional<InterruptGuard> guard;  // while it reads, Ctrl-C ends it at once
   std::optional<Progress> progress;
   const auto show = [&](const IterationRecord& record) {
-    if (!progress) progress.emplace(settings.options(SpecFromFlags({})));
+    if (!progress) progress.emplace(settings.options(ModelSpec()));
     progress->Show(record);
   };
   FitRun run = *RunOneFit(
@@ -192,8 +172,9 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   if (!arguments.empty()) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
-  for (const char* const flag : {"init", "model", "max_numbers", "robust", "probe", "course",
-                                 "reconstruction", "plots", "diagnose", "shard"}) {
+  for (const char* const flag :
+       {"init", "model", "d_nodes", "g_nodes", "max_numbers", "robust", "probe", "course",
+        "reconstruction", "plots", "diagnose", "shard"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

@@ -22,6 +22,7 @@ std::string ModelName(const ModelSpec& spec) {
   const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
   if (spec == ModelSpec::SharedFactors(spec.lobes, grid)) return "shared";
   if (spec == ModelSpec::IndependentG(grid)) return "independent";
+  if (spec.anisotropic()) return "anisotropic";
   return "other";
 }
 

@@ -130,7 +130,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                 "--model=shared or independent");
   }
   BrdfSamples samples = SamplesOf(measured);
-  report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(samples.grid);
+  report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured);
   const Objective objective(std::move(samples), report.spec, settings.weighting, num_threads);
   report.seconds.prepare = stopwatch.Lap();
   FactorModel model = settings.start_model

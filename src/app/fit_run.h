@@ -29,7 +29,7 @@ struct FitSettings {
   std::string init;                     // as the user named it
   const InitialModel* start = nullptr;  // or else:
   std::optional<FactorModel> start_model;
-  std::function<ModelSpec(const MerlGrid&)> spec;
+  std::function<ModelSpec(const Measurement&)> spec;
   SourceOptions source;
   FinishOptions finish;
   int64_t seed = 0;

@@ -13,12 +13,29 @@ namespace {
 // Samples that one item of work evaluates.
 constexpr int kChunk = 1 << 14;
 
+std::vector<Rgb> EvaluateDirections(const FactorModel& model, const BrdfSamples& samples,
+                                    int num_threads) {
+  if (samples.directions.empty()) {
+    throw Error(samples.source + ": an anisotropic model needs the samples' azimuths");
+  }
+  std::vector<Rgb> rho(samples.rho.size());
+  ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+    const int end = std::min(samples.size(), (chunk + 1) * kChunk);
+    for (int j = chunk * kChunk; j < end; ++j) {
+      const SampleStencils at = ScatteredStencils(model.spec(), samples.directions[j]);
+      for (int c = 0; c < kChannels; ++c) rho[j][c] = Evaluate(model, at, c);
+    }
+  });
+  return rho;
+}
+
 }  // namespace
 
 std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
                                  int num_threads) {
   CheckSamples(samples);
   const ModelSpec& spec = model.spec();
+  if (spec.anisotropic()) return EvaluateDirections(model, samples, num_threads);
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
                         samples.grid.theta_d == spec.f_axis.size;
   const ContinuousModel evaluate(model);

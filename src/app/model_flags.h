@@ -1,0 +1,30 @@
+#ifndef TRILOBE_APP_MODEL_FLAGS_H_
+#define TRILOBE_APP_MODEL_FLAGS_H_
+
+#include <string>
+#include <vector>
+
+#include "trilobe/io/measurement.h"
+#include "trilobe/model/model_spec.h"
+
+namespace trilobe {
+
+// The model that --model, --lobes, --d_nodes and --g_nodes ask for, for this measurement: the
+// paper's isotropic one by default, or its anisotropic one, where azimuths were measured and
+// matter. Throws Error for flags that contradict each other or the measurement.
+ModelSpec SpecFromFlags(const Measurement& measurement);
+
+// Throws Error for what no measurement could mend.
+void CheckModelFlags();
+
+// Whether one of these flags was given.
+bool ModelIsGiven();
+
+// Whether the form of the model is to be chosen by what looks best (--model=auto).
+bool ChoosesModel();
+
+std::vector<std::string> ModelFlags();
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_MODEL_FLAGS_H_
