@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "trilobe/io/anisotropy.h"
 #include "trilobe/io/measurement.h"
 
 namespace trilobe {
@@ -25,6 +26,8 @@ inline void CheckScattered(const Measurement& measurement) {
     }
   }
   if (!std::isfinite(ReciprocityError(measurement).median)) std::abort();
+  const double share = AnisotropyOf(measurement).share;
+  if (!(share >= 0 && share <= 1 + 1e-9)) std::abort();
   Measurement limited = measurement;
   LimitAngles(1, &limited);
   if (limited.counts.valid + limited.counts.beyond_max_angle != counts.valid) std::abort();

@@ -1,11 +1,14 @@
-// RglBrdf::Parse on arbitrary bytes; what it accepts must be finite and >= 0 in all directions.
+// RglBrdf::Parse on arbitrary bytes; what it accepts must be finite and >= 0 in all directions, and
+// its samples, where it is anisotropic, must keep their promises.
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 
+#include "check_measurement.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/rgl_file.h"
 
@@ -13,16 +16,22 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const trilobe::Direction directions[] = {{0, 0, 1},          {0.6, 0, 0.8}, {0, -0.8, 0.6},
                                            {-0.6, 0.64, 0.48}, {-1, 0, 1e-9}, {0.6, 0, -0.8}};
+  std::optional<trilobe::RglBrdf> brdf;
   try {
-    const trilobe::RglBrdf brdf = trilobe::RglBrdf::Parse(bytes, "fuzz");
-    for (const trilobe::Direction& wi : directions) {
-      for (const trilobe::Direction& wo : directions) {
-        for (const double rho : brdf.Evaluate({wi, wo})) {
-          if (!std::isfinite(rho) || rho < 0) std::abort();
-        }
+    brdf = trilobe::RglBrdf::Parse(bytes, "fuzz");
+  } catch (const trilobe::Error&) {
+    return 0;
+  }
+  for (const trilobe::Direction& wi : directions) {
+    for (const trilobe::Direction& wo : directions) {
+      for (const double rho : brdf->Evaluate({wi, wo})) {
+        if (!std::isfinite(rho) || rho < 0) std::abort();
       }
     }
-  } catch (const trilobe::Error&) {
+  }
+  if (brdf->isotropic()) return 0;
+  for (const bool extrapolated : {false, true}) {
+    trilobe::CheckScattered(brdf->Sample("fuzz", extrapolated));
   }
   return 0;
 }

@@ -178,9 +178,8 @@ ValueRange RangeOf(const std::vector<Rgb>& values) {
 }
 
 // An RGL file's own directions differ from phi_i to phi_i; on a grid they do not.
-Anisotropy AnisotropyOfAny(const Measurement& measurement) {
-  return AnisotropyOf(measurement.rgl ? AtNodes(measurement, kUtiaGrid, ThreadsFromFlags())
-                                      : measurement);
+Measurement OnGrid(const Measurement& measurement) {
+  return measurement.rgl ? AtNodes(measurement, kUtiaGrid, ThreadsFromFlags()) : measurement;
 }
 
 Json ToJson(const Anisotropy& anisotropy) {
@@ -189,15 +188,22 @@ Json ToJson(const Anisotropy& anisotropy) {
 }
 
 void DescribeScattered(const Measurement& measurement) {
-  if (!FLAGS_out.empty()) {
-    throw Error("--out is for a picture of the bins of a table; " + measurement.source + " is a " +
-                measurement.kind);
+  if (!FLAGS_out.empty() && !measurement.anisotropic) {
+    throw Error(
+        "--out is for a picture of the bins of a table, or of all pairs of directions of "
+        "an anisotropic measurement; " +
+        measurement.source + " is a " + measurement.kind);
+  }
+  const std::string picture = PicturePath();
+  if (!picture.empty()) {
+    MakeDirectories(FLAGS_out);
+    DrawPairs(OnGrid(measurement), picture);
   }
   const AngleRange theta_i = RangeOf(measurement.samples.directions, &SphericalAngles::theta_i);
   const AngleRange phi_i = RangeOf(measurement.samples.directions, &SphericalAngles::phi_i);
   const AngleRange theta_o = RangeOf(measurement.samples.directions, &SphericalAngles::theta_o);
   std::optional<Anisotropy> anisotropy;
-  if (measurement.anisotropic) anisotropy = AnisotropyOfAny(measurement);
+  if (measurement.anisotropic) anisotropy = AnisotropyOf(OnGrid(measurement));
   const ValueRange range = RangeOf(measurement.samples.rho);
   const PairError reciprocity = ReciprocityError(measurement);
   const BinCounts& counts = measurement.counts;
@@ -245,6 +251,7 @@ void DescribeScattered(const Measurement& measurement) {
                                       " % of the energy is not in the mean over all turns, " +
                                       std::to_string(anisotropy->samples) + " samples");
   }
+  if (!picture.empty()) PrintLine("written", picture);
   for (const std::string& note : measurement.notes) PrintLine("note", note);
 }
 

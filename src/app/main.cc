@@ -45,9 +45,10 @@ void PrintHelp() {
   for (const Command& command : Commands()) {
     std::cout << "  " << std::left << std::setw(10) << command.name << command.summary << "\n";
   }
-  std::cout << "  help      this page, or `trilobe help COMMAND`\n\n"
-               "A SOURCE is a MERL .binary file, an RGL *_rgb.bsdf file, or synth:NAME "
-               "(`trilobe synth` lists the names).\n";
+  std::cout
+      << "  help      this page, or `trilobe help COMMAND`\n\n"
+         "A SOURCE is a MERL .binary file, an RGL *_rgb.bsdf file, a UTIA .bin file or another of\n"
+         "docs/file-formats.md, or synth:NAME (`trilobe synth` lists the names).\n";
 }
 
 void PrintHelp(const Command& command) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace trilobe {
@@ -33,20 +34,25 @@ Anisotropy AnisotropyOf(const Measurement& scattered) {
     keys.push_back(KeyOf(scattered.samples.directions[j], j));
   }
   std::ranges::stable_sort(keys, {}, &KeyedSample::key);
+  // Squares neither vanish nor overflow where the largest value is 1.
+  double largest = std::numeric_limits<double>::min();
+  for (const Rgb& values : rho) largest = std::max({largest, values[0], values[1], values[2]});
   Anisotropy anisotropy;
   double energy = 0, changing = 0;
   for (size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
     Rgb mean{};
     for (; end < keys.size() && keys[end].key == keys[begin].key; ++end) {
       const auto count = static_cast<double>(end - begin + 1);
-      for (int c = 0; c < kChannels; ++c) mean[c] += (rho[keys[end].sample][c] - mean[c]) / count;
+      for (int c = 0; c < kChannels; ++c) {
+        mean[c] += (rho[keys[end].sample][c] / largest - mean[c]) / count;
+      }
     }
     if (end - begin == 1) continue;
     const SphericalAngles& at = scattered.samples.directions[keys[begin].sample];
     const double cosines = std::cos(at.theta_i) * std::cos(at.theta_o);
     for (size_t k = begin; k < end; ++k) {
       for (int c = 0; c < kChannels; ++c) {
-        const double x = rho[keys[k].sample][c];
+        const double x = rho[keys[k].sample][c] / largest;
         energy += cosines * cosines * x * x;
         changing += cosines * cosines * (x - mean[c]) * (x - mean[c]);
       }

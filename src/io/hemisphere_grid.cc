@@ -97,7 +97,7 @@ NodeValues ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& gri
     if (!i || !o) {
       std::ostringstream steps;
       steps << "is at no node of the grid, whose steps are " << 90.0 / grid.thetas
-            << " deg in theta and " << 360.0 / grid.phis << " deg in phi; write it as .csv";
+            << " deg in theta and " << 360.0 / grid.phis << " deg in phi";
       fail(steps.str());
     }
     const size_t index = *i * nodes + *o;

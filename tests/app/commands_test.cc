@@ -130,7 +130,37 @@ TEST(ProgramTest, RejectsWhatItDoesNotKnow) {
 TEST(SynthTest, ListsMaterials) {
   const ProgramResult result = RunProgram({"synth"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_THAT(result.out, AllOf(HasSubstr("plastic "), HasSubstr("chrome ")));
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("plastic "), HasSubstr("chrome "),
+                    HasSubstr("satin: long shining threads over dull ones; anisotropic")));
+}
+
+TEST(SynthTest, WritesAnisotropicMaterials) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      RunProgram({"synth", "velvet", "--out=" + (folder / "velvet.bin"), "--missing=0.1"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(Contents(folder / "velvet.bin").size(), 1990656U);
+  const json file = json::parse(RunProgram({"info", folder / "velvet.bin", "--json"}).out);
+  const json source =
+      json::parse(RunProgram({"info", "synth:velvet", "--missing=0.1", "--json"}).out);
+  EXPECT_EQ(file["kind"], "UTIA measurement");
+  EXPECT_EQ(file["anisotropy"], source["anisotropy"]);
+  EXPECT_EQ(file["samples"]["valid"], source["samples"]["valid"]);
+  EXPECT_EQ(file["samples"]["negative"], source["samples"]["missing"]);
+  EXPECT_GT(source["samples"]["missing"], 8000);
+  EXPECT_EQ(file["phi_i"]["values"], 48);
+  EXPECT_THAT(file["notes"], testing::IsEmpty());
+  EXPECT_EQ(RunProgram({"synth", "linen@2x4", "--out=" + (folder / "linen.csv")}).status, 0);
+  EXPECT_EQ(
+      json::parse(RunProgram({"info", folder / "linen.csv", "--json"}).out)["samples"]["valid"],
+      64);
+  ExpectError(RunProgram({"synth", "velvet", "--out=" + (folder / "x.binary")}),
+              "needs a table on the MERL grid");
+  ExpectError(RunProgram({"synth", "linen@2x7", "--out=" + (folder / "x.bin")}),
+              "is at no node of the grid");
+  ExpectError(RunProgram({"synth", "linen@2", "--out=x.csv"}), "'2' is no grid of directions");
+  ExpectError(RunProgram({"synth", "linen", "--missing=1", "--out=x.csv"}), "from 0 up to 1");
 }
 
 TEST(SynthTest, WritesTheSameFileForTheSameSeed) {
@@ -252,9 +282,45 @@ TEST(ConvertTest, ScatteredSamplesHaveNoBins) {
   ExpectError(RunProgram({"score", folder / "x.csv", "synth:felt"}), "needs a table");
 }
 
+TEST(ConvertTest, WritesUtiasDirections) {
+  const TemporaryFolder folder;
+  const std::string velvet = folder / "velvet.bin", copy = folder / "copy.bin";
+  RunProgram({"synth", "velvet", "--out=" + velvet, "--noise=0.1", "--missing=0.2"});
+  const ProgramResult result = RunProgram({"convert", velvet, "--out=" + copy});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              ContainsRegex("UTIA layout, 66[0-9]* of 82944 pairs of directions valid"));
+  EXPECT_EQ(result.err, "");
+  EXPECT_TRUE(Contents(velvet) == Contents(copy));
+  // Through CSV, and back.
+  EXPECT_EQ(RunProgram({"convert", velvet, "--out=" + (folder / "velvet.csv")}).status, 0);
+  EXPECT_EQ(RunProgram({"convert", folder / "velvet.csv", "--out=" + copy}).status, 0);
+  EXPECT_TRUE(Contents(velvet) == Contents(copy));
+  // A table is interpolated.
+  EXPECT_THAT(RunProgram({"convert", "synth:foam", "--max_angle=65", "--out=" + copy}).out,
+              HasSubstr("57600 of 82944 pairs"));
+  // Numbers in another order are told, and read all the same.
+  std::string bytes = Contents(velvet), other = bytes;
+  for (int row = 0; row < 3 * 288; ++row) {
+    for (int k = 0; k < 288; ++k) {
+      std::memcpy(&other[8 * (288 * row + 6 * (k % 48) + k / 48)], &bytes[8 * (288 * row + k)], 8);
+    }
+  }
+  Write(folder / "other.bin", other);
+  const ProgramResult told = RunProgram({"convert", folder / "other.bin", "--out=" + copy});
+  EXPECT_EQ(told.status, 0);
+  EXPECT_THAT(told.err, ContainsRegex("^trilobe: .*other.bin: the numbers look as if .*\n$"));
+  EXPECT_THAT(
+      RunProgram({"info", folder / "other.bin"}).out,
+      ContainsRegex("\nnote +the numbers look as if they stood in another order: outgoing"));
+  ExpectError(RunProgram({"convert", velvet, "--out=" + (folder / "x.binary")}),
+              "needs a table on the MERL grid, and this is a UTIA measurement");
+  ExpectError(RunProgram({"convert", velvet, "--radiometry=x", "--out=" + copy}),
+              "known: brdf, cosine, srgb, dj_brdf");
+}
+
 TEST(ConvertTest, RejectsBadInput) {
   ExpectError(RunProgram({"convert", "synth:foam"}), "needs --out=FILE");
-  ExpectError(RunProgram({"synth", "foam", "--out=x.CSV"}), "x.CSV: trilobe synth writes MERL");
   const TemporaryFolder folder;
   for (const char* name : {"x.bsdf", "x.json", "x.png", "x.hdr", "x.exr", "x.binary.gz"}) {
     for (const std::vector<std::string>& words :
@@ -446,13 +512,26 @@ TEST(InfoTest, DescribesScatteredSamples) {
   EXPECT_EQ(limited["samples"]["beyond_max_angle"], 2);
   EXPECT_TRUE(limited["reciprocity_error"]["median"].is_null());
   ExpectError(RunProgram({"info", folder / "x.csv", "--out=" + (folder / "p")}),
-              "--out is for a picture of the bins of a table");
+              "--out is for a picture of the bins of a table, or of all pairs of directions");
   const ProgramResult none = RunProgram({"info", folder / "x.csv", "--max_angle=5"});
   EXPECT_EQ(none.status, 0) << none.err;
   EXPECT_THAT(none.out, ContainsRegex("valid +0\n"));
   Write(folder / "bad.csv", std::string(kCsv) + "1,2,3,4,5,6,x\n");
   ExpectError(RunProgram({"info", folder / "bad.csv"}),
               "bad.csv: line 7, column 7 (b): 'x' is no number");
+}
+
+TEST(InfoTest, DrawsAllPairsOfAnAnisotropicMeasurement) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      RunProgram({"info", "synth:charmeuse", "--missing=0.1", "--out=" + (folder / "p")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(ContainsRegex("phi_i +0 to 352.5 deg, 48 values\n"),
+                                ContainsRegex("anisotropy +[0-9.]+ % of the energy"),
+                                ContainsRegex("written +.*/p/measured.png\n")));
+  EXPECT_THAT(Contents(folder / "p/measured.png"), testing::StartsWith("\x89PNG"));
+  ExpectError(RunProgram({"info", "synth:charmeuse@2x7", "--out=" + (folder / "q")}),
+              "is at no node of the grid");
 }
 
 TEST(InfoTest, DescribesAModel) {

@@ -48,6 +48,12 @@ TEST(AstmFile, TakesOneValueForAllChannels) {
   }
 }
 
+TEST(AstmFile, AzimuthsMatterWhereLightComesFromSeveral) {
+  const std::string header = Header("R,G,B", "2"), first = "0.5,0,0.5,3,3,2,1\n";
+  EXPECT_FALSE(Parse(header + first + "0.4,0,0.5,2,1,1,1\n").anisotropic);
+  EXPECT_TRUE(Parse(header + first + "0.5,0.25,0.5,3.25,1,1,1\n").anisotropic);
+}
+
 TEST(AstmFile, ReadsSpectra) {
   const Measurement measurement =
       Parse(Header("400nm,450nm,500nm,550nm,600nm,650nm,700nm", "1") + "0,0,1,0,2,2,2,2,2,2,2\n");

@@ -70,8 +70,10 @@ TEST(Content, IsRecognisedByItsFirstBytes) {
   Check("\x1F\x8B\x08", Kind::kForeign, "a gzip file; unpack it");
   Check("#?RADIANCE\n", Kind::kForeign, "a Radiance picture");
   Check("v/1\x01", Kind::kForeign, "an OpenEXR picture");
-  Check(std::string(1990656, '\0'), Kind::kForeign,
-        "a UTIA table (288 x 288 x 3 doubles, by its size), which cannot be read yet");
+  Check(std::string(1990656, '\0'), Kind::kUtia,
+        "a UTIA measurement (288 x 288 x 3 doubles, by its size)");
+  Check("# by me\nSource \tMeasured\r\nSymmetry\tAsymmetrical\n", Kind::kZemax, "a Zemax BSDF");
+  Check("Source\tSimulated\n", Kind::kText, "text");
   Check(std::string(1990655, '\0'), Kind::kUnknown, "");
 }
 
@@ -84,7 +86,6 @@ TEST(Content, IsNamedByEveryReader) {
               StartsWith("f: this is a JSON file in UTF-16; save it as UTF-8; a measurement is a"));
   EXPECT_THAT(source_error("\xEF\xBB\xBF" + kJson), StartsWith("f: this is a JSON file; "));
   EXPECT_THAT(source_error("\x89HDF\r\n\x1a\n"), StartsWith("f: this is an HDF5 file; "));
-  EXPECT_THAT(source_error(std::string(1990656, '\0')), StartsWith("f: this is a UTIA table ("));
   EXPECT_THAT(source_error("#?RADIANCE\n"), StartsWith("f: this is a Radiance picture; "));
   const auto model_error = [](const std::string& bytes) {
     return ErrorOf([&] { ParseModel(bytes, "f"); });
@@ -93,6 +94,8 @@ TEST(Content, IsNamedByEveryReader) {
             "f: not a model file: this is a JSON file in UTF-16; save it as UTF-8");
   EXPECT_EQ(model_error(std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12)),
             "f: not a model file: this is a MERL measurement");
+  EXPECT_EQ(model_error(std::string(1990656, '\0')),
+            "f: not a model file: this is a UTIA measurement (288 x 288 x 3 doubles, by its size)");
   EXPECT_EQ(ErrorOf([] { ParseProbe("\x89PNG\r\n\x1a\n", "f"); }),
             "f: not a Radiance picture but a PNG picture; give a light probe as a lat-long .hdr "
             "file");

@@ -67,6 +67,31 @@ TEST(CsvFile, HoldsScatteredSamples) {
   EXPECT_NEAR(two.samples.directions[1].phi_i, DegreesToRadians(123.456), 1e-15);
 }
 
+TEST(CsvFile, HoldsAnisotropicSamples) {
+  const TestDirectory directory;
+  const Measurement silk = LoadMeasurement("synth:shot_silk@3x8", {.noise = 0.1});
+  WriteCsv(silk, directory.Path("silk.csv"));
+  const Measurement read = LoadMeasurement(directory.Path("silk.csv"));
+  EXPECT_TRUE(read.anisotropic);
+  ASSERT_EQ(read.samples.rho, silk.samples.rho);
+  for (int j = 0; j < read.samples.size(); ++j) {
+    const SphericalAngles &a = read.samples.directions[j], &b = silk.samples.directions[j];
+    ASSERT_NEAR(a.theta_i, b.theta_i, 1e-15);
+    ASSERT_NEAR(a.phi_i, b.phi_i, 1e-15);
+    ASSERT_NEAR(a.theta_o, b.theta_o, 1e-15);
+    ASSERT_NEAR(a.phi_o, b.phi_o, 1e-15);
+  }
+}
+
+TEST(CsvFile, AzimuthsMatterWhereLightComesFromSeveral) {
+  const auto anisotropic = [](const std::string& rows) {
+    return Parse(kHeader + rows).anisotropic;
+  };
+  EXPECT_FALSE(anisotropic(""));
+  EXPECT_FALSE(anisotropic("10,20,30,40,1,1,1\n40,-340,50,60,1,1,1\n0,77,50,60,1,1,1\n"));
+  EXPECT_TRUE(anisotropic("0,0,30,40,1,1,1\n10,20,30,40,1,1,1\n40,21,50,60,1,1,1\n"));
+}
+
 TEST(CsvFile, ColumnsAreFoundByTheirNames) {
   const Measurement measurement = Parse(
       "\xEF\xBB\xBF# felt, measured on a Monday\r\n\r\n b,g,r , phi_o,theta_o,phi_i,theta_i\r\n"
@@ -107,18 +132,33 @@ TEST(CsvFile, CountsWhatIsNotValid) {
 }
 
 TEST(CsvFile, FindsReciprocalPairs) {
-  const Measurement measurement = Parse(kHeader +
-                                        "20,0,50,30,1,1,1\n"
-                                        "20,0,50,-30,3,3,3\n"  // the mirror image: mean 2
-                                        "50,10,20,40,4,4,4\n"  // swapped, turned by 10 degrees
-                                        "20,0,50,31,9,9,9\n"   // no partner
-                                        "40,0,40,90,1,1,1\n"   // its own
-                                        "0,0,30,0,1,1,1\n"
-                                        "30,77,0,0,1,1,1\n");  // where phi means nothing
+  Measurement measurement = Parse(kHeader +
+                                  "20,0,50,30,1,1,1\n"
+                                  "20,0,50,-30,3,3,3\n"  // the mirror image: mean 2
+                                  "50,10,20,40,4,4,4\n"  // swapped, turned by 10 degrees
+                                  "20,0,50,31,9,9,9\n"   // no partner
+                                  "40,0,40,90,1,1,1\n"   // its own
+                                  "0,0,30,0,1,1,1\n"
+                                  "30,77,0,0,1,1,1\n");  // where phi means nothing
+  measurement.anisotropic = false;                       // as of a material of which that is known
   const PairError error = ReciprocityError(measurement);
   EXPECT_EQ(error.pairs, 2);
   EXPECT_DOUBLE_EQ(error.median, 0);
   EXPECT_DOUBLE_EQ(error.percentile_95, 2.0 / 3);
+}
+
+TEST(CsvFile, WhereAzimuthsMatterReciprocityIsThatOfTheSameDirections) {
+  const Measurement measurement = Parse(kHeader +
+                                        "20,10,50,40,1,1,1\n"
+                                        "50,40,20,-350,1,1,1\n"  // the same, swapped
+                                        "50,0,20,30,9,9,9\n"     // turned
+                                        "0,5,30,10,1,1,1\n"
+                                        "30,10,0,90,3,3,3\n");  // where phi means nothing
+  ASSERT_TRUE(measurement.anisotropic);
+  const PairError error = ReciprocityError(measurement);
+  EXPECT_EQ(error.pairs, 2);
+  EXPECT_DOUBLE_EQ(error.median, 0);
+  EXPECT_DOUBLE_EQ(error.percentile_95, 1);
 }
 
 TEST(CsvFile, ErrorsSayWhereAndWhatIsExpected) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <random>
 #include <string>
@@ -16,6 +17,8 @@
 #include "tests/io/tensor_bytes.h"
 #include "tests/io/test_directory.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/hemisphere_grid.h"
+#include "trilobe/io/source.h"
 
 namespace trilobe {
 namespace {
@@ -264,6 +267,187 @@ TEST(RglFile, InterpolatesOverPhiWhenAnisotropic) {
               AllOf(HasSubstr("tiny.bsdf"), HasSubstr("anisotropic")));
 }
 
+// A reciprocal BRDF that changes when it is turned and mirrored.
+Rgb Grained(const DirectionPair& pair) {
+  const auto& [wi, wo] = pair;
+  const Direction h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  const double x = h[0] / h[2], y = h[1] / h[2];
+  return {0.1 + std::exp(-4 * x * x - 20 * y * y - 6 * x * y), 0.3 + 0.1 * std::sin(3 * x + y),
+          0.5 + 0.2 * wi[1] * wo[1] + 0.1 * (wi[0] + wo[0])};
+}
+
+// A file of a known BRDF: `rgb` is what the format defines where its nodes are, which are found by
+// bisection of running integrals on a fine lattice (exact between the nodes of the density).
+TinyRgl FileOf(const std::function<Rgb(const DirectionPair&)>& brdf, double phi_begin,
+               double phi_end) {
+  TinyRgl file;
+  file.phi_i.clear();
+  for (int k = 0; k < 5; ++k) {
+    file.phi_i.push_back(static_cast<float>(phi_begin + (phi_end - phi_begin) * k / 4));
+  }
+  file.theta_i = {0, 0.5F, 1.1F, 1.5707964F};
+  file.rgb_rows = 7;
+  file.rgb_columns = 5;
+  file.FillRandom(11);
+  for (float& value : file.ndf) value += 0.5F;
+  for (float& value : file.sigma) value += 0.5F;
+  for (float& value : file.vndf) value += 0.1F;
+  // A circle ends where it begins, and the normal has one azimuth.
+  for (std::vector<float>* table : {&file.ndf, &file.sigma}) {
+    std::copy_n(table->begin(), file.columns, table->begin() + file.columns);
+  }
+  for (size_t slice = 0; slice < file.phi_i.size() * file.theta_i.size(); ++slice) {
+    const auto first = file.vndf.begin() + slice * file.rows * file.columns;
+    std::copy_n(first, file.columns, first + (file.rows - 1) * file.columns);
+  }
+  constexpr int kFine = 240;  // a multiple of the cells of the density
+  const auto bilinear = [](const float* values, int rows, int columns, double x, double y) {
+    const int r = std::min(static_cast<int>(y * (rows - 1)), rows - 2);
+    const int c = std::min(static_cast<int>(x * (columns - 1)), columns - 2);
+    const double v = y * (rows - 1) - r, u = x * (columns - 1) - c;
+    const float* p = values + r * columns + c;
+    return (1 - v) * ((1 - u) * p[0] + u * p[1]) + v * ((1 - u) * p[columns] + u * p[columns + 1]);
+  };
+  // Where int_0^x f / int_0^1 f is `part`, f being linear in cells of 1 / kFine.
+  const auto find = [](const std::function<double(double)>& f, double part) {
+    const auto integral = [&](double end) {
+      double sum = 0;
+      for (int k = 0; k < kFine && k < end * kFine; ++k) {
+        const double a = static_cast<double>(k) / kFine;
+        const double b = std::min(static_cast<double>(k + 1) / kFine, end);
+        sum += (b - a) * f((a + b) / 2);
+      }
+      return sum;
+    };
+    const double total = integral(1);
+    double begin = 0, end = 1;
+    for (int k = 0; k < 45; ++k) {
+      const double middle = (begin + end) / 2;
+      (integral(middle) < part * total ? begin : end) = middle;
+    }
+    return (begin + end) / 2;
+  };
+  const size_t thetas = file.theta_i.size();
+  for (size_t slice = 0; slice < file.phi_i.size() * thetas; ++slice) {
+    const float* density = &file.vndf[slice * file.rows * file.columns];
+    const double theta_i = std::min<double>(file.theta_i[slice % thetas], kPi / 2);
+    const double phi_i = file.phi_i[slice / thetas];
+    const auto row_total = [&](double y) {  // of a bilinear row, by the trapezoidal rule
+      double sum = 0;
+      for (int c = 0; c < file.columns; ++c) {
+        const double weight = c == 0 || c == file.columns - 1 ? 0.5 : 1;
+        sum += weight * bilinear(density, file.rows, file.columns,
+                                 static_cast<double>(c) / (file.columns - 1), y);
+      }
+      return sum;
+    };
+    for (int r = 0; r < file.rgb_rows; ++r) {
+      const double v = find(row_total, static_cast<double>(r) / (file.rgb_rows - 1));
+      for (int c = 0; c < file.rgb_columns; ++c) {
+        const double u =
+            find([&](double x) { return bilinear(density, file.rows, file.columns, x, v); },
+                 static_cast<double>(c) / (file.rgb_columns - 1));
+        const DirectionPair pair = Reflect(theta_i, phi_i, u * u * kPi / 2, (v - 0.5) * 2 * kPi);
+        const bool above = pair.wi[2] > 0 && pair.wo[2] > 0;
+        const Rgb rho = above ? brdf(pair) : Rgb{};
+        const double sigma =
+            bilinear(file.sigma.data(), 2, file.columns, std::sqrt(2 * theta_i / kPi),
+                     std::fmod(phi_i / (2 * kPi) + 1.5, 1.0));
+        const double factor =
+            4 * sigma * pair.wo[2] / bilinear(file.ndf.data(), 2, file.columns, u, v);
+        for (size_t channel = 0; channel < 3; ++channel) {
+          file.rgb[((3 * slice + channel) * file.rgb_rows + r) * file.rgb_columns + c] =
+              static_cast<float>(rho[channel] * factor);
+        }
+      }
+    }
+  }
+  return file;
+}
+
+TEST(RglFile, SamplesAnAnisotropicMaterialAtItsNodes) {
+  const TinyRgl file = FileOf(Grained, -kPi, kPi);
+  const RglBrdf brdf = Parse(file);
+  const Measurement measurement = brdf.Sample("tiny.bsdf", false);
+  EXPECT_TRUE(measurement.anisotropic);
+  EXPECT_EQ(measurement.source, "tiny.bsdf");
+  // Each of 4 phi_i and 4 theta_i: theta_m = 0 once, 6 azimuths x 4 other theta_m.
+  EXPECT_EQ(measurement.counts.total, 4 * 4 * 25);
+  EXPECT_EQ(measurement.counts.valid + measurement.counts.below_surface, 4 * 4 * 25);
+  EXPECT_GT(measurement.counts.valid, 100);
+  for (int j = 0; j < measurement.samples.size(); ++j) {
+    const DirectionPair pair = ToDirections(measurement.samples.directions[j]);
+    const Rgb expected = Grained(pair), looked_up = brdf.Evaluate(pair);
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_NEAR(measurement.samples.rho[j][c], expected[c], 1e-5 * (1 + expected[c])) << j;
+      // At theta_i = 0 a direction does not tell which phi_i it came from.
+      if (pair.wi[2] < 1) {
+        EXPECT_NEAR(looked_up[c], expected[c], 1e-3 * (1 + expected[c])) << j;
+      }
+    }
+  }
+  const Measurement loaded = ParseMeasurement(file.Bytes(), "tiny.bsdf");
+  EXPECT_EQ(loaded.samples.rho, measurement.samples.rho);
+  EXPECT_FALSE(loaded.table);
+  EXPECT_TRUE(loaded.rgl);
+  EXPECT_GT(AtNodes(loaded, HemisphereGrid(), 1).counts.valid, 60000);
+}
+
+// What a symmetry repeats is not in the file, but in the samples and the function.
+TEST(RglFile, UndoesTheSymmetriesThatFilesLeaveOut) {
+  const auto turned_alike = [](const DirectionPair& pair) {
+    const Rgb a = Grained(pair);
+    const Rgb b =
+        Grained({{-pair.wi[0], -pair.wi[1], pair.wi[2]}, {-pair.wo[0], -pair.wo[1], pair.wo[2]}});
+    return Rgb{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+  };
+  const auto mirrored_alike = [&](const DirectionPair& pair) {
+    const Rgb a = turned_alike(pair);
+    const Rgb b = turned_alike(
+        {{-pair.wi[0], pair.wi[1], pair.wi[2]}, {-pair.wo[0], pair.wo[1], pair.wo[2]}});
+    return Rgb{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+  };
+  const auto check = [](const TinyRgl& file, const auto& expected_brdf, int per_theta) {
+    const RglBrdf brdf = Parse(file);
+    const Measurement measurement = brdf.Sample("tiny.bsdf", false);
+    EXPECT_EQ(measurement.counts.total, 4 * per_theta * 25);
+    std::array<int, 4> quadrants{};
+    for (int j = 0; j < measurement.samples.size(); ++j) {
+      const DirectionPair pair = ToDirections(measurement.samples.directions[j]);
+      ++quadrants[(pair.wi[0] > 0) + 2 * (pair.wi[1] > 0)];
+      const Rgb expected = expected_brdf(pair), looked_up = brdf.Evaluate(pair);
+      for (int c = 0; c < kChannels; ++c) {
+        EXPECT_NEAR(measurement.samples.rho[j][c], expected[c], 1e-5 * (1 + expected[c])) << j;
+        // Between the parts of the circle that repeat, phi_i may be the node on either side.
+        if (std::min(std::abs(pair.wi[0]), std::abs(pair.wi[1])) > 1e-6) {
+          EXPECT_NEAR(looked_up[c], expected[c], 1e-3 * (1 + expected[c])) << j;
+        }
+      }
+    }
+    EXPECT_THAT(quadrants, testing::Each(testing::Gt(50)));
+  };
+  check(FileOf(turned_alike, -kPi, 0), turned_alike, 2 * 4);
+  check(FileOf(mirrored_alike, -kPi, -kPi / 2), mirrored_alike, 4 * 3 + 2 * 2);
+}
+
+TEST(RglFile, LeavesOutNodesThatWereNotMeasured) {
+  TinyRgl file = FileOf(Grained, -kPi, kPi);
+  file.MaskAll();
+  for (int slice = 0; slice < 5 * 4; ++slice) file.SetMask(slice, 2, 1, false);
+  const Measurement all = Parse(file).Sample("x", true), part = Parse(file).Sample("x", false);
+  EXPECT_EQ(all.counts.extrapolated + all.counts.beyond_nodes, 0);
+  EXPECT_GT(part.counts.extrapolated, 0);
+  EXPECT_LE(part.counts.extrapolated, 4 * 4);
+  // Of the last theta_i but one, 1.1, and above it for theta_o.
+  EXPECT_GT(part.counts.beyond_nodes, 0);
+  EXPECT_NEAR(part.max_theta, 1.1, 1e-6);
+  EXPECT_EQ(part.counts.valid + part.counts.extrapolated + part.counts.beyond_nodes,
+            all.counts.valid);
+  EXPECT_EQ(part.counts.below_surface, all.counts.below_surface);
+  const std::string bytes = file.Bytes();
+  EXPECT_EQ(ParseMeasurement(bytes, "x", {.extrapolated = true}).counts.valid, all.counts.valid);
+}
+
 TEST(TabulateRgl, EvaluatesBinCentresOnAnyNumberOfThreads) {
   TinyRgl file;
   file.FillRandom(5);
@@ -440,11 +624,13 @@ TEST(RglFile, RefusesImpossibleNumbers) {
               HasSubstr("'theta_i' has 0.5 as entry 2; it must be above the entry before it, 1"));
   EXPECT_THAT(error_of([](TinyRgl* file) { file->phi_i = {180}; }),
               HasSubstr("'phi_i' has 180 as entry 0; angles are in radians"));
-  EXPECT_THAT(error_of([](TinyRgl* file) {
-                file->phi_i = {0, 1};
-                file->FillConstant(1, 1, 1);
-              }),
-              HasSubstr("'phi_i' must have one entry, or reach once around"));
+  EXPECT_THAT(
+      error_of([](TinyRgl* file) {
+        file->phi_i = {0, 1};
+        file->FillConstant(1, 1, 1);
+      }),
+      HasSubstr("'phi_i' must have one entry, or reach once around the circle, or from -180 "
+                "to 0 or -90 degrees"));
   TinyRgl file;
   file.FillConstant(1, 1, 1);
   std::vector<TensorField> fields = file.Fields();

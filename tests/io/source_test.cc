@@ -135,7 +135,14 @@ TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
               HasSubstr("no line VARS"));
   EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.brdf", text)); }),
               HasSubstr("line 1, column 1 (number of wavelengths): expected a number"));
-  for (const char* name : {"x.txt", "x.binary", "x.bsdf"}) {
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.bsdf", text)); }),
+              HasSubstr("line 1: expected a key and its value, or DataBegin"));
+  const std::string binary(100, '\1');
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.bin", binary)); }),
+              HasSubstr("100 bytes; a UTIA file has 1990656"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.dat", binary)); }),
+              HasSubstr("a MERL file has"));
+  for (const char* name : {"x.txt", "x.binary"}) {
     EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make(name, text)); }),
                 HasSubstr("this is text; a measurement is a MERL .binary file, "))
         << name;
@@ -159,6 +166,8 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       {"merl", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12)},
       {"rgl", file.Bytes()},
       {"mbsdf", "NVIDIA ARC MBSDF V1\n"},
+      {"utia", std::string(1990656, '\0')},
+      {"zemax", "Source\tMeasured\n"},
       {"cornell", "31\n400 410\n"},
       {"astm", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n"},
       {"csv", kCsv}};

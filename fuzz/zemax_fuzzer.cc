@@ -1,0 +1,21 @@
+// ParseZemax on arbitrary text; what it accepts must be scattered samples that keep their promises.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "check_measurement.h"
+#include "trilobe/base/error.h"
+#include "trilobe/io/zemax_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  trilobe::Measurement measurement;
+  try {
+    measurement = trilobe::ParseZemax(text, "fuzz");
+  } catch (const trilobe::Error&) {
+    return 0;
+  }
+  trilobe::CheckScattered(measurement);
+  return 0;
+}
