@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/brdf_samples.h"
+#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
 

@@ -5,12 +5,12 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/csv_file.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {

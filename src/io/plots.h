@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/io/model_file.h"
-#include "trilobe/model/brdf_table.h"
 #include "trilobe/model/iteration_record.h"
 
 namespace trilobe {

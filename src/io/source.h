@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/io/measurement.h"
 #include "trilobe/io/synth.h"
-#include "trilobe/model/brdf_table.h"
 
 namespace trilobe {
 

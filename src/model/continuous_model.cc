@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "trilobe/model/folded_grid.h"
+#include "trilobe/objective/folded_grid.h"
 
 namespace trilobe {
 

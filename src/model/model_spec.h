@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "trilobe/model/channels.h"
-#include "trilobe/model/merl_grid.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/merl_grid.h"
 
 namespace trilobe {
 

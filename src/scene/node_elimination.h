@@ -6,7 +6,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/scene/needed_layout.h"
-#include "trilobe/solvers/normal_equations.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 

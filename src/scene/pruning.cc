@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

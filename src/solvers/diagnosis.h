@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/albedo.h"
-#include "trilobe/model/measurement_stats.h"
+#include "trilobe/brdf/albedo.h"
+#include "trilobe/brdf/measurement_stats.h"
 
 namespace trilobe {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {
