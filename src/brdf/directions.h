@@ -3,14 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "trilobe/math/angles.h"
 
 namespace trilobe {
-
-inline constexpr double kPi = std::numbers::pi;
-
-inline constexpr double DegreesToRadians(double degrees) { return degrees * (kPi / 180); }
-inline constexpr double RadiansToDegrees(double radians) { return radians * (180 / kPi); }
 
 // A unit vector in the local frame, normal = +z.
 using Direction = std::array<double, 3>;

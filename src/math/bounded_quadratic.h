@@ -6,12 +6,11 @@
 #include <span>
 
 #include "trilobe/math/element_step.h"
-#include "trilobe/model/model_spec.h"
 
 namespace trilobe {
 
-// Most unknowns that MinimizeBounded takes: d and s of all lobes, in one channel.
-inline constexpr int kMaxBoundedUnknowns = 1 + kMaxLobes;
+// Most unknowns that MinimizeBounded takes: enough for d and s of all lobes, in one channel.
+inline constexpr int kMaxBoundedUnknowns = 9;
 
 // How E changes when a few parameters x, in which it is quadratic, move by delta and all others
 // stay: exactly  E(x + delta) - E(x) = delta'H delta - 2 g'delta.

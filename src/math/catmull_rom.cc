@@ -5,7 +5,7 @@
 #include <string>
 
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/math/angles.h"
 
 namespace trilobe {
 

@@ -6,6 +6,7 @@
 
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/directions.h"
+#include "trilobe/model/shadowing_pieces.h"
 
 namespace trilobe {
 namespace {
@@ -110,22 +111,6 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   folded.constant = std::accumulate(constant.begin(), constant.end(), 0.0);
   folded.measured_energy = std::accumulate(energy.begin(), energy.end(), 0.0);
   return folded;
-}
-
-std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline) {
-  std::vector<double> cosines(spline.nodes());
-  for (int k = 0; k < spline.nodes(); ++k) cosines[k] = std::cos(spline.NodeAngle(k));
-  return spline.Pieces(cosines);
-}
-
-std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model) {
-  const ModelSpec& spec = model.spec();
-  const CatmullRom spline(spec.g_nodes);
-  std::vector<std::vector<CatmullRom::Piece>> pieces;
-  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    pieces.push_back(spline.Pieces(model.table(Factor::kG, t)));
-  }
-  return pieces;
 }
 
 void EvaluateShadowing(const FoldedGrid& folded, const std::vector<CatmullRom::Piece>& G, int begin,

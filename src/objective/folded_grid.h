@@ -44,12 +44,6 @@ struct FoldedGrid {
 FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weighting,
                 int num_threads);
 
-// The cosines of the nodes in pieces: they go through the same spline as G.
-std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline);
-
-// The G tables of a model in pieces, [num_tables][interval], for evaluation on a FoldedGrid.
-std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model);
-
 // K = G(theta_i) G(theta_o) / (cos theta_i cos theta_o) for the samples [begin, end).
 void EvaluateShadowing(const FoldedGrid& folded, const std::vector<CatmullRom::Piece>& G, int begin,
                        int end, double* K);

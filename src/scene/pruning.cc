@@ -7,6 +7,7 @@
 #include "trilobe/model/gauge.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -11,9 +11,9 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/objective/quadratic_model.h"
 #include "trilobe/scene/needed_layout.h"
 #include "trilobe/scene/prune.h"
-#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/objective/quadratic_model.h"
 #include "trilobe/solvers/joint/reduction.h"
-#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "trilobe/objective/quadratic_model.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 

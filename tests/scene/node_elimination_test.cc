@@ -11,6 +11,7 @@
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/joint/reduction.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

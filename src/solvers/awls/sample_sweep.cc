@@ -10,6 +10,8 @@
 namespace trilobe {
 namespace {
 
+static_assert(1 + kMaxLobes <= kMaxBoundedUnknowns);
+
 void ReadAll(const std::vector<WeightedSample>& samples, Stencil SampleStencils::*stencil,
              std::span<const double> table, std::vector<double>* readings) {
   for (size_t j = 0; j < samples.size(); ++j) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 

@@ -7,7 +7,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 

@@ -8,6 +8,7 @@
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/add_to.h"
 #include "trilobe/math/catmull_rom.h"
+#include "trilobe/model/shadowing_pieces.h"
 #include "trilobe/sums/grid/row_kernels.h"
 
 namespace trilobe {

@@ -6,7 +6,7 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/folded_grid.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 

@@ -6,6 +6,7 @@
 #include "trilobe/base/multiversion.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/add_to.h"
+#include "trilobe/model/shadowing_pieces.h"
 #include "trilobe/sums/grid/node_lanes.h"
 #include "trilobe/sums/grid/spline_moments.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/objective/quadratic_model.h"
 #include "trilobe/objective/spline_cells.h"
-#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 

@@ -4,6 +4,7 @@
 
 #include "trilobe/base/multiversion.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/model/shadowing_pieces.h"
 
 namespace trilobe {
 namespace {

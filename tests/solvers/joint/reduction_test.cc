@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {
