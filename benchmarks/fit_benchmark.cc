@@ -21,10 +21,10 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/objective.h"
+#include "trilobe/objective/objective.h"
 #include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

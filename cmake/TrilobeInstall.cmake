@@ -1,8 +1,16 @@
-# What `cmake --install` puts where: the library with its headers, the program, the licence, and a
-# CMake package, so that find_package(trilobe) gives trilobe::trilobe.
+# What `cmake --install` puts where: the libraries with their headers, the program, the licence, and a
+# CMake package, so that find_package(trilobe) gives trilobe::trilobe and trilobe::evaluate.
 include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trilobe)
 
-install(TARGETS trilobe EXPORT trilobe-targets FILE_SET HEADERS)
+# What only evaluates models is a component of its own, to be installed and found without the rest.
+install(TARGETS trilobe_evaluate EXPORT trilobe-evaluate COMPONENT evaluate
+        FILE_SET HEADERS COMPONENT evaluate)
+install(EXPORT trilobe-evaluate NAMESPACE trilobe:: DESTINATION ${package_dir} COMPONENT evaluate)
+if(TRILOBE_BUILD_LIBRARY)
+  install(TARGETS trilobe EXPORT trilobe-library FILE_SET HEADERS)
+  install(EXPORT trilobe-library NAMESPACE trilobe:: DESTINATION ${package_dir})
+endif()
 if(TRILOBE_BUILD_APP)
   if(BUILD_SHARED_LIBS)
     # The program finds the library beside it, wherever the prefix is moved.
@@ -11,14 +19,12 @@ if(TRILOBE_BUILD_APP)
   endif()
   install(TARGETS trilobe_app)
 endif()
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trilobe)
 configure_package_config_file(cmake/trilobe-config.cmake.in trilobe-config.cmake
                               INSTALL_DESTINATION ${package_dir})
 # Below 1.0 a new minor version may change the interface.
 write_basic_package_version_file(trilobe-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT evaluate)
 install(FILES ${PROJECT_BINARY_DIR}/trilobe-config.cmake
               ${PROJECT_BINARY_DIR}/trilobe-config-version.cmake
-        DESTINATION ${package_dir})
-install(EXPORT trilobe-targets NAMESPACE trilobe:: DESTINATION ${package_dir})
+        DESTINATION ${package_dir} COMPONENT evaluate)

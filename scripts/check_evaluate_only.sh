@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Builds the library that only evaluates models, uses it as another project would, checks that it needs
-# nothing but the standard library, and prints how large it and the full library are:
-# scripts/check_evaluate_only.sh BUILD_DIR. Needs the release preset to have been built.
+# Builds trilobe::evaluate alone, as where the packages of the rest are absent, uses it as another
+# project would, checks that it needs nothing but the standard library, and prints how large it and
+# the full library are: scripts/check_evaluate_only.sh BUILD_DIR. Needs the release preset to have
+# been built.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build_dir=$(realpath -m "${1:?usage: scripts/check_evaluate_only.sh BUILD_DIR}")
 consumer=$build_dir/consumer
 
-cmake -S . -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTRILOBE_EVALUATE_ONLY=ON
+cmake -S . -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTRILOBE_BUILD_LIBRARY=OFF
 cmake --build "$build_dir"
 rm -rf "$consumer"
 cmake --install "$build_dir" --prefix "$consumer/prefix"
@@ -33,5 +34,5 @@ if others=$(grep -vE '^(libstdc\+\+|libm|libgcc_s|libc|ld-linux[^.]*)\.so' <<<"$
 fi
 
 kilobytes() { size --totals "$1" | awk 'END { printf "%.0f kB", $4 / 1000 }'; }
-echo "code and data of libtrilobe.a: $(kilobytes "$build_dir/src/libtrilobe.a") to evaluate models," \
-  "$(kilobytes build/release/src/libtrilobe.a) with everything"
+echo "code and data of libtrilobe_evaluate.a: $(kilobytes "$build_dir/src/libtrilobe_evaluate.a");" \
+  "libtrilobe.a: $(kilobytes build/release/src/libtrilobe.a)"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What takes too long for .ci/run: the thread sanitizer, some hundred faults, and long fuzzing.
+# What takes too long for .ci/run: clang-tidy on everything, the longest tests under the
+# address and undefined-behaviour sanitizers, the thread sanitizer, some hundred faults, and long fuzzing.
 #   scripts/nightly.sh [TRIALS [RUNS]]      faults to try (400), executions of each fuzzer (10000000)
 set -euo pipefail
 
@@ -8,11 +9,21 @@ source scripts/setup.sh
 
 setup_packages run check ci
 
+step "Checking all of the code with clang-tidy"
+quietly configure-tidy cmake --preset tidy
+quietly tidy scripts/tidy.sh build/tidy ""
+
 step "Building what may race with the thread sanitizer"
 quietly configure-tsan cmake --preset tsan
 build tsan
 step "Running it"
 run_tests tsan
+
+step "Building a shared library with the address and undefined-behaviour sanitizers"
+quietly configure-asan-ubsan cmake --preset asan-ubsan
+build asan-ubsan
+step "Running the longest tests with them"
+run_tests asan-ubsan-long
 
 step "Building the program"
 quietly configure-release cmake --preset release

@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/model/brdf_samples.h"
-#include "trilobe/model/brdf_table.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/weighting.h"
+#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 

@@ -9,7 +9,7 @@
 
 #include "experiments/program.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/objective.h"
+#include "trilobe/objective/objective.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 

@@ -15,8 +15,8 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/objective.h"
-#include "trilobe/solvers/normal_equations.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/sums/normal_equations.h"
 
 DEFINE_string(weighting, "compressive", "weights of the objective");
 DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/brdf_samples.h"
+#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
 
@@ -168,7 +168,8 @@ template <typename Real>
 void ReferenceProblem<Real>::ReadSpline(const Real& theta, Real Node::*weight,
                                         Sample* sample) const {
   const int last = spec_.g_axis.size - 1;
-  const Real place = theta / boost::math::constants::half_pi<Real>() * spec_.g_axis.size - Real{0.5};
+  const Real place =
+      theta / boost::math::constants::half_pi<Real>() * spec_.g_axis.size - Real{0.5};
   const auto add = [&](int index, const Real& amount) {
     for (Node& node : sample->nodes) {
       if (node.index != index) continue;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/model/albedo.h"
+#include "trilobe/brdf/albedo.h"
 
 namespace trilobe {
 

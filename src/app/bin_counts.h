@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/model/measurement_stats.h"
+#include "trilobe/brdf/measurement_stats.h"
 
 namespace trilobe {
 

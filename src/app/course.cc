@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "trilobe/io/file.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 
 namespace trilobe {
 namespace {

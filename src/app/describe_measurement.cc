@@ -14,14 +14,14 @@
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/anisotropy.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/rgl_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/io/utia_file.h"
-#include "trilobe/model/measurement_stats.h"
-#include "trilobe/model/tabulated_brdf.h"
 
 namespace trilobe {
 namespace {

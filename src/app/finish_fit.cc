@@ -4,8 +4,8 @@
 
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/robust.h"
-#include "trilobe/solvers/data_edge.h"
+#include "trilobe/objective/robust.h"
+#include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/model/brdf_table.h"
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/objective/objective.h"
 #include "trilobe/scene/model_choice.h"
 
 namespace trilobe {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/scene/model_choice.h"
 #include "trilobe/solvers/solver.h"
 

@@ -14,15 +14,15 @@
 #include "trilobe/base/peak_memory.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/base/utc_time.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/trace_file.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/measurement_stats.h"
 #include "trilobe/model/reconstruct.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/scene/fit_cache.h"
 
 namespace trilobe {

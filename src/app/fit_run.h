@@ -14,8 +14,8 @@
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/weighting.h"
+#include "trilobe/objective/objective.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 

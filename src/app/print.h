@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "trilobe/model/channels.h"
+#include "trilobe/brdf/channels.h"
 
 // What `score` and `info` print: a table for people, or one JSON object.
 DECLARE_bool(json);

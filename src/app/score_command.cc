@@ -9,12 +9,12 @@
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/continuous_model.h"
-#include "trilobe/model/score.h"
-#include "trilobe/model/tabulated_brdf.h"
+#include "trilobe/objective/score.h"
 
 namespace trilobe {
 namespace {

@@ -1,10 +1,10 @@
 #include "trilobe/app/write_measurement.h"
 
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/csv_file.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/utia_file.h"
-#include "trilobe/model/measurement_stats.h"
 
 namespace trilobe {
 

@@ -11,8 +11,8 @@
 #include "trilobe/appearance/color.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
-#include "trilobe/model/albedo.h"
-#include "trilobe/model/tabulated_brdf.h"
+#include "trilobe/brdf/albedo.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "trilobe/appearance/environment.h"
 #include "trilobe/appearance/sphere.h"
-#include "trilobe/model/brdf_table.h"
-#include "trilobe/model/channels.h"
+#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/brdf/channels.h"
 
 namespace trilobe {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "trilobe/model/channels.h"
+#include "trilobe/brdf/channels.h"
 
 namespace trilobe {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "trilobe/appearance/environment.h"
-#include "trilobe/model/channels.h"
-#include "trilobe/model/directions.h"
-#include "trilobe/model/tabulated_brdf.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 
 namespace trilobe {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "trilobe/model/directions.h"
+#include "trilobe/brdf/directions.h"
 
 namespace trilobe {
 

@@ -11,8 +11,8 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
-#include "trilobe/model/merl_grid.h"
-#include "trilobe/model/tabulated_brdf.h"
+#include "trilobe/brdf/merl_grid.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #ifdef TRILOBE_RGL
 #include "trilobe/io/rgl_file.h"
 #endif

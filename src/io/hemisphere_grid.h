@@ -4,8 +4,8 @@
 #include <optional>
 #include <string_view>
 
+#include "trilobe/brdf/channels.h"
 #include "trilobe/io/measurement.h"
-#include "trilobe/model/channels.h"
 
 namespace trilobe {
 

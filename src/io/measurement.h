@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/model/brdf_samples.h"
-#include "trilobe/model/brdf_table.h"
-#include "trilobe/model/channels.h"
-#include "trilobe/model/directions.h"
-#include "trilobe/model/measurement_stats.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/brdf/measurement_stats.h"
 
 namespace trilobe {
 

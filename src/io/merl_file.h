@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "trilobe/model/brdf_table.h"
+#include "trilobe/brdf/brdf_table.h"
 
 namespace trilobe {
 

@@ -9,7 +9,7 @@
 
 #include "trilobe/io/gnuplot.h"
 #include "trilobe/io/plots.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
 

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/gnuplot.h"
 #include "trilobe/io/plots.h"
-#include "trilobe/model/measurement_stats.h"
 
 namespace trilobe {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/io/measurement.h"
 #include "trilobe/io/model_file.h"
-#include "trilobe/model/brdf_table.h"
 #include "trilobe/model/iteration_record.h"
 
 namespace trilobe {

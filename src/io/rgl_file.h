@@ -5,11 +5,11 @@
 #include <string>
 #include <string_view>
 
+#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/brdf/merl_grid.h"
 #include "trilobe/io/measurement.h"
-#include "trilobe/model/brdf_table.h"
-#include "trilobe/model/channels.h"
-#include "trilobe/model/directions.h"
-#include "trilobe/model/merl_grid.h"
 
 namespace trilobe {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "trilobe/model/directions.h"
+#include "trilobe/brdf/directions.h"
 
 namespace trilobe {
 namespace {

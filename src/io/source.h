@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/io/hemisphere_grid.h"
 #include "trilobe/io/measurement.h"
 #include "trilobe/io/synth.h"
-#include "trilobe/model/brdf_table.h"
 
 namespace trilobe {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/brdf/channels.h"
 #include "trilobe/io/measurement.h"
-#include "trilobe/model/channels.h"
 
 namespace trilobe {
 

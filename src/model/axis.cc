@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/catmull_rom.h"
-#include "trilobe/model/directions.h"
-#include "trilobe/model/merl_grid.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/brdf/merl_grid.h"
+#include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {

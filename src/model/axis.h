@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "trilobe/model/stencil.h"
+#include "trilobe/math/stencil.h"
 
 namespace trilobe {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "trilobe/model/folded_grid.h"
+#include "trilobe/model/shadowing_pieces.h"
 
 namespace trilobe {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "trilobe/model/catmull_rom.h"
-#include "trilobe/model/channels.h"
-#include "trilobe/model/directions.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/math/catmull_rom.h"
+#include "trilobe/math/stencil.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/stencil.h"
 
 namespace trilobe {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {

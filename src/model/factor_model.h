@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/model/channels.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/math/stencil.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/model/stencil.h"
 
 namespace trilobe {
 

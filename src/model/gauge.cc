@@ -5,7 +5,8 @@
 #include <functional>
 #include <numeric>
 
-#include "trilobe/model/directions.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/lobe_light.h"
 #include "trilobe/model/with_lobes.h"
 

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/merl_grid.h"
+#include "trilobe/brdf/merl_grid.h"
+#include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {

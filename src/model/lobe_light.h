@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/model/channels.h"
+#include "trilobe/brdf/channels.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

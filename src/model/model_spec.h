@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/merl_grid.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/model/channels.h"
-#include "trilobe/model/merl_grid.h"
 
 namespace trilobe {
 

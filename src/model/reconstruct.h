@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/model/brdf_samples.h"
-#include "trilobe/model/brdf_table.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

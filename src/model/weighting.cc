@@ -7,7 +7,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/named.h"
-#include "trilobe/model/brdf_samples.h"
+#include "trilobe/brdf/brdf_samples.h"
 
 namespace trilobe {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/model/channels.h"
-#include "trilobe/model/directions.h"
+#include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/directions.h"
 
 namespace trilobe {
 

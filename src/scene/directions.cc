@@ -6,7 +6,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/little_endian.h"
-#include "trilobe/model/stencil.h"
+#include "trilobe/math/stencil.h"
 
 namespace trilobe {
 namespace {

@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "trilobe/model/brdf_samples.h"
-#include "trilobe/model/directions.h"
-#include "trilobe/model/merl_grid.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/brdf/merl_grid.h"
 
 namespace trilobe {
 

@@ -5,8 +5,8 @@
 
 #include "trilobe/model/merge_lobes.h"
 #include "trilobe/model/split_lobe.h"
-#include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/start_race.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/race/start_race.h"
 
 namespace trilobe {
 namespace {

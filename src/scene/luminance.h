@@ -1,8 +1,8 @@
 #ifndef TRILOBE_SCENE_LUMINANCE_H_
 #define TRILOBE_SCENE_LUMINANCE_H_
 
-#include "trilobe/model/brdf_samples.h"
-#include "trilobe/model/channels.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/channels.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

@@ -12,14 +12,14 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/split_lobe.h"
 #include "trilobe/scene/prune.h"
-#include "trilobe/solvers/data_edge.h"
-#include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/reduction.h"
-#include "trilobe/solvers/start_race.h"
+#include "trilobe/solvers/joint/data_edge.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/reduction.h"
+#include "trilobe/solvers/race/start_race.h"
 
 namespace trilobe {
 namespace {
@@ -142,8 +142,9 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
   };
   const auto thin = [&](const std::string& name, const Objective& of, const FactorModel& model) {
     const std::vector<int> last_live = LastLiveNodes(of);
-    const auto continued = 2 * static_cast<int>(std::ranges::count_if(
-                                   last_live, [&](int k) { return k < of.spec().g_axis.size - 1; }));
+    const auto continued = 2 * static_cast<int>(std::ranges::count_if(last_live, [&](int k) {
+                             return k < of.spec().g_axis.size - 1;
+                           }));
     PruneOptions prune;
     prune.lobes = prune.colour = false;
     // Not where next to nothing would be left.

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <limits>
 
+#include "trilobe/math/cholesky.h"
 #include "trilobe/scene/reduced_quadratic.h"
-#include "trilobe/solvers/cholesky.h"
-#include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/reduction.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/reduction.h"
 
 namespace trilobe {
 namespace {

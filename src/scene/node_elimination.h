@@ -5,8 +5,8 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/objective/quadratic_model.h"
 #include "trilobe/scene/needed_layout.h"
-#include "trilobe/solvers/normal_equations.h"
 
 namespace trilobe {
 

@@ -11,13 +11,13 @@
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/merge_lobes.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/scene/lobe_search.h"
 #include "trilobe/scene/needed_layout.h"
 #include "trilobe/scene/prune_tables.h"
 #include "trilobe/scene/pruning.h"
 #include "trilobe/scene/shapes.h"
-#include "trilobe/solvers/reduction.h"
+#include "trilobe/solvers/joint/reduction.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 

@@ -13,8 +13,8 @@
 #include "trilobe/scene/node_elimination.h"
 #include "trilobe/scene/reduced_quadratic.h"
 #include "trilobe/scene/shapes.h"
-#include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/reduction.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/reduction.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

@@ -5,8 +5,9 @@
 #include <sstream>
 
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/objective/quadratic_model.h"
 #include "trilobe/scene/needed_layout.h"
 #include "trilobe/scene/prune.h"
-#include "trilobe/solvers/normal_equations.h"
 
 namespace trilobe {
 

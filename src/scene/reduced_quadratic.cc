@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/nonnegative_step.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/nonnegative_step.h"
 
 namespace trilobe {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/solvers/normal_equations.h"
-#include "trilobe/solvers/reduction.h"
+#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/solvers/joint/reduction.h"
 
 namespace trilobe {
 

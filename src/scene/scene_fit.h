@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "trilobe/io/model_file.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/scene/fit_cache.h"
 #include "trilobe/scene/prune.h"
 #include "trilobe/scene/scene_file.h"

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include "trilobe/sums/normal_equations.h"
+
 namespace trilobe {
 namespace {
 

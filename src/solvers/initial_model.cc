@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <random>
 #include <span>
 
 #include "trilobe/base/named.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/with_axes.h"
-#include "trilobe/solvers/sweep.h"
+#include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
@@ -295,9 +294,7 @@ FactorModel FreedModel(const Objective& objective, uint64_t seed) {
   }
   const Objective thinned(Thinned(objective.samples(), kStride), round, objective.weighting(), 1);
   FactorModel model = HighlightModel(thinned, seed);
-  PhaseSeconds phases;
-  const std::unique_ptr<Sweep> sweep = MakeSweep(thinned, &phases);
-  for (int k = 0; k < kSweeps; ++k) (*sweep)(nullptr, &model);
+  MakeSolver("awls")->Solve(thinned, {.max_iterations = kSweeps, .diagnose = false}, &model);
   Canonicalize(thinned.coverage(), &model);  // which gives unobserved entries a value
   return WithAxes(model, spec);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/objective.h"
+#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 

@@ -12,7 +12,7 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/iteration_record.h"
-#include "trilobe/model/objective.h"
+#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 

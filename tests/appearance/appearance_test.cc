@@ -10,8 +10,8 @@
 
 #include "trilobe/appearance/color.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/synth.h"
-#include "trilobe/model/tabulated_brdf.h"
 
 namespace trilobe {
 namespace {

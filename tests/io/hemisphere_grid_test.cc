@@ -6,8 +6,8 @@
 #include <string>
 
 #include "tests/io/test_directory.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/tabulated_brdf.h"
 
 namespace trilobe {
 namespace {

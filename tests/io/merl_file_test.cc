@@ -13,8 +13,8 @@
 
 #include "tests/io/test_directory.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/brdf_samples.h"
-#include "trilobe/model/brdf_table.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/brdf_table.h"
 
 namespace trilobe {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "tests/io/tensor_bytes.h"
 #include "tests/io/test_directory.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/rgl_file.h"
-#include "trilobe/model/measurement_stats.h"
 
 namespace trilobe {
 namespace {

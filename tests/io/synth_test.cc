@@ -7,9 +7,9 @@
 
 #include "tests/io/test_directory.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/albedo.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/albedo.h"
-#include "trilobe/model/measurement_stats.h"
 
 namespace trilobe {
 namespace {

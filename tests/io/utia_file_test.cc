@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tests/io/test_directory.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/measurement_stats.h"
 
 namespace trilobe {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/test_util.h"
-#include "trilobe/model/brdf_samples.h"
+#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

@@ -13,8 +13,8 @@
 #include "trilobe/model/axis.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/split_lobe.h"
+#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 namespace {

@@ -10,16 +10,16 @@
 
 #include "tests/io/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/model/albedo.h"
+#include "trilobe/brdf/albedo.h"
+#include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/measurement_stats.h"
-#include "trilobe/model/parameter_blocks.h"
 #include "trilobe/model/reconstruct.h"
-#include "trilobe/model/score.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/model/tabulated_brdf.h"
+#include "trilobe/objective/parameter_blocks.h"
+#include "trilobe/objective/score.h"
 
 namespace trilobe {
 namespace {

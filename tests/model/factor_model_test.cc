@@ -8,7 +8,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {
@@ -97,7 +97,8 @@ TEST(FactorModel, EvaluatesThePapersEquation) {
 TEST(FactorModel, ScatteredReadingIsLinearInDAndF) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   // A quarter of the way from D bin 2 to 3 in sqrt(theta_h), half way from F bin 4 to 5.
-  const SampleStencils at = ScatteredStencils(spec, HalfDiffAngles{kGrid.ThetaH(2.75), kGrid.ThetaD(5.0), 1.0});
+  const SampleStencils at =
+      ScatteredStencils(spec, HalfDiffAngles{kGrid.ThetaH(2.75), kGrid.ThetaD(5.0), 1.0});
   EXPECT_NEAR(at.D.WeightOf(2), 0.75, 1e-14);
   EXPECT_NEAR(at.D.WeightOf(3), 0.25, 1e-14);
   EXPECT_NEAR(at.F.WeightOf(4), 0.5, 1e-14);

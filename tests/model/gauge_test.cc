@@ -7,10 +7,10 @@
 #include <numeric>
 
 #include "tests/test_util.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/objective.h"
 #include "trilobe/model/with_lobes.h"
+#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/test_util.h"
-#include "trilobe/model/albedo.h"
+#include "trilobe/brdf/albedo.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 

@@ -9,10 +9,10 @@
 
 #include "tests/io/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/scene/scene_fit.h"
-#include "trilobe/solvers/data_edge.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

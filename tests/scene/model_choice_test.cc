@@ -13,7 +13,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/model_file.h"
-#include "trilobe/model/catmull_rom.h"
+#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/solvers/initial_model.h"

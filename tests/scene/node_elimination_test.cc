@@ -8,9 +8,10 @@
 #include "tests/test_util.h"
 #include "trilobe/scene/reduced_quadratic.h"
 #include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/joint_step.h"
-#include "trilobe/solvers/reduction.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/reduction.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

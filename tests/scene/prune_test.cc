@@ -10,7 +10,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/score.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 

@@ -9,10 +9,10 @@
 #include "tests/model/anisotropic_samples.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/model/objective.h"
+#include "trilobe/objective/objective.h"
 #include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/normal_equations.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -11,8 +11,8 @@
 #include "tests/io/test_directory.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/solvers/data_edge.h"
 #include "trilobe/solvers/diagnosis.h"
+#include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/model/cost_functors.h"
-#include "trilobe/model/parameter_blocks.h"
-#include "trilobe/solvers/cholesky.h"
-#include "trilobe/solvers/normal_equations.h"
+#include "trilobe/math/cholesky.h"
+#include "trilobe/objective/cost_functors.h"
+#include "trilobe/objective/parameter_blocks.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -1,0 +1,204 @@
+#include "trilobe/brdf/brdf_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <sstream>
+#include <string>
+
+#include "trilobe/base/error.h"
+
+namespace trilobe {
+namespace {
+
+[[noreturn]] void Fail(const BrdfSamples& samples, const std::string& problem) {
+  throw Error(samples.source + ": " + problem);
+}
+
+[[noreturn]] void FailAt(const BrdfSamples& samples, int j, const std::string& problem) {
+  Fail(samples, "sample " + std::to_string(j) + " " + problem);
+}
+
+void CheckSizes(const BrdfSamples& samples) {
+  const auto check = [&](const char* what, size_t size) {
+    if (size == samples.rho.size()) return;
+    Fail(samples, std::to_string(samples.rho.size()) + " samples have " + std::to_string(size) +
+                      " " + what + "; each needs one");
+  };
+  if (samples.on_grid()) {
+    check("bins", samples.bins.size());
+  } else {
+    check("angles", samples.angles.size());
+  }
+  if (!samples.multiplicity.empty()) check("multiplicities", samples.multiplicity.size());
+  if (!samples.directions.empty()) check("pairs of directions", samples.directions.size());
+}
+
+// One pass over bins that ascend. Both directions are above the surface at the centre of a bin
+// where cos theta_{i,o} = a -+ b cos phi_d > 0 (ToCosines), a and b being those of its row.
+void CheckBins(const BrdfSamples& samples) {
+  const MerlGrid& grid = samples.grid;
+  CheckGrid(grid);
+  std::vector<double> cos_phi(grid.phi_d);
+  for (int p = 0; p < grid.phi_d; ++p) cos_phi[p] = std::cos(grid.Center(0, 0, p).phi_d);
+  int last = -1, row_begin = -grid.phi_d;
+  double a = 0, b = 0;
+  for (int j = 0; j < samples.size(); ++j) {
+    const int bin = samples.bins[j];
+    if (bin <= last || bin >= grid.size()) {
+      FailAt(samples, j,
+             "is in bin " + std::to_string(bin) + " of " + std::to_string(grid.size()) +
+                 (last < 0 ? "" : ", after one in bin " + std::to_string(last)) +
+                 "; bins must exist and ascend");
+    }
+    if (bin - row_begin >= grid.phi_d) {
+      row_begin = bin - bin % grid.phi_d;
+      const HalfDiffAngles at = grid.Center(bin);
+      a = std::cos(at.theta_h) * std::cos(at.theta_d);
+      b = std::sin(at.theta_h) * std::sin(at.theta_d);
+    }
+    if (!(a - std::abs(b * cos_phi[bin - row_begin]) > 0)) {
+      FailAt(samples, j,
+             "is in bin " + std::to_string(bin) +
+                 ", at whose centre a direction is below the surface");
+    }
+    last = bin;
+  }
+}
+
+void CheckAngles(const BrdfSamples& samples) {
+  for (int j = 0; j < samples.size(); ++j) {
+    try {
+      CheckAngles(samples.angles[j]);
+    } catch (const Error& error) {
+      FailAt(samples, j, std::string("is at angles that are none: ") + error.what());
+    }
+    const Cosines cosines = ToCosines(samples.angles[j]);
+    if (!(cosines.i > 0 && cosines.o > 0)) {
+      FailAt(samples, j, "has a direction below the surface");
+    }
+    if (!samples.directions.empty() && !IsAboveSurface(samples.directions[j])) {
+      FailAt(samples, j, "has a direction that is none, or below the surface");
+    }
+  }
+}
+
+bool IsValid(double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }
+
+bool AreValid(std::span<const double> values) {
+  // 0 * x is NaN for an infinite x, and the least of all is below 0 where one is.
+  const double* const x = values.data();
+  const size_t size = values.size();
+  double least = 0, zero = 0;
+#pragma omp simd reduction(min : least) reduction(+ : zero)
+  for (size_t k = 0; k < size; ++k) {
+    least = x[k] < least ? x[k] : least;
+    zero += 0 * x[k];
+  }
+  return least == 0 && zero == 0;
+}
+
+std::string ToText(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+
+}  // namespace
+
+void CheckSamples(const BrdfSamples& samples) {
+  CheckSizes(samples);
+  if (samples.on_grid()) {
+    CheckBins(samples);
+  } else {
+    CheckAngles(samples);
+  }
+  // All at once first, which is several times as fast.
+  const bool valid = AreValid({samples.rho.empty() ? nullptr : samples.rho.front().data(),
+                               samples.rho.size() * kChannels}) &&
+                     AreValid(samples.multiplicity);
+  for (int j = 0; j < samples.size() && !valid; ++j) {
+    for (const double rho : samples.rho[j]) {
+      if (!IsValid(rho)) FailAt(samples, j, "is " + ToText(rho) + "/sr; it must be 0 or more");
+    }
+    if (!IsValid(samples.Multiplicity(j))) {
+      FailAt(samples, j,
+             "counts " + ToText(samples.multiplicity[j]) + " times; it must be 0 or more");
+    }
+  }
+}
+
+double BrdfSamples::SolidAngle(int j) const {
+  if (!on_grid()) return 1;
+  const int row = bins[j] / grid.phi_d;
+  return grid.SolidAngle(row / grid.theta_d, row % grid.theta_d);
+}
+
+BrdfSamples ValidSamples(const BrdfTable& table) {
+  BrdfSamples samples{table.source, table.grid, {}, {}, {}};
+  const std::vector<bool> valid = ValidBins(table);
+  for (int bin = 0; bin < table.grid.size(); ++bin) {
+    if (!valid[bin]) continue;
+    samples.bins.push_back(bin);
+    samples.rho.push_back({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
+  }
+  if (samples.rho.empty()) {
+    throw Error(table.source +
+                ": no valid bin: nowhere are both directions above the surface and all three "
+                "values finite and >= 0" +
+                (table.unmeasured.empty()
+                     ? "; check that the file is a BRDF in MERL layout"
+                     : " where it was measured; --max_angle and --extrapolated say what counts"));
+  }
+  return samples;
+}
+
+BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers) {
+  BrdfSamples selected{samples.source, samples.grid, {}, {}, {}};
+  CheckSizes(samples);
+  for (const int j : numbers) {
+    if (j < 0 || j >= samples.size()) {
+      Fail(samples,
+           "there is no sample " + std::to_string(j) + " among " + std::to_string(samples.size()));
+    }
+    if (samples.on_grid()) {
+      selected.bins.push_back(samples.bins[j]);
+    } else {
+      selected.angles.push_back(samples.angles[j]);
+    }
+    selected.rho.push_back(samples.rho[j]);
+    if (!samples.directions.empty()) selected.directions.push_back(samples.directions[j]);
+    if (!samples.multiplicity.empty()) selected.multiplicity.push_back(samples.multiplicity[j]);
+  }
+  return selected;
+}
+
+BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
+  if (stride < 1) {
+    throw Error("samples cannot be thinned by " + std::to_string(stride) +
+                "; give a stride of 1 or more");
+  }
+  CheckSizes(samples);
+  CheckGrid(samples.grid);
+  const MerlGrid& grid = samples.grid;
+  std::vector<int> kept;
+  for (int j = 0; j < samples.size(); ++j) {
+    // Multiples of the golden ratio: evenly spread over any regular order of directions.
+    constexpr double kGolden = 0.6180339887498949;
+    const double place = j * kGolden;
+    int phase = static_cast<int>((place - std::floor(place)) * stride);
+    if (samples.on_grid()) {
+      const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
+      // Primes, which have no common factor with a smaller stride, so that neighbouring rows
+      // differ.
+      phase =
+          std::min(p, grid.phi_d - 1 - p) + 29 * (row / grid.theta_d) + 37 * (row % grid.theta_d);
+    }
+    if (phase % stride == 0) kept.push_back(j);
+  }
+  if (kept.empty() && samples.size() > 0) kept.push_back(0);
+  return Selected(samples, kept);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,21 @@
+#ifndef TRILOBE_MATH_CHOLESKY_H_
+#define TRILOBE_MATH_CHOLESKY_H_
+
+namespace trilobe {
+
+// LAPACK, for matrices of a few hundred rows. All are stored column by column.
+
+// Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; what lies
+// above is neither read nor written. False, and no factor, if it is not positive definite.
+bool FactorCholesky(int n, double* A);
+
+// Overwrites the factor L by both triangles of the inverse of L L'.
+void InvertFactored(int n, double* L);
+
+// Overwrites B [n][columns] with L^-1 B, b [n] with L^-T b.
+void SolveLower(int n, const double* L, int columns, double* B);
+void SolveLowerTransposed(int n, const double* L, double* b);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MATH_CHOLESKY_H_

@@ -1,0 +1,20 @@
+#include "trilobe/math/stencil.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trilobe/base/error.h"
+
+namespace trilobe {
+
+Stencil PointStencil(int index) { return {1, {index}, {1.0}}; }
+
+Stencil LinearStencil(double coordinate, int bins) {
+  if (std::isnan(coordinate)) throw Error("a direction or an angle is not a number");
+  const double x = std::clamp(coordinate - 0.5, 0.0, bins - 1.0);
+  const int i = std::min(static_cast<int>(x), bins - 2);
+  const double t = x - i;
+  return {2, {i, i + 1}, {1 - t, t}};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,41 @@
+#ifndef TRILOBE_MATH_STENCIL_H_
+#define TRILOBE_MATH_STENCIL_H_
+
+#include <array>
+#include <span>
+
+namespace trilobe {
+
+// A table lookup as a short weighted sum: sum_k weight[k] * table[index[k]], k < size.
+// Weights add up to 1.
+struct Stencil {
+  static constexpr int kMaxSize = 4;
+  int size = 0;
+  std::array<int, kMaxSize> index{};
+  std::array<double, kMaxSize> weight{};
+
+  double operator()(std::span<const double> table) const {
+    double sum = 0;
+    for (int k = 0; k < size; ++k) sum += weight[k] * table[index[k]];
+    return sum;
+  }
+
+  // The weight of one table entry, 0 where the stencil does not reach it.
+  double WeightOf(int entry) const {
+    for (int k = 0; k < size; ++k) {
+      if (index[k] == entry) return weight[k];
+    }
+    return 0;
+  }
+};
+
+// The entry itself.
+Stencil PointStencil(int index);
+
+// Linear between the centres of `bins` unit bins (centre of bin i at i + 1/2), constant beyond the
+// outer centres. `coordinate` is in [0, bins], bins >= 2. Throws Error where it is not a number.
+Stencil LinearStencil(double coordinate, int bins);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MATH_STENCIL_H_

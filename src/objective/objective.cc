@@ -1,0 +1,273 @@
+#include "trilobe/objective/objective.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
+
+namespace trilobe {
+namespace {
+
+// Samples on a grid read the tables bin by bin; scattered ones read any tables.
+void CheckReadable(const ModelSpec& spec, const BrdfSamples& samples) {
+  CheckSpec(spec);
+  const MerlGrid& grid = samples.grid;
+  if (samples.on_grid()) {
+    CheckIsotropic(spec, "a measurement on a MERL grid, which knows no azimuths,");
+    if (spec.d_axis.size == grid.theta_h && spec.f_axis.size == grid.theta_d) return;
+    throw Error("the model has " + std::to_string(spec.d_axis.size) + " D bins and " +
+                std::to_string(spec.f_axis.size) + " F bins, but the measurement's grid has " +
+                std::to_string(grid.theta_h) + " and " + std::to_string(grid.theta_d) +
+                "; fit this measurement with a model of its own grid");
+  }
+  if (spec.anisotropic() && samples.directions.empty()) {
+    throw Error(samples.source + ": the samples' azimuths are not known; fit an isotropic model");
+  }
+}
+
+// Products of factors and squares of residuals neither overflow nor vanish in this range. Black
+// measurements are exact.
+void CheckRange(const BrdfSamples& samples) {
+  constexpr double kMinBrdf = 1e-50, kMaxBrdf = 1e50;
+  double largest = 0;
+  const double* const values = samples.rho.front().data();
+#pragma omp simd reduction(max : largest)
+  for (size_t k = 0; k < kChannels * samples.rho.size(); ++k) {
+    largest = values[k] > largest ? values[k] : largest;
+  }
+  if (largest == 0 || (largest >= kMinBrdf && largest <= kMaxBrdf)) return;
+  std::ostringstream message;
+  const auto at = std::ranges::find_if(
+      samples.rho, [&](const Rgb& rho) { return std::ranges::max(rho) == largest; });
+  message << samples.source << ": sample " << at - samples.rho.begin() << ", the largest, is "
+          << largest << "/sr; that must be from " << kMinBrdf << " to " << kMaxBrdf
+          << ": check the file, or multiply all values by 2^" << -std::ilogb(largest);
+  throw Error(message.str());
+}
+
+// What weights make of it.
+void CheckWeights(const std::string& weighting, bool nonnegative, double energy) {
+  constexpr double kMinEnergy = 1e-200, kMaxEnergy = 1e200;
+  if (!nonnegative) {
+    throw Error("weighting '" + weighting + "' gives a weight that is negative or no number");
+  }
+  if (energy == 0 || (energy >= kMinEnergy && energy <= kMaxEnergy)) return;
+  std::ostringstream message;
+  message << "weighting '" << weighting
+          << "' and the samples' multiplicities make a black model's E " << energy
+          << ", out of the range from " << kMinEnergy << " to " << kMaxEnergy
+          << "; multiply them by another factor";
+  throw Error(message.str());
+}
+
+BrdfSamples Checked(BrdfSamples samples, const ModelSpec& spec, int num_threads) {
+  if (num_threads < 1) {
+    throw Error("num_threads is " + std::to_string(num_threads) + "; give 1 or more");
+  }
+  if (samples.size() == 0) {
+    throw Error(samples.source + ": no sample; an objective needs one or more");
+  }
+  CheckReadable(spec, samples);
+  CheckSamples(samples);
+  CheckRange(samples);
+  return samples;
+}
+
+bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
+  const double* const w = weights.data();
+  const size_t size = weights.size();
+  double least = 0;
+#pragma omp simd reduction(min : least)
+  for (size_t k = 0; k < size; ++k) least = w[k] < least ? w[k] : least;
+  return least == 0;
+}
+
+double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model,
+                      int num_threads) {
+  constexpr size_t kChunk = 4096;
+  const int chunks = static_cast<int>((samples.size() + kChunk - 1) / kChunk);
+  std::vector<double> sums(chunks, 0.0);
+  ParallelFor(chunks, num_threads, [&](int k) {
+    const size_t end = std::min(samples.size(), (k + 1) * kChunk);
+    for (size_t j = k * kChunk; j < end; ++j) {
+      const WeightedSample& sample = samples[j];
+      for (int c = 0; c < kChannels; ++c) {
+        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+        sums[k] += sample.weight[c] * residual * residual;
+      }
+    }
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+CoverageByChannel ScatteredCoverage(const std::vector<WeightedSample>& samples,
+                                    const ModelSpec& spec) {
+  CoverageByChannel coverage;
+  for (int c = 0; c < kChannels; ++c) {
+    FactorCoverage& of = coverage[c];
+    of.D.assign(spec.d_axis.size, 0.0);
+    of.F.assign(spec.f_axis.size, 0.0);
+    of.G.assign(spec.g_axis.size, 0.0);
+    for (const WeightedSample& sample : samples) {
+      const auto add = [w = sample.weight[c]](const Stencil& stencil, std::vector<double>* table) {
+        for (int k = 0; k < stencil.size; ++k) {
+          (*table)[stencil.index[k]] += w * std::abs(stencil.weight[k]);
+        }
+      };
+      add(sample.stencils.D, &of.D);
+      add(sample.stencils.F, &of.F);
+      add(sample.stencils.G_i, &of.G);
+      add(sample.stencils.G_o, &of.G);
+    }
+  }
+  return coverage;
+}
+
+// Gives each parameter the weight of the samples of the channels that it serves.
+std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
+                                         const ModelSpec& spec) {
+  FactorModel coverage(spec);  // borrowed for its layout: a number a parameter
+  for (int c = 0; c < kChannels; ++c) {
+    double total = 0;
+    for (const double w : by_channel[c].D) total += w;
+    coverage.d()[c] = total;
+    for (int m = 0; m < spec.lobes; ++m) coverage.s(m)[c] = total;
+    for (const Factor factor : kFactors) {
+      const std::vector<double>& from = factor == Factor::kD   ? by_channel[c].D
+                                        : factor == Factor::kF ? by_channel[c].F
+                                                               : by_channel[c].G;
+      for (int t = 0; t < spec.num_tables(factor); ++t) {
+        const auto [begin, end] = spec.channels(factor, t);
+        if (c < begin || c >= end) continue;
+        const std::span<double> to = coverage.table(factor, t);
+        for (size_t k = 0; k < to.size(); ++k) to[k] += from[k];
+      }
+    }
+  }
+  return {coverage.parameters().begin(), coverage.parameters().end()};
+}
+
+}  // namespace
+
+struct Objective::Prepared {
+  Prepared(BrdfSamples all, const ModelSpec& of, const Weighting& weights, int num_threads)
+      : samples(Checked(std::move(all), of, num_threads)),
+        spec(of),
+        weighting(ForSamples(weights, samples)) {
+    bool nonnegative = true;
+    if (samples.on_grid()) {
+      folded =
+          std::make_unique<FoldedGrid>(Fold(samples, spec.g_axis.size, weighting, num_threads));
+      measured_energy = folded->measured_energy;
+      coverage = FoldedCoverage(*folded);
+      for (const std::vector<double>& w : folded->weight) {
+        nonnegative = nonnegative && AllNonnegative(w);
+      }
+    } else {
+      const std::vector<WeightedSample>& weighted = WeightedSamples(num_threads);
+      coverage = ScatteredCoverage(weighted, spec);
+      for (const WeightedSample& sample : weighted) {
+        nonnegative = nonnegative && AllNonnegative(sample.weight);
+        for (int c = 0; c < kChannels; ++c) {
+          measured_energy += sample.weight[c] * sample.rho[c] * sample.rho[c];
+        }
+      }
+    }
+    CheckWeights(weighting.name, nonnegative, measured_energy);
+  }
+
+  WeightedSample Sample(int j) const {
+    const HalfDiffAngles angles = samples.Angles(j);
+    WeightedSample sample;
+    sample.stencils = samples.on_grid()    ? GridStencils(spec, samples.grid, samples.bins[j])
+                      : spec.anisotropic() ? ScatteredStencils(spec, samples.directions[j])
+                                           : ScatteredStencils(spec, angles);
+    sample.rho = samples.rho[j];
+    sample.weight = weighting({sample.rho, ToCosines(angles), samples.SolidAngle(j)});
+    for (double& w : sample.weight) w *= samples.Multiplicity(j);
+    return sample;
+  }
+
+  const std::vector<WeightedSample>& WeightedSamples(int num_threads) const {
+    std::call_once(weighted_samples_once, [&] {
+      weighted_samples.resize(samples.size());
+      constexpr int kChunk = 4096;
+      ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+        const int end = std::min((chunk + 1) * kChunk, samples.size());
+        for (int j = chunk * kChunk; j < end; ++j) weighted_samples[j] = Sample(j);
+      });
+    });
+    return weighted_samples;
+  }
+
+  const BrdfSamples samples;
+  const ModelSpec spec;  // of which the sizes of the tables count
+  const Weighting weighting;
+  double measured_energy = 0;
+  CoverageByChannel coverage;
+  std::unique_ptr<const FoldedGrid> folded;
+  mutable std::once_flag spline_cells_once;
+  mutable std::unique_ptr<const SplineCells> spline_cells;
+  mutable std::once_flag weighted_samples_once;
+  mutable std::vector<WeightedSample> weighted_samples;
+};
+
+Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
+                     int num_threads)
+    : prepared_(std::make_shared<Prepared>(std::move(samples), spec, weighting, num_threads)),
+      spec_(spec),
+      num_threads_(num_threads),
+      coverage_(CoverageOfParameters(prepared_->coverage, spec)) {}
+
+Objective::Objective(const Objective& other, const ModelSpec& spec)
+    : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
+  CheckReadable(spec, samples());
+  const bool same_axes = std::ranges::all_of(
+      kFactors, [&](Factor factor) { return spec.axis(factor) == other.spec_.axis(factor); });
+  if (!same_axes) {
+    prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
+  }
+  coverage_ = CoverageOfParameters(prepared_->coverage, spec);
+}
+
+const BrdfSamples& Objective::samples() const { return prepared_->samples; }
+
+const Weighting& Objective::weighting() const { return prepared_->weighting; }
+
+double Objective::MeasuredEnergy() const { return prepared_->measured_energy; }
+
+const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
+
+double Objective::Value(const FactorModel& model) const {
+  CheckSameSpec(model.spec(), spec_);
+  return folded() != nullptr ? FoldedValue(*folded(), model, num_threads_)
+                             : ScatteredValue(weighted_samples(), model, num_threads_);
+}
+
+const SplineCells& Objective::spline_cells() const {
+  if (folded() == nullptr) throw Error(samples().source + ": the samples are on no grid");
+  std::call_once(prepared_->spline_cells_once,
+                 [this] { prepared_->spline_cells = std::make_unique<SplineCells>(*folded()); });
+  return *prepared_->spline_cells;
+}
+
+WeightedSample Objective::Sample(int j) const {
+  if (j < 0 || j >= samples().size()) {
+    throw Error(samples().source + ": there is no sample " + std::to_string(j) + " among " +
+                std::to_string(samples().size()));
+  }
+  return prepared_->Sample(j);
+}
+
+const std::vector<WeightedSample>& Objective::weighted_samples() const {
+  return prepared_->WeightedSamples(num_threads_);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,80 @@
+#ifndef TRILOBE_OBJECTIVE_OBJECTIVE_H_
+#define TRILOBE_OBJECTIVE_OBJECTIVE_H_
+
+#include <memory>
+#include <vector>
+
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/model_spec.h"
+#include "trilobe/model/weighting.h"
+#include "trilobe/objective/folded_grid.h"
+#include "trilobe/objective/spline_cells.h"
+
+namespace trilobe {
+
+// One measured direction pair as an element of the objective.
+struct WeightedSample {
+  SampleStencils stencils;
+  Rgb weight{};  // w, one a channel
+  Rgb rho{};     // measured BRDF [1/sr]
+};
+
+// E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
+// docs/method.md), prepared for a spec and a weighting. Immutable; safe to share between threads.
+class Objective {
+ public:
+  // Throws Error if there is no sample, or one that is none (CheckSamples), if the largest value is
+  // below 1e-50/sr, but not 0, or above 1e50/sr, if the samples cannot read the spec's tables:
+  // those on a grid its bins only, those without azimuths isotropic ones only; if a weight is no
+  // number >= 0 or so extreme that E would leave the range of a double, or if num_threads is
+  // below 1.
+  Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
+            int num_threads = 1);
+
+  // The same samples for models of another spec. Where its axes are the same, all that was prepared
+  // is shared, and this costs next to nothing. Throws Error as above.
+  Objective(const Objective& other, const ModelSpec& spec);
+
+  const BrdfSamples& samples() const;
+  const ModelSpec& spec() const { return spec_; }
+  const Weighting& weighting() const;
+  int num_threads() const { return num_threads_; }
+
+  // E of a model with this spec: the one scorer, that every trace and table quotes. The same bits
+  // for any number of threads. Throws Error for a model of another spec.
+  double Value(const FactorModel& model) const;
+
+  // sum w rho*^2: E of the black model, the scale against which E is small or large.
+  double MeasuredEnergy() const;
+
+  // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
+  // order of FactorModel::parameters(). 0 marks a dead bin: not a parameter at all
+  // (docs/method.md).
+  const std::vector<double>& coverage() const { return coverage_; }
+
+  // One sample with its stencils. Throws Error if there is no such sample.
+  WeightedSample Sample(int j) const;
+
+  // All of them. Made at the first call (280 bytes a sample).
+  const std::vector<WeightedSample>& weighted_samples() const;
+
+  // The samples folded by symmetry, or null when they are not on a grid.
+  const FoldedGrid* folded() const;
+
+  // The folded samples by knot intervals of G. Made at the first call (64 bytes a sample). Throws
+  // Error when they are not on a grid.
+  const SplineCells& spline_cells() const;
+
+ private:
+  struct Prepared;  // what depends on no more of the spec than the sizes of its tables
+
+  std::shared_ptr<const Prepared> prepared_;
+  ModelSpec spec_;
+  int num_threads_;
+  std::vector<double> coverage_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_OBJECTIVE_OBJECTIVE_H_

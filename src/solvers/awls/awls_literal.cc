@@ -1,0 +1,184 @@
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "trilobe/math/element_step.h"
+#include "trilobe/solvers/run.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// How a sample's value in one channel moves with an element: rho(x + delta) = rho + p1 delta + p2
+// delta^2.
+struct Response {
+  double p1 = 0, p2 = 0;
+};
+
+// s D F / (cos cos) and the two readings of G, for one lobe, channel and sample.
+struct LobeTerms {
+  double s, D, F, G_i, G_o, inverse_cosines;
+  LobeTerms(const FactorModel& model, const SampleStencils& at, int m, int c)
+      : s(model.s(m)[c]),
+        D(at.D(model.D(m, c))),
+        F(at.F(model.F(m, c))),
+        G_i(at.G_i(model.G(m, c))),
+        G_o(at.G_o(model.G(m, c))),
+        inverse_cosines(at.inverse_cosines) {}
+};
+
+// The response to entry k of table t of a factor: the sum over the lobes that the table serves.
+Response TableResponse(const FactorModel& model, const SampleStencils& at, Factor factor, int t,
+                       int k, int c) {
+  Response response;
+  for (int m = 0; m < model.spec().lobes; ++m) {
+    if (!model.spec().serves(factor, t, m, c)) continue;
+    const LobeTerms lobe(model, at, m, c);
+    if (factor == Factor::kD) {
+      response.p1 +=
+          at.D.WeightOf(k) * lobe.s * lobe.F * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
+    } else if (factor == Factor::kF) {
+      response.p1 +=
+          at.F.WeightOf(k) * lobe.s * lobe.D * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
+    } else {
+      // (a_i + c_i delta)(a_o + c_o delta), the paper's third situation; c_i or c_o may be 0.
+      const double c_i = at.G_i.WeightOf(k), c_o = at.G_o.WeightOf(k);
+      const double y = lobe.s * lobe.D * lobe.F * lobe.inverse_cosines;
+      response.p1 += y * (c_i * lobe.G_o + c_o * lobe.G_i);
+      response.p2 += y * c_i * c_o;
+    }
+  }
+  return response;
+}
+
+Response SpecularWeightResponse(const FactorModel& model, const SampleStencils& at, int m, int c) {
+  const LobeTerms lobe(model, at, m, c);
+  return {lobe.D * lobe.F * lobe.G_i * lobe.G_o * lobe.inverse_cosines, 0};
+}
+
+// For each entry of a factor's tables, the samples that read it.
+using SampleLists = std::vector<std::vector<int>>;
+
+SampleLists SamplesByEntry(const std::vector<WeightedSample>& samples, const ModelSpec& spec,
+                           Factor factor) {
+  SampleLists lists(spec.table_size(factor));
+  for (int j = 0; j < static_cast<int>(samples.size()); ++j) {
+    const auto add = [&lists, j](const Stencil& stencil) {
+      for (int k = 0; k < stencil.size; ++k) {
+        std::vector<int>& list = lists[stencil.index[k]];
+        if (list.empty() || list.back() != j) list.push_back(j);
+      }
+    };
+    const SampleStencils& at = samples[j].stencils;
+    if (factor == Factor::kD) add(at.D);
+    if (factor == Factor::kF) add(at.F);
+    if (factor == Factor::kG) {
+      add(at.G_i);
+      add(at.G_o);
+    }
+  }
+  return lists;
+}
+
+class LiteralSweep {
+ public:
+  LiteralSweep(const Objective& objective, const SolverOptions& options)
+      : objective_(objective), options_(options), samples_(objective.weighted_samples()) {
+    for (const Factor factor : kFactors) {
+      by_entry_.push_back(SamplesByEntry(samples_, objective.spec(), factor));
+    }
+    all_.resize(samples_.size());
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+
+  // d, s, D, F, then G, one element at a time (docs/method.md).
+  void operator()(FactorModel* model) const {
+    const ModelSpec& spec = objective_.spec();
+    for (int c = 0; c < kChannels; ++c) {
+      Update(
+          all_, {c, c + 1},
+          [](const SampleStencils&, int) {
+            return Response{1, 0};
+          },
+          &model->d()[c], *model);
+    }
+    for (int m = 0; m < spec.lobes; ++m) {
+      for (int c = 0; c < kChannels; ++c) {
+        Update(
+            all_, {c, c + 1},
+            [&](const SampleStencils& at, int) { return SpecularWeightResponse(*model, at, m, c); },
+            &model->s(m)[c], *model);
+      }
+    }
+    for (const Factor factor : kFactors) {
+      for (int t = 0; t < spec.num_tables(factor); ++t) {
+        const ModelSpec::ChannelRange channels = spec.channels(factor, t);
+        for (int k = 0; k < spec.table_size(factor); ++k) {
+          Update(
+              by_entry_[static_cast<int>(factor)][k], channels,
+              [&](const SampleStencils& at, int c) {
+                return TableResponse(*model, at, factor, t, k, c);
+              },
+              &model->table(factor, t)[k], *model);
+        }
+      }
+    }
+  }
+
+ private:
+  // Puts *element, a number of `model`, where E is lowest.
+  template <typename ResponseOf>
+  void Update(const std::vector<int>& samples, ModelSpec::ChannelRange channels,
+              const ResponseOf& response_of, double* element, const FactorModel& model) const {
+    ElementQuartic change;
+    for (const int j : samples) {
+      const WeightedSample& sample = samples_[j];
+      for (int c = channels.begin; c < channels.end; ++c) {
+        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+        const Response response = response_of(sample.stencils, c);
+        change.AddSample(sample.weight[c], residual, response.p1, response.p2);
+      }
+    }
+    *element = BestElement(*element, change);
+    if (options_.on_element) options_.on_element(model);
+  }
+
+  const Objective& objective_;
+  const SolverOptions& options_;
+  const std::vector<WeightedSample>& samples_;
+  std::vector<SampleLists> by_entry_;  // [factor][entry]
+  std::vector<int> all_;
+};
+
+// The same element updates as Awls, each from the samples that the element touches (paper 2.3): the
+// reference that Awls is tested and timed against.
+class AwlsLiteral : public Solver {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
+    Run run("awls_literal", objective, options, model);
+    std::optional<LiteralSweep> sweep;
+    {
+      const ScopedTimer timer = run.Time(&PhaseSeconds::preparing);
+      sweep.emplace(objective, options);
+    }
+    const auto timed_sweep = [&](FactorModel* current) {
+      const ScopedTimer timer = run.Time(&PhaseSeconds::evaluating);
+      (*sweep)(current);
+    };
+    RepeatSweeps(timed_sweep, objective, *model, &run);
+    return run.Finish();
+  }
+};
+
+}  // namespace
+
+SolverEntry AwlsLiteralEntry() {
+  return {.name = "awls_literal",
+          .description = "awls, element by element over the samples: slow, on any samples",
+          .reference = "Peng, Zheng, Lv, section 2.3",
+          .options = {"g_filter_sigma"},
+          .make = [] { return std::make_unique<AwlsLiteral>(); }};
+}
+
+}  // namespace trilobe

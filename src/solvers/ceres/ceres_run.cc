@@ -1,0 +1,173 @@
+#include "trilobe/solvers/ceres/ceres_run.h"
+
+#include <ceres/iteration_callback.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "trilobe/math/element_step.h"
+#include "trilobe/model/gauge.h"
+
+namespace trilobe {
+namespace {
+
+class Recorder : public ceres::IterationCallback {
+ public:
+  Recorder(const std::function<CeresPoint()>& current, Run* run) : current_(current), run_(*run) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;  // recorded by Run::Start
+    Run::Step step{.accepted = iteration.step_is_successful};
+    CeresPoint point = current_();
+    step.objective = step.accepted ? point.objective : run_.summary().trace.back().objective;
+    return run_.Record(point.model, step) ? ceres::SOLVER_CONTINUE
+                                          : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const std::function<CeresPoint()>& current_;
+  Run& run_;
+};
+
+ceres::LinearSolverType ToCeres(CeresLinearSolver linear_solver) {
+  switch (linear_solver) {
+    case CeresLinearSolver::kSparseCholesky:
+      return ceres::SPARSE_NORMAL_CHOLESKY;
+    case CeresLinearSolver::kDenseCholesky:
+      return ceres::DENSE_NORMAL_CHOLESKY;
+    case CeresLinearSolver::kDenseQr:
+      return ceres::DENSE_QR;
+  }
+  return ceres::DENSE_QR;
+}
+
+// The power of two next to the root of the mean of squares.
+double Unit(double sum_of_squares, double total_weight) {
+  const double mean_square = sum_of_squares / total_weight;
+  return mean_square > 0 ? std::exp2(std::ilogb(std::sqrt(mean_square))) : 1;
+}
+
+double ValueUnit(const Objective& objective) {
+  double weight = 0;
+  for (int c = 0; c < kChannels; ++c) weight += objective.coverage()[c];  // of d
+  return Unit(objective.MeasuredEnergy(), weight);
+}
+
+// Replaces an active set that there is not by bounds.
+Positivity ChoosePositivity(CeresParameters::ActiveSet active_set, Run* run) {
+  Positivity& positivity = run->summary().used.positivity;
+  if (positivity == Positivity::kActiveSet && active_set == CeresParameters::ActiveSet::kNone) {
+    positivity = Positivity::kBounds;
+    run->summary().notes.push_back("Ceres has no active set, so " + run->summary().solver +
+                                   " keeps parameters >= 0 by bounds; solvers lm and newton have"
+                                   " one");
+  }
+  return positivity;
+}
+
+ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver linear_solver,
+                               int num_threads) {
+  ceres::Solver::Options to;
+  to.trust_region_strategy_type =
+      options.trust_region == TrustRegion::kDogleg ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
+  to.linear_solver_type = ToCeres(linear_solver);
+  to.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  to.dense_linear_algebra_library_type = ceres::LAPACK;  // as fast as the BLAS that is installed
+  // Ceres would take no more, and say so on stderr.
+  const int most_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  to.num_threads = std::min(num_threads, most_threads);
+
+  // Scale can move between the factors, so J'J is singular, and only the damping makes its
+  // factorisation succeed. It must stay above the rounding errors of J'J.
+  to.max_trust_region_radius = 1e10;
+  // Only with bounds is there a line search. By bisection a trial costs one evaluation of the
+  // residuals, not of the Jacobian. On synthetic plastic, aluminium and felt, 40 iterations with
+  // it, and with Ceres' default of 1e4 for the initial radius, end no higher than with any other
+  // choice.
+  to.line_search_interpolation_type = ceres::BISECTION;
+
+  // Run decides when to stop.
+  to.max_num_iterations = options.max_iterations;
+  to.function_tolerance = to.gradient_tolerance = to.parameter_tolerance = 0;
+
+  to.update_state_every_iteration = true;
+  to.logging_type = ceres::SILENT;
+  return to;
+}
+
+}  // namespace
+
+CeresParameters::CeresParameters(const Objective& objective, FactorModel start,
+                                 ActiveSet active_set, Run* run)
+    : objective_(objective),
+      start_(std::move(start)),
+      value_unit_(ValueUnit(objective)),
+      residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.samples().size())),
+      squares_(ChoosePositivity(active_set, run) == Positivity::kSquares),
+      holds_(run->options().positivity == Positivity::kActiveSet) {}
+
+FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
+  for (double& d : model.d()) d *= by;
+  for (int m = 0; m < model.spec().lobes; ++m) {
+    for (double& s : model.s(m)) s *= by;
+  }
+  return model;
+}
+
+FactorModel CeresParameters::Start() const {
+  FactorModel p = Scaled(start_, 1 / value_unit_);
+  if (squares_) {
+    for (double& x : p.parameters()) x = std::sqrt(x);
+  }
+  return p;
+}
+
+FactorModel CeresParameters::Model(FactorModel p) const {
+  if (squares_) {
+    for (double& x : p.parameters()) x *= x;
+  }
+  FactorModel model = Scaled(std::move(p), value_unit_);
+  CopyDeadParameters(objective_.coverage(), start_, &model);
+  return model;
+}
+
+void CeresParameters::SetBounds(std::span<double> block, ceres::Problem* problem) const {
+  if (squares_) return;
+  for (int k = 0; k < static_cast<int>(block.size()); ++k) {
+    problem->SetParameterLowerBound(block.data(), k, 0);
+    problem->SetParameterUpperBound(block.data(), k, std::max(block[k], kMaxParameter));
+  }
+}
+
+void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
+                       const std::function<CeresPoint()>& current, ceres::Problem* problem,
+                       Run* run) {
+  Recorder recorder(current, run);
+  ceres::Solver::Options options = ToCeres(run->options(), linear_solver, num_threads);
+  options.callbacks.push_back(&recorder);
+
+  ceres::Solver::Summary summary;
+  try {
+    ceres::Solve(options, problem, &summary);
+  } catch (const std::system_error&) {  // Ceres starts its threads before all else, and got fewer
+    if (options.num_threads == 1) throw;
+    options.num_threads = 1;
+    ceres::Solve(options, problem, &summary);
+  }
+  if (!run->stopped()) {
+    run->summary().notes.push_back("Ceres: " + summary.message);
+    run->Stop(StopReason::kNoDecrease);
+  }
+  PhaseSeconds& phases = run->summary().phases;
+  phases.preparing += summary.preprocessor_time_in_seconds;
+  phases.evaluating +=
+      summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
+  phases.linear_algebra += summary.linear_solver_time_in_seconds;
+}
+
+}  // namespace trilobe

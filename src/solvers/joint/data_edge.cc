@@ -1,0 +1,116 @@
+#include "trilobe/solvers/joint/data_edge.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "trilobe/model/table_layout.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/reduction.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kWellCovered = 0.05;
+constexpr int kInwards = 3;
+constexpr int kMaxTied = 8;
+constexpr double kRunaway = 5;
+constexpr int kLookedAt = 5;
+constexpr int kSteps = 12;
+constexpr double kSmallDecrease = 1e-3;
+constexpr double kMaxRise = 0.05;
+
+// From which entry on the live ones [0, end) are to be tied because few samples read them; `end`
+// where data go on to the end of the table.
+int FirstUncovered(std::span<const double> coverage, int end) {
+  if (end == static_cast<int>(coverage.size())) return end;
+  int first = end;
+  while (end - first < kMaxTied && first - 1 - kInwards >= 0 &&
+         coverage[first - 1] < kWellCovered * coverage[first - 1 - kInwards]) {
+    --first;
+  }
+  return first;
+}
+
+// From which entry on they run away: the first in the last third that is several times the median
+// of those before it.
+int FirstRunaway(std::span<const double> table, int end) {
+  for (int k = std::max(2 * end / 3, kLookedAt); k < end; ++k) {
+    std::vector<double> before(table.begin() + k - kLookedAt, table.begin() + k);
+    std::ranges::nth_element(before, before.begin() + kLookedAt / 2);
+    if (table[k] > kRunaway * before[kLookedAt / 2] && before[kLookedAt / 2] > 0) return k;
+  }
+  return end;
+}
+
+enum class Rule { kBoth, kCoverage };
+
+// How many entries of a table remain, from the first on, when those at its end are tied; all where
+// none is to be tied.
+int NumKept(Rule rule, std::span<const double> coverage, std::span<const double> table) {
+  const auto size = static_cast<int>(coverage.size());
+  const auto dead = [&](int entry) { return !(coverage[entry] > 0); };
+  int end = size;
+  while (end > 0 && dead(end - 1)) --end;
+  int kept = FirstUncovered(coverage, end);
+  if (rule == Rule::kBoth) kept = std::min(kept, FirstRunaway(table, end));
+  if (kept == end) return size;
+  // A dead one has nothing to tell the others.
+  while (kept > 0 && dead(kept - 1)) --kept;
+  return kept > 0 ? kept : size;
+}
+
+// Ties the ends of the tables of these factors. True if there was something to tie, and E came
+// back.
+bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& objective,
+         const std::function<bool()>& stop, FactorModel* model) {
+  if (stop()) return false;
+  const ModelSpec& spec = model->spec();
+  TableLayout layout = TableLayout::Full(spec);
+  bool any = false;
+  for (const Factor factor : factors) {
+    if (spec.axis(factor).polar()) continue;  // nodes end where data do
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const auto coverage = std::span(objective.coverage())
+                                .subspan(model->TableOffset(factor, t), spec.table_size(factor));
+      const int kept = NumKept(rule, coverage, model->table(factor, t));
+      if (kept == spec.table_size(factor)) continue;
+      any = true;
+      // The others follow, dead ones too, as they do beyond the last node of a layout.
+      layout.of(factor, t).resize(kept);
+    }
+  }
+  if (!any) return false;
+
+  const double E = objective.Value(*model);
+  FactorModel tied = *model;
+  ExpandStored(layout, &tied);
+  const Reduction reduction(spec, layout);
+  PhaseSeconds phases;
+  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
+                       JointStepper::Trial::kAsItIs, &phases, &reduction);
+  stepper.Restart(tied);
+  for (int step = 0; step < kSteps && !stepper.exhausted() && !stop(); ++step) {
+    const double before = stepper.E();
+    if (stepper.Step() && stepper.E() > (1 - kSmallDecrease) * before) break;
+  }
+  if (!(stepper.E() <= (1 + kMaxRise) * E)) return false;
+  *model = stepper.current();
+  return true;
+}
+
+}  // namespace
+
+bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
+                          const std::function<bool()>& stop) {
+  CheckSameSpec(model->spec(), objective.spec());
+  CheckNumbers(*model);
+  // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the
+  // spline reads.
+  return Tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
+         Tie(Rule::kCoverage, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
+         Tie(Rule::kCoverage, {Factor::kG}, objective, stop, model);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,165 @@
+#include "trilobe/solvers/joint/joint_step.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "trilobe/solvers/diagnosis.h"
+#include "trilobe/solvers/run.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kInitialLambda = 1e-2;  // against columns of J of length 1
+constexpr double kMinLambda = 1e-12, kMaxLambda = 1e16;
+// Along one column of J a step under this damping lowers E by less than 2 / lambda of it, however
+// much there is to gain.
+constexpr double kHeavyLambda = 1e3;
+constexpr double kMinGain = 1e-4;
+constexpr double kMaxFall = 1.0 / 3;  // of lambda after one step
+// Where H is indefinite, the least lambda that mends it is searched for by this factor.
+constexpr double kIndefiniteGrowth = 4, kMinIndefiniteLambda = 1e-4;
+// By this fraction of E a step that lowers it little does so.
+constexpr double kLittleProgress = 1e-3;
+// Columns of J shorter than the root of this times the root mean square of their table's count as
+// that long for the damping.
+constexpr double kMinSquaredLength = 1e-2;
+
+}  // namespace
+
+std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
+                                  std::span<const double> squared_lengths) {
+  std::vector<double> S(squared_lengths.size(), 0.0);
+  for (const auto [begin, size] : parts) {
+    double mean = 0;
+    for (int k = begin; k < begin + size; ++k) mean += squared_lengths[k] / size;
+    for (int k = begin; k < begin + size; ++k) {
+      if (!(squared_lengths[k] > 0)) continue;
+      S[k] = std::sqrt(std::max(squared_lengths[k], kMinSquaredLength * mean));
+    }
+  }
+  return S;
+}
+
+JointStepper::JointStepper(const Objective& objective, Curvature curvature, Trial trial,
+                           PhaseSeconds* phases, const Reduction* reduction)
+    : objective_(objective),
+      curvature_(curvature),
+      reduction_(reduction),
+      hessian_(curvature == Curvature::kNewton ? Hessian::kNewton : Hessian::kGaussNewton),
+      phases_(phases),
+      equations_(objective),
+      lambda_(kInitialLambda) {
+  CHECK(reduction == nullptr || trial == Trial::kAsItIs)
+      << "a projection would leave the reduction";
+  if (trial == Trial::kProjected) sweep_ = MakeSweep(objective, phases);
+}
+
+void JointStepper::Restart(const FactorModel& model) {
+  current_ = model;
+  E_ = Evaluate(current_);
+  linearized_ = false;
+  growth_ = 2;
+  indefinite_ = 0;
+}
+
+double JointStepper::Evaluate(const FactorModel& model) {
+  const ScopedTimer timer(&phases_->evaluating);
+  return objective_.Value(model);
+}
+
+void JointStepper::Linearize() {
+  if (linearized_) return;
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    equations_.Evaluate(current_, hessian_, &at_);
+  }
+  const ScopedTimer timer(&phases_->linear_algebra);
+  const std::span<const double> x = current_.parameters();
+  if (reduction_ != nullptr) {
+    at_ = (*reduction_)(at_);
+    y_ = reduction_->Restrict(x);
+  } else {
+    y_.assign(x.begin(), x.end());
+  }
+  const std::vector<FactorModel::Part> parts =
+      reduction_ != nullptr ? reduction_->parts() : current_.Parts();
+  step_.MoveTo(at_, DampingMetric(parts, at_.squared_lengths), y_);
+  if (!binding_.empty()) step_.SetBinding(binding_);
+  linearized_ = true;
+}
+
+bool JointStepper::Step() {
+  Linearize();
+  FactorModel trial = current_;
+  NonnegativeStep::Result result;
+  {
+    const ScopedTimer timer(&phases_->linear_algebra);
+    result = step_.Solve(lambda_);
+    while (!(result.predicted_decrease > 0) && !exhausted()) {  // H + lambda S^2 is not positive
+      indefinite_ = lambda_ = std::max(kIndefiniteGrowth * lambda_, kMinIndefiniteLambda);
+      result = step_.Solve(lambda_);
+    }
+  }
+  held_back_ = lambda_ > kHeavyLambda;
+  std::ranges::copy(reduction_ != nullptr ? reduction_->Expand(result.x) : result.x,
+                    trial.parameters().begin());
+  double E = Evaluate(trial);
+  if (sweep_) {
+    sweep_->Project(E, &trial);
+    E = Evaluate(trial);
+  }
+  const double gain = (E_ - E) / (2 * result.predicted_decrease);
+  if (!(E < E_ && gain > kMinGain)) {
+    lambda_ *= growth_;
+    growth_ *= 2;
+    return false;
+  }
+  const double f = 2 * gain - 1;
+  // Not at once to where the last H was indefinite: the next one is much like it.
+  lambda_ = std::max(
+      {kMinLambda, indefinite_ / kIndefiniteGrowth, lambda_ * std::max(kMaxFall, 1 - f * f * f)});
+  indefinite_ = 0;
+  growth_ = 2;
+  if (curvature_ == Curvature::kByProgress) {
+    hessian_ = E > (1 - kLittleProgress) * E_ ? Hessian::kNewton : Hessian::kGaussNewton;
+  }
+  current_ = std::move(trial);
+  E_ = E;
+  binding_ = step_.binding();
+  linearized_ = false;
+  return true;
+}
+
+bool JointStepper::exhausted() const { return !(lambda_ < kMaxLambda); }
+
+double JointStepper::Optimality() {
+  Linearize();
+  return ScaledProjectedGradient(at_, y_);
+}
+
+SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
+                                JointStepper::Trial trial, const Objective& objective,
+                                const SolverOptions& options, FactorModel* model) {
+  Run run(std::move(solver), objective, options, model);
+  JointStepper stepper(objective, curvature, trial, &run.summary().phases);
+  stepper.Restart(*model);
+  run.Start(stepper.Optimality());
+  RepeatJointSteps(&stepper, &run);
+  return run.Finish();
+}
+
+void RepeatJointSteps(JointStepper* stepper, Run* run) {
+  for (bool go_on = !run->stopped(); go_on;) {
+    Run::Step step{.accepted = stepper->Step()};
+    if (stepper->exhausted()) run->Stop(StopReason::kNoDecrease);
+    if (step.accepted) step.optimality = stepper->Optimality();
+    step.objective = stepper->E();
+    step.may_converge = !stepper->held_back();
+    go_on = run->Record(stepper->current(), step);
+  }
+}
+
+}  // namespace trilobe

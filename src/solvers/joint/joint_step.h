@@ -1,0 +1,102 @@
+#ifndef TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
+#define TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trilobe/solvers/awls/sweep.h"
+#include "trilobe/solvers/joint/nonnegative_step.h"
+#include "trilobe/solvers/joint/reduction.h"
+#include "trilobe/solvers/run.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
+
+namespace trilobe {
+
+// Damped Newton or Gauss-Newton iterations on all parameters at once, under x >= 0, one trial step
+// at a time. Damping as in Levenberg-Marquardt, by Nielsen's rule (Damping parameter in Marquardt's
+// method, 1999): lambda falls smoothly with the gain of an accepted step, and rises ever faster
+// while steps are rejected. A number that the data hardly see is damped like its table's others
+// (docs/solvers.md): on its own it could go anywhere, and where its partners in the product
+// are small it would go far, and spoil the product once they grow.
+class JointStepper {
+ public:
+  // Which Hessian: J'J makes the longer steps as long as there is much to gain, but is blind to
+  // directions in which E curves down; all of it finds those, and is right near the end.
+  enum class Curvature {
+    kGaussNewton,
+    kNewton,
+    kByProgress,  // J'J until a step lowers E little; again after one that lowered it much
+  };
+
+  // What becomes of a trial point before it is judged.
+  enum class Trial {
+    kAsItIs,
+    kProjected,  // d, s, D and F are put where E is lowest, block by block, given G and the others
+  };
+
+  // Times go to *phases. With a reduction, which must outlive the stepper, the steps are of its
+  // numbers y; trials cannot be projected then.
+  JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases,
+               const Reduction* reduction = nullptr);
+
+  // Goes on from another point, with the same damping. With a reduction the point must be one of
+  // its own.
+  void Restart(const FactorModel& model);
+
+  // Tries one step; false if it did not lower E, so that the point stayed where it was.
+  bool Step();
+  // No damping leads to a lower E.
+  bool exhausted() const;
+  // Damping, not the shape of E, made the last step short: that it lowered E little says nothing
+  // about how much there is to gain.
+  bool held_back() const { return held_back_; }
+
+  const FactorModel& current() const { return current_; }
+  double E() const { return E_; }
+  // Diagnosis::optimality of the point. Passes over the data when the point is new.
+  double Optimality();
+
+ private:
+  double Evaluate(const FactorModel& model);
+  void Linearize();
+
+  const Objective& objective_;
+  const Curvature curvature_;
+  const Reduction* const reduction_;
+  Hessian hessian_;  // of the next point
+  PhaseSeconds* const phases_;
+  NormalEquations equations_;
+  std::unique_ptr<Sweep> sweep_;  // if trials are projected
+  FactorModel current_;
+  double E_ = 0;
+  bool linearized_ = false;
+  QuadraticModel at_;      // of the current point, if linearized_; in y with a reduction
+  std::vector<double> y_;  // what steps move: the reduction's numbers, or all
+  NonnegativeStep step_;
+  std::vector<bool> binding_;
+  double lambda_;
+  bool held_back_ = false;
+  double growth_ = 2;      // of lambda when the next step is rejected
+  double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
+};
+
+// The metric S of the damping of steps in numbers that make up these parts, from the squared
+// lengths of the columns of J. 0 where that is 0.
+std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
+                                  std::span<const double> squared_lengths);
+
+// A solver that makes nothing but such steps, from its starting point on.
+SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
+                                JointStepper::Trial trial, const Objective& objective,
+                                const SolverOptions& options, FactorModel* model);
+
+// Makes and records steps of the stepper, which stands at the run's last point, until the run
+// stops.
+void RepeatJointSteps(JointStepper* stepper, Run* run);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_

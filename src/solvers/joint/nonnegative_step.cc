@@ -1,0 +1,193 @@
+#include "trilobe/solvers/joint/nonnegative_step.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "trilobe/math/cholesky.h"
+#include "trilobe/math/element_step.h"
+
+namespace trilobe {
+namespace {
+
+// Holding and freeing at once converges in few rounds, but may cycle; holding alone ends.
+constexpr int kExchangeRounds = 4;
+constexpr int kMaxRounds = 10;
+// A factor is used again while no more parameters than this have changed sides: beyond, a new one
+// is faster.
+constexpr size_t kMaxBorder = 64;
+
+using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
+
+// Eigen's own solve refers to the first number of the factor even where there is none.
+Eigen::MatrixXd SolveBy(const Eigen::LLT<Eigen::MatrixXd>& factor, const Eigen::MatrixXd& b) {
+  if (b.size() == 0) return b;
+  return factor.solve(b);
+}
+
+}  // namespace
+
+void NonnegativeStep::MoveTo(const QuadraticModel& at, std::span<const double> metric,
+                             std::span<const double> x) {
+  at_ = &at;
+  x_.assign(x.begin(), x.end());
+  const size_t n = x.size();
+  for (auto* of_all : {&scale_, &unit_, &g_, &z_, &p_, &u_}) of_all->assign(n, 0.0);
+  std::ranges::copy(metric, scale_.begin());
+  binding_.assign(n, false);
+  in_base_.assign(n, false);
+  for (size_t k = 0; k < n; ++k) {
+    if (!(scale_[k] > 0)) continue;
+    unit_[k] = 1 / scale_[k];
+    g_[k] = unit_[k] * at.gradient[k];
+    z_[k] = scale_[k] * x[k];
+    binding_[k] = z_[k] == 0 && g_[k] > 0;
+  }
+}
+
+NonnegativeStep::Result NonnegativeStep::Solve(double lambda) {
+  factored_ = false;
+  Outcome outcome = Outcome::kChanged;
+  for (int round = 0; outcome == Outcome::kChanged && round < kMaxRounds; ++round) {
+    outcome = SolveFree(lambda, round < kExchangeRounds);
+  }
+  Result result{.x = x_};
+  if (outcome == Outcome::kIndefinite) return result;
+  const size_t n = x_.size();
+  for (size_t k = 0; k < n; ++k) {
+    if (unit_[k] == 0) continue;
+    p_[k] = std::max(p_[k], -z_[k]);
+    u_[k] = unit_[k] * p_[k];
+    const double moved = z_[k] + p_[k];
+    result.x[k] = moved > 0 ? std::min(moved / scale_[k], kMaxParameter) : 0;
+  }
+  const int size = static_cast<int>(n);
+  const ConstVectorMap g(g_.data(), size), p(p_.data(), size), u(u_.data(), size);
+  const Eigen::Map<const Eigen::MatrixXd> H(at_->H.data(), size, size);
+  const Eigen::VectorXd H_u = H.selfadjointView<Eigen::Lower>() * u;
+  result.predicted_decrease = -(g.dot(p) + u.dot(H_u) / 2);
+  return result;
+}
+
+// Row k of the scaled H times p.
+double NonnegativeStep::H_p(size_t k) const {
+  const int n = static_cast<int>(u_.size());
+  return unit_[k] * ConstVectorMap(&at_->H[k * u_.size()], n).dot(ConstVectorMap(u_.data(), n));
+}
+
+// Factors the scaled H + lambda of the parameters that are free now.
+bool NonnegativeStep::Factor(double lambda) {
+  const size_t n = x_.size();
+  base_.clear();
+  units_.clear();
+  for (size_t k = 0; k < n; ++k) {
+    in_base_[k] = unit_[k] != 0 && !binding_[k];
+    if (!in_base_[k]) continue;
+    base_.push_back(k);
+    units_.push_back(unit_[k]);
+  }
+  const size_t size = base_.size();
+  L_.resize(size * size);
+  for (size_t j = 0; j < size; ++j) {
+    const double* const H_k = &at_->H[base_[j] * n];
+    double* const column = &L_[j * size];
+    for (size_t i = j; i < size; ++i) column[i] = units_[j] * H_k[base_[i]] * units_[i];
+    column[j] += lambda;
+  }
+  return FactorCholesky(static_cast<int>(size), L_.data());
+}
+
+// Sets p by the present active set. That differs from the one of the factor LL' = A by the
+// parameters R that are held since, at p = -z, and N that are free since. With multipliers mu of
+// the former, c what the right-hand side would be, E_R columns of the identity and B = A_.N,
+//   A p + B p_N = c + E_R mu,   p_R = -z_R,   B'p + A_NN p_N = c_N,
+// and with  y = L^-1 c,  U = L^-1 E_R,  V = -L^-1 B  what is left is small:
+//   U'U mu + U'V p_N = -z_R - U'y,   (A_NN - V'V) p_N - V'U mu = c_N + V'y,
+//   p = L^-T (y + U mu + V p_N).
+// False if the matrix of the free parameters is not positive definite.
+bool NonnegativeStep::SetStep(double lambda) {
+  const size_t n = x_.size();
+  removed_.clear();
+  added_.clear();
+  for (size_t k = 0; k < n; ++k) {
+    if (unit_[k] != 0 && !binding_[k] && !in_base_[k]) added_.push_back(k);
+  }
+  for (size_t j = 0; j < base_.size(); ++j) {
+    if (binding_[base_[j]]) removed_.push_back(j);
+  }
+  if (!factored_ || removed_.size() + added_.size() > kMaxBorder) {
+    removed_.clear();
+    added_.clear();
+    factored_ = Factor(lambda);
+    if (!factored_) return false;
+  }
+
+  // Of those held all along, most are at 0 already.
+  bool moved = false;
+  for (size_t k = 0; k < n; ++k) {
+    p_[k] = unit_[k] != 0 && binding_[k] && !in_base_[k] ? -z_[k] : 0;
+    u_[k] = unit_[k] * p_[k];
+    moved = moved || p_[k] != 0;
+  }
+  const auto right_hand_side = [&](size_t k) { return -(moved ? g_[k] + H_p(k) : g_[k]); };
+  const int size = static_cast<int>(base_.size());
+  const int num_removed = static_cast<int>(removed_.size());
+  const int num_added = static_cast<int>(added_.size());
+  W_.assign(static_cast<size_t>(size) * (1 + num_removed + num_added), 0.0);
+  Eigen::Map<Eigen::MatrixXd> W(W_.data(), size, 1 + num_removed + num_added);
+  auto y = W.col(0);
+  auto U = W.middleCols(1, num_removed);
+  auto V = W.rightCols(num_added);
+  Eigen::VectorXd b_R(num_removed), b_N(num_added);
+  Eigen::MatrixXd A_NN(num_added, num_added);
+  for (int j = 0; j < size; ++j) y(j) = right_hand_side(base_[j]);
+  for (int r = 0; r < num_removed; ++r) {
+    U(removed_[r], r) = 1;
+    b_R(r) = -z_[base_[removed_[r]]];
+  }
+  for (int a = 0; a < num_added; ++a) {
+    const size_t k = added_[a];
+    const double* const H_k = &at_->H[k * n];
+    for (int j = 0; j < size; ++j) V(j, a) = -unit_[k] * H_k[base_[j]] * units_[j];
+    for (int e = 0; e < num_added; ++e) A_NN(e, a) = unit_[k] * H_k[added_[e]] * unit_[added_[e]];
+    A_NN(a, a) += lambda;
+    b_N(a) = right_hand_side(k);
+  }
+  SolveLower(size, L_.data(), 1 + num_removed + num_added, W_.data());
+  if (num_removed + num_added > 0) {
+    b_R -= U.transpose() * y;
+    b_N += V.transpose() * y;
+    const Eigen::MatrixXd U_V = U.transpose() * V;
+    const Eigen::LLT<Eigen::MatrixXd> of_R(U.transpose() * U);
+    const Eigen::LLT<Eigen::MatrixXd> of_N(A_NN - V.transpose() * V +
+                                           U_V.transpose() * SolveBy(of_R, U_V));
+    if (of_R.info() != Eigen::Success || of_N.info() != Eigen::Success) return false;
+    const Eigen::VectorXd p_N = SolveBy(of_N, b_N + U_V.transpose() * SolveBy(of_R, b_R));
+    y += U * SolveBy(of_R, b_R - U_V * p_N) + V * p_N;
+    for (int a = 0; a < num_added; ++a) p_[added_[a]] = p_N(a);
+  }
+  SolveLowerTransposed(size, L_.data(), W_.data());
+  for (int j = 0; j < size; ++j) p_[base_[j]] = y(j);
+  for (const size_t j : removed_) p_[base_[j]] = -z_[base_[j]];
+  for (size_t k = 0; k < n; ++k) u_[k] = unit_[k] * p_[k];
+  return ConstVectorMap(p_.data(), static_cast<int>(n)).allFinite();
+}
+
+// Sets p by the present active set, then changes that.
+NonnegativeStep::Outcome NonnegativeStep::SolveFree(double lambda, bool release) {
+  if (!SetStep(lambda)) return Outcome::kIndefinite;
+  bool changed = false;
+  for (size_t k = 0; k < x_.size(); ++k) {
+    if (unit_[k] == 0) continue;
+    if (!binding_[k]) {
+      if (z_[k] + p_[k] >= 0) continue;
+      binding_[k] = changed = true;
+    } else if (release && g_[k] + H_p(k) + lambda * p_[k] < 0) {
+      binding_[k] = false;
+      changed = true;
+    }
+  }
+  return changed ? Outcome::kChanged : Outcome::kRight;
+}
+
+}  // namespace trilobe

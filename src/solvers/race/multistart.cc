@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/with_axes.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/race/start_race.h"
+#include "trilobe/solvers/run.h"
+
+namespace trilobe {
+namespace {
+
+// As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
+// takes, however few its samples, rules the time.
+constexpr StartRace::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
+constexpr StartRace::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
+
+// A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
+// a little, each time by so many sweeps and a few joint steps: a lobe that grew out of another
+// starts where it is needed.
+FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
+                 const std::function<bool()>& stop) {
+  constexpr int kTries = 5;
+  ModelSpec spec = objective.spec();
+  FactorModel model;
+  for (int lobes = 1; lobes < objective.spec().lobes; ++lobes) {
+    spec.lobes = lobes;
+    const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
+    StartRace race(smaller, kAsTheyAre, stop);
+    if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
+    race.Enter("", [&] { return model; }, {.count = sweeps});
+    race.Advance(kTries);
+    if (race.leader() != nullptr) model = *race.leader();
+    NormalizeScale(smaller.coverage(), &model);
+    model = SplitLobe(model, StrongestLobe(model));
+  }
+  return model;
+}
+
+// The race's starts, in the order in which they enter: the given one first.
+class Starts {
+ public:
+  Starts(const Objective& objective, const FactorModel& given, uint64_t seed, StartRace* race,
+         std::function<bool()> stop)
+      : objective_(objective), given_(given), seed_(seed), race_(race), stop_(std::move(stop)) {}
+
+  // Enters more of them, until there have been `count`.
+  void EnterUpTo(int count) {
+    for (; entered_ < count; ++entered_) EnterOne(entered_);
+  }
+
+ private:
+  // In the order of what they have won for the time that they take (docs/solvers.md).
+  void EnterOne(int number) {
+    if (objective_.spec().anisotropic() && number > 0 && number < 4) {
+      constexpr const char* kNames[] = {"freed", "moments", "highlight"};
+      EnterInitial(kNames[number - 1], seed_, kNames[number - 1]);
+    } else if (number == 0) {
+      race_->Enter("given", [this] { return given_; });
+    } else if (number == 2) {
+      EnterInitial("highlight", seed_, "highlight");
+    } else if (number == 4) {
+      EnterInitial("analytic", seed_, "analytic");
+    } else if (number == 7) {
+      EnterSwept();
+    } else if (number == 8) {
+      EnterGrown(5, "grown");
+    } else if (number == 9) {
+      EnterGrown(3, "grown/3");
+    } else {
+      const uint64_t seed = seed_ + random_++;
+      EnterInitial("roughness", seed, "roughness/" + std::to_string(seed));
+    }
+  }
+
+  // As `awls` would go on from the given one: it creeps past minima that longer steps fall into.
+  void EnterSwept() {
+    race_->Enter("swept", [this] { return given_; }, {.count = 60, .in_blocks = false});
+  }
+
+  void EnterGrown(int sweeps, const char* name) {
+    const auto grow = [this, sweeps]() -> std::optional<FactorModel> {
+      const ModelSpec& spec = objective_.spec();
+      if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
+      return WithDeadBins(Grow(race_->thinned(), sweeps, seed_, stop_));
+    };
+    race_->Enter(name, grow, {.count = sweeps});
+  }
+
+  void EnterInitial(const char* init, uint64_t seed, std::string name) {
+    race_->Enter(std::move(name), [this, init, seed]() -> std::optional<FactorModel> {
+      FactorModel model = WithDeadBins(FindInitialModel(init).make(objective_, seed));
+      if (std::ranges::equal(model.parameters(), given_.parameters())) return std::nullopt;
+      return model;
+    });
+  }
+
+  // Dead bins are the caller's, and stay.
+  FactorModel WithDeadBins(FactorModel model) const {
+    CopyDeadParameters(objective_.coverage(), given_, &model);
+    return model;
+  }
+
+  const Objective& objective_;
+  const FactorModel& given_;
+  const uint64_t seed_;
+  StartRace* const race_;
+  const std::function<bool()> stop_;
+  int entered_ = 0;
+  uint64_t random_ = 0;  // of those, random ones
+};
+
+// A part of the race: so many starts have entered, each that is in it goes on until it has tried so
+// many joint steps, and then the best stay. The leader may show what a few steps on all samples
+// make of it; it goes on racing as it was.
+struct Leg {
+  int starts, tries, keep, steps_on_all = 0;
+};
+
+// By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
+// beyond what follows from a fit of p numbers to n values: (1 + p / n) / (1 - p / n).
+constexpr double kLargeMismatch = 0.03;
+
+// The winner of the race has not been fitted to all samples; with so many steps it must have come
+// below a former leader who has.
+constexpr int kMaxCatchUp = 6;
+
+double ExpectedMismatch(const Objective& thinned) {
+  // Mirrored values are of the same model values.
+  const double values = 3.0 * thinned.samples().size() / 2;
+  return 2 * thinned.spec().num_parameters() / std::max(values, 1.0);
+}
+
+// A model on the axes of an objective; what no data touch there is that of `given`.
+FactorModel OnAxesOf(const Objective& objective, const FactorModel& model,
+                     const FactorModel& given) {
+  if (model.spec() == objective.spec()) return model;
+  FactorModel result = WithAxes(model, objective.spec());
+  CopyDeadParameters(objective.coverage(), given, &result);
+  return result;
+}
+
+// The legs one by one, then joint steps on all samples from the best point.
+void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
+             Run* run) {
+  // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
+  std::optional<JointStepper> stepper;
+  const auto begin_at = [&](const FactorModel& from) {
+    const FactorModel model = OnAxesOf(objective, from, given);
+    stepper.emplace(objective, JointStepper::Curvature::kByProgress,
+                    JointStepper::Trial::kProjected, &run->summary().phases);
+    stepper->Restart(model);
+  };
+  begin_at(given);
+  bool go_on = run->Start(stepper->Optimality());
+  if (!go_on) return;
+  const auto stop = [run] { return run->seconds() >= run->options().max_seconds; };
+  FactorModel best = given;
+  // Where the stepper stands, if that is the best point so far.
+  const auto record = [&] {
+    const bool better = stepper->E() < run->best_objective();
+    if (better) best = stepper->current();
+    return run->Record(best, {.accepted = better,
+                              .may_converge = false,
+                              .objective = better ? stepper->E() : run->best_objective()});
+  };
+  {
+    // A model with many azimuths begins as one with few.
+    const ModelSpec first_look = WithFewerAzimuths(objective.spec());
+    const bool coarser = !(first_look == objective.spec());
+    const Objective looked_at = coarser ? Objective(objective, first_look) : objective;
+    const FactorModel at_first = OnAxesOf(looked_at, given, WithAxes(given, first_look));
+    StartRace race(looked_at, kThinned, stop);
+    Starts starts(looked_at, at_first, run->options().seed, &race, stop);
+    for (const Leg& leg : legs) {
+      starts.EnterUpTo(leg.starts);
+      race.Advance(leg.tries);
+      race.Keep(leg.keep);
+      if (race.leader() == nullptr) continue;
+      // On all samples a leader may be behind its predecessor.
+      begin_at(*race.leader());
+      const double mismatch = stepper->E() / race.Results().front().objective - 1;
+      go_on = record();
+      for (int k = 0; k < leg.steps_on_all && go_on; ++k) {
+        stepper->Step();
+        go_on = record();
+      }
+      if (!go_on) break;
+      // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
+      // fits the thinned samples at the cost of the others.
+      const bool large = mismatch > kLargeMismatch + ExpectedMismatch(race.thinned());
+      if (large && !coarser && &leg != &legs.back()) race.ThinLess();
+    }
+    run->summary().starts = race.Results();
+    run->summary().phases += race.phases();
+  }
+  for (int k = 0; k < kMaxCatchUp && go_on && stepper->E() > run->best_objective(); ++k) {
+    stepper->Step();
+    go_on = record();
+  }
+  if (!go_on) return;
+  if (stepper->E() > run->best_objective()) begin_at(best);
+  RepeatJointSteps(&*stepper, run);
+}
+
+class Auto : public Solver {
+ public:
+  static constexpr double kToleranceFactor = 10;
+
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
+    Run run("auto", objective, options, model);
+    // A joint step on all samples gains more than an iteration of others, and costs more.
+    run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
+    RunLegs({{.starts = 2, .tries = 4, .keep = 2},
+             {.starts = 2, .tries = 16, .keep = 2, .steps_on_all = 1},
+             {.starts = 7, .tries = 16, .keep = 3},
+             {.starts = 7, .tries = 40, .keep = 2},
+             {.starts = 7, .tries = 100, .keep = 1}},
+            objective, FactorModel(*model), &run);
+    return run.Finish();
+  }
+};
+
+class Multistart : public Solver {
+ private:
+  SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
+                        FactorModel* model) const override {
+    Run run("multistart", objective, options, model);
+    const int n = options.starts, half = (n + 1) / 2;
+    RunLegs({{.starts = n, .tries = 10, .keep = n},
+             {.starts = n, .tries = 25, .keep = half},
+             {.starts = n, .tries = 100, .keep = half}},
+            objective, FactorModel(*model), &run);
+    const std::vector<StartResult>& tried = run.summary().starts;
+    if (!tried.empty()) run.summary().notes.push_back(Agreement(tried));
+    return run.Finish();
+  }
+
+  static std::string Agreement(const std::vector<StartResult>& starts) {
+    const auto within = [&](double fraction) {
+      return std::ranges::count_if(starts, [&](const StartResult& start) {
+        return start.objective <= (1 + fraction) * starts.front().objective;
+      });
+    };
+    std::ostringstream text;
+    text << "of " << starts.size() << " starts " << within(1e-3)
+         << " came within 0.1 % of the best E, " << within(1e-2) << " within 1 %";
+    return text.str();
+  }
+};
+
+}  // namespace
+
+SolverEntry AutoEntry() {
+  return {.name = "auto",
+          .description = "several starts raced on thinned data, the best finished on all",
+          .reference = "docs/solvers.md",
+          .options = {"seed"},
+          .make = [] { return std::make_unique<Auto>(); }};
+}
+
+SolverEntry MultistartEntry() {
+  return {.name = "multistart",
+          .description = "as auto, with as many starts as you like; tells how many agree",
+          .reference = "docs/solvers.md",
+          .options = {"starts", "seed"},
+          .make = [] { return std::make_unique<Multistart>(); }};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,185 @@
+#include "trilobe/solvers/race/start_race.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "trilobe/base/parallel.h"
+#include "trilobe/solvers/awls/sweep.h"
+#include "trilobe/solvers/joint/joint_step.h"
+
+namespace trilobe {
+namespace {
+
+// A step that lowers E by less than this fraction ends an entrant's run.
+constexpr double kSmallDecrease = 1e-5;
+
+int StrideFor(const Objective& objective, const StartRace::Thinning& thinning) {
+  // Folded samples are half as many.
+  const int fold = objective.folded() != nullptr ? 2 : 1;
+  const int wanted = fold * thinning.samples_per_parameter * objective.spec().num_parameters();
+  return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
+}
+
+}  // namespace
+
+class StartRace::Entrant {
+ public:
+  Entrant(std::string name, MakeStart make_start, Sweeps sweeps, const Objective* objective)
+      : name_(std::move(name)),
+        make_start_(std::move(make_start)),
+        sweeps_(sweeps),
+        objective_(objective) {}
+
+  // Goes on with other samples.
+  void MoveTo(const Objective* objective) {
+    objective_ = objective;
+    stepper_.reset();
+    converged_ = false;
+    if (model_) E_ = Evaluate();
+  }
+
+  void Advance(int tries, const std::function<bool()>& stop) {
+    if (stop()) return;
+    if (make_start_) Start(stop);
+    if (!model_ || tries_ >= tries || stop()) return;
+    if (!stepper_) {
+      stepper_ = std::make_unique<JointStepper>(*objective_, JointStepper::Curvature::kByProgress,
+                                                JointStepper::Trial::kProjected, &phases_);
+      stepper_->Restart(*model_);
+    }
+    while (tries_ < tries && !converged_ && !stop()) {
+      const double before = stepper_->E();
+      const bool accepted = stepper_->Step();
+      ++tries_;
+      converged_ = stepper_->exhausted() || (accepted && !stepper_->held_back() &&
+                                             stepper_->E() > (1 - kSmallDecrease) * before);
+    }
+    model_ = stepper_->current();
+    E_ = stepper_->E();
+  }
+
+  void Leave() {
+    racing_ = false;
+    stepper_.reset();
+  }
+
+  const std::string& name() const { return name_; }
+  bool started() const { return model_.has_value(); }
+  bool racing() const { return racing_; }
+  const FactorModel& model() const { return *model_; }
+  double E() const { return E_; }
+  const PhaseSeconds& phases() const { return phases_; }
+
+ private:
+  void Start(const std::function<bool()>& stop) {
+    model_ = std::exchange(make_start_, nullptr)();
+    if (!model_) {
+      Leave();
+      return;
+    }
+    E_ = Evaluate();
+    const std::unique_ptr<Sweep> sweep = MakeSweep(*objective_, &phases_);
+    for (int k = 0; k < sweeps_.count && !stop(); ++k) {
+      if (sweeps_.in_blocks) {
+        sweep->InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
+        E_ = Evaluate();  // which blocks need to know
+      } else {
+        (*sweep)(nullptr, &*model_);
+      }
+    }
+    if (!sweeps_.in_blocks) E_ = Evaluate();
+  }
+
+  double Evaluate() {
+    const ScopedTimer timer(&phases_.evaluating);
+    return objective_->Value(*model_);
+  }
+
+  const std::string name_;
+  MakeStart make_start_;  // until it has been asked
+  const Sweeps sweeps_;
+  const Objective* objective_;
+  std::optional<FactorModel> model_;
+  double E_ = 0;
+  int tries_ = 0;
+  bool racing_ = true, converged_ = false;
+  PhaseSeconds phases_;
+  std::unique_ptr<JointStepper> stepper_;
+};
+
+StartRace::StartRace(const Objective& objective, const Thinning& thinning,
+                     std::function<bool()> stop)
+    : objective_(objective), stop_(std::move(stop)), stride_(StrideFor(objective, thinning)) {
+  Thin();
+}
+
+void StartRace::Thin() {
+  thinned_ = std::make_unique<Objective>(Thinned(objective_.samples(), stride_), objective_.spec(),
+                                         objective_.weighting(), /*num_threads=*/1);
+}
+
+void StartRace::ThinLess() {
+  if (stride_ == 1) return;
+  stride_ /= 2;
+  const auto before = std::exchange(thinned_, nullptr);  // lives until no entrant refers to it
+  Thin();
+  ParallelFor(static_cast<int>(entrants_.size()), objective_.num_threads(),
+              [&](int k) { entrants_[k]->MoveTo(thinned_.get()); });
+}
+
+StartRace::~StartRace() = default;
+
+void StartRace::Enter(std::string name, MakeStart make_start, Sweeps sweeps) {
+  entrants_.push_back(
+      std::make_unique<Entrant>(std::move(name), std::move(make_start), sweeps, thinned_.get()));
+}
+
+void StartRace::Advance(int tries) {
+  std::vector<Entrant*> racing;
+  for (const auto& entrant : entrants_) {
+    if (entrant->racing()) racing.push_back(entrant.get());
+  }
+  ParallelJobs(static_cast<int>(racing.size()), objective_.num_threads(),
+               [&](int k) { racing[k]->Advance(tries, stop_); });
+}
+
+void StartRace::Keep(int count) {
+  int kept = 0;
+  for (Entrant* const entrant : Ranked()) {
+    if (entrant->racing() && kept++ >= count) entrant->Leave();
+  }
+}
+
+const FactorModel* StartRace::leader() const {
+  const std::vector<Entrant*> ranked = Ranked();
+  return ranked.empty() ? nullptr : &ranked.front()->model();
+}
+
+std::vector<StartResult> StartRace::Results() const {
+  const double energy = thinned_->MeasuredEnergy();
+  const double scale = energy > 0 ? objective_.MeasuredEnergy() / energy : 1;
+  std::vector<StartResult> results;
+  for (const Entrant* const entrant : Ranked()) {
+    results.push_back({.name = entrant->name(), .objective = scale * entrant->E()});
+  }
+  return results;
+}
+
+PhaseSeconds StartRace::phases() const {
+  PhaseSeconds sum;
+  for (const auto& entrant : entrants_) sum += entrant->phases();
+  return sum;
+}
+
+// Best first; of equals the one that entered first.
+std::vector<StartRace::Entrant*> StartRace::Ranked() const {
+  std::vector<Entrant*> ranked;
+  for (const auto& entrant : entrants_) {
+    if (entrant->started()) ranked.push_back(entrant.get());
+  }
+  std::ranges::stable_sort(ranked, {}, &Entrant::E);
+  return ranked;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,82 @@
+#ifndef TRILOBE_SOLVERS_RACE_START_RACE_H_
+#define TRILOBE_SOLVERS_RACE_START_RACE_H_
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// Several starting points, fitted side by side to a thinned selection of the samples, a thread
+// each: E has many local minima, which one a start leads to cannot be told beforehand, and the
+// samples lie so dense that a fraction of them ranks the minima as all of them do.
+class StartRace {
+ public:
+  // Makes a starting point; asked once, from any thread. Nothing if there is none, or no new one.
+  using MakeStart = std::function<std::optional<FactorModel>()>;
+
+  // Samples are left out by a stride (Thinned) of at most `max_stride`, as long as so many folded
+  // ones are left for each number of the model.
+  struct Thinning {
+    int samples_per_parameter, max_stride;
+  };
+
+  // `stop` may be asked from several threads.
+  StartRace(const Objective& objective, const Thinning& thinning, std::function<bool()> stop);
+  ~StartRace();
+
+  // Goes on with about twice as many samples, if these are not all.
+  void ThinLess();
+
+  // The selection of samples, for one thread.
+  const Objective& thinned() const { return *thinned_; }
+
+  // What a start gets first of all: sweeps of AWLS, which bring its magnitudes in order.
+  struct Sweeps {
+    int count = 5;
+    bool in_blocks = true;
+  };
+  void Enter(std::string name, MakeStart make_start, Sweeps sweeps);
+  void Enter(std::string name, MakeStart make_start) {
+    Enter(std::move(name), std::move(make_start), Sweeps());
+  }
+
+  // Those in the race go on until they have made their sweeps and then tried so many joint steps.
+  // One that has converged, or is to stop, makes no more; one that has not begun by then never
+  // does.
+  void Advance(int tries);
+
+  // All but the best `count` leave the race.
+  void Keep(int count);
+
+  // The best of all that ever entered; null if there is none yet.
+  const FactorModel* leader() const;
+
+  // All that started, best first, with E on the thinned samples as an estimate of that on all.
+  std::vector<StartResult> Results() const;
+
+  // Summed over the entrants, which work at the same time.
+  PhaseSeconds phases() const;
+
+ private:
+  class Entrant;
+  void Thin();
+  std::vector<Entrant*> Ranked() const;
+
+  const Objective& objective_;
+  const std::function<bool()> stop_;
+  int stride_;  // that samples are thinned by
+  std::unique_ptr<const Objective> thinned_;
+  std::vector<std::unique_ptr<Entrant>> entrants_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_RACE_START_RACE_H_

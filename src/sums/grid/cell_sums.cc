@@ -1,0 +1,250 @@
+#include "trilobe/sums/grid/cell_sums.h"
+
+#include <array>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "trilobe/base/multiversion.h"
+#include "trilobe/base/parallel.h"
+#include "trilobe/math/bounded_quadratic.h"
+#include "trilobe/math/element_step.h"
+#include "trilobe/model/shadowing_pieces.h"
+
+namespace trilobe {
+namespace {
+
+constexpr int kMaxBasis = 1 + kMaxLobes;
+static_assert(kMaxBasis <= kMaxBoundedUnknowns);
+
+// b_a = sum w residual phi_a and A_ae = sum w phi_a phi_e over the samples of a row.
+TRILOBE_MULTIVERSION
+void RowSums(int size, const double* __restrict w, const double* __restrict residual,
+             const double* const* phi, int basis, double* __restrict b, double* __restrict A) {
+  constexpr int kLanes = 8;
+  const int whole = size - size % kLanes;
+  const auto dot = [&](const double* x, const double* y) {
+    Lanes8 sums = {}, w_n, x_n, y_n;
+    for (int n = 0; n < whole; n += kLanes) {
+      std::memcpy(&w_n, w + n, sizeof(Lanes8));
+      std::memcpy(&x_n, x + n, sizeof(Lanes8));
+      std::memcpy(&y_n, y + n, sizeof(Lanes8));
+      sums += w_n * x_n * y_n;
+    }
+    double sum = 0;
+    for (int n = whole; n < size; ++n) sum += w[n] * x[n] * y[n];
+    for (int lane = 0; lane < kLanes; ++lane) sum += sums[lane];
+    return sum;
+  };
+  for (int a = 0; a < basis; ++a) {
+    b[a] = dot(phi[a], residual);
+    for (int e = a; e < basis; ++e) A[a * basis + e] = A[e * basis + a] = dot(phi[a], phi[e]);
+  }
+}
+
+// residual -= x K
+TRILOBE_MULTIVERSION
+void SubtractScaled(int size, double x, const double* __restrict K, double* __restrict residual) {
+  for (int n = 0; n < size; ++n) residual[n] -= x * K[n];
+}
+
+// The sparse directions v in which elements, numbered from 0, move a cell's x.
+struct MovedLobes {
+  int count = 0;
+  std::array<int, kMaxBasis> basis{};
+  std::array<int, kMaxBasis> element{};
+  std::array<double, kMaxBasis> v{};
+  void Add(int a, double value, int of_element = 0) {
+    basis[count] = a;
+    element[count] = of_element;
+    v[count++] = value;
+  }
+};
+
+}  // namespace
+
+CellSums::CellSums(const FoldedGrid& folded, const ModelSpec& spec)
+    : folded_(folded),
+      spec_(spec),
+      basis_(1 + spec.lobes),
+      numbers_(static_cast<size_t>(folded.num_rows()) * kChannels * stride()) {}
+
+void CellSums::Accumulate(const FactorModel& model, int num_threads) {
+  const auto G = ShadowingPieces(model);
+  const int max_row = folded_.max_row_size();
+  ParallelFor(folded_.grid.theta_h, num_threads, [&](int h) {
+    const std::vector<double> ones(max_row, 1.0);
+    std::vector<double> K(G.size() * max_row), residual(max_row);
+    std::array<const double*, kMaxBasis> phi{ones.data()};
+    for (int d = 0; d < folded_.grid.theta_d; ++d) {
+      const int row = h * folded_.grid.theta_d + d;
+      const int begin = folded_.row_begin[row], end = folded_.row_begin[row + 1];
+      const int size = end - begin;
+      for (size_t t = 0; t < G.size(); ++t) {
+        EvaluateShadowing(folded_, G[t], begin, end, K.data() + t * max_row);
+      }
+      for (int c = 0; c < kChannels; ++c) {
+        const double* const rho = folded_.rho[c].data() + begin;
+        for (int n = 0; n < size; ++n) residual[n] = rho[n] - model.d()[c];
+        for (int m = 0; m < spec_.lobes; ++m) {
+          const double* const Km = phi[1 + m] = K.data() + spec_.table(Factor::kG, m, c) * max_row;
+          const double x = model.s(m)[c] * model.D(m, c)[h] * model.F(m, c)[d];
+          SubtractScaled(size, x, Km, residual.data());
+        }
+        RowSums(size, folded_.weight[c].data() + begin, residual.data(), phi.data(), basis_,
+                mutable_b(h, d, c), mutable_b(h, d, c) + basis_);
+      }
+    }
+  });
+}
+
+template <int kMaxElements, typename Moved>
+void CellSums::Update(const Block& block, const Moved& moved, std::span<double* const> elements,
+                      double E) {
+  const auto for_each_cell = [&](const auto& visit) {
+    for (int h = block.h.begin; h < block.h.end; ++h) {
+      for (int d = block.d.begin; d < block.d.end; ++d) {
+        for (int c = block.channels.begin; c < block.channels.end; ++c) visit(h, d, c);
+      }
+    }
+  };
+  // A single element's sums stay in registers.
+  constexpr bool kSingle = kMaxElements == 1;
+  const int size = kSingle ? 1 : static_cast<int>(elements.size());
+  std::array<double, kMaxElements> g{};
+  std::array<double, kMaxElements * kMaxElements> H{};
+  for_each_cell([&](int h, int d, int c) {
+    const MovedLobes v = moved(h, d, c);
+    const double* const b_hdc = b(h, d, c);
+    const double* const A_hdc = A(h, d, c);
+    for (int k = 0; k < v.count; ++k) {
+      const int row = kSingle ? 0 : v.element[k];
+      g[row] += v.v[k] * b_hdc[v.basis[k]];
+      for (int l = 0; l < v.count; ++l) {
+        const int column = kSingle ? 0 : v.element[l];
+        H[row * size + column] += v.v[k] * v.v[l] * A_hdc[v.basis[k] * basis_ + v.basis[l]];
+      }
+    }
+  });
+  const auto count = static_cast<size_t>(size);
+  std::array<double, kMaxElements> delta{};
+  if (!MoveToMinimum({H.data(), count * count}, {g.data(), count}, E, elements, delta.data())) {
+    return;
+  }
+  for_each_cell([&](int h, int d, int c) {
+    const MovedLobes v = moved(h, d, c);
+    double* const b_hdc = mutable_b(h, d, c);
+    const double* const A_hdc = A(h, d, c);
+    for (int k = 0; k < v.count; ++k) {
+      const double step = delta[kSingle ? 0 : v.element[k]] * v.v[k];
+      for (int a = 0; a < basis_; ++a) b_hdc[a] -= step * A_hdc[v.basis[k] * basis_ + a];
+    }
+  });
+}
+
+void CellSums::UpdateAll(const std::function<void(const FactorModel&)>& on_element,
+                         FactorModel* model) {
+  const Range all_h{0, folded_.grid.theta_h}, all_d{0, folded_.grid.theta_d};
+  const auto update = [&](const Block& block, const auto& moved, double* element) {
+    Update<1>(block, moved, {&element, 1});
+    if (on_element) on_element(*model);
+  };
+
+  for (int c = 0; c < kChannels; ++c) {
+    const auto moved = [](int, int, int) {
+      MovedLobes v;
+      v.Add(0, 1);
+      return v;
+    };
+    update({all_h, all_d, {c, c + 1}}, moved, &model->d()[c]);
+  }
+  for (int m = 0; m < spec_.lobes; ++m) {
+    for (int c = 0; c < kChannels; ++c) {
+      const auto D = std::as_const(*model).D(m, c), F = std::as_const(*model).F(m, c);
+      const auto moved = [&](int h, int d, int) {
+        MovedLobes v;
+        v.Add(1 + m, D[h] * F[d]);
+        return v;
+      };
+      update({all_h, all_d, {c, c + 1}}, moved, &model->s(m)[c]);
+    }
+  }
+  for (const Factor factor : {Factor::kD, Factor::kF}) {
+    const bool is_D = factor == Factor::kD;
+    for (int t = 0; t < spec_.num_tables(factor); ++t) {
+      const auto moved = [&](int h, int d, int c) {
+        MovedLobes v;
+        for (int m = 0; m < spec_.lobes; ++m) {
+          if (!spec_.serves(factor, t, m, c)) continue;
+          const FactorModel& now = *model;
+          v.Add(1 + m, now.s(m)[c] * (is_D ? now.F(m, c)[d] : now.D(m, c)[h]));
+        }
+        return v;
+      };
+      const auto [begin, end] = spec_.channels(factor, t);
+      const Range channels{begin, end};
+      for (int k = 0; k < spec_.table_size(factor); ++k) {
+        const Range only{k, k + 1};
+        update({is_D ? only : all_h, is_D ? all_d : only, channels}, moved,
+               &model->table(factor, t)[k]);
+      }
+    }
+  }
+}
+
+void CellSums::UpdateBlocks(double E, int num_threads,
+                            const std::function<void(const FactorModel&)>& on_block,
+                            FactorModel* model) {
+  const Range all_h{0, folded_.grid.theta_h}, all_d{0, folded_.grid.theta_d};
+  if (on_block) num_threads = 1;  // it sees the blocks in order
+  // Blocks of one kind move different cells.
+  const auto for_each_block = [&](int count, const auto& update) {
+    ParallelFor(count, num_threads, [&](int k) {
+      update(k);
+      if (on_block) on_block(*model);
+    });
+  };
+
+  for_each_block(kChannels, [&](int channel) {
+    std::array<double*, kMaxBasis> elements{&model->d()[channel]};
+    for (int m = 0; m < spec_.lobes; ++m) elements[1 + m] = &model->s(m)[channel];
+    const FactorModel& now = *model;
+    const auto moved = [&](int h, int d, int c) {
+      MovedLobes v;
+      v.Add(0, 1);
+      for (int m = 0; m < spec_.lobes; ++m) v.Add(1 + m, now.D(m, c)[h] * now.F(m, c)[d], 1 + m);
+      return v;
+    };
+    Update<kMaxBasis>({all_h, all_d, {channel, channel + 1}}, moved,
+                      {elements.data(), static_cast<size_t>(basis_)}, E);
+  });
+  for (const Factor factor : {Factor::kD, Factor::kF}) {
+    const bool is_D = factor == Factor::kD;
+    const TableSharing& sharing = spec_.sharing(factor);
+    const int groups = sharing.per_channel ? kChannels : 1;
+    const int tables = spec_.num_tables(factor) / groups;  // that channels of a group read
+    if (tables == 0) continue;
+    for_each_block(spec_.table_size(factor) * groups, [&](int item) {
+      const int k = item / groups, first_channel = item % groups;
+      std::array<double*, kMaxLobes> elements{};
+      for (int t = 0; t < tables; ++t) {
+        elements[t] = &model->table(factor, spec_.table(factor, t, first_channel))[k];
+      }
+      const FactorModel& now = *model;
+      const auto moved = [&](int h, int d, int c) {
+        MovedLobes v;
+        for (int m = 0; m < spec_.lobes; ++m) {
+          v.Add(1 + m, now.s(m)[c] * (is_D ? now.F(m, c)[d] : now.D(m, c)[h]),
+                sharing.per_lobe ? m : 0);
+        }
+        return v;
+      };
+      const auto [begin, end] = spec_.channels(factor, spec_.table(factor, 0, first_channel));
+      const Range only{k, k + 1};
+      Update<kMaxLobes>({is_D ? only : all_h, is_D ? all_d : only, {begin, end}}, moved,
+                        {elements.data(), static_cast<size_t>(tables)}, E);
+    });
+  }
+}
+
+}  // namespace trilobe

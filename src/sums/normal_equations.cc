@@ -1,0 +1,200 @@
+#include "trilobe/sums/normal_equations.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "trilobe/base/parallel.h"
+#include "trilobe/sums/grid/joint_rows.h"
+#include "trilobe/sums/grid/joint_shadowing.h"
+#include "trilobe/sums/sample_equations.h"
+
+namespace trilobe {
+namespace {
+
+// d rho / dx of one sample and channel: which parameters, and by how much.
+class SampleDerivatives {
+ public:
+  explicit SampleDerivatives(int num_parameters) : values_(num_parameters, 0.0) {}
+
+  void Set(const FactorModel& model, const SampleStencils& at, int c) {
+    for (const int k : touched_) values_[k] = 0;
+    touched_.clear();
+    Add(c, 1);
+    const ModelSpec& spec = model.spec();
+    for (int m = 0; m < spec.lobes; ++m) {
+      const double s = model.s(m)[c], D = at.D(model.D(m, c)), F = at.F(model.F(m, c));
+      const double G_i = at.G_i(model.G(m, c)), G_o = at.G_o(model.G(m, c));
+      const double K = G_i * G_o * at.inverse_cosines;
+      Add(kChannels * (1 + m) + c, D * F * K);
+      const auto add_table = [&](Factor factor, const Stencil& stencil, double scale) {
+        const int offset = model.TableOffset(factor, spec.table(factor, m, c));
+        for (int k = 0; k < stencil.size; ++k) {
+          Add(offset + stencil.index[k], stencil.weight[k] * scale);
+        }
+      };
+      add_table(Factor::kD, at.D, s * F * K);
+      add_table(Factor::kF, at.F, s * D * K);
+      add_table(Factor::kG, at.G_i, s * D * F * G_o * at.inverse_cosines);
+      add_table(Factor::kG, at.G_o, s * D * F * G_i * at.inverse_cosines);
+    }
+  }
+
+  // Each once.
+  std::span<const int> touched() const { return touched_; }
+  double operator[](int k) const { return values_[k]; }
+
+ private:
+  void Add(int k, double value) {
+    if (std::ranges::find(touched_, k) == touched_.end()) touched_.push_back(k);
+    values_[k] += value;
+  }
+
+  std::vector<double> values_;
+  std::vector<int> touched_;
+};
+
+// H += scale d2 rho / dx2 for one sample and channel: rho is linear in each of s, D, F and in the
+// two readings of G, so only products of two different ones have any.
+void AddSecondDerivatives(const FactorModel& model, const SampleStencils& at, int c, double scale,
+                          std::vector<double>* H) {
+  const ModelSpec& spec = model.spec();
+  const size_t n = spec.num_parameters();
+  struct Reading {
+    int offset;
+    Stencil stencil;
+    double value;
+  };
+  for (int m = 0; m < spec.lobes; ++m) {
+    const auto reading = [&](Factor factor, const Stencil& stencil) {
+      const int t = spec.table(factor, m, c);
+      return Reading{model.TableOffset(factor, t), stencil, stencil(model.table(factor, t))};
+    };
+    Stencil one;
+    one.size = 1;
+    one.index[0] = 0;
+    one.weight[0] = 1;
+    const Reading readings[] = {{kChannels * (1 + m) + c, one, model.s(m)[c]},
+                                reading(Factor::kD, at.D),
+                                reading(Factor::kF, at.F),
+                                reading(Factor::kG, at.G_i),
+                                reading(Factor::kG, at.G_o)};
+    for (int a = 0; a < 5; ++a) {
+      for (int b = 0; b < 5; ++b) {
+        if (a == b) continue;
+        double others = scale * at.inverse_cosines;
+        for (int e = 0; e < 5; ++e) {
+          if (e != a && e != b) others *= readings[e].value;
+        }
+        const Reading &of_a = readings[a], &of_b = readings[b];
+        for (int k = 0; k < of_a.stencil.size; ++k) {
+          for (int l = 0; l < of_b.stencil.size; ++l) {
+            (*H)[(of_a.offset + of_a.stencil.index[k]) * n + of_b.offset + of_b.stencil.index[l]] +=
+                others * of_a.stencil.weight[k] * of_b.stencil.weight[l];
+          }
+        }
+      }
+    }
+  }
+}
+
+void Clear(int num_parameters, QuadraticModel* result) {
+  result->objective = 0;
+  result->gradient.assign(num_parameters, 0.0);
+  result->squared_lengths.assign(num_parameters, 0.0);
+  result->H.assign(static_cast<size_t>(num_parameters) * num_parameters, 0.0);
+}
+
+// A dead bin may have collected rounding errors.
+void ClearDeadParameters(std::span<const double> coverage, QuadraticModel* result) {
+  const size_t n = coverage.size();
+  for (size_t k = 0; k < n; ++k) {
+    if (coverage[k] > 0) continue;
+    result->gradient[k] = result->squared_lengths[k] = 0;
+    for (size_t l = 0; l < n; ++l) result->H[k * n + l] = result->H[l * n + k] = 0;
+  }
+}
+
+// In blocks that fit into the cache.
+void MirrorUpperTriangle(size_t n, double* H) {
+  constexpr size_t kBlock = 16;
+  for (size_t k0 = 0; k0 < n; k0 += kBlock) {
+    for (size_t l0 = 0; l0 <= k0; l0 += kBlock) {
+      for (size_t k = k0; k < std::min(n, k0 + kBlock); ++k) {
+        for (size_t l = l0; l < std::min(k, l0 + kBlock); ++l) H[k * n + l] = H[l * n + k];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
+                       QuadraticModel* result) {
+  const int n = model.spec().num_parameters();
+  Clear(n, result);
+  result->objective = objective.Value(model);
+  SampleDerivatives derivatives(n);
+  for (const WeightedSample& sample : objective.weighted_samples()) {
+    for (int c = 0; c < kChannels; ++c) {
+      const double w = sample.weight[c];
+      const double residual = Evaluate(model, sample.stencils, c) - sample.rho[c];
+      derivatives.Set(model, sample.stencils, c);
+      for (const int k : derivatives.touched()) {
+        const double w_k = w * derivatives[k];
+        result->gradient[k] += w_k * residual;
+        double* const row = &result->H[static_cast<size_t>(k) * n];
+        for (const int l : derivatives.touched()) row[l] += w_k * derivatives[l];
+        result->squared_lengths[k] += w_k * derivatives[k];
+      }
+      if (hessian == Hessian::kNewton) {
+        AddSecondDerivatives(model, sample.stencils, c, w * residual, &result->H);
+      }
+    }
+  }
+  ClearDeadParameters(objective.coverage(), result);
+}
+
+// In a row (theta_h, theta_d) and channel rho = sum_a x_a phi_a as in CellSums, with x_m = s D F.
+// JointRows has all products with d, s, D and F, JointShadowing those of G with itself.
+class NormalEquations::Condensed {
+ public:
+  Condensed(const FoldedGrid& folded, const SplineCells& cells, const ModelSpec& spec)
+      : rows_(folded, spec), shadowing_(cells, spec) {}
+
+  void Evaluate(const FactorModel& model, Hessian hessian, int num_threads,
+                QuadraticModel* result) {
+    rows_.Evaluate(model, hessian, num_threads, result);
+    shadowing_.Evaluate(model, hessian, num_threads, result);
+    MirrorUpperTriangle(model.spec().num_parameters(), result->H.data());
+  }
+
+ private:
+  JointRows rows_;
+  JointShadowing shadowing_;
+};
+
+NormalEquations::NormalEquations(const Objective& objective) : objective_(objective) {
+  if (objective.folded() == nullptr) {
+    of_samples_ = std::make_unique<SampleEquations>(objective);
+  } else {
+    condensed_ = std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(),
+                                             objective.spec());
+  }
+}
+
+NormalEquations::~NormalEquations() = default;
+
+void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
+  CheckSameSpec(model.spec(), objective_.spec());
+  Clear(model.spec().num_parameters(), result);
+  if (condensed_ != nullptr) {
+    condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
+  } else {
+    of_samples_->Evaluate(model, hessian, result);
+  }
+  ClearDeadParameters(objective_.coverage(), result);
+}
+
+}  // namespace trilobe

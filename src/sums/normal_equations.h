@@ -1,0 +1,39 @@
+#ifndef TRILOBE_SUMS_NORMAL_EQUATIONS_H_
+#define TRILOBE_SUMS_NORMAL_EQUATIONS_H_
+
+#include <memory>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/objective/quadratic_model.h"
+
+namespace trilobe {
+
+class SampleEquations;
+
+// Accumulates a QuadraticModel without ever storing J, in one pass over the samples
+// (docs/method.md). Samples on a grid are taken folded, by their cells; others one by one
+// (SampleEquations).
+class NormalEquations {
+ public:
+  explicit NormalEquations(const Objective& objective);
+  ~NormalEquations();
+
+  // The same bits for any number of threads.
+  void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
+
+ private:
+  class Condensed;
+  const Objective& objective_;
+  std::unique_ptr<Condensed> condensed_;  // null where samples are not on a grid; then:
+  std::unique_ptr<SampleEquations> of_samples_;
+};
+
+// The same from each sample's own derivatives, in a time that only small data forgive: the
+// reference for tests.
+void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
+                       QuadraticModel* result);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SUMS_NORMAL_EQUATIONS_H_

@@ -1,0 +1,127 @@
+#include "trilobe/brdf/brdf_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "tests/test_util.h"
+
+namespace trilobe {
+namespace {
+
+constexpr MerlGrid kEven{.theta_h = 10, .theta_d = 9, .phi_d = 24};
+constexpr MerlGrid kOdd{.theta_h = 10, .theta_d = 9, .phi_d = 23};  // one bin is its own mirror
+
+// As long a row as MERL's has, for strides up to that of a race.
+constexpr MerlGrid kLong{.theta_h = 7, .theta_d = 6, .phi_d = 180};
+constexpr int kLongestStride = 24;
+
+int LongestStride(const MerlGrid& grid) { return grid == kLong ? kLongestStride : 8; }
+
+// A sample in every bin, also in those below the surface; its value is its number.
+BrdfSamples Dense(const MerlGrid& grid) {
+  BrdfSamples samples{"dense", grid, {}, {}, {}};
+  for (int bin = 0; bin < grid.size(); ++bin) {
+    samples.bins.push_back(bin);
+    samples.rho.push_back({1.0 * bin, 2.0 * bin, 3.0 * bin});
+  }
+  return samples;
+}
+
+TEST(Thinned, IsAPartOfTheSamplesInTheirOrder) {
+  for (const int stride : {1, 2, 3, 5, 8, 100}) {
+    for (const bool scattered : {false, true}) {
+      BrdfSamples samples = ValidSamples(RandomTable(kOdd, 1));
+      if (scattered) samples = Scattered(std::move(samples));
+      const BrdfSamples thinned = Thinned(samples, stride);
+      EXPECT_EQ(thinned.source, samples.source);
+      EXPECT_EQ(thinned.grid, samples.grid);
+      EXPECT_EQ(thinned.on_grid(), samples.on_grid());
+      ASSERT_EQ(thinned.bins.size() + thinned.angles.size(), thinned.rho.size());
+      int next = 0;
+      for (int j = 0; j < thinned.size(); ++j, ++next) {
+        const auto same = [&] {
+          return thinned.rho[j] == samples.rho[next] &&
+                 (scattered ? thinned.angles[j].theta_h == samples.angles[next].theta_h &&
+                                  thinned.angles[j].theta_d == samples.angles[next].theta_d &&
+                                  thinned.angles[j].phi_d == samples.angles[next].phi_d
+                            : thinned.bins[j] == samples.bins[next]);
+        };
+        while (next < samples.size() && !same()) ++next;
+        ASSERT_LT(next, samples.size()) << "stride " << stride << ", sample " << j;
+      }
+      if (scattered) {
+        EXPECT_NEAR(thinned.size(), 1.0 * samples.size() / stride, 2);
+      }
+      if (stride == 1) {
+        EXPECT_EQ(thinned.size(), samples.size());
+      }
+      if (scattered) {
+        EXPECT_EQ(thinned.size(), (samples.size() + stride - 1) / stride);
+      }
+    }
+  }
+}
+
+TEST(Thinned, KeepsMirroredPairsTogether) {
+  for (const MerlGrid& grid : {kEven, kOdd, kLong}) {
+    const BrdfSamples samples = ValidSamples(RandomTable(grid, 2));
+    const std::set<int> valid(samples.bins.begin(), samples.bins.end());
+    for (int stride = 2; stride <= LongestStride(grid); ++stride) {
+      const BrdfSamples thinned = Thinned(samples, stride);
+      const std::set<int> kept(thinned.bins.begin(), thinned.bins.end());
+      int pairs = 0;
+      for (const int bin : kept) {
+        const int p = bin % grid.phi_d, mirror = bin - p + grid.phi_d - 1 - p;
+        EXPECT_EQ(kept.contains(mirror), valid.contains(mirror)) << stride << ", bin " << bin;
+        pairs += mirror != bin && kept.contains(mirror);
+      }
+      EXPECT_GT(pairs, 0);
+    }
+  }
+}
+
+// Of n pairs in a row every stride-th is the n / stride, rounded up or down.
+TEST(Thinned, TakesTheSameShareOfEveryRow) {
+  for (const MerlGrid& grid : {kEven, kOdd, kLong}) {
+    const BrdfSamples samples = Dense(grid);
+    const int pairs = (grid.phi_d + 1) / 2;
+    for (int stride = 1; stride <= LongestStride(grid); ++stride) {
+      std::vector<int> of_row(grid.theta_h * grid.theta_d, 0);
+      const BrdfSamples thinned = Thinned(samples, stride);
+      for (const int bin : thinned.bins) {
+        of_row[bin / grid.phi_d] += 2 * (bin % grid.phi_d) < grid.phi_d;
+      }
+      for (const int count : of_row) {
+        EXPECT_GE(count, pairs / stride) << stride;
+        EXPECT_LE(count, (pairs + stride - 1) / stride) << stride;
+        EXPECT_GT(count, 0) << stride;
+      }
+    }
+  }
+}
+
+// Where neighbouring rows kept the same phi_d, whole stripes of directions would go unseen.
+TEST(Thinned, BeginsNeighbouringRowsApart) {
+  const BrdfSamples samples = Dense(kLong);
+  for (int stride = 2; stride <= kLongestStride; ++stride) {
+    const BrdfSamples thinned = Thinned(samples, stride);
+    const std::set<int> kept(thinned.bins.begin(), thinned.bins.end());
+    const auto first = [&](int h, int d) {
+      int p = 0;
+      while (!kept.contains(kLong.Index(h, d, p))) ++p;
+      return p;
+    };
+    for (int h = 0; h + 1 < kLong.theta_h; ++h) {
+      for (int d = 0; d + 1 < kLong.theta_d; ++d) {
+        EXPECT_NE(first(h, d), first(h + 1, d)) << stride;
+        EXPECT_NE(first(h, d), first(h, d + 1)) << stride;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trilobe

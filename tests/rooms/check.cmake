@@ -1,0 +1,49 @@
+# Copies what is needed to build trilobe::evaluate from source_dir into scratch_dir, and checks that
+# the build of it fails once a file breaks a rule of cmake/TrilobeCheckRooms.cmake.
+file(REMOVE_RECURSE ${scratch_dir})
+file(COPY ${source_dir}/CMakeLists.txt ${source_dir}/cmake ${source_dir}/src DESTINATION ${scratch_dir})
+file(MAKE_DIRECTORY ${scratch_dir}/include)
+file(CREATE_LINK ../src ${scratch_dir}/include/trilobe SYMBOLIC)
+execute_process(
+  COMMAND ${CMAKE_COMMAND} -S ${scratch_dir} -B ${scratch_dir}/build -G ${generator}
+          -DCMAKE_CXX_COMPILER=${cxx_compiler} -DTRILOBE_BUILD_LIBRARY=OFF -DTRILOBE_INSTALL=OFF
+  COMMAND_ERROR_IS_FATAL ANY)
+set(build ${CMAKE_COMMAND} --build ${scratch_dir}/build --target trilobe_check_rooms)
+execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
+# What is written within one tick of the file system's clock is not newer.
+execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1)
+
+# expect_failure(FILE TEXT MESSAGE): with TEXT before what FILE holds, the build of the library fails,
+# and says MESSAGE.
+function(expect_failure file text message)
+  set(path ${scratch_dir}/src/${file})
+  file(READ ${path} before)
+  file(WRITE ${path} "${text}\n${before}")
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${scratch_dir}/build --target trilobe_evaluate
+                  RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  file(WRITE ${path} "${before}")
+  string(FIND "${out}" "${message}" at)
+  if(status EQUAL 0 OR at EQUAL -1)
+    message(FATAL_ERROR "${text} in ${file} gave status ${status}, without '${message}':\n${out}")
+  endif()
+endfunction()
+
+expect_failure(math/stencil.h "#include \"trilobe/brdf/channels.h\""
+               "math/stencil.h: #include \"trilobe/brdf/channels.h\", but the room math does not see brdf")
+expect_failure(solvers/solver.cc "#include \"../io/file.h\""
+               "solvers/solver.cc: write #include \"../io/file.h\" as \"trilobe/ROOM/NAME.h\"")
+expect_failure(model/gauge.h "#include <Eigen/Core>"
+               "model/gauge.h: #include <Eigen/Core> in a header of the library")
+expect_failure(math/stencil.cc "#include <cmath>"
+               "math/stencil.cc: include trilobe/math/stencil.h first")
+expect_failure(rooms.txt "extra: model" "rooms.txt: extra sees model, which is not listed above it")
+expect_failure(rooms.txt "extra:\nother: extra"
+               "rooms.txt: no file of other includes a header of extra")
+execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
+file(MAKE_DIRECTORY ${scratch_dir}/src/attic)
+file(WRITE ${scratch_dir}/src/attic/old.h "")
+execute_process(COMMAND ${build} RESULT_VARIABLE status ERROR_VARIABLE out OUTPUT_VARIABLE out)
+string(FIND "${out}" "attic/old.h: rooms.txt does not list the room attic" at)
+if(status EQUAL 0 OR at EQUAL -1)
+  message(FATAL_ERROR "a folder that rooms.txt does not list gave status ${status}:\n${out}")
+endif()

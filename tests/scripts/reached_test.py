@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""scripts/reached.py in a small repository of its own."""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/reached.py"
+FILES = {
+    "src/base/error.h": "",
+    "src/math/cubic.h": '#include "trilobe/base/error.h"\n',
+    "src/math/cubic.cc": '#include "trilobe/math/cubic.h"\n',
+    "src/math/stencil.cc": "",
+    "tests/util.h": '#include "trilobe/math/cubic.h"\n',
+    "tests/math/cubic_test.cc": '#include "tests/util.h"\n',
+    "tests/math/stencil_test.cc": '#include "beside.h"\n',
+    "tests/math/beside.h": "",
+    "CMakeLists.txt": "",
+    "README.md": "",
+}
+SOURCES = [name for name in FILES if name.endswith(".cc")]
+
+
+class Reached(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name).resolve()
+        for name, text in FILES.items():
+            self.write(name, text)
+        (self.root / "scripts").mkdir()
+        shutil.copy(SCRIPT, self.root / "scripts")
+        (self.root / "include").mkdir()
+        (self.root / "include/trilobe").symlink_to("../src")
+        commands = [{"directory": str(self.root), "file": name} for name in SOURCES]
+        self.write("build/compile_commands.json", json.dumps(commands))
+        self.write(".gitignore", "/build/\n")
+        self.git("init", "--initial-branch=main")
+        self.commit()
+        self.git("switch", "--create", "branch")
+
+    def write(self, name, text):
+        (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / name).write_text(text)
+
+    def git(self, *arguments):
+        who = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org"]
+        subprocess.run(["git", *who, *arguments], cwd=self.root, check=True, capture_output=True)
+
+    def commit(self):
+        self.git("add", "--all")
+        self.git("commit", "--message=x")
+
+    def reached(self, base="main"):
+        done = subprocess.run([self.root / "scripts/reached.py", "build", base], cwd=self.root,
+                              capture_output=True, text=True, check=True)
+        return [str(pathlib.Path(line).relative_to(self.root)) for line in done.stdout.split()]
+
+    def test_follows_includes(self):
+        self.write("src/base/error.h", "// changed\n")
+        self.commit()
+        self.assertEqual(self.reached(), ["src/math/cubic.cc", "tests/math/cubic_test.cc"])
+
+    def test_sees_what_is_not_committed(self):
+        self.write("tests/math/beside.h", "// changed\n")
+        self.assertEqual(self.reached(), ["tests/math/stencil_test.cc"])
+
+    def test_sees_new_files(self):
+        self.git("rm", "--cached", "src/math/stencil.cc")
+        self.git("commit", "--message=x")
+        self.git("branch", "--force", "main")
+        self.assertEqual(self.reached(), ["src/math/stencil.cc"])
+
+    def test_leaves_out_what_main_has_changed_since(self):
+        self.write("README.md", "changed\n")
+        self.commit()
+        self.git("switch", "main")
+        self.write("src/base/error.h", "// changed\n")
+        self.commit()
+        self.git("switch", "branch")
+        self.assertEqual(self.reached(), [])
+
+    def test_takes_all_where_it_cannot_tell(self):
+        self.assertEqual(self.reached(), SOURCES)  # nothing has changed
+        self.write("src/math/stencil.cc", "// changed\n")
+        self.assertEqual(self.reached(), ["src/math/stencil.cc"])
+        self.assertEqual(self.reached("nowhere"), SOURCES)
+        self.assertEqual(self.reached(""), SOURCES)
+        self.write("CMakeLists.txt", "# changed\n")
+        self.assertEqual(self.reached(), SOURCES)
+
+
+unittest.main()
