@@ -20,7 +20,7 @@ std::string LeftOutText(const BinCounts& counts) {
     if (left_out.bins == 0) continue;
     text += (text.empty() ? "" : ", ") + std::to_string(left_out.bins) + " " + left_out.reason;
   }
-  return text;
+  return text.empty() ? "none" : text;
 }
 
 nlohmann::ordered_json ToJson(const BinCounts& counts) {

@@ -17,7 +17,7 @@ struct LeftOut {
 };
 std::vector<LeftOut> ReasonsOf(const BinCounts& counts);
 
-// "361784 below the surface, 12 lost (negative)": those that there are; empty if there is none.
+// "361784 below the surface, 12 lost (negative)": those that there are, or "none".
 std::string LeftOutText(const BinCounts& counts);
 
 // {"total": ..., "valid": ..., "below_surface": ..., ...}.

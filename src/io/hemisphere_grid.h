@@ -17,7 +17,10 @@ struct HemisphereGrid {
   int phis = 48;
 
   constexpr int nodes() const { return thetas * phis; }
-  double Theta(int node) const { return (node / phis) * (kPi / 2 / thetas); }
+  double Theta(int node) const {
+    const int a = node / phis;
+    return a * (kPi / 2 / thetas);
+  }
   double Phi(int node) const { return (node % phis) * (2 * kPi / phis); }
   SphericalAngles Angles(int i, int o) const { return {Theta(i), Phi(i), Theta(o), Phi(o)}; }
 

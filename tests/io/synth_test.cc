@@ -272,7 +272,7 @@ TEST(LeaveOutAtRandomTest, LeavesOutAShareBySeed) {
   EXPECT_NE(other_seed.samples.rho, this_seed.samples.rho);
   // Bins of a table are lost.
   const BinCounts bins = CountsOf(LoadMeasurement("synth:foam", {.missing = 0.5}));
-  EXPECT_NEAR(bins.negative, 1096216 / 2, 5 * std::sqrt(1096216 / 4));
+  EXPECT_NEAR(bins.negative, 1096216 / 2.0, 5 * std::sqrt(1096216 / 4.0));
   EXPECT_EQ(bins.negative + bins.valid, 1096216);
   for (const double share : {-0.1, 1.0, std::nan("")}) {
     EXPECT_THAT(ErrorOf([&] { LoadMeasurement("synth:velvet", {.missing = share}); }),
