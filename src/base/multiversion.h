@@ -15,11 +15,34 @@
 #define TRILOBE_MULTIVERSION
 #endif
 
+#include <cstring>
+
+// For what such functions call: it must become part of each copy.
+#define TRILOBE_ALWAYS_INLINE [[gnu::always_inline]] inline
+
 namespace trilobe {
 
 // Vectors of doubles that compile to whatever registers there are.
 using Lanes4 = double __attribute__((vector_size(4 * sizeof(double))));
 using Lanes8 = double __attribute__((vector_size(8 * sizeof(double))));
+
+template <typename Lanes>
+TRILOBE_ALWAYS_INLINE void LoadLanes(const double* from, Lanes* to) {
+  std::memcpy(to, from, sizeof(Lanes));
+}
+template <typename Lanes>
+TRILOBE_ALWAYS_INLINE void StoreLanes(const Lanes& from, double* to) {
+  std::memcpy(to, &from, sizeof(Lanes));
+}
+// y += a x, for `size` numbers in whole vectors of four.
+TRILOBE_ALWAYS_INLINE void AddScaled(int size, double a, const double* x, double* y) {
+  for (int k = 0; k < size; k += 4) {
+    Lanes4 x_k, y_k;
+    LoadLanes(x + k, &x_k);
+    LoadLanes(y + k, &y_k);
+    StoreLanes(y_k + a * x_k, y + k);
+  }
+}
 
 }  // namespace trilobe
 

@@ -11,6 +11,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/objective/sample_reader.h"
 
 namespace trilobe {
 namespace {
@@ -89,42 +90,23 @@ bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
   return least == 0;
 }
 
-double ScatteredValue(const std::vector<WeightedSample>& samples, const FactorModel& model,
-                      int num_threads) {
-  constexpr size_t kChunk = 4096;
-  const int chunks = static_cast<int>((samples.size() + kChunk - 1) / kChunk);
-  std::vector<double> sums(chunks, 0.0);
-  ParallelFor(chunks, num_threads, [&](int k) {
-    const size_t end = std::min(samples.size(), (k + 1) * kChunk);
-    for (size_t j = k * kChunk; j < end; ++j) {
-      const WeightedSample& sample = samples[j];
-      for (int c = 0; c < kChannels; ++c) {
-        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
-        sums[k] += sample.weight[c] * residual * residual;
-      }
-    }
-  });
-  return std::accumulate(sums.begin(), sums.end(), 0.0);
-}
-
-CoverageByChannel ScatteredCoverage(const std::vector<WeightedSample>& samples,
-                                    const ModelSpec& spec) {
+CoverageByChannel ScatteredCoverage(const FoldedSamples& samples, const ModelSpec& spec) {
   CoverageByChannel coverage;
   for (int c = 0; c < kChannels; ++c) {
     FactorCoverage& of = coverage[c];
     of.D.assign(spec.d_axis.size, 0.0);
     of.F.assign(spec.f_axis.size, 0.0);
     of.G.assign(spec.g_axis.size, 0.0);
-    for (const WeightedSample& sample : samples) {
-      const auto add = [w = sample.weight[c]](const Stencil& stencil, std::vector<double>* table) {
-        for (int k = 0; k < stencil.size; ++k) {
-          (*table)[stencil.index[k]] += w * std::abs(stencil.weight[k]);
+    for (const Reading reading : kReadings) {
+      const Factor factor = FactorOf(reading);
+      std::vector<double>& table = factor == Factor::kD ? of.D : factor == Factor::kF ? of.F : of.G;
+      const FoldedSamples::OfReading& readings = samples.of(reading);
+      for (int j = 0; j < samples.size(); ++j) {
+        const Cell& cell = samples.cells_of(factor)[readings.cell[j]];
+        for (int k = 0; k < cell.size; ++k) {
+          table[cell.entry[k]] += samples.weight[c][j] * std::abs(readings.weight[k][j]);
         }
-      };
-      add(sample.stencils.D, &of.D);
-      add(sample.stencils.F, &of.F);
-      add(sample.stencils.G_i, &of.G);
-      add(sample.stencils.G_o, &of.G);
+      }
     }
   }
   return coverage;
@@ -171,14 +153,13 @@ struct Objective::Prepared {
         nonnegative = nonnegative && AllNonnegative(w);
       }
     } else {
-      const std::vector<WeightedSample>& weighted = WeightedSamples(num_threads);
-      coverage = ScatteredCoverage(weighted, spec);
+      const std::vector<WeightedSample> weighted = AllSamples(num_threads);
       for (const WeightedSample& sample : weighted) {
         nonnegative = nonnegative && AllNonnegative(sample.weight);
-        for (int c = 0; c < kChannels; ++c) {
-          measured_energy += sample.weight[c] * sample.rho[c] * sample.rho[c];
-        }
       }
+      folded_samples = std::make_unique<FoldedSamples>(Fold(weighted));
+      measured_energy = folded_samples->measured_energy;
+      coverage = ScatteredCoverage(*folded_samples, spec);
     }
     CheckWeights(weighting.name, nonnegative, measured_energy);
   }
@@ -195,15 +176,18 @@ struct Objective::Prepared {
     return sample;
   }
 
-  const std::vector<WeightedSample>& WeightedSamples(int num_threads) const {
-    std::call_once(weighted_samples_once, [&] {
-      weighted_samples.resize(samples.size());
-      constexpr int kChunk = 4096;
-      ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
-        const int end = std::min((chunk + 1) * kChunk, samples.size());
-        for (int j = chunk * kChunk; j < end; ++j) weighted_samples[j] = Sample(j);
-      });
+  std::vector<WeightedSample> AllSamples(int num_threads) const {
+    std::vector<WeightedSample> all(samples.size());
+    constexpr int kChunk = 4096;
+    ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+      const int end = std::min((chunk + 1) * kChunk, samples.size());
+      for (int j = chunk * kChunk; j < end; ++j) all[j] = Sample(j);
     });
+    return all;
+  }
+
+  const std::vector<WeightedSample>& WeightedSamples(int num_threads) const {
+    std::call_once(weighted_samples_once, [&] { weighted_samples = AllSamples(num_threads); });
     return weighted_samples;
   }
 
@@ -213,6 +197,7 @@ struct Objective::Prepared {
   double measured_energy = 0;
   CoverageByChannel coverage;
   std::unique_ptr<const FoldedGrid> folded;
+  std::unique_ptr<const FoldedSamples> folded_samples;
   mutable std::once_flag spline_cells_once;
   mutable std::unique_ptr<const SplineCells> spline_cells;
   mutable std::once_flag weighted_samples_once;
@@ -245,10 +230,12 @@ double Objective::MeasuredEnergy() const { return prepared_->measured_energy; }
 
 const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 
+const FoldedSamples* Objective::folded_samples() const { return prepared_->folded_samples.get(); }
+
 double Objective::Value(const FactorModel& model) const {
   CheckSameSpec(model.spec(), spec_);
   return folded() != nullptr ? FoldedValue(*folded(), model, num_threads_)
-                             : ScatteredValue(weighted_samples(), model, num_threads_);
+                             : FoldedValue(*folded_samples(), model, num_threads_);
 }
 
 const SplineCells& Objective::spline_cells() const {

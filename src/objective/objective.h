@@ -9,16 +9,10 @@
 #include "trilobe/model/model_spec.h"
 #include "trilobe/model/weighting.h"
 #include "trilobe/objective/folded_grid.h"
+#include "trilobe/objective/folded_samples.h"
 #include "trilobe/objective/spline_cells.h"
 
 namespace trilobe {
-
-// One measured direction pair as an element of the objective.
-struct WeightedSample {
-  SampleStencils stencils;
-  Rgb weight{};  // w, one a channel
-  Rgb rho{};     // measured BRDF [1/sr]
-};
 
 // E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
 // docs/method.md), prepared for a spec and a weighting. Immutable; safe to share between threads.
@@ -61,6 +55,9 @@ class Objective {
 
   // The samples folded by symmetry, or null when they are not on a grid.
   const FoldedGrid* folded() const;
+
+  // The same for samples that are not; null for those that are.
+  const FoldedSamples* folded_samples() const;
 
   // The folded samples by knot intervals of G. Made at the first call (64 bytes a sample). Throws
   // Error when they are not on a grid.

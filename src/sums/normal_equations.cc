@@ -177,7 +177,8 @@ class NormalEquations::Condensed {
 
 NormalEquations::NormalEquations(const Objective& objective) : objective_(objective) {
   if (objective.folded() == nullptr) {
-    of_samples_ = std::make_unique<SampleEquations>(objective);
+    of_samples_ = std::make_unique<SampleEquations>(*objective.folded_samples(), objective.spec(),
+                                                    objective.num_threads());
   } else {
     condensed_ = std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(),
                                              objective.spec());

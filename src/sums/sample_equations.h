@@ -1,30 +1,35 @@
 #ifndef TRILOBE_SUMS_SAMPLE_EQUATIONS_H_
 #define TRILOBE_SUMS_SAMPLE_EQUATIONS_H_
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/objective/folded_samples.h"
+#include "trilobe/objective/sample_reader.h"
+#include "trilobe/sums/normal_equations.h"
+#include "trilobe/sums/sample_sums.h"
 
 namespace trilobe {
 
-// The normal equations of any samples, one by one. In one channel a sample moves with some 40
-// numbers, those of its stencils; their products go straight to their places in H.
+// The normal equations of any samples, of all numbers of a model or of one kind (AddSampleSums).
 class SampleEquations {
  public:
-  explicit SampleEquations(const Objective& objective);
-  ~SampleEquations();
+  SampleEquations(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
+                  std::optional<Kind> only = std::nullopt);
 
-  // Sets all of *result, which was 0 and has its sizes. The same bits for any number of threads.
+  // Sets all of *result; where it is of one kind, its numbers alone. The same bits for any number
+  // of threads.
   void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:
-  struct Share;
+  void GatherRow(Kind kind, int entry, Hessian hessian, QuadraticModel* result) const;
 
-  const Objective& objective_;
-  std::vector<std::unique_ptr<Share>> shares_;
+  SampleReader reader_;
+  const int num_threads_;
+  SampleLayout layout_;
+  int num_parameters_ = 0;
+  std::vector<std::vector<double>> shares_;
 };
 
 }  // namespace trilobe

@@ -18,7 +18,8 @@ void Sweep::InBlocks(const IterationRecord& last, const OnElement& on_block, Fac
 
 std::unique_ptr<Sweep> MakeSweep(const Objective& objective, PhaseSeconds* phases) {
   if (objective.folded() != nullptr) return std::make_unique<GridSweep>(objective, phases);
-  return std::make_unique<SampleSweep>(objective, phases);
+  return std::make_unique<SampleSweep>(*objective.folded_samples(), objective.spec(),
+                                       objective.num_threads(), phases);
 }
 
 }  // namespace trilobe

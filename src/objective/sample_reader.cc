@@ -1,0 +1,242 @@
+#include "trilobe/objective/sample_reader.h"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+
+#include "trilobe/base/multiversion.h"
+#include "trilobe/base/parallel.h"
+
+namespace trilobe {
+namespace {
+
+// All that the loops over samples need.
+struct ReadJob {
+  int begin, end;
+  bool slopes;
+  const FoldedSamples* samples;
+  struct OfReading {
+    const Cell* cells;
+    const int* cell;
+    std::array<const double*, Stencil::kMaxSize> weight;
+    const double* table;
+    int lanes;
+    double* reading;
+  };
+  std::array<OfReading, kNumReadings> readings;
+  const TableLanes *D, *F, *G;
+  const double *d, *s;
+  int lobes, amplitude_lanes;
+  double *residual, *amplitude, *D_slope, *F_slope, *shadow;
+};
+
+// Of the lobes in a channel.
+template <int kBlocks>
+TRILOBE_ALWAYS_INLINE void LobesOf(const TableLanes& lanes, int c, const double* reading,
+                                   Lanes4* of) {
+  const double* const first = reading + lanes.First(c);
+  for (int b = 0; b < kBlocks; ++b) {
+    if (lanes.per_lobe) {
+      LoadLanes(first + kVector * b, &of[b]);
+    } else {
+      of[b] = Lanes4{} + *first;
+    }
+  }
+}
+
+template <int kBlocks>
+TRILOBE_ALWAYS_INLINE double Sum(const Lanes4* of) {
+  Lanes4 sum = of[0];
+  for (int b = 1; b < kBlocks; ++b) sum += of[b];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+// The reverse of LobesOf, for derivatives.
+template <int kBlocks>
+TRILOBE_ALWAYS_INLINE void ToTables(const TableLanes& lanes, int c, const Lanes4* of,
+                                    double* slope) {
+  double* const first = slope + c * lanes.size + lanes.First(c);
+  if (lanes.per_lobe) {
+    for (int b = 0; b < kBlocks; ++b) StoreLanes(of[b], first + kVector * b);
+  } else {
+    *first = Sum<kBlocks>(of);
+  }
+}
+
+// kOneVector: all tables of each factor have their lanes in one vector.
+template <int kBlocks, bool kOneVector>
+TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
+  for (int j = job.begin; j < job.end; ++j) {
+    const int n = j - job.begin;
+    std::array<double*, kNumReadings> R;
+    for (int r = 0; r < kNumReadings; ++r) {
+      const ReadJob::OfReading& of = job.readings[r];
+      const Cell& cell = of.cells[of.cell[j]];
+      const int lanes = kOneVector ? kVector : of.lanes;
+      R[r] = of.reading + n * lanes;
+      for (int b = 0; b < lanes; b += kVector) {
+        Lanes4 sum = {};
+        for (int k = 0; k < cell.size; ++k) {
+          Lanes4 entry;
+          LoadLanes(of.table + cell.entry[k] * lanes + b, &entry);
+          sum += of.weight[k][j] * entry;
+        }
+        StoreLanes(sum, R[r] + b);
+      }
+    }
+    const double inverse_cosines = job.samples->inverse_cosines[j];
+    for (int c = 0; c < kChannels; ++c) {
+      Lanes4 D[kBlocks], F[kBlocks], G_i[kBlocks], G_o[kBlocks], of_s[kBlocks], x[kBlocks];
+      LobesOf<kBlocks>(*job.D, c, R[0], D);
+      LobesOf<kBlocks>(*job.F, c, R[1], F);
+      LobesOf<kBlocks>(*job.G, c, R[2], G_i);
+      LobesOf<kBlocks>(*job.G, c, R[3], G_o);
+      Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
+      for (int b = 0; b < kBlocks; ++b) {
+        Lanes4 s;
+        LoadLanes(job.s + kVector * (c * kBlocks + b), &s);
+        const Lanes4 K = G_i[b] * G_o[b] * inverse_cosines;
+        const Lanes4 sK = s * K;
+        of_D[b] = sK * F[b];
+        of_F[b] = sK * D[b];
+        of_s[b] = D[b] * F[b] * K;
+        of_G[b] = s * (D[b] * F[b]) * inverse_cosines;
+        x[b] = s * of_s[b];
+      }
+      job.residual[n * kChannels + c] = job.d[c] + Sum<kBlocks>(x) - job.samples->rho[c][j];
+      if (!job.slopes) continue;
+      double* const amplitude = job.amplitude + (n * kChannels + c) * job.amplitude_lanes;
+      for (int b = 0; b < kBlocks; ++b) StoreLanes(of_s[b], amplitude + kVector * b);
+      amplitude[job.lobes] = 1;
+      ToTables<kBlocks>(*job.D, c, of_D, job.D_slope + n * kChannels * job.D->size);
+      ToTables<kBlocks>(*job.F, c, of_F, job.F_slope + n * kChannels * job.F->size);
+      ToTables<kBlocks>(*job.G, c, of_G, job.shadow + n * kChannels * job.G->size);
+    }
+  }
+}
+
+TRILOBE_MULTIVERSION
+void ReadOneVector(const ReadJob& job) { ReadSamples<1, true>(job); }
+TRILOBE_MULTIVERSION
+void ReadFourLobes(const ReadJob& job) { ReadSamples<1, false>(job); }
+TRILOBE_MULTIVERSION
+void ReadEightLobes(const ReadJob& job) { ReadSamples<2, false>(job); }
+static_assert(kMaxLobes <= 2 * kVector);
+
+}  // namespace
+
+TableLanes::TableLanes(const ModelSpec& spec, Factor factor)
+    : per_lobe(spec.sharing(factor).per_lobe || spec.lobes == 0),
+      per_channel(spec.sharing(factor).per_channel) {
+  const int lobe_lanes = std::max(PaddedToVectors(spec.lobes), kVector);
+  stride = per_lobe ? lobe_lanes : 1;
+  size = PaddedToVectors(per_channel ? kChannels * stride : stride);
+  of_table.resize(spec.num_tables(factor));
+  for (int c = 0; c < kChannels; ++c) {
+    for (int m = 0; m < spec.lobes; ++m) {
+      of_table[spec.table(factor, m, c)] = First(c) + (per_lobe ? m : 0);
+    }
+  }
+}
+
+SampleReader::Batch::Batch(const SampleReader& reader)
+    : residual(kBatch * kChannels), amplitude(kBatch * kChannels * reader.amplitude_lanes()) {
+  for (const Reading r : kReadings) {
+    reading[static_cast<int>(r)].resize(kBatch * reader.lanes(FactorOf(r)).size);
+  }
+  D_slope.resize(kBatch * kChannels * reader.lanes(Factor::kD).size);
+  F_slope.resize(kBatch * kChannels * reader.lanes(Factor::kF).size);
+  shadow.resize(kBatch * kChannels * reader.lanes(Factor::kG).size);
+}
+
+SampleReader::SampleReader(const FoldedSamples& samples, const ModelSpec& spec)
+    : samples_(samples),
+      spec_(spec),
+      lobe_lanes_(std::max(PaddedToVectors(spec.lobes), kVector)),
+      s_(kChannels * lobe_lanes_) {
+  for (const Factor factor : kFactors) {
+    const int f = static_cast<int>(factor);
+    lanes_[f] = TableLanes(spec, factor);
+    tables_[f].resize(spec.table_size(factor) * lanes_[f].size);
+  }
+}
+
+void SampleReader::SetModel(const FactorModel& model) {
+  for (const Factor factor : kFactors) {
+    const int f = static_cast<int>(factor);
+    const TableLanes& of = lanes_[f];
+    for (int t = 0; t < spec_.num_tables(factor); ++t) {
+      const std::span<const double> table = model.table(factor, t);
+      for (size_t k = 0; k < table.size(); ++k) tables_[f][k * of.size + of.of_table[t]] = table[k];
+    }
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    d_[c] = model.d()[c];
+    for (int m = 0; m < spec_.lobes; ++m) s_[c * lobe_lanes_ + m] = model.s(m)[c];
+  }
+}
+
+void SampleReader::Read(int begin, int end, Want want, Batch* batch) const {
+  ReadJob job{.begin = begin,
+              .end = end,
+              .slopes = want == Want::kSlopes,
+              .samples = &samples_,
+              .readings = {},
+              .D = &lanes(Factor::kD),
+              .F = &lanes(Factor::kF),
+              .G = &lanes(Factor::kG),
+              .d = d_.data(),
+              .s = s_.data(),
+              .lobes = spec_.lobes,
+              .amplitude_lanes = amplitude_lanes(),
+              .residual = batch->residual.data(),
+              .amplitude = batch->amplitude.data(),
+              .D_slope = batch->D_slope.data(),
+              .F_slope = batch->F_slope.data(),
+              .shadow = batch->shadow.data()};
+  bool one_vector = true;
+  for (const Reading reading : kReadings) {
+    const int r = static_cast<int>(reading), f = static_cast<int>(FactorOf(reading));
+    job.readings[r] = {.cells = samples_.cells[f].data(),
+                       .cell = samples_.readings[r].cell.data(),
+                       .weight = {},
+                       .table = tables_[f].data(),
+                       .lanes = lanes_[f].size,
+                       .reading = batch->reading[r].data()};
+    const std::vector<std::vector<double>>& weight = samples_.readings[r].weight;
+    for (size_t k = 0; k < weight.size(); ++k) job.readings[r].weight[k] = weight[k].data();
+    one_vector = one_vector && lanes_[f].size == kVector;
+  }
+  if (one_vector) {
+    ReadOneVector(job);
+  } else if (lobe_lanes_ == kVector) {
+    ReadFourLobes(job);
+  } else {
+    ReadEightLobes(job);
+  }
+}
+
+double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int num_threads) {
+  SampleReader reader(samples, model.spec());
+  reader.SetModel(model);
+  constexpr int kChunk = 64 * SampleReader::kBatch;
+  const int chunks = (samples.size() + kChunk - 1) / kChunk;
+  std::vector<double> sums(chunks, 0.0);
+  ParallelFor(chunks, num_threads, [&](int k) {
+    SampleReader::Batch batch(reader);
+    const int chunk_end = std::min((k + 1) * kChunk, samples.size());
+    for (int begin = k * kChunk; begin < chunk_end; begin += SampleReader::kBatch) {
+      const int end = std::min(begin + SampleReader::kBatch, chunk_end);
+      reader.Read(begin, end, SampleReader::Want::kResiduals, &batch);
+      for (int j = begin; j < end; ++j) {
+        for (int c = 0; c < kChannels; ++c) {
+          const double residual = batch.residual[(j - begin) * kChannels + c];
+          sums[k] += samples.weight[c][j] * residual * residual;
+        }
+      }
+    }
+  });
+  return std::accumulate(sums.begin(), sums.end(), samples.constant);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,83 @@
+#ifndef TRILOBE_OBJECTIVE_SAMPLE_READER_H_
+#define TRILOBE_OBJECTIVE_SAMPLE_READER_H_
+
+#include <array>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/model_spec.h"
+#include "trilobe/objective/folded_samples.h"
+
+namespace trilobe {
+
+// Numbers of several lobes or tables lie side by side in vectors, padded to whole ones.
+inline constexpr int kVector = 4;
+constexpr int PaddedToVectors(int size) { return (size + kVector - 1) / kVector * kVector; }
+
+// Where the tables of a factor have their lanes: those of the lobes follow each other, once or
+// channel by channel.
+struct TableLanes {
+  TableLanes() = default;
+  TableLanes(const ModelSpec& spec, Factor factor);
+
+  // The first of the lanes that serve a channel: one a lobe, or one for all of them.
+  int First(int channel) const { return per_channel ? channel * stride : 0; }
+
+  bool per_lobe = false, per_channel = false;
+  int stride = 0;             // from one channel's lanes to the next one's
+  int size = 0;               // of all, padded
+  std::vector<int> of_table;  // [num_tables]
+};
+
+// What models of a spec read at folded samples, a batch of samples at a time, and how their values
+// move with it.
+class SampleReader {
+ public:
+  static constexpr int kBatch = 64;
+
+  // One batch. Each array is [kBatch][...], lanes as TableLanes has them; lanes that belong to no
+  // table are finite and mean nothing.
+  struct Batch {
+    explicit Batch(const SampleReader& reader);
+
+    std::vector<double> residual;  // rho - rho*. [kChannels]
+    // d rho / d (s of each lobe, d), padded. [kChannels][amplitude_lanes]
+    std::vector<double> amplitude;
+    std::array<std::vector<double>, kNumReadings> reading;  // [lanes]
+    // d rho / d reading, of each channel; in the place of those of G, the number that both share:
+    // d rho / d G_i = G_o shadow and d rho / d G_o = G_i shadow. [kChannels][lanes]
+    std::vector<double> D_slope, F_slope, shadow;
+  };
+
+  SampleReader(const FoldedSamples& samples, const ModelSpec& spec);
+
+  // From now on, this model's numbers are read. It is not kept.
+  void SetModel(const FactorModel& model);
+
+  // Samples [begin, end), kBatch at most. Residuals always; the rest where wanted.
+  enum class Want { kResiduals, kSlopes };
+  void Read(int begin, int end, Want want, Batch* batch) const;
+
+  const FoldedSamples& samples() const { return samples_; }
+  const ModelSpec& spec() const { return spec_; }
+  const TableLanes& lanes(Factor factor) const { return lanes_[static_cast<int>(factor)]; }
+  int lobe_lanes() const { return lobe_lanes_; }
+  const double* s() const { return s_.data(); }  // of the model. [kChannels][lobe_lanes]
+  int amplitude_lanes() const { return PaddedToVectors(1 + spec_.lobes); }
+
+ private:
+  const FoldedSamples& samples_;
+  const ModelSpec spec_;
+  const int lobe_lanes_;
+  std::array<TableLanes, 3> lanes_;
+  std::array<std::vector<double>, 3> tables_;  // [entry][lanes]
+  std::array<double, kChannels> d_{};
+  std::vector<double> s_;  // [kChannels][lobe_lanes]
+};
+
+// E of a model. The same bits for any number of threads.
+double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int num_threads);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_OBJECTIVE_SAMPLE_READER_H_

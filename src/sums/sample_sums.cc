@@ -1,0 +1,341 @@
+#include "trilobe/sums/sample_sums.h"
+
+#include <algorithm>
+
+#include "trilobe/base/multiversion.h"
+
+namespace trilobe {
+namespace {
+
+constexpr int kMaxLanes = kChannels * PaddedToVectors(kMaxLobes);
+constexpr int kMaxOwnLines = SampleRows::kFirstAmplitude + kChannels * (1 + kMaxLobes);
+constexpr int kMaxTables = kChannels * kMaxLobes;
+
+// A table as a column: its lane, and the channels that it serves.
+struct Column {
+  int lane;
+  ModelSpec::ChannelRange channels;
+};
+
+// What is the same for all samples.
+struct SumJob {
+  const SampleReader* reader;
+  const SampleLayout* layout;
+  std::array<std::vector<Column>, 3> columns;  // of D, F and G
+  bool one_kind;
+  std::array<bool, kNumReadings> needed;  // a reading, for rows or columns
+  double* sums;
+};
+
+// One reading of a sample: how its value moves with it in each channel, and the same times w.
+struct Slopes {
+  const Cell* cell;
+  double weight[Stencil::kMaxSize];                               // of the stencil
+  const double* reading;                                          // [lanes]
+  const double* slope;                                            // [kChannels][lanes]
+  alignas(sizeof(Lanes8)) double w_slope[kChannels * kMaxLanes];  // slope times w
+};
+
+// Lanes of a row: as many as they are, or one vector, which the compiler then knows.
+template <bool kOneVector>
+TRILOBE_ALWAYS_INLINE int Lanes(int lanes) {
+  return kOneVector ? kVector : lanes;
+}
+
+// y = sum_c x_c w_slope_c over these channels, x_c at x + c x_stride.
+template <bool kOneVector>
+TRILOBE_ALWAYS_INLINE void Combine(ModelSpec::ChannelRange channels, const double* x, int x_stride,
+                                   const double* w_slope, int row_lanes, double* y) {
+  static_assert(kChannels == 3);
+  const int lanes = Lanes<kOneVector>(row_lanes);
+  for (int b = 0; b < lanes; b += kVector) {
+    Lanes4 w;
+    LoadLanes(w_slope + channels.begin * lanes + b, &w);
+    Lanes4 sum = x[channels.begin * x_stride] * w;
+    if (channels.end > channels.begin + 1) {
+      Lanes4 w1, w2;
+      LoadLanes(w_slope + lanes + b, &w1);
+      LoadLanes(w_slope + 2 * lanes + b, &w2);
+      sum += x[x_stride] * w1 + x[2 * x_stride] * w2;
+    }
+    StoreLanes(sum, y + b);
+  }
+}
+
+// Lane of a factor's table that serves a lobe and channel.
+TRILOBE_ALWAYS_INLINE int LaneOf(const TableLanes& lanes, int m, int c) {
+  return lanes.First(c) + (lanes.per_lobe ? m : 0);
+}
+
+// w (rho - rho*) d2 rho / (d a d b) for readings a and b of one sample, -1 being s: what is left of
+// s D F G_i G_o / (cos cos) without the two.
+TRILOBE_ALWAYS_INLINE double SecondDerivative(const SampleReader& reader, const double* s,
+                                              const Slopes* of, int a, int b, int m, int c,
+                                              double scale) {
+  double value = a < 0 || b < 0 ? scale : scale * s[c * reader.lobe_lanes() + m];
+  for (int r = 0; r < kNumReadings; ++r) {
+    if (r == a || r == b) continue;
+    value *= of[r].reading[LaneOf(reader.lanes(FactorOf(kReadings[r])), m, c)];
+  }
+  return value;
+}
+
+// Adds the same numbers, times a weight, to the blocks of a cell's entries.
+template <int kEntries>
+TRILOBE_ALWAYS_INLINE void AddToBlocks(const double* from, int size, double scale,
+                                       const double* weight, const int* entry, ptrdiff_t stride,
+                                       double* blocks) {
+  std::array<Lanes4, kEntries> weights;
+  std::array<ptrdiff_t, kEntries> begin;
+  for (int k = 0; k < kEntries; ++k) {
+    weights[k] = Lanes4{} + scale * weight[k];
+    begin[k] = entry[k] * stride;
+  }
+  for (int i = 0; i < size; i += kVector) {
+    Lanes4 x;
+    LoadLanes(from + i, &x);
+    for (int k = 0; k < kEntries; ++k) {
+      Lanes4 y;
+      LoadLanes(blocks + begin[k] + i, &y);
+      StoreLanes(y + weights[k] * x, blocks + begin[k] + i);
+    }
+  }
+}
+
+TRILOBE_ALWAYS_INLINE void AddToCell(const double* from, int size, double scale, const Slopes& to,
+                                     ptrdiff_t stride, double* blocks) {
+  const int* const entry = to.cell->entry.data();
+  switch (to.cell->size) {
+    case 4:
+      AddToBlocks<4>(from, size, scale, to.weight, entry, stride, blocks);
+      break;
+    case 3:
+      AddToBlocks<1>(from, size, scale, to.weight + 2, entry + 2, stride, blocks);
+      [[fallthrough]];
+    case 2:
+      AddToBlocks<2>(from, size, scale, to.weight, entry, stride, blocks);
+      break;
+    default:
+      AddToBlocks<1>(from, size, scale, to.weight, entry, stride, blocks);
+  }
+}
+
+struct Sample {
+  int j;
+  const double* residual;  // [kChannels]
+  double w_residual[kChannels];
+  const double* amplitude;  // [kChannels][amplitude lanes]
+  Slopes of[kNumReadings];
+};
+
+// d and s of each channel, which move nothing in another one.
+TRILOBE_ALWAYS_INLINE void AddAmplitudes(const SumJob& job, const Sample& at, bool newton) {
+  const SampleRows& rows = job.layout->of(Kind::kAmplitudes);
+  const FoldedSamples& samples = job.reader->samples();
+  for (int c = 0; c < kChannels; ++c) {
+    double* const own = job.sums + rows.own + c * rows.own_size();
+    const double* const slope = at.amplitude + c * rows.lanes;
+    const double w = samples.weight[c][at.j];
+    AddScaled(rows.lanes, at.w_residual[c], slope, own + SampleRows::kGradient * rows.lanes);
+    double* const to = own + (SampleRows::kFirstAmplitude + c * rows.tables) * rows.lanes;
+    for (int a = 0; a < rows.tables; ++a) {
+      AddScaled(rows.lanes, 0.5 * w * slope[a], slope, to + a * rows.lanes);
+      if (newton) {
+        own[SampleRows::kSquaredLength * rows.lanes + a] += w * slope[a] * slope[a];
+      }
+    }
+  }
+}
+
+// The table entries of reading r, with themselves and all that come before.
+template <bool kOneVector, bool kNewton>
+TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
+  const SampleReader& reader = *job.reader;
+  const ModelSpec& spec = reader.spec();
+  const SampleRows& rows = job.layout->of(KindOf(FactorOf(kReadings[r])));
+  const SampleRows& amplitudes = job.layout->of(Kind::kAmplitudes);
+  const int lanes = Lanes<kOneVector>(rows.lanes);
+  const TableLanes& row_lanes = reader.lanes(FactorOf(kReadings[r]));
+  const Slopes& own = at->of[r];
+  const int first_own = std::min(r, 2);  // reading of the same table
+  const double inverse_cosines = reader.samples().inverse_cosines[at->j];
+
+  alignas(sizeof(Lanes8)) double lines[kMaxOwnLines * kMaxLanes];
+  double* to = lines;
+  if (kNewton) {
+    for (int b = 0; b < lanes; ++b) to[b] = 0;  // the squared length: below
+    to += lanes;
+  }
+  Combine<kOneVector>({0, kChannels}, at->residual, 1, own.w_slope, lanes, to);
+  to += lanes;
+  for (int c = 0; c < kChannels && !job.one_kind; ++c) {
+    for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
+      Combine<kOneVector>({c, c + 1}, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
+      if (kNewton && a < spec.lobes) {
+        to[LaneOf(row_lanes, a, c)] += SecondDerivative(reader, reader.s(), at->of, -1, r, a, c,
+                                                        at->w_residual[c] * inverse_cosines);
+      }
+    }
+  }
+  double* const of_entry = job.sums + rows.own + (kNewton ? 0 : SampleRows::kGradient * lanes);
+  const auto own_size = static_cast<ptrdiff_t>(rows.own_size());
+  AddToCell(lines, static_cast<int>(to - lines), 1, own, own_size, of_entry);
+
+  alignas(sizeof(Lanes8)) double products[kMaxTables * kMaxLanes];  // [tables][lanes]
+  for (int q = job.one_kind ? first_own : 0; q <= r; ++q) {
+    const Slopes& of = at->of[q];
+    const Factor factor = FactorOf(kReadings[q]);
+    const int of_lanes = Lanes<kOneVector>(reader.lanes(factor).size);
+    to = products;
+    for (const Column& column : job.columns[static_cast<int>(factor)]) {
+      Combine<kOneVector>(column.channels, of.slope + column.lane, of_lanes, own.w_slope, lanes,
+                          to);
+      to += lanes;
+    }
+    if (kNewton && q != r) {
+      for (int c = 0; c < kChannels; ++c) {
+        for (int m = 0; m < spec.lobes; ++m) {
+          products[spec.table(factor, m, c) * lanes + LaneOf(row_lanes, m, c)] += SecondDerivative(
+              reader, reader.s(), at->of, q, r, m, c, at->w_residual[c] * inverse_cosines);
+        }
+      }
+    }
+    const int size = static_cast<int>(to - products);
+    double* const blocks = job.sums + rows.blocks[static_cast<int>(KindOf(factor))];
+    for (int l = 0; l < of.cell->size; ++l) {
+      AddToCell(products, size, q == r ? 0.5 * of.weight[l] : of.weight[l], own, size,
+                blocks + static_cast<ptrdiff_t>(of.cell->entry[l]) * rows.entries * size);
+    }
+  }
+  if (!kNewton) return;
+  // The squared length of an entry that both directions read has a product of the two.
+  for (int q = first_own; q <= r; ++q) {
+    const Slopes& of = at->of[q];
+    for (int b = 0; b < lanes; ++b) {
+      double sum = 0;
+      for (int c = 0; c < kChannels; ++c) {
+        sum += of.slope[c * lanes + b] * own.w_slope[c * lanes + b];
+      }
+      products[b] = sum;
+    }
+    for (int k = 0; k < own.cell->size; ++k) {
+      for (int l = 0; l < of.cell->size; ++l) {
+        if (q == r ? k != l : own.cell->entry[k] != of.cell->entry[l]) continue;
+        AddScaled(lanes, (q == r ? 1 : 2) * own.weight[k] * of.weight[l], products,
+                  of_entry + own.cell->entry[k] * own_size);
+      }
+    }
+  }
+}
+
+// Samples [begin, end) of a batch that begins at `first`.
+template <bool kOneVector, bool kNewton>
+TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
+                                      const SampleReader::Batch& batch, Sample* at) {
+  const SampleReader& reader = *job.reader;
+  const FoldedSamples& samples = reader.samples();
+  const int G_lanes = Lanes<kOneVector>(reader.lanes(Factor::kG).size);
+  double objective = 0;
+  alignas(sizeof(Lanes8)) double G_slope[2][kChannels * kMaxLanes];
+  for (int j = begin; j < end; ++j) {
+    const int n = j - begin;
+    at->j = j;
+    at->residual = batch.residual.data() + n * kChannels;
+    at->amplitude = batch.amplitude.data() + n * kChannels * reader.amplitude_lanes();
+    double w[kChannels];
+    for (int c = 0; c < kChannels; ++c) {
+      w[c] = samples.weight[c][j];
+      at->w_residual[c] = w[c] * at->residual[c];
+      objective += at->w_residual[c] * at->residual[c];
+    }
+    for (int r = 0; r < kNumReadings; ++r) {
+      if (!job.needed[r]) continue;
+      const FoldedSamples::OfReading& readings = samples.readings[r];
+      const Factor factor = FactorOf(kReadings[r]);
+      const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
+      Slopes& of = at->of[r];
+      of.cell = &samples.cells_of(factor)[readings.cell[j]];
+      for (int k = 0; k < of.cell->size; ++k) of.weight[k] = readings.weight[k][j];
+      of.reading = batch.reading[r].data() + n * lanes;
+      if (r < 2) {
+        of.slope = (r == 0 ? batch.D_slope : batch.F_slope).data() + n * kChannels * lanes;
+      } else {
+        // d rho / d G of one direction has G of the other.
+        const double* const other = batch.reading[5 - r].data() + n * G_lanes;
+        const double* const shadow = batch.shadow.data() + n * kChannels * G_lanes;
+        for (int c = 0; c < kChannels; ++c) {
+          for (int b = 0; b < G_lanes; ++b) {
+            G_slope[r - 2][c * G_lanes + b] = shadow[c * G_lanes + b] * other[b];
+          }
+        }
+        of.slope = G_slope[r - 2];
+      }
+      for (int c = 0; c < kChannels; ++c) {
+        for (int b = 0; b < lanes; ++b) of.w_slope[c * lanes + b] = w[c] * of.slope[c * lanes + b];
+      }
+    }
+    if (job.layout->of(Kind::kAmplitudes).wanted) AddAmplitudes(job, *at, kNewton);
+    for (int r = 0; r < kNumReadings; ++r) {
+      const SampleRows& rows = job.layout->of(KindOf(FactorOf(kReadings[r])));
+      if (rows.wanted && rows.tables > 0) AddReading<kOneVector, kNewton>(job, r, at);
+    }
+  }
+  return objective;
+}
+
+using AddBatchFunction = double (*)(const SumJob&, int, int, const SampleReader::Batch&, Sample*);
+TRILOBE_MULTIVERSION
+double AddGaussNewton(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
+                      Sample* at) {
+  return AddBatch<false, false>(job, begin, end, batch, at);
+}
+TRILOBE_MULTIVERSION
+double AddGaussNewtonOfOneVector(const SumJob& job, int begin, int end,
+                                 const SampleReader::Batch& batch, Sample* at) {
+  return AddBatch<true, false>(job, begin, end, batch, at);
+}
+TRILOBE_MULTIVERSION
+double AddNewton(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
+                 Sample* at) {
+  return AddBatch<false, true>(job, begin, end, batch, at);
+}
+
+}  // namespace
+
+double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hessian hessian,
+                     int begin, int end, double* sums) {
+  SumJob job{};
+  job.reader = &reader;
+  job.layout = &layout;
+  job.sums = &sums[0];
+  int wanted = 0;
+  for (const SampleRows& rows : layout.rows) wanted += rows.wanted ? 1 : 0;
+  job.one_kind = wanted == 1;
+  for (int r = 0; r < kNumReadings; ++r) {
+    job.needed[r] = layout.of(KindOf(FactorOf(kReadings[r]))).wanted;
+  }
+  bool one_vector = true;
+  for (const Factor factor : kFactors) {
+    const TableLanes& lanes = reader.lanes(factor);
+    one_vector = one_vector && lanes.size == kVector;
+    for (int t = 0; t < reader.spec().num_tables(factor); ++t) {
+      job.columns[static_cast<int>(factor)].push_back(
+          {lanes.of_table[t], reader.spec().channels(factor, t)});
+    }
+  }
+  const AddBatchFunction add_batch = hessian == Hessian::kNewton ? AddNewton
+                                     : one_vector                ? AddGaussNewtonOfOneVector
+                                                                 : AddGaussNewton;
+  SampleReader::Batch batch(reader);
+  Sample at{};
+  double objective = 0;
+  while (begin < end) {
+    const int batch_end = std::min(begin + SampleReader::kBatch, end);
+    reader.Read(begin, batch_end, SampleReader::Want::kSlopes, &batch);
+    objective += add_batch(job, begin, batch_end, batch, &at);
+    begin = batch_end;
+  }
+  return objective;
+}
+
+}  // namespace trilobe

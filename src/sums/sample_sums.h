@@ -1,0 +1,57 @@
+#ifndef TRILOBE_SUMS_SAMPLE_SUMS_H_
+#define TRILOBE_SUMS_SAMPLE_SUMS_H_
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "trilobe/objective/sample_reader.h"
+#include "trilobe/sums/normal_equations.h"
+
+namespace trilobe {
+
+// The kinds of a model's numbers, in their order; d and s are amplitudes.
+enum class Kind { kAmplitudes, kD, kF, kG };
+inline constexpr int kNumKinds = 4;
+constexpr Kind KindOf(Factor factor) { return static_cast<Kind>(1 + static_cast<int>(factor)); }
+constexpr Factor FactorOf(Kind kind) { return static_cast<Factor>(static_cast<int>(kind) - 1); }
+
+// How the sums of one kind lie. Each entry of its tables (of amplitudes, each channel; their tables
+// are s of each lobe, then d) has lines of its own: its squared length, its gradient, and its
+// products with amplitudes. Products with entries of each kind up to this one are in blocks, one a
+// pair of entries: those for one entry of the other kind follow each other, as do the entries that
+// a sample reads. A line is a vector over the kind's tables.
+struct SampleRows {
+  static constexpr int kSquaredLength = 0, kGradient = 1, kFirstAmplitude = 2;
+
+  bool wanted = false;
+  int entries = 0, tables = 0, lanes = 0, own_lines = 0;
+  std::vector<int> lane;       // [tables]
+  std::vector<int> parameter;  // [entries][tables]
+  size_t own = 0;              // [entries][own_lines][lanes] begin here
+  // Of D, F and G as far as there are any: [their entries][entries][their tables][lanes].
+  std::array<size_t, kNumKinds> blocks{};
+  size_t own_size() const { return static_cast<size_t>(own_lines) * lanes; }
+};
+
+struct SampleLayout {
+  std::array<SampleRows, kNumKinds> rows;
+  size_t size = 0;  // of all sums
+
+  const SampleRows& of(Kind kind) const { return rows[static_cast<int>(kind)]; }
+};
+
+// Adds the samples [begin, end) to sums; returns their part of E.
+//
+// A sample moves with its readings: in each channel with d, s and what it reads from the tables of
+// D, F and, twice, G. Products of two readings are summed over the channels first; then each goes,
+// by the weights of both stencils, to the pairs of entries that were read. Products within one
+// reading go to both places of the pair by halves, so that the two add up to them. For
+// Hessian::kNewton, second derivatives are added to the products of readings, and squared lengths
+// are summed apart.
+double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hessian hessian,
+                     int begin, int end, double* sums);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SUMS_SAMPLE_SUMS_H_
