@@ -28,13 +28,4 @@ FactorModel WithAxes(const FactorModel& model, const ModelSpec& spec) {
   return result;
 }
 
-ModelSpec WithFewerAzimuths(ModelSpec spec) {
-  for (Axis* const axis : {&spec.d_axis, &spec.g_axis}) {
-    if (axis->polar() && axis->phi_nodes >= 24) {
-      *axis = Axis::Polar(axis->theta, axis->phi_nodes / 4);
-    }
-  }
-  return spec;
-}
-
 }  // namespace trilobe

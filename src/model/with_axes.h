@@ -11,9 +11,6 @@ namespace trilobe {
 // is round, and a model on few nodes one on many. Throws Error where lobes or sharing differ.
 FactorModel WithAxes(const FactorModel& model, const ModelSpec& spec);
 
-// The spec with a quarter of the azimuths where there are 24 or more: as a first look.
-ModelSpec WithFewerAzimuths(ModelSpec spec);
-
 }  // namespace trilobe
 
 #endif  // TRILOBE_MODEL_WITH_AXES_H_

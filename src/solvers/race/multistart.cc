@@ -8,7 +8,6 @@
 
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/split_lobe.h"
-#include "trilobe/model/with_axes.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/race/start_race.h"
@@ -138,22 +137,12 @@ double ExpectedMismatch(const Objective& thinned) {
   return 2 * thinned.spec().num_parameters() / std::max(values, 1.0);
 }
 
-// A model on the axes of an objective; what no data touch there is that of `given`.
-FactorModel OnAxesOf(const Objective& objective, const FactorModel& model,
-                     const FactorModel& given) {
-  if (model.spec() == objective.spec()) return model;
-  FactorModel result = WithAxes(model, objective.spec());
-  CopyDeadParameters(objective.coverage(), given, &result);
-  return result;
-}
-
 // The legs one by one, then joint steps on all samples from the best point.
 void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
              Run* run) {
   // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
   std::optional<JointStepper> stepper;
-  const auto begin_at = [&](const FactorModel& from) {
-    const FactorModel model = OnAxesOf(objective, from, given);
+  const auto begin_at = [&](const FactorModel& model) {
     stepper.emplace(objective, JointStepper::Curvature::kByProgress,
                     JointStepper::Trial::kProjected, &run->summary().phases);
     stepper->Restart(model);
@@ -172,13 +161,8 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
                               .objective = better ? stepper->E() : run->best_objective()});
   };
   {
-    // A model with many azimuths begins as one with few.
-    const ModelSpec first_look = WithFewerAzimuths(objective.spec());
-    const bool coarser = !(first_look == objective.spec());
-    const Objective looked_at = coarser ? Objective(objective, first_look) : objective;
-    const FactorModel at_first = OnAxesOf(looked_at, given, WithAxes(given, first_look));
-    StartRace race(looked_at, kThinned, stop);
-    Starts starts(looked_at, at_first, run->options().seed, &race, stop);
+    StartRace race(objective, kThinned, stop);
+    Starts starts(objective, given, run->options().seed, &race, stop);
     for (const Leg& leg : legs) {
       starts.EnterUpTo(leg.starts);
       race.Advance(leg.tries);
@@ -196,7 +180,7 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
       const bool large = mismatch > kLargeMismatch + ExpectedMismatch(race.thinned());
-      if (large && !coarser && &leg != &legs.back()) race.ThinLess();
+      if (large && &leg != &legs.back()) race.ThinLess();
     }
     run->summary().starts = race.Results();
     run->summary().phases += race.phases();
@@ -214,17 +198,29 @@ class Auto : public Solver {
  public:
   static constexpr double kToleranceFactor = 10;
 
+  static std::vector<Leg> Legs() {
+    return {{.starts = 2, .tries = 4, .keep = 2},
+            {.starts = 2, .tries = 16, .keep = 2, .steps_on_all = 1},
+            {.starts = 7, .tries = 16, .keep = 3},
+            {.starts = 7, .tries = 40, .keep = 2},
+            {.starts = 7, .tries = 100, .keep = 1}};
+  }
+
+  // A step of some two thousand numbers costs ten times as much, and the data are not so dense
+  // that much could be left out.
+  static std::vector<Leg> FewLegs() {
+    return {{.starts = 2, .tries = 4, .keep = 2},
+            {.starts = 5, .tries = 8, .keep = 2},
+            {.starts = 5, .tries = 20, .keep = 1}};
+  }
+
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("auto", objective, options, model);
     // A joint step on all samples gains more than an iteration of others, and costs more.
     run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
-    RunLegs({{.starts = 2, .tries = 4, .keep = 2},
-             {.starts = 2, .tries = 16, .keep = 2, .steps_on_all = 1},
-             {.starts = 7, .tries = 16, .keep = 3},
-             {.starts = 7, .tries = 40, .keep = 2},
-             {.starts = 7, .tries = 100, .keep = 1}},
-            objective, FactorModel(*model), &run);
+    RunLegs(objective.spec().anisotropic() ? FewLegs() : Legs(), objective, FactorModel(*model),
+            &run);
     return run.Finish();
   }
 };
