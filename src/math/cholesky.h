@@ -3,11 +3,13 @@
 
 namespace trilobe {
 
-// LAPACK, for matrices of a few hundred rows. All are stored column by column.
+// LAPACK, for matrices of a few hundred rows, and by tiles for some thousand. All are stored column
+// by column.
 
 // Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; what lies
 // above is neither read nor written. False, and no factor, if it is not positive definite.
-bool FactorCholesky(int n, double* A);
+// More than one thread helps with large ones; the same bits for any number of them.
+bool FactorCholesky(int n, double* A, int num_threads = 1);
 
 // Overwrites the factor L by both triangles of the inverse of L L'.
 void InvertFactored(int n, double* L);

@@ -87,7 +87,7 @@ class CondensedCost : public ceres::CostFunction {
       R[k * n + k] = 1 + static_cast<double>(n) * std::numeric_limits<double>::epsilon();
       residuals[k] = scale[k] * at_.gradient[k];
     }
-    if (!FactorCholesky(static_cast<int>(n), R)) return false;
+    if (!FactorCholesky(static_cast<int>(n), R, objective_.num_threads())) return false;
     SolveLower(static_cast<int>(n), R, 1, residuals);
     double rest = at_.objective;
     for (size_t k = 0; k < n; ++k) rest -= residuals[k] * residuals[k];

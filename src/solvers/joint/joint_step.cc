@@ -51,6 +51,7 @@ JointStepper::JointStepper(const Objective& objective, Curvature curvature, Tria
       hessian_(curvature == Curvature::kNewton ? Hessian::kNewton : Hessian::kGaussNewton),
       phases_(phases),
       equations_(objective),
+      step_(objective.num_threads()),
       lambda_(kInitialLambda) {
   CHECK(reduction == nullptr || trial == Trial::kAsItIs)
       << "a projection would leave the reduction";

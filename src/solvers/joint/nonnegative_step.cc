@@ -94,7 +94,7 @@ bool NonnegativeStep::Factor(double lambda) {
     for (size_t i = j; i < size; ++i) column[i] = units_[j] * H_k[base_[i]] * units_[i];
     column[j] += lambda;
   }
-  return FactorCholesky(static_cast<int>(size), L_.data());
+  return FactorCholesky(static_cast<int>(size), L_.data(), num_threads_);
 }
 
 // Sets p by the present active set. That differs from the one of the factor LL' = A by the

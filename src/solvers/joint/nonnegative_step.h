@@ -18,6 +18,8 @@ namespace trilobe {
 // last round is projected. An object keeps its storage from one point to the next.
 class NonnegativeStep {
  public:
+  explicit NonnegativeStep(int num_threads = 1) : num_threads_(num_threads) {}
+
   // From now on steps start from x, with this S, which is 0 for parameters that cannot move. `at`
   // must stay as it is while they are asked for.
   void MoveTo(const QuadraticModel& at, std::span<const double> metric, std::span<const double> x);
@@ -35,6 +37,8 @@ class NonnegativeStep {
   void SetBinding(std::vector<bool> binding) { binding_ = std::move(binding); }
 
  private:
+  const int num_threads_;  // for the factors of large ones
+
   // How the active set was, seen from its solution.
   enum class Outcome { kRight, kChanged, kIndefinite };
 

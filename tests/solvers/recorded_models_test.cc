@@ -1,0 +1,81 @@
+// Every solver still makes the models that it made before the solvers came to work on samples of
+// any kind and on any axes: recorded_models.json was written by this test, with TRILOBE_RECORD
+// naming the file, in the last version before that.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/solvers/solver_kinds.h"
+#include "tests/test_util.h"
+#include "trilobe/io/synth.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr MerlGrid kGrid{12, 12, 16};
+constexpr const char* kMaterials[] = {"plastic", "copper", "felt", "car-paint", "chrome", "rubber"};
+
+// What a model is, in few numbers: its projections on fixed directions, in units of each part's
+// largest number.
+std::vector<double> Fingerprint(const FactorModel& model) {
+  std::vector<double> sums(4, 0.0);
+  Random random(1);
+  for (const auto [begin, size] : model.Parts()) {
+    const auto part = model.parameters().subspan(begin, size);
+    const double largest = std::max(std::ranges::max(part), 1e-300);
+    for (const double x : part) {
+      for (double& sum : sums) sum += random.Uniform() * x / largest;
+    }
+  }
+  return sums;
+}
+
+TEST(RecordedModels, AreMadeAgain) {
+  const char* const record = std::getenv("TRILOBE_RECORD");
+  Json recorded = Json::object();
+  if (record == nullptr) {
+    std::ifstream(std::filesystem::path(__FILE__).parent_path() / "recorded_models.json") >>
+        recorded;
+    ASSERT_EQ(recorded.size(), std::size(kMaterials));
+  }
+  for (const char* const material : kMaterials) {
+    const BrdfTable table = Synthesize(FindSynthMaterial(material), 0.05, 1, kGrid);
+    const ModelSpec spec = ModelSpec::SharedFactors(3, kGrid);
+    const Objective objective(ValidSamples(table), spec, FindWeighting("appearance"), 1);
+    for (const SolverEntry& solver : kLibrarySolvers) {
+      FactorModel model = FindInitialModel("analytic").make(objective, 1);
+      const SolverSummary summary =
+          solver.make()->Solve(objective, {.max_iterations = 6, .diagnose = false}, &model);
+      const std::vector<double> fingerprint = Fingerprint(model);
+      Json& entry = recorded[material][solver.name];
+      if (record != nullptr) {
+        entry = {{"objective", summary.final_objective}, {"fingerprint", fingerprint}};
+        continue;
+      }
+      // Other processors' linear algebra rounds otherwise, and six steps carry that on.
+      const double E = entry.at("objective");
+      EXPECT_NEAR(summary.final_objective / E, 1, 1e-6) << material << ' ' << solver.name;
+      for (size_t k = 0; k < fingerprint.size(); ++k) {
+        const double expected = entry.at("fingerprint")[k];
+        EXPECT_NEAR(fingerprint[k] / expected, 1, 1e-4) << material << ' ' << solver.name;
+      }
+    }
+  }
+  if (record != nullptr) std::ofstream(record) << recorded.dump(1) << '\n';
+}
+
+}  // namespace
+}  // namespace trilobe
