@@ -37,7 +37,9 @@ DEFINE_double(
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
     "by reweighting; 0 for none");
 DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
-DEFINE_bool(reconstruction, false, "also write DIR/reconstruction.binary, the fit in MERL layout");
+DEFINE_bool(reconstruction, false,
+            "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
+            "model DIR/reconstruction.bin, in UTIA's");
 DEFINE_bool(
     course, false,
     "also write DIR/course.csv: errors of the models on the way, scored when the fit is over");

@@ -23,8 +23,9 @@ struct NodeTable {
   double PhiStep() const { return 2 * kPi / phis; }
   // Of nodes i and o, moved by so many steps in all four angles.
   SphericalAngles Angles(int i, int o, double steps = 0) const {
-    return {(i / phis + steps) * ThetaStep(), (i % phis + steps) * PhiStep(),
-            (o / phis + steps) * ThetaStep(), (o % phis + steps) * PhiStep()};
+    const int a_i = i / phis, b_i = i % phis, a_o = o / phis, b_o = o % phis;
+    return {(a_i + steps) * ThetaStep(), (b_i + steps) * PhiStep(), (a_o + steps) * ThetaStep(),
+            (b_o + steps) * PhiStep()};
   }
 };
 
