@@ -53,9 +53,10 @@ TEST(NodeBrdf, IsLinearInEachAngleAndConstantBeyondTheLastTheta) {
     const SphericalAngles at = {random.Uniform(0, 1.57), random.Uniform(-9, 9),
                                 random.Uniform(0, 1.57), random.Uniform(-9, 9)};
     const auto weight = [&](int node, double theta, double phi) {
+      const int ring = node / 7;
       const double place = std::min(theta / table.ThetaStep(), 2.0);
       const double turn = std::remainder(phi - node % 7 * table.PhiStep(), 2 * kPi);
-      return std::max(0.0, 1 - std::abs(place - node / 7)) *
+      return std::max(0.0, 1 - std::abs(place - ring)) *
              std::max(0.0, 1 - std::abs(turn) / table.PhiStep());
     };
     Rgb sum{};
