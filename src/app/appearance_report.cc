@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/app/print.h"
@@ -39,7 +40,8 @@ std::string Describe(const AppearanceReport& report) {
                      Text(100 * sphere.mean_color_error, 2) + " %\n" +
                      "             albedo off by " + Text(report.albedo.mean, 2) + " mean, " +
                      Text(report.albedo.max, 2) + " at most; mean log error " +
-                     Text(report.at_centers.log, 3) + " at bin centres, " +
+                     Text(report.at_centers.log, 3) + " at " +
+                     (report.at_nodes ? "nodes" : "bin centres") + ", " +
                      Text(report.between_centers.log, 3) + " between them\n";
   if (report.beyond) {
     const BeyondData& beyond = *report.beyond;
@@ -55,9 +57,10 @@ Json ToJson(const AppearanceReport& report) {
   const SphereError& sphere = report.sphere;
   Json albedo = Json::array();
   for (size_t k = 0; k < report.albedo.theta_i.size(); ++k) {
-    albedo.push_back({{"theta_i_deg", RadiansToDegrees(report.albedo.theta_i[k])},
-                      {"measured", report.albedo.measured[k]},
-                      {"fitted", report.albedo.fitted[k]}});
+    Json angles = {{"theta_i_deg", RadiansToDegrees(report.albedo.theta_i[k])}};
+    if (report.at_nodes) angles["phi_i_deg"] = RadiansToDegrees(report.albedo.phi_i[k]);
+    angles.update({{"measured", report.albedo.measured[k]}, {"fitted", report.albedo.fitted[k]}});
+    albedo.push_back(std::move(angles));
   }
   Json beyond;
   if (report.beyond) {

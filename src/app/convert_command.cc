@@ -6,23 +6,38 @@
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/app/write_measurement.h"
+#include "trilobe/base/error.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/csv_file.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/io/node_reconstruction.h"
 #include "trilobe/io/source.h"
+#include "trilobe/io/utia_file.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
 namespace {
 
-Measurement MeasurementOf(const std::string& source, const SourceOptions& options) {
+Measurement MeasurementOf(const std::string& source, const std::string& out,
+                          const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
-  Measurement measurement{
-      .source = source,
-      .kind = "reconstruction",
-      .table = Reconstruct(ReadModel(source).model, source, {}, options.num_threads)};
+  const FactorModel model = ReadModel(source).model;
+  Measurement measurement;
+  if (model.spec().anisotropic()) {
+    const std::string ending = EndingOf(out);
+    if (ending != ".bin" && ending != ".csv") {
+      throw Error("--out=" + out + ": " + source +
+                  " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "
+                  "for UTIA's directions, or in .csv");
+    }
+    measurement = ReconstructAtNodes(model, source, kUtiaGrid);
+  } else {
+    measurement = {.source = source,
+                   .kind = "reconstruction",
+                   .table = Reconstruct(model, source, {}, options.num_threads)};
+  }
   DecideMeasured(options, &measurement);
   return measurement;
 }
@@ -32,7 +47,7 @@ int RunConvert(std::span<const std::string> arguments) {
   const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
-  const Measurement measurement = MeasurementOf(source, options);
+  const Measurement measurement = MeasurementOf(source, out, options);
   for (const std::string& note : measurement.notes) {
     std::cerr << "trilobe: " << source << ": " << note << "\n";
   }
@@ -56,7 +71,9 @@ Command ConvertCommand() {
           "RGL file, bins that were not\nmeasured are marked invalid (-1), unless --extrapolated "
           "is given. For a model file, all bins with both\ndirections above the surface are "
           "filled; "
-          "elsewhere bins are marked invalid. With --max_angle, bins\nbeyond it are marked "
+          "elsewhere bins are marked invalid. An\nanisotropic model is evaluated at the directions "
+          "of the UTIA database, for a .bin or .csv file. With --max_angle, bins\nbeyond it are "
+          "marked "
           "invalid, "
           "too, whatever the input. Scattered samples have no bins: that is an error.\nTo a FILE "
           "that ends in .csv it writes the valid samples, scattered ones too, a row each, with all "

@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 #include "trilobe/app/albedo_table.h"
@@ -6,6 +7,7 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
+#include "trilobe/appearance/material.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
@@ -15,10 +17,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// " (6 theta to 75 deg x 48 phi)", of tables of both.
+std::string NodesText(const Axis& axis) {
+  if (!axis.polar()) return "";
+  return " (" + std::to_string(axis.theta.size()) + " theta to " + Text(axis.theta.back()) +
+         " deg x " + std::to_string(axis.phi_nodes) + " phi)";
+}
+
 std::string SharingText(const ModelSpec& spec, Factor factor) {
   const TableSharing& sharing = spec.sharing(factor);
   const std::string tables = std::to_string(spec.num_tables(factor)) + " x " +
-                             std::to_string(spec.table_size(factor)) + ", ";
+                             std::to_string(spec.table_size(factor)) +
+                             NodesText(spec.axis(factor)) + ", ";
   if (sharing.per_lobe && sharing.per_channel) return tables + "one for each lobe and channel";
   if (sharing.per_lobe) return tables + "one for each lobe, shared by the channels";
   if (sharing.per_channel) return tables + "one for each channel, shared by the lobes";
@@ -44,6 +54,17 @@ int CountDead(const ModelFile& file, Factor factor) {
   return count;
 }
 
+// For light along `phi_i` [rad].
+BrdfFunction BrdfOf(const FactorModel& model, double phi_i) {
+  if (!model.spec().anisotropic()) return ContinuousModel(model);
+  return [brdf = MaterialOf(model).spherical, phi_i](const DirectionPair& pair) {
+    SphericalAngles at = ToSphericalAngles(pair);
+    at.phi_i += phi_i;
+    at.phi_o += phi_i;
+    return brdf(at);
+  };
+}
+
 Rgb ToRgb(std::span<const double> values) { return {values[0], values[1], values[2]}; }
 
 }  // namespace
@@ -53,14 +74,19 @@ void DescribeModel(const std::string& path) {
   const FactorModel& model = file.model;
   const ModelSpec& spec = model.spec();
   const FitInfo& fit = file.fit;
-  const AlbedoTable albedo = TabulateAlbedo(ContinuousModel(model), ThreadsFromFlags());
-
+  const AlbedoTable albedo = TabulateAlbedo(BrdfOf(model, 0), ThreadsFromFlags());
+  std::optional<AlbedoTable> across;
+  if (spec.anisotropic()) across = TabulateAlbedo(BrdfOf(model, kPi / 2), ThreadsFromFlags());
   const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), model);
 
   if (FLAGS_json) {
-    Json json = {{"file", path},          {"kind", "model"},
-                 {"lobes", spec.lobes},   {"parameters", spec.num_parameters()},
-                 {"d", ToRgb(model.d())}, {"s", Json::array()}};
+    Json json = {{"file", path},
+                 {"kind", "model"},
+                 {"anisotropic", spec.anisotropic()},
+                 {"lobes", spec.lobes},
+                 {"parameters", spec.num_parameters()},
+                 {"d", ToRgb(model.d())},
+                 {"s", Json::array()}};
     for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(ToRgb(model.s(m)));
     json["light"] = ToJson(light);
     for (const Factor factor : kFactors) {
@@ -87,11 +113,13 @@ void DescribeModel(const std::string& path) {
                    {"program", fit.program},
                    {"date", fit.date}};
     json["albedo"] = ToJson(albedo);
+    if (across) json["albedo_across"] = ToJson(*across);
     PrintJson(json);
     return;
   }
   PrintLine("file", path);
-  PrintLine("kind", "model, " + std::to_string(spec.lobes) + " lobes, " +
+  PrintLine("kind", std::string(spec.anisotropic() ? "anisotropic " : "") + "model, " +
+                        std::to_string(spec.lobes) + " lobes, " +
                         std::to_string(spec.num_parameters()) + " parameters");
   if (file.layout) {
     PrintLine("stored", std::to_string(file.layout->num_numbers(spec)) + " numbers, and " +
@@ -124,7 +152,8 @@ void DescribeModel(const std::string& path) {
                                  std::to_string(fit.valid_samples) + " valid samples");
   }
   if (!fit.program.empty()) PrintLine("written by", fit.program + " " + fit.date);
-  Print(albedo);
+  Print(albedo, across ? "directional albedo, light along x" : "directional albedo");
+  if (across) Print(*across, "directional albedo, light along y");
 }
 
 }  // namespace trilobe

@@ -37,11 +37,14 @@ DEFINE_double(
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
     "by reweighting; 0 for none");
 DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
-DEFINE_bool(reconstruction, false, "also write DIR/reconstruction.binary, the fit in MERL layout");
+DEFINE_bool(reconstruction, false,
+            "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
+            "model DIR/reconstruction.bin, in UTIA's");
 DEFINE_bool(
     course, false,
     "also write DIR/course.csv: errors of the models on the way, scored when the fit is over");
-DEFINE_bool(plots, false, "also draw the pictures of `trilobe plot` into DIR");
+DEFINE_bool(plots, false,
+            "also draw the pictures of `trilobe plot` into DIR; without --out that is out/NAME");
 
 namespace trilobe {
 namespace {
@@ -134,10 +137,13 @@ FitSettings SettingsFromFlags() {
 int RunFitOfOne(const std::string& source) {
   const FitSettings settings = SettingsFromFlags();
   std::optional<ResultFolder> folder;
-  if (!FLAGS_out.empty()) {
+  // Who asks for files gets them.
+  const bool wants_files = settings.plots || settings.reconstruction || settings.course;
+  const std::string out = FLAGS_out.empty() && wants_files ? "out/" + FitNameOf(source) : FLAGS_out;
+  if (!out.empty()) {
     std::vector<std::string> inputs = settings.inputs;
     inputs.push_back(source);
-    folder.emplace(FLAGS_out, FitFileNames(), FitFolderMarks(), Inputs(inputs));
+    folder.emplace(out, FitFileNames(), FitFolderMarks(), Inputs(inputs));
   }
   ResultFolder* const into = folder ? &*folder : nullptr;
   const int threads = ThreadsFromFlags();
@@ -161,7 +167,7 @@ int RunFitOfOne(const std::string& source) {
       throw Error(std::string(error.what()) + "; the model is in '" + into->PathOf("model.json") +
                   "'");
     }
-    std::cout << "written      " << Joined(run.report.files) << " in " << FLAGS_out << "\n";
+    std::cout << "written      " << Joined(run.report.files) << " in " << out << "\n";
   }
   return run.report.interrupted ? 128 + InterruptGuard::signal()
                                 : 0;  // as a shell reports such an end

@@ -62,11 +62,6 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
   return found;
 }
 
-std::string NameOf(const std::string& source) {
-  if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
-  return fs::path(source).stem().string();
-}
-
 // Folders replaced by what is in them. Each becomes a folder of its own, so names must differ.
 std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
   std::vector<std::string> sources;
@@ -81,7 +76,7 @@ std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
   std::map<std::string, std::string> source_of;
   std::vector<FitOutcome> outcomes;
   for (const std::string& source : sources) {
-    const std::string name = NameOf(source);
+    const std::string name = FitNameOf(source);
     if (name.empty() || name == "." || name == ".." || name == kTableName || name == kPageName) {
       throw Error("'" + source + "' gives no name for a folder; rename it");
     }
@@ -193,6 +188,11 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 }
 
 }  // namespace
+
+std::string FitNameOf(const std::string& source) {
+  if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
+  return fs::path(source).stem().string();
+}
 
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");

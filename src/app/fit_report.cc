@@ -131,6 +131,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"mean_relative_error", score.mean_relative_error},
           {"mean_log_error", score.mean_log_error},
           {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
+          {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
           {"light", ToJson(report.light)},
           {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
           {"seconds",
@@ -165,8 +166,15 @@ void Print(const FitReport& report) {
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
             << Describe(report.finished)
-            << (report.appearance ? Describe(*report.appearance)
-                                  : "appearance   scattered samples make no picture\n")
+            << (report.appearance
+                    ? Describe(*report.appearance)
+                    : "appearance   samples on no grid of directions make no picture\n")
+            << (report.left_out
+                    ? "azimuths     an isotropic model leaves out " +
+                          Text(100 * *report.left_out, 3) +
+                          " % of the energy: what differs from the mean over all turns of the "
+                          "sample\n"
+                    : "")
             << "light        " << Describe(report.light) << "\n"
             << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
             << " prepare, " << Text(seconds.init, 3) << " init, " << Text(seconds.solve, 3)

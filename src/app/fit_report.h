@@ -42,7 +42,10 @@ struct FitReport {
   } finished;
   int stored_numbers = 0;
   ScoreReport score;
-  std::optional<AppearanceReport> appearance;  // none of scattered samples, which have no picture
+  std::optional<AppearanceReport> appearance;  // none of samples on no grid, which have no picture
+  // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
+  // of the sample leaves out (AnisotropyOf).
+  std::optional<double> left_out;
   LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]

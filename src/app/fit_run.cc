@@ -15,11 +15,14 @@
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/base/utc_time.h"
 #include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/io/anisotropy.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/merl_file.h"
+#include "trilobe/io/node_reconstruction.h"
+#include "trilobe/io/picture_data.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/trace_file.h"
-#include "trilobe/model/continuous_model.h"
+#include "trilobe/io/utia_file.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/objective/score.h"
@@ -33,6 +36,7 @@ constexpr const char* kTraceName = "trace.csv";
 constexpr const char* kReportName = "report.json";
 constexpr const char* kCourseName = "course.csv";
 constexpr const char* kReconstructionName = "reconstruction.binary";
+constexpr const char* kAtNodesName = "reconstruction.bin";
 constexpr const char* kPairName = "pair.png";
 
 std::string Program() { return std::string("trilobe ") + gflags::VersionString(); }
@@ -82,9 +86,12 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
 }  // namespace
 
 const std::vector<std::string>& FitFileNames() {
-  static const std::vector<std::string> names = {
-      kReportName,   kModelName,   kTraceName,    kCourseName, kReconstructionName,
-      "factors.png", "slices.png", "spheres.png", "trace.png", kPairName};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {kReportName,         kModelName,   kTraceName, kCourseName,
+                                    kReconstructionName, kAtNodesName, kPairName};
+    all.insert(all.end(), std::begin(kPictureNames), std::end(kPictureNames));
+    return all;
+  }();
   return names;
 }
 
@@ -126,8 +133,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
   if (table == nullptr && settings.finish.max_numbers > 0) {
     throw Error(source +
-                ": --model=auto chooses by pictures, which scattered samples do not make; choose "
-                "--model=shared or independent");
+                ": --model=auto chooses among isotropic models of a MERL or RGL table; choose "
+                "--model=isotropic, anisotropic or independent");
   }
   BrdfSamples samples = SamplesOf(measured);
   report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured);
@@ -178,8 +185,12 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   unsaved.reset();
   report.seconds.finish = stopwatch.Lap();
 
-  if (table != nullptr) {
-    report.appearance = CompareAppearance(*table, ContinuousModel(fit.model), finish.appearance);
+  const PictureData pictured = PictureDataOf(measured);
+  if (!pictured.empty()) {
+    report.appearance = CompareAppearance(pictured, MaterialOf(fit.model), finish.appearance);
+  }
+  if (measured.anisotropic && !report.spec.anisotropic()) {
+    report.left_out = AnisotropyOf(measured).share;
   }
   report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
   report.seconds.score = stopwatch.Lap();
@@ -199,20 +210,25 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
   if (settings.course) run->course.Write(folder->PathOf(kCourseName), objective);
   if (settings.reconstruction) {
-    WriteMerl(Reconstruct(run->file.model, run->file.fit.source, objective.samples().grid, threads),
-              folder->PathOf(kReconstructionName));
+    const FactorModel& model = run->file.model;
+    const std::string& source = run->file.fit.source;
+    if (model.spec().anisotropic()) {
+      WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(kAtNodesName));
+    } else {
+      WriteMerl(Reconstruct(model, source, objective.samples().grid, threads),
+                folder->PathOf(kReconstructionName));
+    }
   }
-  const BrdfTable* const table = run->measured.table ? &*run->measured.table : nullptr;
+  const PictureData pictured = PictureDataOf(run->measured);
   AppearanceOptions appearance = settings.finish.appearance;
   appearance.num_threads = threads;
   std::exception_ptr failure;
   try {
-    if (settings.pair && table != nullptr) {
-      WriteSpherePair(*table, ContinuousModel(run->file.model), folder->PathOf(kPairName),
-                      appearance);
+    if (settings.pair && !pictured.empty()) {
+      WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
     }
     if (settings.plots) {
-      DrawPictures(run->file, table, report.summary.trace, folder->path(), appearance);
+      DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance);
     }
   } catch (const Error&) {
     failure = std::current_exception();

@@ -25,17 +25,22 @@ int RunPlot(std::span<const std::string> arguments) {
   std::vector<std::string> read(arguments.begin(), arguments.end());
   for (const std::string& path : {FLAGS_trace, FLAGS_probe}) read.push_back(path);
   const Inputs inputs(read);
-  for (const char* const name : {"factors.png", "slices.png", "spheres.png", "trace.png"}) {
+  for (const char* const name : kPictureNames) {
     inputs.CheckOutput(folder + "/" + name);
   }
   const ModelFile file = ReadModel(arguments[0]);
-  std::optional<BrdfTable> measured;
-  if (arguments.size() > 1) measured = LoadSource(arguments[1], SourceOptionsFromFlags());
+  std::optional<Measurement> measured;
+  PictureData data;
+  if (arguments.size() > 1) {
+    measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
+    data = PictureDataOf(*measured);
+    if (data.empty()) TableOf(*measured);  // its error
+  }
   std::vector<IterationRecord> trace;
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
   MakeDirectories(folder);
-  for (const std::string& path : DrawPictures(file, measured ? &*measured : nullptr, trace, folder,
-                                              AppearanceOptionsFromFlags())) {
+  for (const std::string& path :
+       DrawPictures(file, data, trace, folder, AppearanceOptionsFromFlags())) {
     std::cout << "wrote " << path << "\n";
   }
   return 0;
@@ -54,6 +59,7 @@ Command PlotCommand() {
               "  factors.png  D, F, G and the coefficients d, s\n"
               "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
               "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
+              "  cloth.png    the same on draped cloth (where SOURCE is anisotropic)\n"
               "  trace.png    E over iterations and seconds (with --trace)",
           .flags = WithSourceFlags({"out", "trace", "probe"}),
           .run = RunPlot};

@@ -67,8 +67,15 @@ Json ToJson(const ScoreReport& report, const std::optional<AppearanceReport>& ap
     }
     place.update({{"theta_h_deg", RadiansToDegrees(worst.angles.theta_h)},
                   {"theta_d_deg", RadiansToDegrees(worst.angles.theta_d)},
-                  {"phi_d_deg", RadiansToDegrees(worst.angles.phi_d)},
-                  {"channel", kChannelNames[worst.channel]},
+                  {"phi_d_deg", RadiansToDegrees(worst.angles.phi_d)}});
+    if (!samples.directions.empty()) {
+      const SphericalAngles& at = samples.directions[worst.sample];
+      place.update({{"theta_i_deg", RadiansToDegrees(at.theta_i)},
+                    {"phi_i_deg", RadiansToDegrees(at.phi_i)},
+                    {"theta_o_deg", RadiansToDegrees(at.theta_o)},
+                    {"phi_o_deg", RadiansToDegrees(at.phi_o)}});
+    }
+    place.update({{"channel", kChannelNames[worst.channel]},
                   {"measured", worst.measured},
                   {"fitted", worst.fitted},
                   {"weighted_squared_error", worst.error}});
@@ -122,24 +129,25 @@ int RunScore(std::span<const std::string> arguments) {
     other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }
   const Measurement measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
-  const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
-  if (!FLAGS_out.empty()) TableOf(measured);  // or its error
+  const PictureData pictured = PictureDataOf(measured);
+  if (!FLAGS_out.empty() && pictured.empty()) TableOf(measured);  // its error
   BrdfSamples samples = SamplesOf(measured);
   const ModelSpec spec = other ? ModelSpec::SharedFactors(0, samples.grid) : model.spec();
   const Objective objective(std::move(samples), spec, weighting, threads);
   std::optional<TabulatedBrdf> tabulated;
   if (other) tabulated.emplace(*other);
-  const AngularBrdf fitted = other ? Interpolated(*tabulated) : AngularBrdf(ContinuousModel(model));
-  const ScoreReport report = other ? ScoreValues(objective, ValuesAt(fitted, objective.samples()))
-                                   : ScoreModel(objective, model);
+  const Material fitted = other ? Isotropic(Interpolated(*tabulated)) : MaterialOf(model);
+  const ScoreReport report =
+      other ? ScoreValues(objective, ValuesAt(fitted.angular, objective.samples()))
+            : ScoreModel(objective, model);
   std::optional<AppearanceReport> appearance;
-  if (table != nullptr) appearance = CompareAppearance(*table, fitted, appearance_options);
+  if (!pictured.empty()) appearance = CompareAppearance(pictured, fitted, appearance_options);
   if (FLAGS_json) {
     PrintJson(ToJson(report, appearance, objective, arguments[0]));
   } else {
     PrintTable(report, appearance, objective, arguments[0]);
   }
-  if (!FLAGS_out.empty()) WriteSpherePair(*table, fitted, FLAGS_out, appearance_options);
+  if (!FLAGS_out.empty()) WriteSpherePair(pictured, fitted, FLAGS_out, appearance_options);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "trilobe/appearance/color.h"
+#include "trilobe/appearance/sphere.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/albedo.h"
@@ -55,34 +56,13 @@ AngularBrdf Clamped(const AngularBrdf& brdf) {
   };
 }
 
-const Environment& EnvironmentOf(const AppearanceOptions& options) {
-  return options.environment != nullptr ? *options.environment : StudioEnvironment();
-}
-
-AlbedoError CompareAlbedos(const AngularBrdf& measured, const AngularBrdf& fitted,
-                           const MeasuredDirections& counts, int num_threads) {
-  AlbedoError error;
-  for (const int degrees : {0, 15, 30, 45, 60, 75}) {
-    error.theta_i.push_back(DegreesToRadians(degrees));
-  }
-  const auto albedos = [&](const AngularBrdf& brdf) {
-    const BrdfFunction function = [&](const DirectionPair& pair) {
-      const HalfDiffAngles angles = ToHalfDiff(pair);
-      const Cosines cosines{pair.wi[2], std::min(pair.wo[2], 1.0)};
-      return counts(angles, cosines) ? brdf(angles, cosines) : Rgb{};
-    };
-    return DirectionalAlbedos(function, error.theta_i, num_threads);
+// Nothing where nothing was measured.
+BrdfFunction OfMeasured(const AngularBrdf& brdf, const MeasuredDirections& counts) {
+  return [&brdf, &counts](const DirectionPair& pair) {
+    const HalfDiffAngles angles = ToHalfDiff(pair);
+    const Cosines cosines{pair.wi[2], std::min(pair.wo[2], 1.0)};
+    return counts(angles, cosines) ? brdf(angles, cosines) : Rgb{};
   };
-  error.measured = albedos(measured);
-  error.fitted = albedos(fitted);
-  for (size_t k = 0; k < error.theta_i.size(); ++k) {
-    for (int c = 0; c < kChannels; ++c) {
-      const double difference = std::abs(error.fitted[k][c] - error.measured[k][c]);
-      error.mean += difference / static_cast<double>(kChannels * error.theta_i.size());
-      error.max = std::max(error.max, difference);
-    }
-  }
-  return error;
 }
 
 // At the centres of every few valid bins (offset 1/2), or at their upper corners (offset 1), where
@@ -92,11 +72,7 @@ PointErrors CompareAtPoints(const BrdfTable& table, const std::vector<bool>& val
                             int num_threads) {
   constexpr int kStrideD = 3, kStrideP = 5;
   const MerlGrid& grid = table.grid;
-  struct Sum {
-    double log = 0, relative = 0;
-    int values = 0;
-  };
-  std::vector<Sum> sums(grid.theta_h - 1);
+  std::vector<PointErrorSum> sums(grid.theta_h - 1);
   ParallelFor(static_cast<int>(sums.size()), num_threads, [&](int h) {
     for (int d = h % kStrideD; d + 1 < grid.theta_d; d += kStrideD) {
       for (int p = (h + d) % kStrideP; p + 1 < grid.phi_d; p += kStrideP) {
@@ -109,23 +85,11 @@ PointErrors CompareAtPoints(const BrdfTable& table, const std::vector<bool>& val
                                        grid.PhiD(p + offset)};
         const Cosines cosines = ToCosines(angles);
         if (!inside || !(cosines.i > 0 && cosines.o > 0)) continue;
-        const Rgb a = measured(angles, cosines), b = fitted(angles, cosines);
-        for (int c = 0; c < kChannels; ++c) {
-          sums[h].log += std::abs(std::log1p(b[c] * cosines.i) - std::log1p(a[c] * cosines.i));
-          sums[h].relative += std::abs(b[c] - a[c]) / (a[c] + 1e-3);
-        }
-        sums[h].values += kChannels;
+        sums[h].Add(measured(angles, cosines), fitted(angles, cosines), cosines.i);
       }
     }
   });
-  Sum total;
-  for (const Sum& sum : sums) {
-    total.log += sum.log;
-    total.relative += sum.relative;
-    total.values += sum.values;
-  }
-  const double n = std::max(total.values, 1);
-  return {total.log / n, total.relative / n};
+  return MeanOf(sums);
 }
 
 BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
@@ -168,18 +132,18 @@ BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
 
 using Counts = std::function<bool(const HalfDiffAngles&, const Cosines&)>;
 
-SpherePair RenderPair(const TabulatedBrdf& measured, const AngularBrdf& fitted,
-                      const Counts& counts, const AppearanceOptions& options) {
+ImagePair RenderPair(const TabulatedBrdf& measured, const AngularBrdf& fitted, const Counts& counts,
+                     const AppearanceOptions& options) {
   const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
   const AngularBrdf brdfs[] = {Interpolated(measured), Clamped(fitted)};
-  std::vector<SphereImage> spheres =
+  std::vector<RenderedImage> spheres =
       RenderSpheres(brdfs, lights, options.size, counts, options.num_threads);
   return {std::move(spheres[0]), std::move(spheres[1])};
 }
 
 // Everything, measured or not; for `measured` what its table is filled with.
-SpherePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
-                            const AppearanceOptions& options) {
+ImagePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
+                           const AppearanceOptions& options) {
   BrdfTable all = measured;
   all.unmeasured.clear();
   const Counts everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
@@ -188,7 +152,22 @@ SpherePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted
 
 }  // namespace
 
-SphereError CompareSpheres(const SphereImage& measured, const SphereImage& fitted) {
+const Environment& EnvironmentOf(const AppearanceOptions& options) {
+  return options.environment != nullptr ? *options.environment : StudioEnvironment();
+}
+
+void CheckFinite(const AppearanceReport& report, const std::string& source) {
+  const double largest = report.beyond ? report.beyond->largest : 0;
+  for (const double x : {report.sphere.mean_color_error, report.sphere.mean_delta_e,
+                         report.albedo.mean, report.at_centers.log, report.at_centers.relative,
+                         report.between_centers.log, report.between_centers.relative, largest}) {
+    if (!std::isfinite(x)) {
+      throw Error(source + ": the model's values overflow; its factors are too large");
+    }
+  }
+}
+
+SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& fitted) {
   std::vector<size_t> pixels;
   Rgb mean_measured{}, mean_fitted{};
   for (size_t k = 0; k < measured.radiance.size(); ++k) {
@@ -247,45 +226,40 @@ AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf&
   report.environment = environment.name;
   report.lights = options.lights;
   report.size = options.size;
-  const SpherePair pair = RenderPair(table, fitted, std::cref(counts), options);
+  const ImagePair pair = RenderPair(table, fitted, std::cref(counts), options);
   report.sphere = CompareSpheres(pair.measured, pair.fitted);
-  report.albedo = CompareAlbedos(brdfs[0], brdfs[1], counts, options.num_threads);
+  const double phi_i[] = {0};
+  report.albedo = CompareAlbedos(OfMeasured(brdfs[0], counts), OfMeasured(brdfs[1], counts), phi_i,
+                                 options.num_threads);
   report.at_centers =
       CompareAtPoints(measured, valid, 0.5, brdfs[0], brdfs[1], options.num_threads);
   report.between_centers =
       CompareAtPoints(measured, valid, 1, brdfs[0], brdfs[1], options.num_threads);
   if (!measured.unmeasured.empty()) {
     report.beyond = LookBeyond(measured, valid, brdfs[1], options.num_threads);
-    const SpherePair whole = RenderEverywhere(measured, fitted, options);
+    const ImagePair whole = RenderEverywhere(measured, fitted, options);
     report.beyond->psnr_db = CompareSpheres(whole.measured, whole.fitted).psnr_db;
   }
-  const double largest = report.beyond ? report.beyond->largest : 0;
-  for (const double x : {report.sphere.mean_color_error, report.sphere.mean_delta_e,
-                         report.albedo.mean, report.at_centers.log, report.at_centers.relative,
-                         report.between_centers.log, report.between_centers.relative, largest}) {
-    if (!std::isfinite(x)) {
-      throw Error(measured.source + ": the model's values overflow; its factors are too large");
-    }
-  }
+  CheckFinite(report, measured.source);
   return report;
 }
 
-SpherePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
-                              const AppearanceOptions& options) {
+ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
+                             const AppearanceOptions& options) {
   return RenderPair(TabulatedBrdf(measured), fitted, MeasuredDirections(measured), options);
 }
 
 SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted,
                             const AppearanceOptions& options) {
-  const SpherePair pair = RenderMeasuredPair(measured, fitted, options);
+  const ImagePair pair = RenderMeasuredPair(measured, fitted, options);
   return CompareSpheres(pair.measured, pair.fitted);
 }
 
-SpherePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
-                            const AppearanceOptions& options) {
-  SpherePair counted = RenderMeasuredPair(measured, fitted, options);
+ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
+                           const AppearanceOptions& options) {
+  ImagePair counted = RenderMeasuredPair(measured, fitted, options);
   if (MeasuredDirections(measured).everything()) return counted;
-  SpherePair pair = RenderEverywhere(measured, fitted, options);
+  ImagePair pair = RenderEverywhere(measured, fitted, options);
   pair.measured.coverage = std::move(counted.measured.coverage);
   pair.fitted.coverage = std::move(counted.fitted.coverage);
   return pair;

@@ -5,10 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/appearance/albedo_error.h"
 #include "trilobe/appearance/environment.h"
+#include "trilobe/appearance/material.h"
+#include "trilobe/appearance/point_errors.h"
+#include "trilobe/appearance/render.h"
 #include "trilobe/appearance/sphere.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/node_brdf.h"
 
 namespace trilobe {
 
@@ -25,20 +30,7 @@ struct SphereError {
   double mean_color_error = 0;
   double exposure = 0;  // 0 for a black measurement
 };
-SphereError CompareSpheres(const SphereImage& measured, const SphereImage& fitted);
-
-// Directional albedos over theta_i, of what is measured alone.
-struct AlbedoError {
-  std::vector<double> theta_i;        // [rad]
-  std::vector<Rgb> measured, fitted;  // [theta_i.size()]
-  double mean = 0, max = 0;           // of |fitted - measured|, over angles and channels
-};
-
-// Mean over points and channels of |log((1 + b) / (1 + b*))|, b = rho cos theta_i, and of
-// |rho - rho*| / (rho* + 1e-3).
-struct PointErrors {
-  double log = 0, relative = 0;
-};
+SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& fitted);
 
 // What the model makes of directions that were not measured.
 struct BeyondData {
@@ -55,8 +47,10 @@ struct AppearanceReport {
   int lights = 0, size = 0;
   SphereError sphere;
   AlbedoError albedo;
-  PointErrors at_centers, between_centers;  // of every few bins; between: at their corners
-  std::optional<BeyondData> beyond;         // nothing where the measurement covers all directions
+  // Of every few bins; between: at their corners. Or at nodes, and in the middle between them.
+  PointErrors at_centers, between_centers;
+  bool at_nodes = false;
+  std::optional<BeyondData> beyond;  // nothing where the measurement covers all directions
 };
 
 struct AppearanceOptions {
@@ -66,11 +60,19 @@ struct AppearanceOptions {
   int num_threads = 1;
 };
 
-// Compares a material with a measurement, which is linear between bin centres. `fitted` is a
-// function of any two directions. The same bits for any number of threads. Throws Error when no bin
-// is valid, the environment is black, or the material's values overflow.
+// What they are lit by.
+const Environment& EnvironmentOf(const AppearanceOptions& options);
+
+// Compares a material with a measurement, which is linear between bin centres, or between nodes.
+// `fitted` is a function of any two directions. The same bits for any number of threads. Throws
+// Error when no bin is valid, the environment is black, or the material's values overflow.
 AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,
                                    const AppearanceOptions& options);
+AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf& fitted,
+                                   const AppearanceOptions& options);
+
+// Throws Error, which names the source, where a figure overflows.
+void CheckFinite(const AppearanceReport& report, const std::string& source);
 
 // The part of it that says most, for comparing many materials with one measurement.
 SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted,
@@ -78,13 +80,23 @@ SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted
 
 // Measured and fitted sphere under an environment: as they are compared, from measured directions
 // alone, and, for pictures, from all.
-struct SpherePair {
-  SphereImage measured, fitted;  // coverage: the share of the light whose directions were measured
+struct ImagePair {
+  RenderedImage measured,
+      fitted;  // coverage: the share of the light whose directions were measured
 };
-SpherePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
-                              const AppearanceOptions& options);
-SpherePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
-                            const AppearanceOptions& options);
+ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
+                             const AppearanceOptions& options);
+ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
+                           const AppearanceOptions& options);
+
+// The same of a measurement at nodes, on a sphere or on cloth (ViewCloth): what is compared and,
+// if asked for, what pictures show.
+enum class Shape { kSphere, kCloth };
+struct ImagePairs {
+  ImagePair counted, whole;
+};
+ImagePairs RenderPairs(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
+                       bool whole_too, const AppearanceOptions& options);
 
 }  // namespace trilobe
 

@@ -1,3 +1,5 @@
+#include "trilobe/io/plot_factors.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,20 +24,6 @@ constexpr double kLightThatCounts = 1e-4;
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kDash[] = {"solid", "'-'", "'.'", "'_.'", "'..-'", "'-_'", "'--.'", "'_'"};
 
-bool Absent(const FactorModel& model, int lobe) {
-  return std::ranges::all_of(model.s(lobe), [](double s) { return s == 0; });
-}
-
-// Which lobe, or channel, a table belongs to; 0 where it serves them all.
-struct Owner {
-  int lobe = 0, channel = 0;
-};
-Owner OwnerOf(const ModelSpec& spec, Factor factor, int index) {
-  const TableSharing& sharing = spec.sharing(factor);
-  const int channels = sharing.per_channel ? kChannels : 1;
-  return {sharing.per_lobe ? index / channels : 0, sharing.per_channel ? index % channels : 0};
-}
-
 // "62 %", "<0.1 %", for gnuplot, which takes the labels of tics for formats.
 std::string Percent(double share) {
   std::array<char, 32> text;
@@ -43,7 +31,20 @@ std::string Percent(double share) {
   return (share > 0 && share < 0.0005 ? "<0.1" : std::string(text.data())) + " %%";
 }
 
-std::string CurveName(const ModelSpec& spec, Factor factor, int index, bool absent) {
+}  // namespace
+
+bool Absent(const FactorModel& model, int lobe) {
+  return std::ranges::all_of(model.s(lobe), [](double s) { return s == 0; });
+}
+
+TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index) {
+  const TableSharing& sharing = spec.sharing(factor);
+  const int channels = sharing.per_channel ? kChannels : 1;
+  return {sharing.per_lobe ? index / channels : 0, sharing.per_channel ? index % channels : 0};
+}
+
+std::string TableName(const FactorModel& model, Factor factor, int index) {
+  const ModelSpec& spec = model.spec();
   const TableSharing& sharing = spec.sharing(factor);
   const auto [lobe, channel] = OwnerOf(spec, factor, index);
   std::string name;
@@ -52,14 +53,11 @@ std::string CurveName(const ModelSpec& spec, Factor factor, int index, bool abse
   }
   if (sharing.per_channel) name += (name.empty() ? "" : ", ") + std::string(kChannelNames[channel]);
   if (name.empty()) name = "all lobes";
-  return absent ? name + " (s = 0)" : name;
+  return sharing.per_lobe && Absent(model, lobe) ? name + " (s = 0)" : name;
 }
 
-// Data blocks and the plot command of one panel. `position` gives the abscissa of entry i.
-// The axis holds the entries that light goes through; others may leave it.
-template <typename Position>
-std::string Panel(const ModelFile& file, const LobeLight& light, Factor factor,
-                  const Position& position, bool logarithmic) {
+std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor factor,
+                        const std::vector<double>& positions, bool logarithmic) {
   const FactorModel& model = file.model;
   const ModelSpec& spec = model.spec();
   std::string data, curves, hollow;
@@ -74,7 +72,7 @@ std::string Panel(const ModelFile& file, const LobeLight& light, Factor factor,
       const bool dead = file.dead[model.TableOffset(factor, t) + i];
       const bool drawn = !absent;
       any_dead = any_dead || (dead && drawn);
-      rows.push_back({position(i), drawn ? table[i] : kGap, drawn && dead ? table[i] : kGap});
+      rows.push_back({positions[i], drawn ? table[i] : kGap, drawn && dead ? table[i] : kGap});
     }
     const auto through =
         std::span(light.through).subspan(model.TableOffset(factor, t), table.size());
@@ -91,7 +89,7 @@ std::string Panel(const ModelFile& file, const LobeLight& light, Factor factor,
     curves += absent ? "dots linecolor '#FFFFFF'"
                      : "lines linewidth 2.5 " + style + " dashtype " +
                            (by_channel ? kDash[lobe] : "solid");
-    curves += " title '" + CurveName(spec, factor, t, absent) + "'";
+    curves += " title '" + TableName(model, factor, t) + "'";
     hollow +=
         ", $" + block + " using 1:3 with points pointtype 6 pointsize 1.1 " + style + " notitle";
   }
@@ -114,8 +112,6 @@ std::string Panel(const ModelFile& file, const LobeLight& light, Factor factor,
          GnuplotNumber(top > 0 ? top * 1.08 : 1) + "]\n" + curves;
 }
 
-// Bars of the albedos of the diffuse term and of each lobe, by channel, with their values written
-// above.
 std::string AlbedoPanel(const LobeLight& light) {
   const int groups = 1 + static_cast<int>(light.lobes.size());
   std::string data[kChannels], tics;
@@ -132,6 +128,7 @@ std::string AlbedoPanel(const LobeLight& light) {
   }
   std::string script, plot;
   const std::string font = groups <= 4 ? ",14" : ",11";
+  const std::string tic_font = groups <= 6 ? "" : " font ',12'";
   for (int c = 0; c < kChannels; ++c) {
     const std::string block = "$coefficient" + std::to_string(c);
     script += block + " << EOD\n" + data[c] + "EOD\n";
@@ -142,18 +139,28 @@ std::string AlbedoPanel(const LobeLight& light) {
   }
   return script + "unset logscale y\nset format y '%g'\nset yrange [0:" +
          GnuplotNumber(top > 0 ? 1.35 * top : 1) +
-         "]\nset xrange [-0.6:" + GnuplotNumber(groups - 0.4) + "]\nset xtics (" + tics +
-         ")\nset boxwidth 0.26\nset style fill solid 0.85 noborder\n" + plot;
+         "]\nset xrange [-0.6:" + GnuplotNumber(groups - 0.4) + "]\nset xtics (" + tics + ")" +
+         tic_font + "\nset boxwidth 0.26\nset style fill solid 0.85 noborder\n" + plot;
 }
-
-}  // namespace
 
 void DrawFactors(const ModelFile& file, const std::string& path) {
   const ModelSpec& spec = file.model.spec();
-  const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
-  const CatmullRom spline(spec.g_axis.size);
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
   const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), file.model);
+  if (spec.anisotropic()) {
+    DrawPolarFactors(file, light, path);
+    return;
+  }
+  // Where the entries of a table stand [degrees].
+  const auto degrees = [&](Factor factor) {
+    std::vector<double> thetas;
+    for (int i = 0; i < spec.table_size(factor); ++i) {
+      thetas.push_back(RadiansToDegrees(spec.axis(factor).Theta(i)));
+    }
+    return thetas;
+  };
+  std::vector<double> roots = degrees(Factor::kD);
+  for (double& x : roots) x = std::sqrt(x);
   constexpr double kLeft = 0.085, kRight = 0.975, kBottom = 0.075, kTop = 0.865;  // of the canvas
   constexpr double kColumnGap = 0.11, kRowGap = 0.19;
   std::string script = "set multiplot layout 2,2 margins " + GnuplotNumber(kLeft) + "," +
@@ -179,18 +186,12 @@ void DrawFactors(const ModelFile& file, const std::string& path) {
         "set xrange [0:sqrt(90)]\n"
         "set xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), '60' sqrt(60), "
         "'90' sqrt(90))\n",
-        Panel(
-            file, light, Factor::kD,
-            [&](int i) { return std::sqrt(RadiansToDegrees(grid.ThetaH(i + 0.5))); }, true));
+        CurvesPanel(file, light, Factor::kD, roots, true));
   panel("F, Fresnel factor",
         "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
-        Panel(
-            file, light, Factor::kF, [&](int i) { return RadiansToDegrees(grid.ThetaD(i + 0.5)); },
-            false));
+        CurvesPanel(file, light, Factor::kF, degrees(Factor::kF), false));
   panel("G, shadowing and masking", "set xlabel 'θ_i, θ_o [°]'\nset ylabel 'G, mean 1'\n",
-        Panel(
-            file, light, Factor::kG, [&](int i) { return RadiansToDegrees(spline.NodeAngle(i)); },
-            false));
+        CurvesPanel(file, light, Factor::kG, degrees(Factor::kG), false));
   panel("albedo, and share of all that is reflected",
         "set xlabel ''\nset ylabel ''\nunset grid\nset grid ytics\n", AlbedoPanel(light));
   DrawPng(path, 1800, 1300, script);

@@ -2,12 +2,11 @@
 
 #include <filesystem>
 
-#include "trilobe/model/continuous_model.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
 
-std::vector<std::string> DrawPictures(const ModelFile& file, const BrdfTable* measured,
+std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,
                                       const AppearanceOptions& appearance) {
@@ -15,11 +14,18 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const BrdfTable* me
   const auto add = [&](const char* name) -> const std::string& {
     return paths.emplace_back((std::filesystem::path(folder) / name).string());
   };
+  const Material fitted = MaterialOf(file.model);
+  if (measured.table != nullptr) CheckIsotropic(measured, fitted);
   DrawFactors(file, add("factors.png"));
-  if (measured != nullptr) {
-    const BrdfTable fitted = Reconstruct(file.model, "fit", measured->grid, appearance.num_threads);
-    DrawSlices(*measured, fitted, add("slices.png"));
-    DrawSpheres(*measured, ContinuousModel(file.model), add("spheres.png"), appearance);
+  if (measured.nodes) {
+    DrawSlices(*measured.nodes, fitted.spherical, add("slices.png"));
+    DrawSpheres(*measured.nodes, fitted.spherical, add("spheres.png"), appearance);
+    DrawCloth(*measured.nodes, fitted.spherical, add("cloth.png"), appearance);
+  } else if (measured.table != nullptr) {
+    const BrdfTable& table = *measured.table;
+    DrawSlices(table, Reconstruct(file.model, "fit", table.grid, appearance.num_threads),
+               add("slices.png"));
+    DrawSpheres(table, fitted.angular, add("spheres.png"), appearance);
   }
   if (!trace.empty()) DrawTrace(trace, file.fit.source, add("trace.png"));
   return paths;

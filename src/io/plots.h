@@ -9,6 +9,7 @@
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/io/measurement.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/io/picture_data.h"
 #include "trilobe/model/iteration_record.h"
 
 namespace trilobe {
@@ -19,20 +20,34 @@ namespace trilobe {
 
 // The factors as in the paper's Fig. 5: D over theta_h, F over theta_d, G over theta, and the
 // coefficients d and s. Entries that no data touched are hollow; lobes with s = 0 are not drawn,
-// and the legend says so.
+// and the legend says so. Of an anisotropic model D and G of each lobe are maps, theta outwards and
+// phi around.
 void DrawFactors(const ModelFile& file, const std::string& path);
 
 // Measured BRDF (points) and fitted one (lines) over theta_h, at five theta_d and phi_d = 90
 // degrees, one panel a channel.
 void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path);
 
+// The same at nodes, in two rows: over phi_i at several theta_i, seen along the normal, as if the
+// sample were turned; and over phi_o at several theta_o, lit from phi_i = 0 at a middling theta_i.
+void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path);
+
 // Measured and fitted material on a sphere under the lights of the options (whose size is not
 // used), and how far apart they are to the eye.
 void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
                  AppearanceOptions options);
 
+void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
+                 AppearanceOptions options);
+
+// The same on a draped cloth (ViewCloth), lit along its thread and across it.
+void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
+               AppearanceOptions options);
+
 // The two spheres alone, side by side, without text.
 void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
+                     const AppearanceOptions& options);
+void WriteSpherePair(const PictureData& measured, const Material& fitted, const std::string& path,
                      const AppearanceOptions& options);
 
 // Which directions were measured: for each degree of theta_i and theta_o the share of the bins
@@ -62,12 +77,17 @@ struct TradeOff {
 // no model.
 void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 
-// All pictures that the inputs allow, as factors.png, slices.png, spheres.png and trace.png in an
-// existing folder: slices and spheres need `measured`, trace needs records. Returns their paths.
-std::vector<std::string> DrawPictures(const ModelFile& file, const BrdfTable* measured,
+// All pictures that the inputs allow, as factors.png, slices.png, spheres.png, cloth.png and
+// trace.png in an existing folder: slices and spheres need measured data, cloth such data at nodes,
+// trace needs records. Returns their paths.
+std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,
                                       const AppearanceOptions& appearance);
+
+// Names of all of them.
+inline constexpr const char* kPictureNames[] = {"factors.png", "slices.png", "spheres.png",
+                                                "cloth.png", "trace.png"};
 
 }  // namespace trilobe
 

@@ -282,6 +282,23 @@ FactorModel MomentsModel(const Objective& objective, uint64_t seed) {
   return FromDistributions(objective, D);
 }
 
+// A number that is 0 could not move by a factor: it becomes a little of the mean of its kind, or of
+// what that was at the start.
+void LiftZeros(const FactorModel& start, FactorModel* model) {
+  constexpr double kLittle = 1e-3;
+  for (const auto [begin, size] : model->Parts()) {
+    const auto part = model->parameters().subspan(begin, size);
+    const auto before = start.parameters().subspan(begin, size);
+    double mean = 0, mean_before = 0;
+    for (int k = 0; k < size; ++k) {
+      mean += part[k] / size;
+      mean_before += before[k] / size;
+    }
+    const double least = kLittle * (mean > 0 ? mean : mean_before);
+    for (double& x : part) x = std::max(x, least);
+  }
+}
+
 // The isotropic model of the same samples, fitted a little, and freed: every azimuth begins alike.
 FactorModel FreedModel(const Objective& objective, uint64_t seed) {
   constexpr int kSweeps = 10, kStride = 4;
@@ -293,10 +310,13 @@ FactorModel FreedModel(const Objective& objective, uint64_t seed) {
     round.g_axis = isotropic.g_axis;
   }
   const Objective thinned(Thinned(objective.samples(), kStride), round, objective.weighting(), 1);
-  FactorModel model = HighlightModel(thinned, seed);
+  const FactorModel start = HighlightModel(thinned, seed);
+  FactorModel model = start;
   MakeSolver("awls")->Solve(thinned, {.max_iterations = kSweeps, .diagnose = false}, &model);
   Canonicalize(thinned.coverage(), &model);  // which gives unobserved entries a value
-  return WithAxes(model, spec);
+  model = WithAxes(model, spec);
+  LiftZeros(WithAxes(start, spec), &model);
+  return model;
 }
 
 // Uniform in [0, 1). The standard leaves std::uniform_real_distribution's method open; this is the

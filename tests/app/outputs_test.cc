@@ -290,7 +290,7 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
       RunProgram({"fit", csv, "--solver=newton", "--max_iterations=5", "--lobes=1", "--plots",
                   "--reconstruction", "--out=" + out});
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(fit.out, HasSubstr("scattered samples make no picture"));
+  EXPECT_THAT(fit.out, HasSubstr("samples on no grid of directions make no picture"));
   EXPECT_THAT(Names(out),
               UnorderedElementsAre("model.json", "trace.csv", "report.json",
                                    "reconstruction.binary", "factors.png", "trace.png"));
@@ -305,7 +305,7 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   EXPECT_FALSE(scored["worst_bins"][0].contains("h"));
 
   ExpectRefusal(RunProgram({"fit", csv, "--model=auto", "--out=" + (folder / "o")}),
-                "chooses by pictures");
+                "chooses among isotropic models");
   ExpectRefusal(RunProgram({"score", out + "/model.json", csv, "--out=" + (folder / "x.png")}),
                 "needs a table");
   const ProgramResult many =

@@ -96,11 +96,11 @@ double Square(double x) { return x * x; }
 
 // Grey of 0.5 and 0.2 has a mean of 0.35: an exposure of 1.
 TEST(CompareSpheres, MatchesNumbersWorkedOutByHand) {
-  SphereImage measured{2, std::vector<Rgb>(4), {-1, 0, 1, 0.25}};
+  RenderedImage measured{2, std::vector<Rgb>(4), {-1, 0, 1, 0.25}};
   measured.radiance[1] = {8, 8, 8};  // no light on it counts
   measured.radiance[2] = {0.5, 0.5, 0.5};
   measured.radiance[3] = {0.2, 0.2, 0.2};
-  SphereImage fitted = measured;
+  RenderedImage fitted = measured;
   fitted.radiance[2] = {0.25, 0.5, 0.5};
   const SphereError error = CompareSpheres(measured, fitted);
   EXPECT_NEAR(error.exposure, 1, 1e-14);
@@ -116,8 +116,8 @@ TEST(CompareSpheres, MatchesNumbersWorkedOutByHand) {
 
 // Twice the light on both is the same picture; and what is brighter than white is white.
 TEST(CompareSpheres, ExposesByTheMeasuredAndClips) {
-  SphereImage measured{1, {{0.7, 0.7, 0.7}}, {1}};
-  SphereImage fitted{1, {{1.4, 1.4, 1.4}}, {1}};
+  RenderedImage measured{1, {{0.7, 0.7, 0.7}}, {1}};
+  RenderedImage fitted{1, {{1.4, 1.4, 1.4}}, {1}};
   const SphereError error = CompareSpheres(measured, fitted);
   EXPECT_NEAR(error.exposure, 0.5, 1e-14);
   EXPECT_NEAR(error.psnr_db, -20 * std::log10(EncodeSrgb(0.7) - EncodeSrgb(0.35)), 1e-9);
@@ -128,8 +128,9 @@ TEST(CompareSpheres, ExposesByTheMeasuredAndClips) {
 }
 
 TEST(CompareSpheres, NinetyFivePercentOfThePixelsStayBelow) {
-  SphereImage measured{10, std::vector<Rgb>(100, {0.35, 0.35, 0.35}), std::vector<double>(100, 1)};
-  SphereImage fitted = measured;
+  RenderedImage measured{10, std::vector<Rgb>(100, {0.35, 0.35, 0.35}),
+                         std::vector<double>(100, 1)};
+  RenderedImage fitted = measured;
   double largest = 0;
   for (int k = 0; k < 100; ++k) {
     fitted.radiance[(k * 37) % 100] = {0.35 + 0.001 * k, 0.35, 0.35};
@@ -140,12 +141,12 @@ TEST(CompareSpheres, NinetyFivePercentOfThePixelsStayBelow) {
 }
 
 TEST(CompareSpheres, BlackHasNoExposureButIsSeen) {
-  const SphereImage black{2, std::vector<Rgb>(4), {1, 1, 1, 1}};
+  const RenderedImage black{2, std::vector<Rgb>(4), {1, 1, 1, 1}};
   const SphereError same = CompareSpheres(black, black);
   EXPECT_EQ(same.exposure, 0);
   EXPECT_EQ(same.psnr_db, kInfinity);
   EXPECT_EQ(same.mean_delta_e, 0);
-  SphereImage grey = black;
+  RenderedImage grey = black;
   grey.radiance[1] = {1e-3, 1e-3, 1e-3};
   const SphereError seen = CompareSpheres(black, grey);
   EXPECT_EQ(seen.exposure, 0);
@@ -349,10 +350,10 @@ TEST(CompareAppearance, IsTheSameForAnyNumberOfThreads) {
 
 TEST(RenderSpherePair, ShowsAllAndTellsWhatWasMeasured) {
   BrdfTable table = Plastic();
-  const SpherePair all = RenderSpherePair(table, Grey(0.1), Quick());
+  const ImagePair all = RenderSpherePair(table, Grey(0.1), Quick());
   for (const double x : all.measured.coverage) EXPECT_TRUE(x == 1 || x < 0) << x;
   Unmeasure([](const HalfDiffAngles& angles) { return angles.theta_d > 0.8; }, &table);
-  const SpherePair part = RenderSpherePair(table, Grey(0.1), Quick());
+  const ImagePair part = RenderSpherePair(table, Grey(0.1), Quick());
   EXPECT_EQ(part.fitted.radiance, all.fitted.radiance);
   EXPECT_EQ(part.measured.coverage, part.fitted.coverage);
   int partly = 0;

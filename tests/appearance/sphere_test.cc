@@ -115,7 +115,7 @@ TEST(SphereTest, ALambertianSphereIsWhatLambertSays) {
       [&](const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) { return albedo; }};
   const Direction l = Normalized({1, 2, 2});
   const Light lights[] = {{l, {5, 6, 7}}};
-  const SphereImage image = RenderSpheres(materials, lights, kSize, Everything, 1).at(0);
+  const RenderedImage image = RenderSpheres(materials, lights, kSize, Everything, 1).at(0);
   ASSERT_EQ(image.size, kSize);
   int lit = 0;
   for (int k = 0; k < kSize * kSize; ++k) {
@@ -144,7 +144,7 @@ TEST(SphereTest, EqualsTheLiteralSum) {
   const TabulatedBrdf brdf(table), other(mirrored);
   const std::vector<Light> lights = NotFromTheEye();
   const AngularBrdf materials[] = {Interpolated(brdf), Interpolated(other)};
-  const std::vector<SphereImage> images = RenderSpheres(materials, lights, kSize, Everything, 1);
+  const std::vector<RenderedImage> images = RenderSpheres(materials, lights, kSize, Everything, 1);
   const auto literal = [&](const TabulatedBrdf& of) {
     return RenderLiterally([&](const DirectionPair& pair) { return of.Interpolate(pair); }, lights,
                            kSize, Everything)
@@ -165,7 +165,7 @@ TEST(SphereTest, HandsOverTheAnglesOfTheDirections) {
                cosines.i + 2 * cosines.o + a.theta_h + 3 * a.theta_d};
   };
   const AngularBrdf materials[] = {wave};
-  const SphereImage image = RenderSpheres(materials, lights, kSize, Everything, 1).at(0);
+  const RenderedImage image = RenderSpheres(materials, lights, kSize, Everything, 1).at(0);
   const Reference expected = RenderLiterally(
       [&](const DirectionPair& pair) {
         return wave(ToHalfDiff(pair), {pair.wi[2], pair.wo[2]});
@@ -182,7 +182,7 @@ TEST(SphereTest, LeavesOutWhatDoesNotCount) {
     return angles.theta_d < 0.7 && cosines.i > 0.3 && cosines.o > 0.2;
   };
   const AngularBrdf materials[] = {Interpolated(brdf)};
-  const SphereImage image = RenderSpheres(materials, lights, kSize, counts, 1).at(0);
+  const RenderedImage image = RenderSpheres(materials, lights, kSize, counts, 1).at(0);
   const Reference expected = RenderLiterally(
       [&](const DirectionPair& pair) { return brdf.Interpolate(pair); }, lights, kSize, counts);
   EXPECT_LT(LargestDifference(image.radiance, expected.radiance), 1e-6);
@@ -198,7 +198,7 @@ TEST(SphereTest, WithoutMaterialsOrLightsThereIsNothingToSee) {
       [](const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) {
         return Rgb{1, 1, 1};
       }};
-  const SphereImage image = RenderSpheres(materials, {}, kSize, Everything, 2).at(0);
+  const RenderedImage image = RenderSpheres(materials, {}, kSize, Everything, 2).at(0);
   EXPECT_TRUE(std::ranges::all_of(image.radiance, [](const Rgb& x) { return x == Rgb{}; }));
 }
 
@@ -207,9 +207,9 @@ TEST(SphereTest, IsTheSameForAnyNumberOfThreads) {
   const TabulatedBrdf brdf(table);
   const std::vector<Light> lights = TestLights();
   const AngularBrdf materials[] = {Interpolated(brdf)};
-  const SphereImage one = RenderSpheres(materials, lights, 37, Everything, 1).at(0);
+  const RenderedImage one = RenderSpheres(materials, lights, 37, Everything, 1).at(0);
   for (const int threads : {2, 3}) {
-    const SphereImage many = RenderSpheres(materials, lights, 37, Everything, threads).at(0);
+    const RenderedImage many = RenderSpheres(materials, lights, 37, Everything, threads).at(0);
     EXPECT_EQ(many.radiance, one.radiance) << threads;
     EXPECT_EQ(many.coverage, one.coverage) << threads;
   }

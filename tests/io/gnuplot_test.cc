@@ -16,6 +16,7 @@
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/plots.h"
+#include "trilobe/io/source.h"
 #include "trilobe/io/synth.h"
 
 namespace trilobe {
@@ -194,15 +195,56 @@ TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {
   const IterationRecord trace[] = {
       {0, 0, 10, false}, {1, 0.5, 10, false, false}, {2, 0.75, 0, true}};  // E = 0 has no logarithm
   const std::vector<std::string> paths =
-      DrawPictures(file, &measured, trace, folder_.string(), Appearance(2));
+      DrawPictures(file, {.table = &measured}, trace, folder_.string(), Appearance(2));
   ASSERT_EQ(paths.size(), 4U);
   std::vector<std::string> bytes;
   for (const std::string& path : paths) {
     EXPECT_GE(PngSize(path).first, 1600);
     bytes.push_back(ReadFile(path));
   }
-  DrawPictures(file, &measured, trace, folder_.string(), Appearance(1));
+  DrawPictures(file, {.table = &measured}, trace, folder_.string(), Appearance(1));
   for (size_t i = 0; i < paths.size(); ++i) EXPECT_TRUE(ReadFile(paths[i]) == bytes[i]) << paths[i];
+}
+
+// D and G over azimuths, with entries that have no data, four lobes, one of them absent.
+TEST_F(GnuplotTest, DrawsAnisotropicPicturesTheSameEachTime) {
+  const Measurement velvet = LoadMeasurement("synth:velvet@4x12");
+  const PictureData measured = PictureDataOf(velvet);
+  ModelFile file;
+  ModelSpec spec = ModelSpec::Anisotropic(4);
+  spec.d_axis = Axis::Polar({0, 10, 40, 80}, 12);
+  file.model = FactorModel(spec);
+  double x = 0.3;
+  for (double& number : file.model.parameters()) number = x = 3.7 * x * (1 - x);
+  for (double& s : file.model.s(3)) s = 0;
+  for (double& d : file.model.table(Factor::kD, 2)) d = 0;
+  file.dead.assign(file.model.parameters().size(), false);
+  file.dead[file.model.TableOffset(Factor::kD, 0) + 20] = true;
+  file.fit.source = "a 'strange_name' {$x}\n";
+  const auto draw = [&](int threads) {
+    return DrawPictures(file, measured, {}, folder_.string(), Appearance(threads));
+  };
+  const std::vector<std::string> paths = draw(2);
+  ASSERT_EQ(paths.size(), 4U);
+  std::vector<std::string> bytes;
+  for (const std::string& path : paths) {
+    EXPECT_GE(PngSize(path).first, 1600);
+    bytes.push_back(ReadFile(path));
+  }
+  draw(1);
+  for (size_t i = 0; i < paths.size(); ++i) EXPECT_TRUE(ReadFile(paths[i]) == bytes[i]) << paths[i];
+
+  AppearanceOptions options = Appearance(1);
+  options.size = 30;
+  WriteSpherePair(measured, MaterialOf(file.model), Path("pair.png"), options);
+  const auto [width, height] = PngSize(Path("pair.png"));
+  EXPECT_EQ(width, 2 * height);
+
+  // No azimuths in a table: told before anything is drawn.
+  const BrdfTable table = Synthesize(FindSynthMaterial("plastic"), 0, 1, {20, 20, 20});
+  std::filesystem::remove(paths[0]);
+  EXPECT_THROW(DrawPictures(file, {.table = &table}, {}, folder_.string(), options), Error);
+  EXPECT_FALSE(std::filesystem::exists(paths[0]));
 }
 
 TEST_F(GnuplotTest, DrawsWhatWasMeasured) {
@@ -226,10 +268,11 @@ TEST_F(GnuplotTest, DrawsDegenerateInput) {
   ModelFile file;
   file.dead.assign(file.model.parameters().size(), false);
   const IterationRecord trace[] = {{0, 0, 1, false}};
-  EXPECT_EQ(DrawPictures(file, &black, trace, folder_.string(), Appearance(1)).size(), 4U);
+  EXPECT_EQ(DrawPictures(file, {.table = &black}, trace, folder_.string(), Appearance(1)).size(),
+            4U);
   file.model = FactorModel(ModelSpec::IndependentG(grid));
   file.dead.assign(file.model.parameters().size(), true);
-  EXPECT_EQ(DrawPictures(file, nullptr, {}, folder_.string(), Appearance(1)).size(), 1U);
+  EXPECT_EQ(DrawPictures(file, {}, {}, folder_.string(), Appearance(1)).size(), 1U);
   EXPECT_THROW(DrawTrace({}, "", Path("none.png")), Error);
 }
 

@@ -1,0 +1,39 @@
+#ifndef TRILOBE_IO_PLOT_FACTORS_H_
+#define TRILOBE_IO_PLOT_FACTORS_H_
+
+#include <string>
+#include <vector>
+
+#include "trilobe/io/model_file.h"
+#include "trilobe/model/lobe_light.h"
+
+namespace trilobe {
+
+// Whether a lobe reflects nothing, as its s is 0.
+bool Absent(const FactorModel& model, int lobe);
+
+// Which lobe, or channel, a table belongs to; 0 where it serves them all.
+struct TableOwner {
+  int lobe = 0, channel = 0;
+};
+TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index);
+
+// "lobe 1", "lobe 2, red (s = 0)", "all lobes".
+std::string TableName(const FactorModel& model, Factor factor, int index);
+
+// Data blocks and the plot command of all tables of a factor as curves over `positions`, where its
+// entries stand. The axis holds the entries that light goes through; others may leave it. Nothing
+// where there is no curve.
+std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor factor,
+                        const std::vector<double>& positions, bool logarithmic);
+
+// Bars of the albedos of the diffuse term and of each lobe, by channel, with their values written
+// above.
+std::string AlbedoPanel(const LobeLight& light);
+
+// DrawFactors of an anisotropic model.
+void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::string& path);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_PLOT_FACTORS_H_

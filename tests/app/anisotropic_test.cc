@@ -1,0 +1,143 @@
+// All commands, given an anisotropic model or measurement.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_program.h"
+
+namespace trilobe {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kVelvet = "synth:velvet@4x12";
+
+class AnisotropicCommands : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    fit_ = RunProgram({"fit", kVelvet, "--lobes=1", "--d_nodes=4x12", "--g_nodes=4x12",
+                       "--solver=awls", "--max_iterations=5", "--plots", "--reconstruction",
+                       "--out=" + In("fit")});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string In(const std::string& name) { return *folder_ / name; }
+  static json Parse(const std::string& text) { return json::parse(text); }
+
+  static void ExpectRefusal(const std::vector<std::string>& arguments, const std::string& part) {
+    const ProgramResult result = RunProgram(arguments);
+    EXPECT_EQ(result.status, 1) << part;
+    EXPECT_THAT(result.err, StartsWith("trilobe: error: "));
+    EXPECT_THAT(result.err, HasSubstr(part));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+  }
+
+  static TemporaryFolder* folder_;
+  static ProgramResult fit_;
+};
+TemporaryFolder* AnisotropicCommands::folder_ = nullptr;
+ProgramResult AnisotropicCommands::fit_;
+
+TEST_F(AnisotropicCommands, FitReportsAppearanceAndDrawsAll) {
+  ASSERT_EQ(fit_.status, 0) << fit_.err;
+  EXPECT_THAT(fit_.out, HasSubstr("appearance   sphere in studio: PSNR"));
+  EXPECT_THAT(fit_.out, HasSubstr(" at nodes, "));
+  EXPECT_THAT(fit_.out, testing::Not(HasSubstr("an isotropic model leaves out")));
+  for (const char* name : {"factors.png", "slices.png", "spheres.png", "cloth.png"}) {
+    EXPECT_THAT(Contents(In("fit/") + name), StartsWith("\x89PNG\r\n")) << name;
+  }
+  const json report = Parse(Contents(In("fit/report.json")));
+  EXPECT_GT(report["appearance"]["psnr_db"], 10);
+  EXPECT_EQ(report["appearance"]["albedo"]["values"].size(), 12U);
+  EXPECT_EQ(report["appearance"]["albedo"]["values"][6]["phi_i_deg"], 90);
+  EXPECT_TRUE(report["anisotropy_left_out"].is_null());
+
+  const ProgramResult score =
+      RunProgram({"score", In("fit/model.json"), kVelvet, "--json", "--out=" + In("pair.png")});
+  ASSERT_EQ(score.status, 0) << score.err;
+  EXPECT_EQ(Parse(score.out)["appearance"], report["appearance"]);
+  EXPECT_TRUE(Parse(score.out)["worst_bins"][0].contains("phi_o_deg"));
+  EXPECT_THAT(Contents(In("pair.png")), StartsWith("\x89PNG\r\n"));
+}
+
+// UTIA layout at its own directions; a fit of that is the same model, where nothing else is.
+TEST_F(AnisotropicCommands, ReconstructionIsAMeasurementOfTheModel) {
+  const std::string model = In("fit/model.json");
+  ASSERT_EQ(RunProgram({"convert", model, "--out=" + In("c.bin")}).status, 0);
+  EXPECT_EQ(Contents(In("c.bin")), Contents(In("fit/reconstruction.bin")));
+  ASSERT_EQ(RunProgram({"convert", model, "--out=" + In("c.csv")}).status, 0);
+  for (const char* const file : {"c.bin", "c.csv"}) {
+    const ProgramResult score = RunProgram({"score", model, In(file), "--json"});
+    ASSERT_EQ(score.status, 0) << score.err;
+    EXPECT_LT(Parse(score.out)["relative_objective"], 1e-20) << file;
+    EXPECT_LT(Parse(score.out)["appearance"]["at_centers"]["mean_log_error"], 1e-9) << file;
+  }
+  ExpectRefusal({"convert", model, "--out=" + In("c.binary")}, "end the name in .bin");
+}
+
+TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
+  const ProgramResult fit =
+      RunProgram({"fit", kVelvet, "--model=isotropic", "--lobes=1", "--solver=awls",
+                  "--max_iterations=3", "--out=" + In("isotropic")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("azimuths     an isotropic model leaves out "));
+  const json report = Parse(Contents(In("isotropic/report.json")));
+  const json info = Parse(RunProgram({"info", kVelvet, "--json"}).out);
+  EXPECT_GT(report["anisotropy_left_out"], 0.01);
+  EXPECT_EQ(report["anisotropy_left_out"], info["anisotropy"]["share"]);
+  const json anisotropic = Parse(Contents(In("fit/report.json")));
+  EXPECT_GT(anisotropic["appearance"]["psnr_db"], report["appearance"]["psnr_db"]);
+}
+
+TEST_F(AnisotropicCommands, InfoGivesNodesAndAlbedosAlongAndAcross) {
+  const std::string model = In("fit/model.json");
+  const ProgramResult text = RunProgram({"info", model});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("anisotropic model, 1 lobes"));
+  EXPECT_THAT(text.out, HasSubstr("(4 theta to 75 deg x 12 phi)"));
+  EXPECT_THAT(text.out, HasSubstr("directional albedo, light along y"));
+  const json info = Parse(RunProgram({"info", model, "--json"}).out);
+  EXPECT_TRUE(info["anisotropic"]);
+  EXPECT_EQ(info["albedo"]["red"].size(), info["albedo_across"]["red"].size());
+  EXPECT_NE(info["albedo"]["red"], info["albedo_across"]["red"]);
+}
+
+TEST_F(AnisotropicCommands, FitOfManyMakesThumbnails) {
+  const ProgramResult many =
+      RunProgram({"fit", kVelvet, "synth:linen@4x12", "--lobes=1", "--d_nodes=4x12",
+                  "--g_nodes=4x12", "--solver=awls", "--max_iterations=2", "--out=" + In("many")});
+  ASSERT_EQ(many.status, 0) << many.out << many.err;
+  EXPECT_THAT(Contents(In("many/linen/pair.png")), StartsWith("\x89PNG\r\n"));
+  EXPECT_THAT(Contents(In("many/index.html")), HasSubstr("linen/pair.png"));
+}
+
+TEST_F(AnisotropicCommands, WhatCannotBeIsOneLine) {
+  const std::string model = In("fit/model.json");
+  ExpectRefusal({"plot", model, "synth:plastic", "--out=" + In("p")}, "knows no azimuths");
+  ExpectRefusal({"score", model, "synth:plastic"}, "knows no azimuths");
+  ExpectRefusal({"fit", "synth:plastic", "--init=" + model}, "knows no azimuths");
+  ExpectRefusal({"fit", kVelvet, "--model=auto"}, "--model=auto chooses among isotropic models");
+  ExpectRefusal({"score", kVelvet, kVelvet}, "needs a table");
+  ExpectRefusal({"compare", In("fit")}, "plan.json");
+  std::ofstream(In("scene.json")) << R"({"format": "trilobe-scene", "version": 1,
+      "materials": [{"name": "curtain", "source": "synth:velvet"}]})";
+  ExpectRefusal({"compare", In("scene.json"), "--nocache"}, "needs a table");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"plan", In("scene.json"), "--nocache"},
+        {"fit", "--scene=" + In("scene.json"), "--nocache", "--out=" + In("scene")}}) {
+    const ProgramResult result = RunProgram(command);
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.out, HasSubstr("curtain failed: synth:velvet: this command needs a table"));
+  }
+}
+
+}  // namespace
+}  // namespace trilobe
