@@ -68,7 +68,9 @@ std::string Joined(const std::vector<std::string>& words) {
 FactorModel StartFromFile() {
   FactorModel model = ReadModel(FLAGS_init).model;
   if (ModelIsGiven()) {
-    throw Error(FLAGS_init + " brings its own lobes and tables; leave out " + Joined(ModelFlags()));
+    throw Error(FLAGS_init +
+                " brings its own lobes and tables; leave out --model, --lobes, --d_nodes "
+                "and --g_nodes");
   }
   return model;
 }
