@@ -77,7 +77,7 @@ SourceOptions SourceOptionsFromFlags() {
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {
   for (const char* flag :
        {"noise", "missing", "seed", "max_angle", "extrapolated", "radiometry", "threads"}) {
-    others.push_back(flag);
+    others.emplace_back(flag);
   }
   return others;
 }

@@ -36,16 +36,17 @@ std::optional<int> ParseInteger(std::string_view text) {
 }
 
 // "6x48", or "12rx48" where `with_root` may be.
-Axis ParseNodes(const char* flag, const std::string& text, bool with_root) {
+Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   const size_t x = text.find('x');
-  std::string_view theta = std::string_view(text).substr(0, x);
+  std::string_view theta = text.substr(0, x);
   const bool root = with_root && theta.ends_with('r');
   if (root) theta.remove_suffix(1);
   const std::optional<int> rings = ParseInteger(theta);
   const std::optional<int> phi =
-      x == std::string::npos ? std::nullopt : ParseInteger(std::string_view(text).substr(x + 1));
+      x == std::string::npos ? std::nullopt : ParseInteger(text.substr(x + 1));
   if (!rings || !phi || *rings < 2 || *rings > 90 || *phi < 2 || *phi > 720) {
-    throw Error("--" + std::string(flag) + "=" + text + " are no nodes; give theta x phi, as 6x48" +
+    throw Error("--" + std::string(flag) + "=" + std::string(text) +
+                " are no nodes; give theta x phi, as 6x48" +
                 (with_root ? ", or 12rx48 for steps of the root of theta" : ""));
   }
   std::vector<double> nodes;
