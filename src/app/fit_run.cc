@@ -219,7 +219,8 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
                 folder->PathOf(kReconstructionName));
     }
   }
-  const PictureData pictured = PictureDataOf(run->measured);
+  const PictureData pictured =
+      settings.pair || settings.plots ? PictureDataOf(run->measured) : PictureData{};
   AppearanceOptions appearance = settings.finish.appearance;
   appearance.num_threads = threads;
   std::exception_ptr failure;

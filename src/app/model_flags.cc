@@ -3,12 +3,12 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/io/text_lines.h"
 
 DEFINE_string(
     model, "shared",
@@ -28,22 +28,15 @@ namespace {
 
 constexpr double kUtiaMaxTheta = 75;  // [degrees]
 
-std::optional<int> ParseInteger(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 // "6x48", or "12rx48" where `with_root` may be.
 Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   const size_t x = text.find('x');
   std::string_view theta = text.substr(0, x);
   const bool root = with_root && theta.ends_with('r');
   if (root) theta.remove_suffix(1);
-  const std::optional<int> rings = ParseInteger(theta);
+  const std::optional<int> rings = ToInteger(theta);
   const std::optional<int> phi =
-      x == std::string::npos ? std::nullopt : ParseInteger(text.substr(x + 1));
+      x == std::string::npos ? std::nullopt : ToInteger(text.substr(x + 1));
   if (!rings || !phi || *rings < 2 || *rings > 90 || *phi < 2 || *phi > 720) {
     throw Error("--" + std::string(flag) + "=" + std::string(text) +
                 " are no nodes; give theta x phi, as 6x48" +

@@ -13,7 +13,7 @@ Rgb EvaluatePolar(const FactorModel& model, const SphericalAngles& at) {
   const ModelSpec& spec = model.spec();
   const DirectionPair pair = ToDirections(at);
   const auto& [wi, wo] = pair;
-  const double cosine = wi[0] * wo[0] + wi[1] * wo[1] + wi[2] * wo[2];
+  const double cosine = Dot(wi, wo);
   const PolarAngles half = HalfVector(pair);
   const SampleStencils stencils = {
       .D = spec.d_axis.At(half.theta, half.phi),

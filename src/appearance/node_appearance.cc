@@ -30,13 +30,13 @@ BrdfFunction OfMeasured(const SphericalBrdf& brdf, const NodeBrdf& measured) {
 // At every few pairs of nodes, or half a step of all angles beyond them.
 PointErrors CompareAtPoints(const NodeBrdf& measured, const SphericalBrdf& fitted, double steps,
                             int num_threads) {
-  const NodeTable& table = measured.table();
-  const int nodes = table.nodes();
+  const HemisphereGrid& grid = measured.table().grid;
+  const int nodes = grid.nodes();
   const int stride = 1 + 2 * (nodes / 200);  // odd, for some 30,000 of UTIA's pairs
   std::vector<PointErrorSum> sums(nodes);
   ParallelFor(nodes, num_threads, [&](int i) {
     for (int o = i % stride; o < nodes; o += stride) {
-      const SphericalAngles at = table.Angles(i, o, steps);
+      const SphericalAngles at = grid.Angles(i, o, steps);
       if (steps == 0 ? measured.Measured(at) : measured.MeasuredAround(i, o)) {
         sums[i].Add(measured(at), fitted(at), std::cos(at.theta_i));
       }

@@ -12,10 +12,6 @@ namespace trilobe {
 // The towards-eye direction of all views, in the world (environment.h).
 inline constexpr Direction kEye = {0, 0, 1};
 
-inline double Dot(const Direction& a, const Direction& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 // What a pixel sees of an object: unit vectors at right angles to each other, `x` and `y` along
 // those of the material.
 struct SurfacePoint {

@@ -11,6 +11,10 @@ namespace trilobe {
 // A unit vector in the local frame, normal = +z.
 using Direction = std::array<double, 3>;
 
+inline double Dot(const Direction& a, const Direction& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 // Half-vector and difference-vector angles [rad] (Rusinkiewicz 1998), for an isotropic material:
 // theta_h, theta_d in [0, pi/2], phi_d in [0, pi) by reciprocity.
 struct HalfDiffAngles {

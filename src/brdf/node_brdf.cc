@@ -7,31 +7,18 @@
 #include <utility>
 
 #include "trilobe/base/error.h"
+#include "trilobe/math/stencil.h"
 
 namespace trilobe {
 namespace {
 
 constexpr double kRounding = 1e-9;  // [rad], of degrees that became radians
 
-// Two neighbouring values of an angle, and the share of the upper one.
-struct Between {
-  int lower, upper;
-  double t;
-};
-
-Between BetweenThetas(const NodeTable& table, double theta) {
+Between BetweenThetas(const HemisphereGrid& grid, double theta) {
   const double place =
-      std::clamp(theta / table.ThetaStep(), 0.0, static_cast<double>(table.thetas - 1));
+      std::clamp(theta / grid.ThetaStep(), 0.0, static_cast<double>(grid.thetas - 1));
   const int a = static_cast<int>(place);
-  return {a, std::min(a + 1, table.thetas - 1), place - a};
-}
-
-Between BetweenPhis(const NodeTable& table, double phi) {
-  const double turns = phi / (2 * kPi);
-  const double place = (turns - std::floor(turns)) * table.phis;
-  const int whole = static_cast<int>(place);
-  const int b = whole % table.phis;
-  return {b, (b + 1) % table.phis, place - whole};
+  return {a, std::min(a + 1, grid.thetas - 1), place - a};
 }
 
 // The four nodes between which a direction lies, with their weights.
@@ -40,24 +27,25 @@ struct Corners {
   std::array<double, 4> weight;
 };
 
-Corners CornersOf(const NodeTable& table, double theta, double phi) {
-  const Between a = BetweenThetas(table, theta), b = BetweenPhis(table, phi);
-  const int lower = a.lower * table.phis, upper = a.upper * table.phis;
+Corners CornersOf(const HemisphereGrid& grid, double theta, double phi) {
+  const Between a = BetweenThetas(grid, theta), b = OnCircle(phi, grid.phis);
+  const int lower = a.lower * grid.phis, upper = a.upper * grid.phis;
   return {{lower + b.lower, lower + b.upper, upper + b.lower, upper + b.upper},
           {(1 - a.t) * (1 - b.t), (1 - a.t) * b.t, a.t * (1 - b.t), a.t * b.t}};
 }
 
-int NearestNode(const NodeTable& table, double theta, double phi) {
-  const Between a = BetweenThetas(table, theta), b = BetweenPhis(table, phi);
-  return (a.t < 0.5 ? a.lower : a.upper) * table.phis + (b.t < 0.5 ? b.lower : b.upper);
+int NearestNode(const HemisphereGrid& grid, double theta, double phi) {
+  const Between a = BetweenThetas(grid, theta), b = OnCircle(phi, grid.phis);
+  return (a.t < 0.5 ? a.lower : a.upper) * grid.phis + (b.t < 0.5 ? b.lower : b.upper);
 }
 
-size_t IndexOf(const NodeTable& table, int i, int o) {
-  return static_cast<size_t>(i) * table.nodes() + o;
+size_t IndexOf(const HemisphereGrid& grid, int i, int o) {
+  return static_cast<size_t>(i) * grid.nodes() + o;
 }
 
 // Breadth first from all pairs with a value at once: each hands its own on to its neighbours.
 std::vector<Rgb> Filled(const NodeTable& table) {
+  const HemisphereGrid& grid = table.grid;
   std::vector<Rgb> rho = table.rho;
   std::vector<bool> known = table.present;
   std::vector<size_t> reached;
@@ -66,32 +54,45 @@ std::vector<Rgb> Filled(const NodeTable& table) {
   }
   if (reached.size() == known.size()) return rho;
   const auto neighbours = [&](int node) {
-    const int a = node / table.phis, b = node % table.phis;
+    const int a = node / grid.phis, b = node % grid.phis;
     return std::array{
-        std::max(a - 1, 0) * table.phis + b, std::min(a + 1, table.thetas - 1) * table.phis + b,
-        a * table.phis + (b + table.phis - 1) % table.phis, a * table.phis + (b + 1) % table.phis};
+        std::max(a - 1, 0) * grid.phis + b, std::min(a + 1, grid.thetas - 1) * grid.phis + b,
+        a * grid.phis + (b + grid.phis - 1) % grid.phis, a * grid.phis + (b + 1) % grid.phis};
   };
   for (size_t next = 0; next < reached.size(); ++next) {
     const size_t from = reached[next];
-    const int i = static_cast<int>(from / table.nodes());
-    const int o = static_cast<int>(from % table.nodes());
+    const int i = static_cast<int>(from / grid.nodes());
+    const int o = static_cast<int>(from % grid.nodes());
     const auto hand_on = [&](size_t to) {
       if (known[to]) return;
       known[to] = true;
       rho[to] = rho[from];
       reached.push_back(to);
     };
-    for (const int other : neighbours(i)) hand_on(IndexOf(table, other, o));
-    for (const int other : neighbours(o)) hand_on(IndexOf(table, i, other));
+    for (const int other : neighbours(i)) hand_on(IndexOf(grid, other, o));
+    for (const int other : neighbours(o)) hand_on(IndexOf(grid, i, other));
   }
   return rho;
 }
 
 }  // namespace
 
+std::optional<int> HemisphereGrid::Find(double theta, double phi) const {
+  constexpr double kSame = 1e-6;  // [rad]
+  const double theta_step = ThetaStep(), phi_step = PhiStep();
+  const double a = std::round(theta / theta_step);
+  const double turned = phi - 2 * kPi * std::floor(phi / (2 * kPi));
+  const double b = std::round(turned / phi_step);
+  if (!(a >= 0 && a < thetas && std::abs(theta - a * theta_step) <= kSame &&
+        std::abs(turned - b * phi_step) <= kSame)) {
+    return std::nullopt;
+  }
+  return static_cast<int>(a) * phis + static_cast<int>(b) % phis;
+}
+
 NodeBrdf::NodeBrdf(NodeTable table) : table_(std::move(table)) {
-  const auto nodes = static_cast<size_t>(std::max(table_.nodes(), 0));
-  if (table_.thetas < 1 || table_.phis < 1 || table_.rho.size() != nodes * nodes ||
+  const auto nodes = static_cast<size_t>(std::max(table_.grid.nodes(), 0));
+  if (table_.grid.thetas < 1 || table_.grid.phis < 1 || table_.rho.size() != nodes * nodes ||
       table_.present.size() != nodes * nodes) {
     throw Error(table_.source + ": a table of nodes needs a value for each pair of its " +
                 std::to_string(nodes) + " nodes");
@@ -103,11 +104,11 @@ NodeBrdf::NodeBrdf(NodeTable table) : table_(std::move(table)) {
 }
 
 Rgb NodeBrdf::operator()(const SphericalAngles& at) const {
-  const Corners i = CornersOf(table_, at.theta_i, at.phi_i);
-  const Corners o = CornersOf(table_, at.theta_o, at.phi_o);
+  const Corners i = CornersOf(table_.grid, at.theta_i, at.phi_i);
+  const Corners o = CornersOf(table_.grid, at.theta_o, at.phi_o);
   Rgb rho{};
   for (int k = 0; k < 4; ++k) {
-    const Rgb* const row = &filled_[IndexOf(table_, i.node[k], 0)];
+    const Rgb* const row = &filled_[IndexOf(table_.grid, i.node[k], 0)];
     for (int l = 0; l < 4; ++l) {
       const double weight = i.weight[k] * o.weight[l];
       for (int c = 0; c < kChannels; ++c) rho[c] += weight * row[o.node[l]][c];
@@ -118,18 +119,18 @@ Rgb NodeBrdf::operator()(const SphericalAngles& at) const {
 
 bool NodeBrdf::Measured(const SphericalAngles& at) const {
   return std::max(at.theta_i, at.theta_o) <= table_.max_theta + kRounding &&
-         table_.present[IndexOf(table_, NearestNode(table_, at.theta_i, at.phi_i),
-                                NearestNode(table_, at.theta_o, at.phi_o))];
+         table_.present[IndexOf(table_.grid, NearestNode(table_.grid, at.theta_i, at.phi_i),
+                                NearestNode(table_.grid, at.theta_o, at.phi_o))];
 }
 
 bool NodeBrdf::MeasuredAround(int i, int o) const {
-  if (std::max(i, o) / table_.phis == table_.thetas - 1) return false;
-  const SphericalAngles at = table_.Angles(i, o, 0.5);
-  const Corners around_i = CornersOf(table_, at.theta_i, at.phi_i);
-  const Corners around_o = CornersOf(table_, at.theta_o, at.phi_o);
+  if (std::max(i, o) / table_.grid.phis == table_.grid.thetas - 1) return false;
+  const SphericalAngles at = table_.grid.Angles(i, o, 0.5);
+  const Corners around_i = CornersOf(table_.grid, at.theta_i, at.phi_i);
+  const Corners around_o = CornersOf(table_.grid, at.theta_o, at.phi_o);
   return std::ranges::all_of(around_i.node, [&](int k) {
     return std::ranges::all_of(around_o.node,
-                               [&](int l) { return table_.present[IndexOf(table_, k, l)]; });
+                               [&](int l) { return table_.present[IndexOf(table_.grid, k, l)]; });
   });
 }
 

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_BRDF_NODE_BRDF_H_
 #define TRILOBE_BRDF_NODE_BRDF_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,24 +10,43 @@
 
 namespace trilobe {
 
-// Values at all pairs of nodes of a hemisphere: node phis * a + b has theta = 90 a / thetas and
-// phi = 360 b / phis degrees.
+// Directions above a sample at equal steps: node phis * a + b has theta = 90 a / thetas and
+// phi = 360 b / phis degrees. So the horizon is no node, and the normal is one for each phi. The
+// default is the grid of the UTIA BRDF database: 15 and 7.5 degrees (Filip and Vavra 2014).
+struct HemisphereGrid {
+  int thetas = 6;
+  int phis = 48;
+
+  constexpr int nodes() const { return thetas * phis; }
+  double ThetaStep() const { return kPi / 2 / thetas; }
+  double PhiStep() const { return 2 * kPi / phis; }
+  double Theta(int node) const { return ThetaAt(node, 0); }
+  double Phi(int node) const { return PhiAt(node, 0); }
+  // Of nodes i and o, moved by so many steps in all four angles.
+  SphericalAngles Angles(int i, int o, double steps = 0) const {
+    return {ThetaAt(i, steps), PhiAt(i, steps), ThetaAt(o, steps), PhiAt(o, steps)};
+  }
+
+  // The node at these angles [rad], to 1e-6; phi is taken modulo 2 pi.
+  std::optional<int> Find(double theta, double phi) const;
+
+  bool operator==(const HemisphereGrid&) const = default;
+
+ private:
+  double ThetaAt(int node, double steps) const {
+    const int a = node / phis;
+    return (a + steps) * ThetaStep();
+  }
+  double PhiAt(int node, double steps) const { return (node % phis + steps) * PhiStep(); }
+};
+
+// Values at all pairs of nodes of a grid.
 struct NodeTable {
   std::string source;
-  int thetas = 0, phis = 0;
+  HemisphereGrid grid;
   std::vector<Rgb> rho;        // [nodes()][nodes()], incidence first [1/sr]
   std::vector<bool> present;   // [nodes()][nodes()], where there is a value
   double max_theta = kPi / 2;  // [rad] of what is present
-
-  int nodes() const { return thetas * phis; }
-  double ThetaStep() const { return kPi / 2 / thetas; }
-  double PhiStep() const { return 2 * kPi / phis; }
-  // Of nodes i and o, moved by so many steps in all four angles.
-  SphericalAngles Angles(int i, int o, double steps = 0) const {
-    const int a_i = i / phis, b_i = i % phis, a_o = o / phis, b_o = o % phis;
-    return {(a_i + steps) * ThetaStep(), (b_i + steps) * PhiStep(), (a_o + steps) * ThetaStep(),
-            (b_o + steps) * PhiStep()};
-  }
 };
 
 // A measurement at nodes as a function of directions: linear in theta_i, phi_i, theta_o and phi_o

@@ -1,6 +1,5 @@
 #include "trilobe/io/hemisphere_grid.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,14 +12,13 @@
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/merl_grid.h"
 #include "trilobe/brdf/tabulated_brdf.h"
+#include "trilobe/io/text_lines.h"
 #ifdef TRILOBE_RGL
 #include "trilobe/io/rgl_file.h"
 #endif
 
 namespace trilobe {
 namespace {
-
-constexpr double kSame = 1e-6;  // [rad]
 
 using MeasuredValue = std::function<std::optional<Rgb>(const DirectionPair&)>;
 
@@ -46,30 +44,12 @@ MeasuredValue FunctionOf(const Measurement& measurement) {
   };
 }
 
-int ParsePositive(std::string_view text) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? number : 0;
-}
-
 }  // namespace
-
-std::optional<int> HemisphereGrid::Find(double theta, double phi) const {
-  const double theta_step = kPi / 2 / thetas, phi_step = 2 * kPi / phis;
-  const double a = std::round(theta / theta_step);
-  const double turned = phi - 2 * kPi * std::floor(phi / (2 * kPi));
-  const double b = std::round(turned / phi_step);
-  if (!(a >= 0 && a < thetas && std::abs(theta - a * theta_step) <= kSame &&
-        std::abs(turned - b * phi_step) <= kSame)) {
-    return std::nullopt;
-  }
-  return static_cast<int>(a) * phis + static_cast<int>(b) % phis;
-}
 
 HemisphereGrid ParseHemisphereGrid(std::string_view text) {
   const size_t x = std::min(text.find('x'), text.size());
-  const HemisphereGrid grid = {ParsePositive(text.substr(0, x)),
-                               ParsePositive(text.substr(std::min(x + 1, text.size())))};
+  const HemisphereGrid grid = {ToInteger(text.substr(0, x)).value_or(0),
+                               ToInteger(text.substr(std::min(x + 1, text.size()))).value_or(0)};
   constexpr int64_t kMostPairs = 10'000'000;
   const int64_t nodes = int64_t{grid.thetas} * grid.phis;
   if (grid.thetas < 1 || grid.phis < 1 || nodes > 100'000 || nodes * nodes > kMostPairs) {
@@ -80,9 +60,13 @@ HemisphereGrid ParseHemisphereGrid(std::string_view text) {
   return grid;
 }
 
-NodeValues ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& grid) {
+NodeTable ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& grid) {
   const auto nodes = static_cast<size_t>(grid.nodes());
-  NodeValues values{std::vector<Rgb>(nodes * nodes), std::vector<bool>(nodes * nodes)};
+  NodeTable values{.source = scattered.source,
+                   .grid = grid,
+                   .rho = std::vector<Rgb>(nodes * nodes),
+                   .present = std::vector<bool>(nodes * nodes),
+                   .max_theta = scattered.max_theta};
   for (int j = 0; j < scattered.samples.size(); ++j) {
     const SphericalAngles& at = scattered.samples.directions[j];
     const auto i = grid.Find(at.theta_i, at.phi_i), o = grid.Find(at.theta_o, at.phi_o);
@@ -110,7 +94,7 @@ NodeValues ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& gri
 
 Measurement AtNodes(const Measurement& measurement, const HemisphereGrid& grid, int num_threads) {
   const int nodes = grid.nodes();
-  NodeValues values;
+  NodeTable values;
   if (!measurement.table && !measurement.rgl) {
     values = ValuesAtNodes(measurement, grid);
   } else {

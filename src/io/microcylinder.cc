@@ -7,10 +7,6 @@
 namespace trilobe {
 namespace {
 
-double Dot(const Direction& a, const Direction& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 double Gaussian(double x, double sigma) {
   return std::exp(-x * x / (2 * sigma * sigma)) / (sigma * std::sqrt(2 * kPi));
 }

@@ -43,7 +43,7 @@ std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
   const int64_t nodes = int64_t{grid.thetas} * grid.phis;
   if (nodes < 1 || nodes > kMostNodes) return std::nullopt;
   // Up to the last theta.
-  const double rings = std::round(scattered.max_theta / (kPi / 2 / grid.thetas)) + 1;
+  const double rings = std::round(scattered.max_theta / grid.ThetaStep()) + 1;
   const double pairs = rings * grid.phis * rings * grid.phis;
   if (scattered.samples.size() < pairs / 2) return std::nullopt;
   std::vector<bool> taken(nodes * nodes);
@@ -59,13 +59,7 @@ PictureData PictureDataOf(const Measurement& measurement) {
   if (measurement.table) return {.table = &*measurement.table};
   const std::optional<HemisphereGrid> grid = GridOf(measurement);
   if (!grid) return {};
-  NodeValues values = ValuesAtNodes(measurement, *grid);
-  return {.nodes = NodeBrdf({.source = measurement.source,
-                             .thetas = grid->thetas,
-                             .phis = grid->phis,
-                             .rho = std::move(values.rho),
-                             .present = std::move(values.present),
-                             .max_theta = measurement.max_theta})};
+  return {.nodes = NodeBrdf(ValuesAtNodes(measurement, *grid))};
 }
 
 void CheckIsotropic(const PictureData& measured, const Material& fitted) {

@@ -37,13 +37,13 @@ constexpr Row kRows[] = {
 
 // Up to kCurves of the grid's thetas, evenly, the largest that was measured among them.
 std::vector<double> ThetasOf(const NodeTable& table) {
-  const int last =
-      std::min(static_cast<int>(table.max_theta / table.ThetaStep() + 1e-6), table.thetas - 1);
+  const int last = std::min(static_cast<int>(table.max_theta / table.grid.ThetaStep() + 1e-6),
+                            table.grid.thetas - 1);
   std::vector<double> thetas;
   const int curves = std::min(kCurves, std::max(last, 1));
   for (int k = 1; k <= curves; ++k) {
     thetas.push_back(static_cast<double>(std::lround(static_cast<double>(last) * k / curves)) *
-                     table.ThetaStep());
+                     table.grid.ThetaStep());
   }
   return thetas;
 }
@@ -84,10 +84,10 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
   for (size_t r = 0; r < std::size(kRows); ++r) {
     for (int c = 0; c < kChannels; ++c) {
       std::vector<std::vector<double>> points, lines;  // phi, then each theta
-      for (int b = 0; b <= table.phis; ++b) {
-        std::vector<double>& row = points.emplace_back(1, 360.0 * b / table.phis);
+      for (int b = 0; b <= table.grid.phis; ++b) {
+        std::vector<double>& row = points.emplace_back(1, 360.0 * b / table.grid.phis);
         for (const double theta : thetas) {
-          const SphericalAngles at = kRows[r].at(theta, b * table.PhiStep(), middling);
+          const SphericalAngles at = kRows[r].at(theta, b * table.grid.PhiStep(), middling);
           row.push_back(measured.Measured(at) ? positive(measured(at)[c]) : kNone);
           values[r].push_back(row.back());
         }

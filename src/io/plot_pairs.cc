@@ -12,7 +12,7 @@
 namespace trilobe {
 
 void DrawPairs(const Measurement& scattered, const std::string& path) {
-  const NodeValues values = ValuesAtNodes(scattered, kUtiaGrid);
+  const NodeTable values = ValuesAtNodes(scattered, kUtiaGrid);
   constexpr int kNodes = kUtiaGrid.nodes();
   std::vector<std::vector<double>> rows(kNodes);
   double largest = 0;

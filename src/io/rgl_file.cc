@@ -246,7 +246,7 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
                              static_cast<double>(row) / (rows - 1)};
       const SquarePoint u_m = t.vndf.Sample(slice, x);
       const Direction m = FromAngles(u_m.x * u_m.x * (kPi / 2), (u_m.y - 0.5) * (2 * kPi));
-      const double cos_d = wi[0] * m[0] + wi[1] * m[1] + wi[2] * m[2];
+      const double cos_d = Dot(wi, m);
       const Direction wo = {2 * cos_d * m[0] - wi[0], 2 * cos_d * m[1] - wi[1],
                             2 * cos_d * m[2] - wi[2]};
       const double divisor = 4 * t.sigma.At(0, u_i) * wo[2];

@@ -28,10 +28,6 @@ struct Geometry {
     cos_d = std::sqrt(length2) / 2;
   }
 
-  static double Dot(const Direction& a, const Direction& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  }
-
   double cos_i, cos_o;
   double wi_dot_wo;
   double cos2_h, sin2_h;  // of theta_h; both, since 1 - cos2_h loses digits in narrow highlights

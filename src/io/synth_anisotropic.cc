@@ -66,7 +66,7 @@ struct AnisotropicGgx {
       return std::hypot(alpha.x * w[0], alpha.y * w[1], w[2]);
     };
     const double lobe = d / (2 * (pair.wo[2] * smith(pair.wi) + pair.wi[2] * smith(pair.wo)));
-    const double cos_d = h[0] * pair.wi[0] + h[1] * pair.wi[1] + h[2] * pair.wi[2];
+    const double cos_d = Dot(h, pair.wi);
     const auto schlick = [](double at_normal, double cosine) {
       return at_normal + (1 - at_normal) * std::pow(std::max(1 - cosine, 0.0), 5);
     };

@@ -27,6 +27,15 @@ std::string Quoted(std::string_view cell) {
   return "'" + shown + (cell.size() > kLongest ? "...'" : "'");
 }
 
+// The number that all of a cell is.
+template <typename Number>
+std::optional<Number> Whole(std::string_view cell) {
+  Number number{};
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return number;
+}
+
 }  // namespace
 
 TextLines::TextLines(std::string_view text, const std::string& source)
@@ -77,11 +86,10 @@ std::vector<std::string_view> SplitWords(std::string_view line) {
 
 std::optional<double> ToNumber(std::string_view cell) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
-  double number = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
-  return number;
+  return Whole<double>(cell);
 }
+
+std::optional<int> ToInteger(std::string_view cell) { return Whole<int>(cell); }
 
 void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
                  const std::vector<std::string>& names, std::vector<double>* numbers) {

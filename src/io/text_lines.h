@@ -37,6 +37,7 @@ std::vector<std::string_view> SplitWords(std::string_view line);
 
 // A number that a cell holds, and nothing else; "nan" and "inf" are numbers.
 std::optional<double> ToNumber(std::string_view cell);
+std::optional<int> ToInteger(std::string_view cell);
 
 // The numbers of the line where `lines` is, one for each name. Throws Error where they are more or
 // fewer, or no numbers.

@@ -155,7 +155,7 @@ Measurement ParseUtia(std::string_view bytes, const std::string& source,
 }
 
 void WriteUtia(const Measurement& scattered, const std::string& path) {
-  const NodeValues values = ValuesAtNodes(scattered, kUtiaGrid);
+  const NodeTable values = ValuesAtNodes(scattered, kUtiaGrid);
   std::vector<double> plane(kPlane);
   WriteFile(path, [&](std::ostream& out) {
     for (int c = 0; c < kChannels; ++c) {

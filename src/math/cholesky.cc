@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/math/triangle.h"
 
 // LAPACK has no C header of its own.
 extern "C" {
@@ -81,11 +82,7 @@ void InvertFactored(int n, double* L) {
   const int stride = std::max(1, n);
   int info = 0;
   dpotri_("L", &n, L, &stride, &info);
-  for (int j = 0; j < n; ++j) {
-    for (int i = j + 1; i < n; ++i) {
-      L[static_cast<size_t>(i) * n + j] = L[static_cast<size_t>(j) * n + i];
-    }
-  }
+  MirrorTriangle(Triangle::kUpper, n, L);  // by rows it is the upper one that LAPACK has set
 }
 
 void SolveLower(int n, const double* L, int columns, double* B) {

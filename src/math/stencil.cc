@@ -4,8 +4,17 @@
 #include <cmath>
 
 #include "trilobe/base/error.h"
+#include "trilobe/math/angles.h"
 
 namespace trilobe {
+
+Between OnCircle(double radians, int count) {
+  const double turns = radians / (2 * kPi);
+  const double place = (turns - std::floor(turns)) * count;
+  const double floor = std::floor(place);
+  const int lower = static_cast<int>(floor) % count;
+  return {lower, (lower + 1) % count, place - floor};
+}
 
 Stencil PointStencil(int index) { return {1, {index}, {1.0}}; }
 

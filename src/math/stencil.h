@@ -29,6 +29,15 @@ struct Stencil {
   }
 };
 
+// A place between two neighbours: `t` in [0, 1) of the way from the lower to the upper.
+struct Between {
+  int lower = 0, upper = 0;
+  double t = 0;
+};
+
+// Where an angle [rad], any finite one, lies among `count` at even steps from 0 around a circle.
+Between OnCircle(double radians, int count);
+
 // The entry itself.
 Stencil PointStencil(int index);
 

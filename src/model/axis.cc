@@ -14,19 +14,12 @@
 namespace trilobe {
 namespace {
 
-// A place between two neighbouring nodes: `t` in [0, 1) of the way from the lower to the upper.
-struct Between {
-  int lower, upper;
-  double t;
-};
-
 constexpr double kAtNode = 1e-9;
 
-double Snapped(double t) { return t < kAtNode ? 0 : t > 1 - kAtNode ? 1 : t; }
-
-Between Whole(Between at) {
-  if (at.t == 1) return {at.upper, at.upper, 0};
-  return at.t == 0 ? Between{at.lower, at.lower, 0} : at;
+// What is next to a node stands at it.
+Between Snapped(Between at) {
+  if (at.t > 1 - kAtNode) return {at.upper, at.upper, 0};
+  return at.t < kAtNode ? Between{at.lower, at.lower, 0} : at;
 }
 
 Between LocateTheta(const std::vector<double>& nodes, double degrees) {
@@ -35,15 +28,7 @@ Between LocateTheta(const std::vector<double>& nodes, double degrees) {
   if (degrees >= nodes.back()) return {last, last, 0};
   const auto upper = std::ranges::upper_bound(nodes, degrees);
   const int a = static_cast<int>(upper - nodes.begin()) - 1;
-  return Whole({a, a + 1, Snapped((degrees - nodes[a]) / (nodes[a + 1] - nodes[a]))});
-}
-
-Between LocatePhi(int nodes, double radians) {
-  const double turns = radians / (2 * kPi);
-  const double place = (turns - std::floor(turns)) * nodes;
-  const double floor = std::floor(place);
-  const int b = static_cast<int>(floor) % nodes;
-  return Whole({b, (b + 1) % nodes, Snapped(place - floor)});
+  return Snapped({a, a + 1, (degrees - nodes[a]) / (nodes[a + 1] - nodes[a])});
 }
 
 Stencil PolarStencil(const Axis& axis, double theta, double phi) {
@@ -51,7 +36,7 @@ Stencil PolarStencil(const Axis& axis, double theta, double phi) {
     throw Error("theta or phi of a direction is not a finite number");
   }
   const Between a = LocateTheta(axis.theta, RadiansToDegrees(theta));
-  const Between b = LocatePhi(axis.phi_nodes, phi);
+  const Between b = Snapped(OnCircle(phi, axis.phi_nodes));
   Stencil stencil;
   const auto add = [&](int row, int column, double weight) {
     if (weight == 0) return;
@@ -101,7 +86,15 @@ double Axis::Phi(int entry) const {
   return polar() ? entry % phi_nodes * (2 * kPi / phi_nodes) : 0;
 }
 
+double Axis::Cell::SolidAngle() const {
+  return phi_width * (std::cos(theta_begin) - std::cos(theta_end));
+}
+
 Axis::Cell Axis::CellOf(int entry) const {
+  if (!polar()) {
+    const MerlGrid grid{.theta_h = size};
+    return {grid.ThetaH(entry), grid.ThetaH(entry + 1), 2 * kPi};
+  }
   const int a = entry / phi_nodes, last = static_cast<int>(theta.size()) - 1;
   const double inner = a > 0 ? theta[a] - theta[a - 1] : last > 0 ? theta[1] - theta[0] : 180;
   const double outer = a < last ? theta[a + 1] - theta[a] : inner;

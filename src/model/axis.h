@@ -39,11 +39,12 @@ struct Axis {
   double Theta(int entry) const;
   double Phi(int entry) const;  // 0 but for kPolar
 
-  // Of kPolar, the cell of directions around an entry: from halfway to the node before it to
-  // halfway to the one after it, the outermost as wide outwards as inwards, within [0, 90 degrees].
-  // [rad]
+  // Of kRootTheta the bin of an entry, a ring. Of kPolar the cell of directions around it: from
+  // halfway to the node before it to halfway to the one after it, the outermost as wide outwards as
+  // inwards, within [0, 90 degrees]. [rad]
   struct Cell {
     double theta_begin, theta_end, phi_width;
+    double SolidAngle() const;
   };
   Cell CellOf(int entry) const;
 

@@ -17,10 +17,8 @@ namespace {
 // integral of cos sin dtheta dphi = phi width (sin^2 upper - sin^2 lower) / 2.
 std::vector<double> ProjectedAngles(const Axis& axis) {
   std::vector<double> angles(axis.size);
-  const MerlGrid grid{.theta_h = axis.size};
   for (int i = 0; i < axis.size; ++i) {
-    const auto [a, b, width] =
-        axis.polar() ? axis.CellOf(i) : Axis::Cell{grid.ThetaH(i), grid.ThetaH(i + 1), 2 * kPi};
+    const auto [a, b, width] = axis.CellOf(i);
     angles[i] = width / 2 * std::sin(b - a) * std::sin(b + a);  // without cancellation
   }
   return angles;

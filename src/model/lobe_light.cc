@@ -28,9 +28,8 @@ class Cells {
   // The measure of a pair's share, in some unit.
   double SolidAngle(int h, int d) const {
     if (!spec_.d_axis.polar()) return grid_.SolidAngle(h, d);
-    const auto [begin, end, width] = spec_.d_axis.CellOf(h);
     const double theta_d = grid_.ThetaD(d + 0.5);
-    return width * (std::cos(begin) - std::cos(end)) * std::sin(theta_d) * std::cos(theta_d);
+    return spec_.d_axis.CellOf(h).SolidAngle() * std::sin(theta_d) * std::cos(theta_d);
   }
 
   struct Pair {

@@ -13,20 +13,15 @@ namespace {
 // Samples that one item of work evaluates.
 constexpr int kChunk = 1 << 14;
 
-std::vector<Rgb> EvaluateDirections(const FactorModel& model, const BrdfSamples& samples,
-                                    int num_threads) {
-  if (samples.directions.empty()) {
-    throw Error(samples.source + ": an anisotropic model needs the samples' azimuths");
-  }
-  std::vector<Rgb> rho(samples.rho.size());
-  ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
-    const int end = std::min(samples.size(), (chunk + 1) * kChunk);
-    for (int j = chunk * kChunk; j < end; ++j) {
-      const SampleStencils at = ScatteredStencils(model.spec(), samples.directions[j]);
-      for (int c = 0; c < kChannels; ++c) rho[j][c] = Evaluate(model, at, c);
-    }
+// `value(j)` for j < size, in parallel.
+template <typename Value>
+std::vector<Rgb> ForEach(int size, int num_threads, const Value& value) {
+  std::vector<Rgb> values(size);
+  ParallelFor((size + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+    const int end = std::min(size, (chunk + 1) * kChunk);
+    for (int j = chunk * kChunk; j < end; ++j) values[j] = value(j);
   });
-  return rho;
+  return values;
 }
 
 }  // namespace
@@ -35,26 +30,26 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
                                  int num_threads) {
   CheckSamples(samples);
   const ModelSpec& spec = model.spec();
-  if (spec.anisotropic()) return EvaluateDirections(model, samples, num_threads);
+  if (spec.anisotropic()) {
+    if (samples.directions.empty()) {
+      throw Error(samples.source + ": an anisotropic model needs the samples' azimuths");
+    }
+    return ForEach(samples.size(), num_threads, [&](int j) {
+      const SampleStencils at = ScatteredStencils(spec, samples.directions[j]);
+      return Rgb{Evaluate(model, at, 0), Evaluate(model, at, 1), Evaluate(model, at, 2)};
+    });
+  }
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
                         samples.grid.theta_d == spec.f_axis.size;
   const ContinuousModel evaluate(model);
-  std::vector<Rgb> rho(samples.rho.size());
-  ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
-    const int end = std::min(samples.size(), (chunk + 1) * kChunk);
-    for (int j = chunk * kChunk; j < end; ++j) {
-      const HalfDiffAngles angles = samples.Angles(j);
-      const Cosines cosines = ToCosines(angles);
-      if (own_bins) {
-        const int row = samples.bins[j] / samples.grid.phi_d;
-        rho[j] = evaluate(PointStencil(row / samples.grid.theta_d),
-                          PointStencil(row % samples.grid.theta_d), cosines);
-      } else {
-        rho[j] = evaluate(angles, cosines);
-      }
-    }
+  return ForEach(samples.size(), num_threads, [&](int j) {
+    const HalfDiffAngles angles = samples.Angles(j);
+    const Cosines cosines = ToCosines(angles);
+    if (!own_bins) return evaluate(angles, cosines);
+    const int row = samples.bins[j] / samples.grid.phi_d;
+    return evaluate(PointStencil(row / samples.grid.theta_d),
+                    PointStencil(row % samples.grid.theta_d), cosines);
   });
-  return rho;
 }
 
 BrdfTable Reconstruct(const FactorModel& model, const std::string& source, const MerlGrid& grid,

@@ -14,10 +14,7 @@ namespace {
 
 // Solid angle that an entry of D stands for, in some unit.
 double SolidAngle(const Axis& axis, int entry) {
-  if (axis.polar()) {
-    const auto [begin, end, width] = axis.CellOf(entry);
-    return std::cos(begin) - std::cos(end);
-  }
+  if (axis.polar()) return axis.CellOf(entry).SolidAngle();
   const MerlGrid grid{.theta_h = axis.size};
   return std::sin(grid.ThetaH(entry + 0.5)) * (grid.ThetaH(entry + 1) - grid.ThetaH(entry));
 }

@@ -57,6 +57,9 @@ class CellIndex {
   std::vector<std::vector<int>> by_first_entry_;
 };
 
+// Between and at neighbouring nodes of a table there are at most four kinds of cells a node.
+static_assert(4 * kMaxTableSize <= std::numeric_limits<uint16_t>::max());
+
 // A sample on its way into the order.
 struct Item {
   std::array<uint16_t, kNumReadings> cell{};  // G first: theta_i, theta_o, D, F

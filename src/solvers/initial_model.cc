@@ -92,10 +92,7 @@ struct Facets {
 
 Facets FacetsOf(const Axis& axis, int entry) {
   const double theta = axis.Theta(entry);
-  if (axis.polar()) {
-    const auto [begin, end, width] = axis.CellOf(entry);
-    return {theta, {axis.Phi(entry)}, width * (std::cos(begin) - std::cos(end))};
-  }
+  if (axis.polar()) return {theta, {axis.Phi(entry)}, axis.CellOf(entry).SolidAngle()};
   constexpr int kPhi = 64;
   const MerlGrid grid{.theta_h = axis.size};
   Facets ring{theta, std::vector<double>(kPhi),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/math/triangle.h"
 #include "trilobe/sums/grid/joint_rows.h"
 #include "trilobe/sums/grid/joint_shadowing.h"
 #include "trilobe/sums/sample_equations.h"
@@ -116,18 +117,6 @@ void ClearDeadParameters(std::span<const double> coverage, QuadraticModel* resul
   }
 }
 
-// In blocks that fit into the cache.
-void MirrorUpperTriangle(size_t n, double* H) {
-  constexpr size_t kBlock = 16;
-  for (size_t k0 = 0; k0 < n; k0 += kBlock) {
-    for (size_t l0 = 0; l0 <= k0; l0 += kBlock) {
-      for (size_t k = k0; k < std::min(n, k0 + kBlock); ++k) {
-        for (size_t l = l0; l < std::min(k, l0 + kBlock); ++l) H[k * n + l] = H[l * n + k];
-      }
-    }
-  }
-}
-
 }  // namespace
 
 void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
@@ -167,7 +156,7 @@ class NormalEquations::Condensed {
                 QuadraticModel* result) {
     rows_.Evaluate(model, hessian, num_threads, result);
     shadowing_.Evaluate(model, hessian, num_threads, result);
-    MirrorUpperTriangle(model.spec().num_parameters(), result->H.data());
+    MirrorTriangle(Triangle::kUpper, model.spec().num_parameters(), result->H.data());
   }
 
  private:

@@ -5,24 +5,13 @@
 #include <span>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/math/triangle.h"
 #include "trilobe/sums/sample_sums.h"
 
 namespace trilobe {
 namespace {
 
 constexpr Kind kKinds[] = {Kind::kAmplitudes, Kind::kD, Kind::kF, Kind::kG};
-
-// In blocks that fit into the cache.
-void MirrorLowerTriangle(size_t n, double* H) {
-  constexpr size_t kBlock = 16;
-  for (size_t k0 = 0; k0 < n; k0 += kBlock) {
-    for (size_t l0 = 0; l0 <= k0; l0 += kBlock) {
-      for (size_t k = k0; k < std::min(n, k0 + kBlock); ++k) {
-        for (size_t l = l0; l < std::min(k, l0 + kBlock); ++l) H[l * n + k] = H[k * n + l];
-      }
-    }
-  }
-}
 
 }  // namespace
 
@@ -102,7 +91,7 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
     ParallelFor(rows.entries, num_threads_,
                 [&](int entry) { GatherRow(kind, entry, hessian, result); });
   }
-  MirrorLowerTriangle(n, result->H.data());
+  MirrorTriangle(Triangle::kLower, n, result->H.data());
 }
 
 // A product of two numbers of one kind is in one place or the other, or half in both.

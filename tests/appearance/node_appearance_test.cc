@@ -21,10 +21,10 @@ AppearanceOptions Quick(int num_threads = 1) {
 NodeBrdf Steel() { return *PictureDataOf(LoadMeasurement("synth:aniso_ggx_steel@6x24")).nodes; }
 
 NodeBrdf Grey(double rho) {
-  NodeTable table{.source = "grey", .thetas = 6, .phis = 8, .rho = {}, .present = {}};
-  table.rho.assign(static_cast<size_t>(table.nodes()) * table.nodes(), {rho, rho, rho});
+  NodeTable table{.source = "grey", .grid = {6, 8}, .rho = {}, .present = {}};
+  table.rho.assign(static_cast<size_t>(table.grid.nodes()) * table.grid.nodes(), {rho, rho, rho});
   table.present.assign(table.rho.size(), true);
-  table.max_theta = 5 * table.ThetaStep();
+  table.max_theta = 5 * table.grid.ThetaStep();
   return NodeBrdf(table);
 }
 

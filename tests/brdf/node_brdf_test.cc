@@ -13,14 +13,14 @@ namespace trilobe {
 namespace {
 
 NodeTable RandomTable(int thetas, int phis) {
-  NodeTable table{.source = "random", .thetas = thetas, .phis = phis, .rho = {}, .present = {}};
-  const size_t pairs = static_cast<size_t>(table.nodes()) * table.nodes();
+  NodeTable table{.source = "random", .grid = {thetas, phis}, .rho = {}, .present = {}};
+  const size_t pairs = static_cast<size_t>(table.grid.nodes()) * table.grid.nodes();
   Random random(4);
   for (size_t k = 0; k < pairs; ++k) {
     table.rho.push_back({random.Uniform(), random.Uniform(), random.Uniform()});
   }
   table.present.assign(pairs, true);
-  table.max_theta = (thetas - 1) * table.ThetaStep();
+  table.max_theta = (thetas - 1) * table.grid.ThetaStep();
   return table;
 }
 
@@ -31,10 +31,10 @@ void ExpectNear(const Rgb& a, const Rgb& b) {
 TEST(NodeBrdf, IsTheTableAtNodesWhateverTheTurn) {
   const NodeTable table = RandomTable(4, 5);
   const NodeBrdf brdf(table);
-  for (int i = 0; i < table.nodes(); ++i) {
-    for (int o = 0; o < table.nodes(); ++o) {
-      SphericalAngles at = table.Angles(i, o);
-      const Rgb& rho = table.rho[static_cast<size_t>(i) * table.nodes() + o];
+  for (int i = 0; i < table.grid.nodes(); ++i) {
+    for (int o = 0; o < table.grid.nodes(); ++o) {
+      SphericalAngles at = table.grid.Angles(i, o);
+      const Rgb& rho = table.rho[static_cast<size_t>(i) * table.grid.nodes() + o];
       ExpectNear(brdf(at), rho);
       at.phi_i -= 2 * kPi;
       at.phi_o += 6 * kPi;
@@ -54,17 +54,17 @@ TEST(NodeBrdf, IsLinearInEachAngleAndConstantBeyondTheLastTheta) {
                                 random.Uniform(0, 1.57), random.Uniform(-9, 9)};
     const auto weight = [&](int node, double theta, double phi) {
       const int ring = node / 7;
-      const double place = std::min(theta / table.ThetaStep(), 2.0);
-      const double turn = std::remainder(phi - node % 7 * table.PhiStep(), 2 * kPi);
+      const double place = std::min(theta / table.grid.ThetaStep(), 2.0);
+      const double turn = std::remainder(phi - node % 7 * table.grid.PhiStep(), 2 * kPi);
       return std::max(0.0, 1 - std::abs(place - ring)) *
-             std::max(0.0, 1 - std::abs(turn) / table.PhiStep());
+             std::max(0.0, 1 - std::abs(turn) / table.grid.PhiStep());
     };
     Rgb sum{};
-    for (int i = 0; i < table.nodes(); ++i) {
-      for (int o = 0; o < table.nodes(); ++o) {
+    for (int i = 0; i < table.grid.nodes(); ++i) {
+      for (int o = 0; o < table.grid.nodes(); ++o) {
         const double w = weight(i, at.theta_i, at.phi_i) * weight(o, at.theta_o, at.phi_o);
         for (int c = 0; c < kChannels; ++c) {
-          sum[c] += w * table.rho[static_cast<size_t>(i) * table.nodes() + o][c];
+          sum[c] += w * table.rho[static_cast<size_t>(i) * table.grid.nodes() + o][c];
         }
       }
     }
@@ -76,24 +76,24 @@ TEST(NodeBrdf, IsLinearInEachAngleAndConstantBeyondTheLastTheta) {
 TEST(NodeBrdf, FillsWhatIsMissingFromTheNearest) {
   NodeTable table = RandomTable(3, 6);
   const int i = 7, o = 15;  // theta, phi = 1, 1 and 2, 3
-  const auto index = [&](int a, int b) { return static_cast<size_t>(a) * table.nodes() + b; };
+  const auto index = [&](int a, int b) { return static_cast<size_t>(a) * table.grid.nodes() + b; };
   // All about (i, o) within two steps, but for one pair two steps away.
-  for (int k = 0; k < table.nodes(); ++k) {
-    for (int l = 0; l < table.nodes(); ++l) table.present[index(k, l)] = false;
+  for (int k = 0; k < table.grid.nodes(); ++k) {
+    for (int l = 0; l < table.grid.nodes(); ++l) table.present[index(k, l)] = false;
   }
   table.present[index(i + 1, o - 6)] = true;
   table.present[index(0, 0)] = true;
   const NodeBrdf brdf(table);
-  ExpectNear(brdf(table.Angles(i, o)), table.rho[index(i + 1, o - 6)]);
-  EXPECT_FALSE(brdf.Measured(table.Angles(i, o)));
-  EXPECT_TRUE(brdf.Measured(table.Angles(i + 1, o - 6)));
-  ExpectNear(brdf(table.Angles(5, 5)), table.rho[index(0, 0)]);  // around the turn
+  ExpectNear(brdf(table.grid.Angles(i, o)), table.rho[index(i + 1, o - 6)]);
+  EXPECT_FALSE(brdf.Measured(table.grid.Angles(i, o)));
+  EXPECT_TRUE(brdf.Measured(table.grid.Angles(i + 1, o - 6)));
+  ExpectNear(brdf(table.grid.Angles(5, 5)), table.rho[index(0, 0)]);  // around the turn
   EXPECT_FALSE(brdf.MeasuredAround(0, 0));
 }
 
 TEST(NodeBrdf, KnowsWhereAllNodesAroundAreMeasured) {
   NodeTable table = RandomTable(3, 4);
-  table.present[static_cast<size_t>(5) * table.nodes() + 6] = false;  // thetas 1, phis 1 and 2
+  table.present[static_cast<size_t>(5) * table.grid.nodes() + 6] = false;  // thetas 1, phis 1 and 2
   const NodeBrdf brdf(table);
   EXPECT_FALSE(brdf.MeasuredAround(0, 1));
   EXPECT_FALSE(brdf.MeasuredAround(5, 6));

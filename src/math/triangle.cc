@@ -1,0 +1,23 @@
+#include "trilobe/math/triangle.h"
+
+#include <algorithm>
+
+namespace trilobe {
+
+// In blocks that fit into the cache.
+void MirrorTriangle(Triangle from, size_t n, double* A) {
+  constexpr size_t kBlock = 16;
+  for (size_t k0 = 0; k0 < n; k0 += kBlock) {
+    for (size_t l0 = 0; l0 <= k0; l0 += kBlock) {
+      for (size_t k = k0; k < std::min(n, k0 + kBlock); ++k) {
+        for (size_t l = l0; l < std::min(k, l0 + kBlock); ++l) {
+          const size_t lower = k * n + l;
+          const size_t upper = l * n + k;
+          A[from == Triangle::kUpper ? lower : upper] = A[from == Triangle::kUpper ? upper : lower];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace trilobe
