@@ -1,7 +1,10 @@
 #include "trilobe/math/cholesky.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstddef>
+#include <mutex>
 
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/triangle.h"
@@ -25,9 +28,38 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
 namespace trilobe {
 namespace {
 
+// A function of OpenBLAS, null where BLAS is another one, or lacks it.
+template <typename Function>
+Function* OfOpenBlas(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+// Threads are ours, and bits must not hang on how many OpenBLAS has: one. Before main, since Ceres
+// calls BLAS, too. True where OpenBLAS is built without threads: then it hands the same work space
+// to two callers at once (0.3.21 looks for a free one outside of its lock), whose results are
+// wrong.
+const bool only_one_caller = [] {
+  if (auto* const set = OfOpenBlas<void(int)>("openblas_set_num_threads")) set(1);
+  auto* const parallel = OfOpenBlas<int()>("openblas_get_parallel");
+  return parallel != nullptr && parallel() == 0;
+}();
+
+// To be held while BLAS is called.
+class BlasCall {
+ public:
+  BlasCall() {
+    static std::mutex mutex;
+    if (only_one_caller) lock_ = std::unique_lock(mutex);
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
 void SolveTriangular(const char* trans, int n, const double* L, int columns, double* B) {
   const int stride = std::max(1, n);
   int info = 0;
+  const BlasCall call;
   dtrtrs_("L", trans, "N", &n, &columns, L, &stride, B, &stride, &info);
 }
 
@@ -47,16 +79,21 @@ bool FactorByTiles(int n, double* A, int num_threads) {
   for (int k = 0; k < tiles; ++k) {
     const int width = size(k), below = tiles - k - 1;
     int info = 0;
-    dpotrf_("L", &width, tile(k, k), &n, &info);
+    {
+      const BlasCall call;
+      dpotrf_("L", &width, tile(k, k), &n, &info);
+    }
     if (info != 0) return false;
     ParallelFor(below, num_threads, [&](int t) {
       const int i = k + 1 + t, height = size(i);
+      const BlasCall call;
       dtrsm_("R", "L", "T", "N", &height, &width, &one, tile(k, k), &n, tile(i, k), &n);
     });
     ParallelFor(below * (below + 1) / 2, num_threads, [&](int t) {
       int j = k + 1, row = t;  // the t-th of the tiles in the lower triangle, column by column
       for (; row >= tiles - j; ++j) row -= tiles - j;
       const int i = j + row, height = size(i), columns = size(j);
+      const BlasCall call;
       if (i == j) {
         dsyrk_("L", "N", &height, &width, &minus_one, tile(i, k), &n, &one, tile(i, i), &n);
       } else {
@@ -74,6 +111,7 @@ bool FactorCholesky(int n, double* A, int num_threads) {
   if (n > kMinTiled) return FactorByTiles(n, A, num_threads);
   const int stride = std::max(1, n);
   int info = 0;
+  const BlasCall call;
   dpotrf_("L", &n, A, &stride, &info);
   return info == 0;
 }
@@ -81,7 +119,10 @@ bool FactorCholesky(int n, double* A, int num_threads) {
 void InvertFactored(int n, double* L) {
   const int stride = std::max(1, n);
   int info = 0;
-  dpotri_("L", &n, L, &stride, &info);
+  {
+    const BlasCall call;
+    dpotri_("L", &n, L, &stride, &info);
+  }
   MirrorTriangle(Triangle::kUpper, n, L);  // by rows it is the upper one that LAPACK has set
 }
 

@@ -1,5 +1,6 @@
 #include "trilobe/math/cholesky.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/base/parallel.h"
 
 namespace trilobe {
 namespace {
@@ -40,6 +42,22 @@ TEST(FactorCholesky, HasTheSameBitsForAnyNumberOfThreads) {
   ASSERT_TRUE(FactorCholesky(n, third.data(), 3));
   EXPECT_TRUE(std::ranges::equal(first, second));
   EXPECT_TRUE(std::ranges::equal(first, third));
+}
+
+// OpenBLAS without threads got one call of two hundred wrong.
+TEST(FactorCholesky, MayBeCalledFromSeveralThreads) {
+  const int n = 200, repetitions = 1000;
+  const std::vector<double> A = PositiveDefinite(n);
+  std::vector<double> wanted = A;
+  ASSERT_TRUE(FactorCholesky(n, wanted.data()));
+  std::vector<int> wrong(4, 0);
+  ParallelFor(4, 4, [&](int thread) {
+    for (int k = 0; k < repetitions; ++k) {
+      std::vector<double> factor = A;
+      if (!FactorCholesky(n, factor.data()) || factor != wanted) ++wrong[thread];
+    }
+  });
+  EXPECT_THAT(wrong, testing::Each(0));
 }
 
 TEST(FactorCholesky, TellsAMatrixThatIsNotPositiveDefinite) {
