@@ -1,4 +1,5 @@
-// The cost of a fit on one full-size MERL material (1,096,216 bins above the surface, 822 numbers).
+// The cost of a fit on one full-size MERL material (1,096,216 bins above the surface, 822
+// parameters).
 //
 //   build/release/benchmarks/fit_benchmark
 //
@@ -61,7 +62,7 @@ void BM_Value(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(objective.Value(model));
 }
 
-// The literal counterpart of BM_Value: every sample by its stencils.
+// The reference counterpart of BM_Value: every sample by its stencils.
 void BM_ValueLiteral(benchmark::State& state) {
   const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
@@ -93,14 +94,14 @@ void Equations(benchmark::State& state, Hessian hessian) {
 void BM_NormalEquations(benchmark::State& state) { Equations(state, Hessian::kGaussNewton); }
 void BM_NewtonEquations(benchmark::State& state) { Equations(state, Hessian::kNewton); }
 
-// The literal counterpart of the former: each sample's derivatives, multiplied out.
+// The reference counterpart of the former: each sample's derivatives, multiplied out.
 void BM_NormalEquationsLiteral(benchmark::State& state) {
   const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   objective.weighted_samples();
   QuadraticModel result;
   for (auto _ : state) {
-    EvaluateLiterally(objective, model, Hessian::kGaussNewton, &result);
+    EvaluateReference(objective, model, Hessian::kGaussNewton, &result);
     benchmark::DoNotOptimize(result.objective);
   }
 }
@@ -129,7 +130,7 @@ void BM_ScatteredNormalEquationsLiteral(benchmark::State& state) {
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   QuadraticModel result;
   for (auto _ : state) {
-    EvaluateLiterally(objective, model, Hessian::kGaussNewton, &result);
+    EvaluateReference(objective, model, Hessian::kGaussNewton, &result);
     benchmark::DoNotOptimize(result.objective);
   }
 }

@@ -29,7 +29,7 @@ DEFINE_double(g_filter, 0,
               "standard deviation, in degrees, of a Gaussian filter on G after each sweep, which "
               "may raise E; 0 for none");
 DEFINE_string(positivity, trilobe::PositivityName(kDefaults.positivity),
-              "how numbers are kept >= 0: active_set, bounds or squares");
+              "how parameters are kept >= 0: active_set, bounds or squares");
 DEFINE_string(trust_region, trilobe::TrustRegionName(kDefaults.trust_region),
               "how the length of a step is bounded: levenberg_marquardt or dogleg");
 DEFINE_int32(memory, kDefaults.memory, "earlier iterates that an accelerated solver combines");

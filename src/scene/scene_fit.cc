@@ -88,7 +88,7 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
       options.max_psnr_drop_db = amount;
       break;
     case SceneBudget::Unit::kBytes:
-      options.max_numbers = static_cast<int>(std::min(amount / sizeof(double), 1e9));
+      options.max_parameters = static_cast<int>(std::min(amount / sizeof(double), 1e9));
       break;
     case SceneBudget::Unit::kSeconds:
       break;
@@ -141,17 +141,17 @@ Json Encode(const MaterialFit& fit) {
   Json decisions = Json::array();
   for (const PruneDecision& decision : fit.decisions) {
     decisions.push_back({{"what", decision.what},
-                         {"numbers_before", decision.numbers_before},
-                         {"numbers_after", decision.numbers_after},
+                         {"numbers_before", decision.parameters_before},
+                         {"numbers_after", decision.parameters_after},
                          {"E_before", decision.E_before},
                          {"E_after", decision.E_after},
                          {"taken", decision.taken},
                          {"why", decision.why}});
   }
   return {{"model", FormatModel(fit.file)},   {"valid_samples", fit.valid_samples},
-          {"used_samples", fit.used_samples}, {"full_numbers", fit.full_numbers},
+          {"used_samples", fit.used_samples}, {"full_numbers", fit.full_parameters},
           {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
-          {"numbers", fit.numbers},           {"decisions", decisions},
+          {"numbers", fit.num_parameters},    {"decisions", decisions},
           {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds}};
 }
 
@@ -159,15 +159,15 @@ MaterialFit DecodeMaterialFit(const Json& json) {
   MaterialFit fit;
   fit.valid_samples = json.at("valid_samples");
   fit.used_samples = json.at("used_samples");
-  fit.full_numbers = json.at("full_numbers");
+  fit.full_parameters = json.at("full_numbers");
   fit.full = DecodeScore(json.at("full"));
   fit.pruned = DecodeScore(json.at("pruned"));
   fit.file = ParseModel(json.at("model").get<std::string>(), "cache");
-  fit.numbers = json.at("numbers");
+  fit.num_parameters = json.at("numbers");
   for (const Json& decision : json.at("decisions")) {
     fit.decisions.push_back({.what = decision.at("what"),
-                             .numbers_before = decision.at("numbers_before"),
-                             .numbers_after = decision.at("numbers_after"),
+                             .parameters_before = decision.at("numbers_before"),
+                             .parameters_after = decision.at("numbers_after"),
                              .E_before = decision.at("E_before"),
                              .E_after = decision.at("E_after"),
                              .taken = decision.at("taken"),
@@ -319,7 +319,7 @@ class MaterialFitter {
     const SolverSummary summary = MakeSolver(settings_.solver)->Solve(objective, options, &model);
     if (summary.stop_reason == StopReason::kInterrupted) return std::nullopt;
     Canonicalize(objective.coverage(), &model);
-    fit.file.dead = DeadParameters(objective.coverage());
+    fit.file.unobserved = UnobservedParameters(objective.coverage());
     fit.file.fit = {.solver = settings_.solver,
                     .init = settings_.init,
                     .weighting = settings_.weighting,
@@ -353,16 +353,16 @@ class MaterialFitter {
     fit.fit_from_cache = full->from_cache;
     fit.valid_samples = valid_samples_;
     fit.used_samples = objective.samples().size();
-    fit.full_numbers = full->file.model.spec().num_parameters();
+    fit.full_parameters = full->file.model.spec().num_parameters();
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
     fit.file = {.model = std::move(pruned.model),
-                .dead = DeadParameters(of_pruned.coverage()),
+                .unobserved = UnobservedParameters(of_pruned.coverage()),
                 .fit = full->file.fit,
                 .layout = std::move(pruned.layout)};
     fit.file.fit.objective = fit.pruned.objective;
-    fit.numbers = pruned.numbers;
+    fit.num_parameters = pruned.num_parameters;
     fit.decisions = std::move(pruned.decisions);
     return fit;
   }

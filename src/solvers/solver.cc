@@ -105,7 +105,7 @@ SolverSummary Solver::Solve(const Objective& objective, const SolverOptions& opt
                             FactorModel* model) const {
   if (model == nullptr) throw Error("a solver needs a model to start from, not null");
   CheckSameSpec(model->spec(), objective.spec());
-  CheckNumbers(*model);
+  CheckParameters(*model);
   CheckOptions(options);
   if (options.g_filter_sigma > 0) CheckIsotropic(objective.spec(), "the Gaussian filter on G");
   return DoSolve(objective, options, model);

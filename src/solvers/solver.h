@@ -92,7 +92,7 @@ struct PhaseSeconds {
 
 // How good a point is, by measures that do not depend on the gauge (docs/solvers.md).
 struct Diagnosis {
-  // dE/dx / 2 = J'r, in the order of FactorModel::parameters(); 0 at dead bins.
+  // dE/dx / 2 = J'r, in the order of FactorModel::parameters(); 0 at unobserved bins.
   std::vector<double> gradient;
 
   // The largest projected component of the gradient in the scale in which every column of J has
@@ -100,7 +100,7 @@ struct Diagnosis {
   // 0 at a stationary point, at most 1.
   double optimality = 0;
 
-  int live_parameters = 0;  // those that data touch
+  int observed_parameters = 0;  // those that data touch
   // Of J with its columns scaled to length 1, columns of length 0 left out: singular values above
   // `rank_tolerance` times the largest, and the largest over the smallest of those.
   int rank = 0;
@@ -150,8 +150,8 @@ class Solver {
   Solver& operator=(const Solver&) = delete;
   virtual ~Solver() = default;
 
-  // Starts at *model, whose spec is the objective's and whose numbers are finite and >= 0, and
-  // leaves the best model found there; dead bins stay as they were.
+  // Starts at *model, whose spec is the objective's and whose parameters are finite and >= 0, and
+  // leaves the best model found there; unobserved bins stay as they were.
   // Throws Error, with *model as it was, if that is no such model or E overflows there, if an
   // option is out of its range, or if this solver cannot work on this objective.
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,

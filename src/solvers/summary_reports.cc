@@ -79,9 +79,9 @@ std::string SolverSummary::FullReport() const {
   out << std::setprecision(3);
   if (diagnosis) {
     out << "diagnosis    optimality " << diagnosis->optimality << ", rank " << diagnosis->rank
-        << " of " << diagnosis->live_parameters << " live parameters (singular values above "
-        << diagnosis->rank_tolerance << " of the largest), condition " << diagnosis->condition
-        << "\n";
+        << " of " << diagnosis->observed_parameters
+        << " observed parameters (singular values above " << diagnosis->rank_tolerance
+        << " of the largest), condition " << diagnosis->condition << "\n";
   }
   out << "phases       ";
   if (phases.reading > 0) out << phases.reading << " s reading, ";

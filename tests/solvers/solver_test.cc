@@ -80,13 +80,13 @@ TEST(Solver, ReportsInFull) {
   }
   summary.diagnosis = {.gradient = {},
                        .optimality = 0.125,
-                       .live_parameters = 9,
+                       .observed_parameters = 9,
                        .rank = 7,
                        .rank_tolerance = 1e-9,
                        .condition = 1e6};
   summary.phases.reading = 0.25;
   const std::string full = summary.FullReport();
-  EXPECT_THAT(full, testing::HasSubstr("optimality 0.125, rank 7 of 9 live parameters"));
+  EXPECT_THAT(full, testing::HasSubstr("optimality 0.125, rank 7 of 9 observed parameters"));
   EXPECT_THAT(full, testing::HasSubstr("phases       0.25 s reading, 1.5 s solving"));
 }
 

@@ -18,7 +18,7 @@ class Newton : public Solver {
 
 SolverEntry NewtonEntry() {
   return {.name = "newton",
-          .description = "damped Newton steps in all numbers at once, by an active set",
+          .description = "damped Newton steps in all parameters at once, by an active set",
           .reference = "Nielsen 1999; Portugal, Judice, Vicente 1994; docs/solvers.md",
           .make = [] { return std::make_unique<Newton>(); }};
 }

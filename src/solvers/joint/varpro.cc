@@ -22,7 +22,8 @@ class Varpro : public Solver {
 
 SolverEntry VarproEntry() {
   return {.name = "varpro",
-          .description = "joint steps, after each of which d, s, D, F go to their best places",
+          .description =
+              "joint steps with d, s, D, F refitted after each; a relative of variable projection",
           .reference = "Golub and Pereyra 1973; Ruhe and Wedin 1980; docs/solvers.md",
           .make = [] { return std::make_unique<Varpro>(); }};
 }
