@@ -8,7 +8,7 @@
 #include "trilobe/brdf/directions.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/with_lobes.h"
+#include "trilobe/model/lobes.h"
 
 namespace trilobe {
 namespace {

@@ -14,7 +14,7 @@
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/scene/prune.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/joint/joint_step.h"

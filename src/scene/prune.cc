@@ -10,7 +10,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/merge_lobes.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/lobe_search.h"
 #include "trilobe/scene/needed_layout.h"

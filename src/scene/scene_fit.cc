@@ -1,10 +1,8 @@
 #include "trilobe/scene/scene_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -17,14 +15,13 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // With a budget of seconds: the share of it after which a fit stops. The rest is for leaving out
 // what is free.
@@ -102,83 +99,6 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
   return options;
 }
 
-// What is kept of results between runs. Entries of another version of the program have other keys,
-// so one that cannot be decoded is a defect, or somebody's work; it is made again.
-template <typename T, typename Decode>
-std::optional<T> Cached(const FitCache& cache, const std::string& key, const Decode& decode) {
-  const std::optional<std::string> content = cache.Find(key);
-  if (!content) return std::nullopt;
-  try {
-    return decode(Json::parse(*content));
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
-Json Encode(const FullFit& fit) {
-  return {{"model", FormatModel(fit.file)}, {"seconds", fit.seconds}};
-}
-
-FullFit DecodeFullFit(const Json& json) {
-  return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds"), true};
-}
-
-Json Encode(const SceneScore& score) {
-  // JSON has no infinite PSNR, that of an exact fit.
-  return {{"objective", score.objective},
-          {"psnr_db", std::isfinite(score.psnr_db) ? Json(score.psnr_db) : Json()}};
-}
-
-SceneScore DecodeScore(const Json& json) {
-  const Json& psnr_db = json.at("psnr_db");
-  return {json.at("objective"),
-          psnr_db.is_null() ? std::numeric_limits<double>::infinity() : psnr_db.get<double>()};
-}
-
-Json Encode(const MaterialFit& fit) {
-  Json decisions = Json::array();
-  for (const PruneDecision& decision : fit.decisions) {
-    decisions.push_back({{"what", decision.what},
-                         {"numbers_before", decision.parameters_before},
-                         {"numbers_after", decision.parameters_after},
-                         {"E_before", decision.E_before},
-                         {"E_after", decision.E_after},
-                         {"taken", decision.taken},
-                         {"why", decision.why}});
-  }
-  return {{"model", FormatModel(fit.file)},   {"valid_samples", fit.valid_samples},
-          {"used_samples", fit.used_samples}, {"full_numbers", fit.full_parameters},
-          {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
-          {"numbers", fit.num_parameters},    {"decisions", decisions},
-          {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds}};
-}
-
-MaterialFit DecodeMaterialFit(const Json& json) {
-  MaterialFit fit;
-  fit.valid_samples = json.at("valid_samples");
-  fit.used_samples = json.at("used_samples");
-  fit.full_parameters = json.at("full_numbers");
-  fit.full = DecodeScore(json.at("full"));
-  fit.pruned = DecodeScore(json.at("pruned"));
-  fit.file = ParseModel(json.at("model").get<std::string>(), "cache");
-  fit.num_parameters = json.at("numbers");
-  for (const Json& decision : json.at("decisions")) {
-    fit.decisions.push_back({.what = decision.at("what"),
-                             .parameters_before = decision.at("numbers_before"),
-                             .parameters_after = decision.at("numbers_after"),
-                             .E_before = decision.at("E_before"),
-                             .E_after = decision.at("E_after"),
-                             .taken = decision.at("taken"),
-                             .why = decision.at("why")});
-  }
-  fit.fit_seconds = json.at("fit_seconds");
-  fit.prune_seconds = json.at("prune_seconds");
-  fit.fit_from_cache = fit.prune_from_cache = true;
-  return fit;
-}
-
 BrdfSamples InChannels(BrdfSamples samples, SceneChannels channels) {
   if (channels == SceneChannels::kLuminance) return LuminanceOf(std::move(samples));
   return samples;
@@ -202,18 +122,18 @@ class MaterialFitter {
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
     const std::string key = FitKey(purpose).text();
-    if (auto cached = Cached<FullFit>(settings_.cache, key, DecodeFullFit)) return cached;
+    if (auto cached = CachedFullFit(settings_.cache, key)) return cached;
     std::optional<FullFit> fit = FitAnew();
-    if (fit) settings_.cache.Keep(key, Encode(*fit).dump());
+    if (fit) KeepFit(*fit, key, settings_.cache);
     return fit;
   }
 
   std::optional<MaterialFit> FitAndPrune() {
     const std::string key = PruneKey();
-    std::optional<MaterialFit> fit = Cached<MaterialFit>(settings_.cache, key, DecodeMaterialFit);
+    std::optional<MaterialFit> fit = CachedMaterialFit(settings_.cache, key);
     if (!fit) {
       fit = PruneAnew();
-      if (fit) settings_.cache.Keep(key, Encode(*fit).dump());
+      if (fit) KeepFit(*fit, key, settings_.cache);
     }
     if (fit) fit->name = material_.name;
     return fit;

@@ -13,7 +13,7 @@
 #include "trilobe/model/axis.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {

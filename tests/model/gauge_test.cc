@@ -9,7 +9,7 @@
 #include "tests/test_util.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/with_lobes.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {

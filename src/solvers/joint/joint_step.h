@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "trilobe/solvers/awls/sweep.h"
@@ -87,11 +86,6 @@ class JointStepper {
 // lengths of the columns of J. 0 where that is 0.
 std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
                                   std::span<const double> squared_lengths);
-
-// A solver that makes nothing but such steps, from its starting point on.
-SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
-                                JointStepper::Trial trial, const Objective& objective,
-                                const SolverOptions& options, FactorModel* model);
 
 // Makes and records steps of the stepper, which stands at the run's last point, until the run
 // stops.

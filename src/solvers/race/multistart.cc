@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/race/start_race.h"
