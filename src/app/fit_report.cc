@@ -10,7 +10,6 @@
 #include "trilobe/app/bin_counts.h"
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
-#include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
@@ -28,8 +27,8 @@ std::string ModelName(const ModelSpec& spec) {
 
 Json ToJson(const SolverOptions& options, const SolverEntry& solver) {
   Json json;
-  for (const OptionValue& option : OptionValues(options, solver.options)) {
-    std::visit([&](const auto& value) { json[option.name] = value; }, option.value);
+  for (const SolverOption* option : OptionsReadBy(solver.options)) {
+    std::visit([&](const auto& value) { json[option->name] = value; }, option->get(options));
   }
   return json;
 }

@@ -18,7 +18,6 @@
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
 #include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
@@ -173,9 +172,9 @@ class MaterialFitter {
     key.Add("init", settings_.init);
     key.Add("init_seed", settings_.seed);
     key.Add("solver", settings_.solver);
-    for (const OptionValue& option :
-         OptionValues(settings_.options, FindSolver(settings_.solver).options)) {
-      std::visit([&](const auto& value) { key.Add(option.name, value); }, option.value);
+    for (const SolverOption* option : OptionsReadBy(FindSolver(settings_.solver).options)) {
+      std::visit([&](const auto& value) { key.Add(option->name, value); },
+                 option->get(settings_.options));
     }
     if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
       key.Add("seconds", material_.budget.amount);
