@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,8 +20,6 @@
 
 namespace trilobe {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Where lobes that went took more than this share of the budget, it may be better spent on nodes.
 constexpr double kDear = 0.5;

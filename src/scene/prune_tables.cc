@@ -1,7 +1,6 @@
 #include "trilobe/scene/prune_tables.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -19,8 +18,6 @@
 
 namespace trilobe {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of the fit in the parameters that are left: it ends when a step gains less than this fraction of
 // the budget, or of E where E is what counts; and when so many times what the last step gained

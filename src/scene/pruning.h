@@ -17,6 +17,8 @@
 
 namespace trilobe {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // A model on the way from the full to the pruned one, with its own objective.
 struct PruneState {
   std::shared_ptr<const Objective> objective;
@@ -75,8 +77,8 @@ class Pruning {
   double E_full_ = 0;
   std::optional<double> lowest_psnr_;
   bool by_parameters_ = false;
-  double limit_ = std::numeric_limits<double>::infinity();
-  double guide_ = std::numeric_limits<double>::infinity();
+  double limit_ = kInfinity;
+  double guide_ = kInfinity;
   QuadraticModel quadratic_;
   std::optional<FactorModel> linearized_;  // where quadratic_ was made
   std::vector<PruneDecision> decisions_;
