@@ -43,7 +43,7 @@ Objective NoisyObjective(const ModelSpec& spec, int num_threads = 1) {
   return {PolarSamples(Cloth(spec), 4, 6, 0.2), spec, FindWeighting("appearance"), num_threads};
 }
 
-TEST(Anisotropic, NormalEquationsAreTheLiteralOnes) {
+TEST(Anisotropic, NormalEquationsAreThoseOfTheReference) {
   const ModelSpec spec = SmallSpec(2);
   const Objective objective = NoisyObjective(spec, 2);
   const FactorModel model = RandomModel(spec, 2);
@@ -61,7 +61,7 @@ TEST(Anisotropic, NormalEquationsAreTheLiteralOnes) {
   }
 }
 
-TEST(Anisotropic, AwlsIsTheLiteralOne) {
+TEST(Anisotropic, AwlsIsTheReference) {
   const ModelSpec spec = SmallSpec(2);
   const Objective objective = NoisyObjective(spec);
   const FactorModel start = FindInitialModel("random").make(objective, 3);

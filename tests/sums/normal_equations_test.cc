@@ -40,7 +40,7 @@ void PutSomeAtZero(FactorModel* model) {
   }
 }
 
-TEST(NormalEquations, CondensedEqualsLiteral) {
+TEST(NormalEquations, CondensedEqualsReference) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     for (const char* const weighting : {"compressive", "uniform"}) {
       const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, weighting);
@@ -61,7 +61,7 @@ TEST(NormalEquations, CondensedEqualsLiteral) {
   }
 }
 
-TEST(NormalEquations, OfScatteredSamplesEqualLiteral) {
+TEST(NormalEquations, OfScatteredSamplesEqualReference) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     BrdfSamples samples = Scattered(ValidSamples(RandomTable(kGrid, 3)));
     for (HalfDiffAngles& at : samples.angles) at.theta_h *= 0.9;
