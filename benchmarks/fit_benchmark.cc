@@ -1,4 +1,5 @@
-// The cost of a fit on one full-size MERL material (1,096,216 bins above the surface, 822 numbers).
+// The cost of a fit on one full-size MERL material (1,096,216 bins above the surface, 822
+// parameters).
 //
 //   build/release/benchmarks/fit_benchmark
 //
@@ -61,8 +62,8 @@ void BM_Value(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(objective.Value(model));
 }
 
-// The literal counterpart of BM_Value: every sample by its stencils.
-void BM_ValueLiteral(benchmark::State& state) {
+// The reference counterpart of BM_Value: every sample by its stencils.
+void BM_ValueReference(benchmark::State& state) {
   const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   const std::vector<WeightedSample>& samples = objective.weighted_samples();
@@ -93,14 +94,14 @@ void Equations(benchmark::State& state, Hessian hessian) {
 void BM_NormalEquations(benchmark::State& state) { Equations(state, Hessian::kGaussNewton); }
 void BM_NewtonEquations(benchmark::State& state) { Equations(state, Hessian::kNewton); }
 
-// The literal counterpart of the former: each sample's derivatives, multiplied out.
-void BM_NormalEquationsLiteral(benchmark::State& state) {
+// The reference counterpart of the former: each sample's derivatives, multiplied out.
+void BM_NormalEquationsReference(benchmark::State& state) {
   const Objective objective = MakeObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   objective.weighted_samples();
   QuadraticModel result;
   for (auto _ : state) {
-    EvaluateLiterally(objective, model, Hessian::kGaussNewton, &result);
+    EvaluateReference(objective, model, Hessian::kGaussNewton, &result);
     benchmark::DoNotOptimize(result.objective);
   }
 }
@@ -124,12 +125,12 @@ void BM_ScatteredNormalEquations(benchmark::State& state) {
     benchmark::DoNotOptimize(result.objective);
   }
 }
-void BM_ScatteredNormalEquationsLiteral(benchmark::State& state) {
+void BM_ScatteredNormalEquationsReference(benchmark::State& state) {
   const Objective objective = ScatteredObjective(static_cast<int>(state.range(0)));
   const FactorModel model = FindInitialModel("analytic").make(objective, 1);
   QuadraticModel result;
   for (auto _ : state) {
-    EvaluateLiterally(objective, model, Hessian::kGaussNewton, &result);
+    EvaluateReference(objective, model, Hessian::kGaussNewton, &result);
     benchmark::DoNotOptimize(result.objective);
   }
 }
@@ -162,9 +163,9 @@ void Iteration(benchmark::State& state, const char* solver, int iterations,
   }
 }
 void BM_AwlsSweep(benchmark::State& state) { Iteration(state, "awls", 20); }
-void BM_AwlsLiteralSweep(benchmark::State& state) { Iteration(state, "awls_literal", 1); }
+void BM_AwlsReferenceSweep(benchmark::State& state) { Iteration(state, "awls_literal", 1); }
 void BM_ScatteredSweep(benchmark::State& state) { Iteration(state, "awls", 5, ScatteredObjective); }
-void BM_ScatteredSweepLiteral(benchmark::State& state) {
+void BM_ScatteredSweepReference(benchmark::State& state) {
   Iteration(state, "awls_literal", 1, ScatteredObjective);
 }
 void BM_LmIteration(benchmark::State& state) { Iteration(state, "lm", 20); }
@@ -211,16 +212,16 @@ void ByTheTrace(Benchmark* of) { of->Unit(benchmark::kMillisecond)->UseManualTim
 
 BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Apply(OnTheClock);
 BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Apply(OnTheClock);
-BENCHMARK(BM_ValueLiteral)->Arg(1)->Apply(OnTheClock);
+BENCHMARK(BM_ValueReference)->Arg(1)->Apply(OnTheClock);
 BENCHMARK(BM_NormalEquations)->Arg(1)->Arg(2)->Apply(OnTheClock);
 BENCHMARK(BM_NewtonEquations)->Arg(1)->Arg(2)->Apply(OnTheClock);
-BENCHMARK(BM_NormalEquationsLiteral)->Arg(1)->Apply(OnTheClock)->Iterations(1);
+BENCHMARK(BM_NormalEquationsReference)->Arg(1)->Apply(OnTheClock)->Iterations(1);
 BENCHMARK(BM_AwlsSweep)->Arg(1)->Arg(2)->Apply(ByTheTrace);
-BENCHMARK(BM_AwlsLiteralSweep)->Arg(1)->Apply(ByTheTrace)->Iterations(1);
+BENCHMARK(BM_AwlsReferenceSweep)->Arg(1)->Apply(ByTheTrace)->Iterations(1);
 BENCHMARK(BM_ScatteredNormalEquations)->Arg(1)->Arg(2)->Apply(OnTheClock);
-BENCHMARK(BM_ScatteredNormalEquationsLiteral)->Arg(1)->Apply(OnTheClock)->Iterations(1);
+BENCHMARK(BM_ScatteredNormalEquationsReference)->Arg(1)->Apply(OnTheClock)->Iterations(1);
 BENCHMARK(BM_ScatteredSweep)->Arg(1)->Apply(ByTheTrace);
-BENCHMARK(BM_ScatteredSweepLiteral)->Arg(1)->Apply(ByTheTrace)->Iterations(1);
+BENCHMARK(BM_ScatteredSweepReference)->Arg(1)->Apply(ByTheTrace)->Iterations(1);
 BENCHMARK(BM_LmIteration)->Arg(1)->Arg(2)->Apply(ByTheTrace);
 BENCHMARK(BM_LmPlainIteration)->Arg(2)->Apply(ByTheTrace)->Iterations(1);
 BENCHMARK_CAPTURE(BM_Fit, default, {})->Arg(1)->Arg(2)->Apply(OnTheClock)->Iterations(1);

@@ -103,7 +103,7 @@ void BM_Sweep(benchmark::State& state) {
 }
 
 // 288 x 288 pairs of directions, 15 by 7.5 degrees apart, as an anisotropic model reads them: D
-// bilinearly over h, F linearly over theta_d, G at its nodes. 2,010 numbers for three lobes.
+// bilinearly over h, F linearly over theta_d, G at its nodes. 2,010 parameters for three lobes.
 constexpr int kThetas = 6, kPhis = 48, kDirections = kThetas * kPhis;
 
 ModelSpec AnisotropicSpec() { return ModelSpec::Anisotropic(3); }

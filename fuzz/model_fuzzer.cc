@@ -15,7 +15,7 @@ namespace {
 bool Same(const trilobe::ModelFile& a, const trilobe::ModelFile& b) {
   const auto x = a.model.parameters(), y = b.model.parameters();
   return a.model.spec() == b.model.spec() && x.size() == y.size() &&
-         std::memcmp(x.data(), y.data(), x.size_bytes()) == 0 && a.dead == b.dead;
+         std::memcmp(x.data(), y.data(), x.size_bytes()) == 0 && a.unobserved == b.unobserved;
 }
 
 }  // namespace

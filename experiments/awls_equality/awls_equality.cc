@@ -1,4 +1,4 @@
-// Do the fast and the literal AWLS make the same sweeps? See README.md beside this file.
+// Do the fast and the reference AWLS make the same sweeps? See README.md beside this file.
 
 #include <gflags/gflags.h>
 
@@ -36,11 +36,11 @@ SolverSummary Sweeps(const std::string& solver, const Objective& objective, doub
 // Prints a row of CSV; true if E was the same after every sweep.
 bool Compare(const Objective& objective, double g_filter_sigma) {
   const SolverSummary fast = Sweeps("awls", objective, g_filter_sigma);
-  const SolverSummary literal = Sweeps("awls_literal", objective, g_filter_sigma);
+  const SolverSummary reference = Sweeps("awls_literal", objective, g_filter_sigma);
   double worst = 0;
-  bool passed = fast.trace.size() == literal.trace.size();
-  for (size_t k = 0; k < std::min(fast.trace.size(), literal.trace.size()); ++k) {
-    const double expected = literal.trace[k].objective;
+  bool passed = fast.trace.size() == reference.trace.size();
+  for (size_t k = 0; k < std::min(fast.trace.size(), reference.trace.size()); ++k) {
+    const double expected = reference.trace[k].objective;
     const double difference = std::abs(fast.trace[k].objective - expected);
     passed &= difference <= FLAGS_limit * expected;  // false for NaN
     worst = std::max(worst, difference / expected);
@@ -49,7 +49,7 @@ bool Compare(const Objective& objective, double g_filter_sigma) {
     return (summary.trace.back().seconds - summary.trace.front().seconds) / summary.iterations;
   };
   std::printf("%g,%d,%.10g,%.10g,%.2g,%.3g,%.3g\n", g_filter_sigma, fast.iterations,
-              fast.initial_objective, fast.final_objective, worst, seconds_per_sweep(literal),
+              fast.initial_objective, fast.final_objective, worst, seconds_per_sweep(reference),
               seconds_per_sweep(fast));
   return passed;
 }

@@ -1,4 +1,4 @@
-"""Fast and literal AWLS: see README.md beside this file."""
+"""Fast and reference AWLS: see README.md beside this file."""
 import math
 
 from lab import fits, tables
@@ -25,7 +25,7 @@ def tabulate(_, results):
 def draw(drawn, _):
     rows = drawn["sweeps"]
     header = ["material", "filter", "sweeps", "first E", "best E", "worst relative difference",
-              "literal s/sweep", "awls s/sweep"]
+              "reference s/sweep", "awls s/sweep"]
     body = [[row["material"], "failed", *[""] * (len(header) - 2)]
             if row.get("filter") is None else
             [row["material"], f"{row['filter']:g}", str(row["sweeps"]), f"{row['first_E']:.6g}",

@@ -22,24 +22,24 @@ def _solid_angles(bins):
 class Model:
     """A model file of the paper's sharing (docs/file-formats.md).
 
-    d [3], s [lobes][3], D [lobes][bins], F [3][bins], G [lobes][nodes]; live: the same names, True
-    where data touch the entry.
+    d [3], s [lobes][3], D [lobes][bins], F [3][bins], G [lobes][nodes]; observed: the same names,
+    True where data touch the entry.
     """
 
     def __init__(self, content):
         self.lobes = content["lobes"]
         self.d = numpy.array(content["d"], dtype=float)
         self.s = numpy.array(content["s"], dtype=float).reshape(self.lobes, CHANNELS)
-        self.live = {}
+        self.observed = {}
         for factor in "DFG":
             table = numpy.array(content[factor], dtype=float)
             if table.ndim != 2 or len(table) != (CHANNELS if factor == "F" else self.lobes):
                 raise ValueError(f"{factor}: D and G must have a table a lobe, F one a channel")
-            live = numpy.ones(table.shape, dtype=bool)
-            for of, dead in zip(live, content.get("dead", {}).get(factor, [])):
-                of[dead] = False
+            observed = numpy.ones(table.shape, dtype=bool)
+            for of, unobserved in zip(observed, content.get("dead", {}).get(factor, [])):
+                of[unobserved] = False
             setattr(self, factor, table)
-            self.live[factor] = live
+            self.observed[factor] = observed
 
     @staticmethod
     def read(path):
@@ -63,8 +63,8 @@ def scores(a, b):
     solid_angles = _solid_angles(a.D.shape[1])
     for m, n in itertools.product(range(a.lobes), range(b.lobes)):
         result[m, n] = (congruence(a.D[m], b.D[n],
-                                   solid_angles * (a.live["D"][m] & b.live["D"][n]))
-                        * congruence(a.G[m], b.G[n], a.live["G"][m] & b.live["G"][n])
+                                   solid_angles * (a.observed["D"][m] & b.observed["D"][n]))
+                        * congruence(a.G[m], b.G[n], a.observed["G"][m] & b.observed["G"][n])
                         * congruence(a.s[m], b.s[n]))
     return result
 

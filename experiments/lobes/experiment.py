@@ -128,12 +128,12 @@ def _bands(runs, reference):
         # [runs][tables][entries]
         values = numpy.array([getattr(run.model, factor)[list(order)]
                               for run, order in zip(runs, orders)])
-        live = numpy.array([run.model.live[factor][list(order)]
-                            for run, order in zip(runs, orders)]).all(axis=0)
+        observed = numpy.array([run.model.observed[factor][list(order)]
+                                for run, order in zip(runs, orders)]).all(axis=0)
         of_reference = getattr(reference.model, factor)
         if factor != "F":
             of_reference = of_reference[list(reference.order)]
-        for table, entry in zip(*numpy.nonzero(live)):
+        for table, entry in zip(*numpy.nonzero(observed)):
             of = values[:, table, entry]
             low, middle, high = (float(f"{stats.quantile(of, q):.4g}") for q in (.05, .5, .95))
             rows.append({"factor": factor, "table": int(table) + 1, "entry": int(entry),

@@ -64,7 +64,7 @@ class ReferenceProblem {
   // Total weight of what reads each parameter; d and s read everything of their channel. [n]
   const VectorOf<Real>& coverage() const { return coverage_; }
 
-  // The canonical form of docs/method.md, dead entries filled.
+  // The canonical form of docs/method.md, unobserved entries filled.
   VectorOf<Real> Canonical(VectorOf<Real> x) const;
 
  private:
@@ -333,13 +333,13 @@ Derivatives<Real> ReferenceProblem<Real>::Evaluate(const VectorOf<Real>& x) cons
 template <typename Real>
 VectorOf<Real> ReferenceProblem<Real>::Canonical(VectorOf<Real> x) const {
   using std::sin;
-  const auto fill_dead = [&](int begin, int size) {
-    const auto live = [&](int k) { return coverage_(begin + k) > 0; };
+  const auto fill_unobserved = [&](int begin, int size) {
+    const auto observed = [&](int k) { return coverage_(begin + k) > 0; };
     for (int k = 0; k < size; ++k) {
-      if (live(k)) continue;
+      if (observed(k)) continue;
       int before = k, after = k;
-      while (before >= 0 && !live(before)) --before;
-      while (after < size && !live(after)) ++after;
+      while (before >= 0 && !observed(before)) --before;
+      while (after < size && !observed(after)) ++after;
       if (before < 0 && after == size) return false;
       if (before < 0) {
         x(begin + k) = x(begin + after);
@@ -356,7 +356,7 @@ VectorOf<Real> ReferenceProblem<Real>::Canonical(VectorOf<Real> x) const {
     const int size = spec_.table_size(factor);
     for (int t = 0; t < spec_.num_tables(factor); ++t) {
       const int begin = layout_.TableOffset(factor, t);
-      if (!fill_dead(begin, size)) continue;
+      if (!fill_unobserved(begin, size)) continue;
       VectorOf<Real> measure = coverage_.segment(begin, size);
       Real wanted = measure.sum();
       if (factor == Factor::kD) {

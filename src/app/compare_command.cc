@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 // One model of a material, judged on the directions that the scene uses.
 struct Side {
-  int numbers = 0;
+  int num_parameters = 0;
   int threads = 0;
   double seconds = 0;  // on so many threads
   SceneScore score;
@@ -51,7 +51,7 @@ struct PrunedScene {
   Scene scene = {};
   SceneFitSettings settings;
   std::vector<ModelFile> files = {};  // of each material
-  std::vector<int> numbers = {};
+  std::vector<int> num_parameters = {};
   std::vector<double> material_seconds = {};
   double seconds = 0;
   bool reckoned = false;
@@ -76,7 +76,7 @@ PrunedScene FromRun(const std::string& path) {
   }
   pruned.scene = std::move(run.scene);
   for (MaterialFit& fit : run.fits) {
-    pruned.numbers.push_back(fit.numbers);
+    pruned.num_parameters.push_back(fit.num_parameters);
     pruned.material_seconds.push_back(fit.fit_seconds + fit.prune_seconds);
     pruned.files.push_back(std::move(fit.file));
   }
@@ -119,7 +119,7 @@ PrunedScene FromFolder(const std::string& folder) {
                     "' is missing; make the folder again with `trilobe fit --scene`");
       }
       pruned.files.push_back(ReadModel(folder + "/" + material.name + ".json"));
-      pruned.numbers.push_back(found->at("numbers").at("pruned"));
+      pruned.num_parameters.push_back(found->at("numbers").at("pruned"));
       pruned.material_seconds.push_back(found->at("seconds").at("fit").get<double>() +
                                         found->at("seconds").at("prune").get<double>());
     }
@@ -143,11 +143,11 @@ Comparison Compare(const PrunedScene& pruned) {
     const std::vector<SceneScore> scores =
         ScoreOnScene(std::vector{full->file.model, pruned.files[k].model}, material,
                      pruned.settings, comparison.threads);
-    comparison.rows.push_back(
-        {material.name,
-         {full->file.model.spec().num_parameters(), full->file.fit.threads, full->seconds,
-          scores[0]},
-         {pruned.numbers[k], pruned.files[k].fit.threads, pruned.material_seconds[k], scores[1]}});
+    comparison.rows.push_back({material.name,
+                               {full->file.model.spec().num_parameters(), full->file.fit.threads,
+                                full->seconds, scores[0]},
+                               {pruned.num_parameters[k], pruned.files[k].fit.threads,
+                                pruned.material_seconds[k], scores[1]}});
   }
   return comparison;
 }
@@ -160,7 +160,7 @@ auto Total(const Comparison& comparison, const Value& value) {
 }
 
 Json SideToJson(const Side& side) {
-  return {{"numbers", side.numbers},           {"bytes", BytesOf(side.numbers)},
+  return {{"numbers", side.num_parameters},    {"bytes", BytesOf(side.num_parameters)},
           {"threads", side.threads},           {"seconds", side.seconds},
           {"objective", side.score.objective}, {"psnr_db", side.score.psnr_db}};
 }
@@ -173,8 +173,8 @@ Json ToJson(const Comparison& comparison) {
                          {"pruned", SideToJson(row.pruned)},
                          {"relative_rise", row.Rise()}});
   }
-  const int full = Total(comparison, [](const Row& row) { return row.full.numbers; });
-  const int pruned = Total(comparison, [](const Row& row) { return row.pruned.numbers; });
+  const int full = Total(comparison, [](const Row& row) { return row.full.num_parameters; });
+  const int pruned = Total(comparison, [](const Row& row) { return row.pruned.num_parameters; });
   const auto count = static_cast<double>(comparison.rows.size());
   return {{"threads", comparison.threads},
           {"materials", materials},
@@ -210,21 +210,21 @@ void Print(const Comparison& comparison) {
               << Right(Text(pruned_psnr), 8) << "\n";
   };
   std::cout << std::string(width, ' ')
-            << "     numbers            bytes          seconds              E          E rises     "
+            << "  parameters            bytes          seconds              E          E rises     "
                "PSNR [dB]\n"
             << std::string(width, ' ')
             << "   full  pruned     full  pruned    full  pruned       full     pruned     by %    "
                "full  pruned\n";
   for (const Row& row : comparison.rows) {
-    line(row.name, row.full.numbers, row.pruned.numbers, row.full.seconds, row.pruned.seconds,
-         Text(row.full.score.objective, 5), Text(row.pruned.score.objective, 5), row.Rise(),
-         row.full.score.psnr_db, row.pruned.score.psnr_db);
+    line(row.name, row.full.num_parameters, row.pruned.num_parameters, row.full.seconds,
+         row.pruned.seconds, Text(row.full.score.objective, 5), Text(row.pruned.score.objective, 5),
+         row.Rise(), row.full.score.psnr_db, row.pruned.score.psnr_db);
   }
   const auto mean = [&](const auto& value) {
     return Total(comparison, value) / static_cast<double>(comparison.rows.size());
   };
-  line("all", Total(comparison, [](const Row& row) { return row.full.numbers; }),
-       Total(comparison, [](const Row& row) { return row.pruned.numbers; }),
+  line("all", Total(comparison, [](const Row& row) { return row.full.num_parameters; }),
+       Total(comparison, [](const Row& row) { return row.pruned.num_parameters; }),
        comparison.full_seconds, comparison.pruned_seconds, "", "",
        mean([](const Row& row) { return row.Rise(); }),
        mean([](const Row& row) { return row.full.score.psnr_db; }),
@@ -240,8 +240,8 @@ void Print(const Comparison& comparison) {
 void Draw(const Comparison& comparison, const std::string& path) {
   std::vector<TradeOff> rows;
   const auto end = [](const Side& side) {
-    return TradeOff::End{static_cast<double>(BytesOf(side.numbers)), side.seconds * side.threads,
-                         side.score.psnr_db};
+    return TradeOff::End{static_cast<double>(BytesOf(side.num_parameters)),
+                         side.seconds * side.threads, side.score.psnr_db};
   };
   for (const Row& row : comparison.rows) rows.push_back({row.name, end(row.full), end(row.pruned)});
   DrawTradeOff(rows, path);
@@ -266,20 +266,21 @@ int RunCompare(std::span<const std::string> arguments) {
 Command CompareCommand() {
   std::vector<std::string> flags = SceneFlags();
   flags.insert(flags.begin(), {"json", "out"});
-  return {.name = "compare",
-          .summary = "compare the full with the pruned models of a scene",
-          .arguments = "SCENE|DIR",
-          .min_arguments = 1,
-          .max_arguments = 1,
-          .details =
-              "For each material: numbers, bytes, seconds, E and PSNR of a full fit, as `trilobe "
-              "fit SOURCE` makes\nit, and of the pruned model; E and PSNR on the directions and "
-              "channels\nthat the scene uses. Of a scene file the "
-              "pruned models are made, or taken from the cache; of a folder\nthat `trilobe fit "
-              "--scene` wrote they are read. With --out=FILE.png, draws it.",
-          .flags = flags,
-          .particular_flags = ParticularSolverFlags(),
-          .run = RunCompare};
+  return {
+      .name = "compare",
+      .summary = "compare the full with the pruned models of a scene",
+      .arguments = "SCENE|DIR",
+      .min_arguments = 1,
+      .max_arguments = 1,
+      .details =
+          "For each material: parameters, bytes, seconds, E and PSNR of a full fit, as `trilobe "
+          "fit SOURCE` makes\nit, and of the pruned model; E and PSNR on the directions and "
+          "channels\nthat the scene uses. Of a scene file the "
+          "pruned models are made, or taken from the cache; of a folder\nthat `trilobe fit "
+          "--scene` wrote they are read. With --out=FILE.png, draws it.",
+      .flags = flags,
+      .particular_flags = ParticularSolverFlags(),
+      .run = RunCompare};
 }
 
 }  // namespace trilobe

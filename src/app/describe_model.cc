@@ -35,7 +35,7 @@ std::string SharingText(const ModelSpec& spec, Factor factor) {
   return tables + "shared by all";
 }
 
-// Numbers that the file stores of all tables of one factor.
+// Parameters that the file stores of all tables of one factor.
 int CountStored(const ModelFile& file, Factor factor) {
   int count = 0;
   for (const std::vector<int>& nodes : file.layout->nodes[static_cast<int>(factor)]) {
@@ -44,12 +44,12 @@ int CountStored(const ModelFile& file, Factor factor) {
   return count;
 }
 
-// Dead entries of all tables of one factor.
-int CountDead(const ModelFile& file, Factor factor) {
+// Unobserved entries of all tables of one factor.
+int CountUnobserved(const ModelFile& file, Factor factor) {
   const ModelSpec& spec = file.model.spec();
   int count = 0;
   for (int i = 0; i < spec.num_tables(factor) * spec.table_size(factor); ++i) {
-    if (file.dead[file.model.TableOffset(factor, 0) + i]) ++count;
+    if (file.unobserved[file.model.TableOffset(factor, 0) + i]) ++count;
   }
   return count;
 }
@@ -77,7 +77,7 @@ void DescribeModel(const std::string& path) {
   const AlbedoTable albedo = TabulateAlbedo(BrdfOf(model, 0), ThreadsFromFlags());
   std::optional<AlbedoTable> across;
   if (spec.anisotropic()) across = TabulateAlbedo(BrdfOf(model, kPi / 2), ThreadsFromFlags());
-  const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), model);
+  const LobeLight light = ComputeLobeLight(ObservedEntries(file.unobserved), model);
 
   if (FLAGS_json) {
     Json json = {{"file", path},
@@ -95,10 +95,11 @@ void DescribeModel(const std::string& path) {
                                             {"size", spec.table_size(factor)},
                                             {"per_lobe", sharing.per_lobe},
                                             {"per_channel", sharing.per_channel},
-                                            {"dead", CountDead(file, factor)}};
+                                            {"dead", CountUnobserved(file, factor)}};
       if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
-    json["stored_numbers"] = file.layout ? file.layout->num_numbers(spec) : spec.num_parameters();
+    json["stored_numbers"] =
+        file.layout ? file.layout->num_parameters(spec) : spec.num_parameters();
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},
                    {"init", fit.init},
@@ -122,16 +123,16 @@ void DescribeModel(const std::string& path) {
                         std::to_string(spec.lobes) + " lobes, " +
                         std::to_string(spec.num_parameters()) + " parameters");
   if (file.layout) {
-    PrintLine("stored", std::to_string(file.layout->num_numbers(spec)) + " numbers, and " +
+    PrintLine("stored", std::to_string(file.layout->num_parameters(spec)) + " parameters, and " +
                             std::to_string(file.layout->num_places(spec)) + " places of nodes");
   }
   for (const Factor factor : kFactors) {
-    const int dead = CountDead(file, factor);
+    const int unobserved = CountUnobserved(file, factor);
     PrintLine(
         std::string("  ") + FactorName(factor),
         SharingText(spec, factor) +
             (file.layout ? "; " + std::to_string(CountStored(file, factor)) + " stored" : "") +
-            (dead > 0 ? "; " + std::to_string(dead) + " entries without data" : ""));
+            (unobserved > 0 ? "; " + std::to_string(unobserved) + " entries without data" : ""));
   }
   PrintLine("d, RGB", Text(ToRgb(model.d())) + " /sr; reflects " +
                           Text(100 * light.DiffuseShare(), 3) + " % of the light, albedo " +

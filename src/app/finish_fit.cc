@@ -32,7 +32,7 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
 
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
-  // What follows fits numbers anew, and must not lose what the weights of a robust fit have won.
+  // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
   const Objective of =
       options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
   std::optional<double> tied;
@@ -44,12 +44,13 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   }
   Canonicalize(objective.coverage(), &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
-  if (options.max_numbers > 0 && !options.stop()) {
+  if (options.max_parameters > 0 && !options.stop()) {
     const auto judge = [&](const FactorModel& candidate) {
       return CompareOnSphere(*measured, ContinuousModel(candidate), options.appearance).psnr_db;
     };
     ChosenModel chosen = ChooseModel(
-        of, fit.model, {.max_numbers = options.max_numbers, .judge = judge, .stop = options.stop});
+        of, fit.model,
+        {.max_parameters = options.max_parameters, .judge = judge, .stop = options.stop});
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
     fit.layout = std::move(chosen.layout);

@@ -15,10 +15,10 @@
 namespace trilobe {
 
 // What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
-// no budget of numbers unless it has begun to choose.
+// no budget of parameters unless it has begun to choose.
 struct FinishOptions {
-  double robust = 0;    // above 0: passes of reweighting with this delta (Reweighted)
-  int max_numbers = 0;  // above 0: the form that looks best within so many (ChooseModel)
+  double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
+  int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)
   AppearanceOptions appearance;
   std::function<bool()> stop = [] { return false; };
 };
@@ -35,7 +35,7 @@ struct FinishedFit {
   int chosen = -1;                              // which of them
 };
 
-// `measured`: what pictures are made of, which max_numbers needs; null where there is none.
+// `measured`: what pictures are made of, which max_parameters needs; null where there is none.
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options);
 

@@ -31,7 +31,7 @@ DEFINE_string(
     init, "analytic",
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
-DEFINE_int32(max_numbers, 822, "with --model=auto: how many numbers the model may store");
+DEFINE_int32(max_numbers, 822, "with --model=auto: how many parameters the model may store");
 DEFINE_double(
     robust, 0,
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
@@ -114,7 +114,7 @@ FitSettings SettingsFromFlags() {
     throw Error("--max_numbers goes with --model=auto");
   }
   settings.finish = {.robust = FLAGS_robust,
-                     .max_numbers = ChoosesModel() ? FLAGS_max_numbers : 0,
+                     .max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0,
                      .appearance = AppearanceOptionsFromFlags()};
   settings.spec = SpecFromFlags;
   CheckModelFlags();

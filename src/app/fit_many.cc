@@ -115,7 +115,7 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
     outcome->mean_color_error = sphere.at("mean_color_error");
   }
   outcome->objective = report.at("objective");
-  outcome->numbers = report.at("stored_numbers");
+  outcome->num_parameters = report.at("stored_numbers");
   outcome->seconds = 0;
   for (const auto& [phase, seconds] : report.at("seconds").items()) {
     outcome->seconds += seconds.get<double>();
@@ -180,8 +180,8 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
       std::cout << ", sphere " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
                 << Text(outcome.mean_delta_e, 2);
     }
-    std::cout << ", E " << Text(outcome.objective, 5) << ", " << outcome.numbers << " numbers, "
-              << Text(outcome.seconds, 3) << " s";
+    std::cout << ", E " << Text(outcome.objective, 5) << ", " << outcome.num_parameters
+              << " parameters, " << Text(outcome.seconds, 3) << " s";
   }
   if (!outcome.error.empty()) std::cout << ": " << outcome.error;
   std::cout << std::endl;

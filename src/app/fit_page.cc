@@ -111,7 +111,7 @@ std::string FitsCsv(std::span<const FitOutcome> outcomes) {
       csv << ",,,";
     }
     if (outcome.has_model()) {
-      csv << outcome.objective << ',' << outcome.numbers << ',' << outcome.seconds;
+      csv << outcome.objective << ',' << outcome.num_parameters << ',' << outcome.seconds;
     } else {
       csv << ",,";
     }

@@ -15,7 +15,7 @@ struct FitOutcome {
   std::string error = {};  // of kFailed: why
   // Of the sphere (AppearanceReport) and of the fit; 0 where there is none.
   double psnr_db = 0, mean_delta_e = 0, mean_color_error = 0, objective = 0, seconds = 0;
-  int numbers = 0;  // that the model stores
+  int num_parameters = 0;  // that the model stores
   bool has_picture = false;
 
   bool has_model() const { return state == State::kFitted || state == State::kKept; }

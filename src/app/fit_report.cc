@@ -10,7 +10,6 @@
 #include "trilobe/app/bin_counts.h"
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
-#include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
@@ -28,8 +27,8 @@ std::string ModelName(const ModelSpec& spec) {
 
 Json ToJson(const SolverOptions& options, const SolverEntry& solver) {
   Json json;
-  for (const OptionValue& option : OptionValues(options, solver.options)) {
-    std::visit([&](const auto& value) { json[option.name] = value; }, option.value);
+  for (const SolverOption* option : OptionsReadBy(solver.options)) {
+    std::visit([&](const auto& value) { json[option->name] = value; }, option->get(options));
   }
   return json;
 }
@@ -55,7 +54,7 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
   Json array = Json::array();
   for (const ModelCandidate& candidate : candidates) {
     array.push_back({{"name", candidate.name},
-                     {"numbers", candidate.numbers},
+                     {"numbers", candidate.num_parameters},
                      {"objective", candidate.E},
                      {"psnr_db", candidate.score},
                      {"seconds", candidate.seconds}});
@@ -75,15 +74,16 @@ std::string Describe(const FitReport::Finished& finished) {
   for (size_t k = 0; k < finished.candidates.size(); ++k) {
     const ModelCandidate& candidate = finished.candidates[k];
     text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
-            Text(candidate.score) + " dB, " + std::to_string(candidate.numbers) + " numbers, E " +
-            Text(candidate.E) + (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
+            Text(candidate.score) + " dB, " + std::to_string(candidate.num_parameters) +
+            " parameters, E " + Text(candidate.E) +
+            (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
   }
   return text;
 }
 
 Json ToJson(const Diagnosis& diagnosis) {
   return {{"optimality", diagnosis.optimality},
-          {"live_parameters", diagnosis.live_parameters},
+          {"live_parameters", diagnosis.observed_parameters},
           {"rank", diagnosis.rank},
           {"rank_tolerance", diagnosis.rank_tolerance},
           {"unresolved", diagnosis.unresolved},
@@ -110,7 +110,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"model", ModelName(report.spec)},
           {"lobes", report.spec.lobes},
           {"parameters", report.spec.num_parameters()},
-          {"stored_numbers", report.stored_numbers},
+          {"stored_numbers", report.stored_parameters},
           {"candidates", ToJson(report.finished.candidates)},
           {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
           {"threads", fit.threads},

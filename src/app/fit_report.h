@@ -40,7 +40,7 @@ struct FitReport {
     std::vector<ModelCandidate> candidates;
     int chosen = -1;
   } finished;
-  int stored_numbers = 0;
+  int stored_parameters = 0;
   ScoreReport score;
   std::optional<AppearanceReport> appearance;  // none of samples on no grid, which have no picture
   // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns

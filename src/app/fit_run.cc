@@ -131,7 +131,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     std::cerr << "trilobe: " << source << ": " << note << "\n";
   }
   const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
-  if (table == nullptr && settings.finish.max_numbers > 0) {
+  if (table == nullptr && settings.finish.max_parameters > 0) {
     throw Error(source +
                 ": --model=auto chooses among isotropic models of a MERL or RGL table; choose "
                 "--model=isotropic, anisotropic or independent");
@@ -167,7 +167,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (folder != nullptr && InterruptGuard::signal() == 0) {
     FactorModel canonical = model;
     Canonicalize(objective.coverage(), &canonical);
-    WriteModelInto({canonical, DeadParameters(objective.coverage()), report.fit}, folder);
+    WriteModelInto({canonical, UnobservedParameters(objective.coverage()), report.fit}, folder);
     unsaved.reset();
   }
   FinishOptions finish = settings.finish;
@@ -176,11 +176,11 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   FinishedFit fit = FinishFit(objective, table, std::move(model), finish);
   report.finished = {fit.tied, fit.candidates, fit.chosen};
   report.spec = fit.model.spec();
-  report.stored_numbers =
-      fit.layout ? fit.layout->num_numbers(report.spec) : report.spec.num_parameters();
+  report.stored_parameters =
+      fit.layout ? fit.layout->num_parameters(report.spec) : report.spec.num_parameters();
   report.score = ScoreModel(fit.objective, fit.model);
   report.fit.objective = report.score.objective;
-  ModelFile file{fit.model, DeadParameters(fit.objective.coverage()), report.fit, fit.layout};
+  ModelFile file{fit.model, UnobservedParameters(fit.objective.coverage()), report.fit, fit.layout};
   if (folder != nullptr) WriteModelInto(file, folder);
   unsaved.reset();
   report.seconds.finish = stopwatch.Lap();

@@ -13,6 +13,7 @@
 
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
+#include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
@@ -125,6 +126,7 @@ bool TakeOutHelp(int* argc, char** argv) {
 
 int Main(int argc, char** argv) {
   const bool help = argc < 2 || TakeOutHelp(&argc, argv);
+  DefineSolverFlags();
   gflags::ParseCommandLineFlags(&argc, &argv, /*remove_flags=*/true);
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words[0] == "help") {

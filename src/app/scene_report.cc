@@ -56,7 +56,7 @@ void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& o
   if (material.channels == SceneChannels::kLuminance) out << "  left out: colour, by the scene\n";
   for (const PruneDecision& decision : fit.decisions) {
     out << (decision.taken ? "  left out: " : "  kept:     ") << decision.what << ": "
-        << decision.numbers_before << " -> " << decision.numbers_after << " numbers, E "
+        << decision.parameters_before << " -> " << decision.parameters_after << " parameters, E "
         << Text(decision.E_before, 6) << " -> " << Text(decision.E_after, 6);
     if (!decision.why.empty()) out << "; " << decision.why;
     out << "\n";
@@ -70,24 +70,25 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
     decisions.push_back({{"what", decision.what},
                          {"taken", decision.taken},
                          {"why", decision.why},
-                         {"numbers_before", decision.numbers_before},
-                         {"numbers_after", decision.numbers_after},
+                         {"numbers_before", decision.parameters_before},
+                         {"numbers_after", decision.parameters_after},
                          {"objective_before", decision.E_before},
                          {"objective_after", decision.E_after}});
   }
-  return {{"name", fit.name},
-          {"source", material.source},
-          {"budget", ToJson(material.budget)},
-          {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},
-          {"lobes", fit.file.model.spec().lobes},
-          {"numbers", {{"full", fit.full_numbers}, {"pruned", fit.numbers}}},
-          {"bytes", {{"full", BytesOf(fit.full_numbers)}, {"pruned", BytesOf(fit.numbers)}}},
-          {"objective", {{"full", fit.full.objective}, {"pruned", fit.pruned.objective}}},
-          {"relative_rise", RelativeRise(fit.full, fit.pruned)},
-          {"psnr_db", {{"full", fit.full.psnr_db}, {"pruned", fit.pruned.psnr_db}}},
-          {"seconds", {{"fit", fit.fit_seconds}, {"prune", fit.prune_seconds}}},
-          {"from_cache", {{"fit", fit.fit_from_cache}, {"prune", fit.prune_from_cache}}},
-          {"decisions", decisions}};
+  return {
+      {"name", fit.name},
+      {"source", material.source},
+      {"budget", ToJson(material.budget)},
+      {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},
+      {"lobes", fit.file.model.spec().lobes},
+      {"numbers", {{"full", fit.full_parameters}, {"pruned", fit.num_parameters}}},
+      {"bytes", {{"full", BytesOf(fit.full_parameters)}, {"pruned", BytesOf(fit.num_parameters)}}},
+      {"objective", {{"full", fit.full.objective}, {"pruned", fit.pruned.objective}}},
+      {"relative_rise", RelativeRise(fit.full, fit.pruned)},
+      {"psnr_db", {{"full", fit.full.psnr_db}, {"pruned", fit.pruned.psnr_db}}},
+      {"seconds", {{"fit", fit.fit_seconds}, {"prune", fit.prune_seconds}}},
+      {"from_cache", {{"fit", fit.fit_from_cache}, {"prune", fit.prune_from_cache}}},
+      {"decisions", decisions}};
 }
 
 }  // namespace
@@ -99,16 +100,17 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
     return text + std::string(width - text.size(), ' ');
   };
   out << name("material")
-      << " lobes  numbers  of full    bytes  E rises by  PSNR falls by  seconds\n";
+      << " lobes   stored  of full    bytes  E rises by  PSNR falls by  seconds\n";
   int full = 0, pruned = 0;
   double seconds = 0;
   for (const MaterialFit& fit : run.fits) {
-    full += fit.full_numbers;
-    pruned += fit.numbers;
+    full += fit.full_parameters;
+    pruned += fit.num_parameters;
     seconds += fit.fit_seconds + fit.prune_seconds;
     out << name(fit.name) << Right(std::to_string(fit.file.model.spec().lobes), 6)
-        << Right(std::to_string(fit.numbers), 9) << Right(std::to_string(fit.full_numbers), 9)
-        << Right(std::to_string(BytesOf(fit.numbers)), 9)
+        << Right(std::to_string(fit.num_parameters), 9)
+        << Right(std::to_string(fit.full_parameters), 9)
+        << Right(std::to_string(BytesOf(fit.num_parameters)), 9)
         << Right(Text(100 * RelativeRise(fit.full, fit.pruned), 3) + " %", 12)
         << Right(Text(PsnrFall(fit.full.psnr_db, fit.pruned.psnr_db), 3) + " dB", 15)
         << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)

@@ -3,63 +3,35 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <initializer_list>
-#include <stdexcept>
+#include <map>
+#include <variant>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
 
-namespace {
-
-const trilobe::SolverOptions kDefaults;
-
-}  // namespace
-
 DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above");
-DEFINE_int32(max_iterations, kDefaults.max_iterations,
-             "stop after this many iterations (for AWLS, sweeps)");
-DEFINE_double(max_seconds, 0, "stop after the iteration in which this time is up; 0 for no limit");
-DEFINE_double(tolerance, kDefaults.relative_decrease_tolerance,
-              "stop when an iteration changes E by less than this fraction of it");
-DEFINE_double(optimality_tolerance, kDefaults.optimality_tolerance,
-              "stop when the scaled projected gradient is at most this, where the solver knows it");
-DEFINE_bool(diagnose, kDefaults.diagnose,
-            "report the optimality, rank and condition of the result; --nodiagnose saves the time");
-DEFINE_double(g_filter, 0,
-              "standard deviation, in degrees, of a Gaussian filter on G after each sweep, which "
-              "may raise E; 0 for none");
-DEFINE_string(positivity, trilobe::PositivityName(kDefaults.positivity),
-              "how numbers are kept >= 0: active_set, bounds or squares");
-DEFINE_string(trust_region, trilobe::TrustRegionName(kDefaults.trust_region),
-              "how the length of a step is bounded: levenberg_marquardt or dogleg");
-DEFINE_int32(memory, kDefaults.memory, "earlier iterates that an accelerated solver combines");
-DEFINE_int32(starts, kDefaults.starts, "starting points to try, that of --init among them");
 
 namespace trilobe {
 namespace {
 
-// The flag that stands for a member of SolverOptions that only some solvers read.
-struct ParticularFlag {
-  const char* member;
-  const char* flag;
+// Where gflags keeps a flag.
+struct FlagStorage {
+  OptionValue value, default_value;
 };
-constexpr ParticularFlag kParticularFlags[] = {
-    {"g_filter_sigma", "g_filter"}, {"positivity", "positivity"}, {"trust_region", "trust_region"},
-    {"memory", "memory"},           {"starts", "starts"},         {"seed", "seed"}};
 
-// Has other uses too, so it is no mistake where the solver does not read it.
-bool IsShared(const std::string& flag) { return flag == "seed"; }
+// By the names of the flags; addresses stay.
+std::map<std::string, FlagStorage>& Storage() {
+  static std::map<std::string, FlagStorage> storage;
+  return storage;
+}
+
+// The program has such a flag (flags.h) for other uses, too, so that it is no mistake where the
+// solver does not read it.
+bool IsShared(const SolverOption& option) { return option.help.empty(); }
 
 std::vector<std::string> FlagsOf(const SolverEntry& solver) {
   std::vector<std::string> flags;
-  for (const std::string& member : solver.options) {
-    const auto* const found = std::ranges::find(kParticularFlags, member, &ParticularFlag::member);
-    if (found == std::end(kParticularFlags)) {
-      throw std::logic_error("solver " + solver.name + " reads the option " + member +
-                             ", for which there is no flag");
-    }
-    flags.emplace_back(found->flag);
-  }
+  for (const std::string& name : solver.options) flags.push_back(FindSolverOption(name).flag);
   return flags;
 }
 
@@ -75,64 +47,57 @@ void CheckThatSolverTakesFlags(const SolverEntry& solver) {
   }
 }
 
-// The choice that the text names.
-template <typename Choice>
-Choice FindChoice(const std::string& flag, const std::string& text,
-                  std::initializer_list<Choice> choices, const char* (*name)(Choice)) {
-  std::string known;
-  for (const Choice choice : choices) {
-    if (text == name(choice)) return choice;
-    known += (known.empty() ? "" : ", ") + std::string(name(choice));
+void SetFromFlag(const SolverOption& option, const ModelSpec& spec, SolverOptions* options) {
+  const std::string flag = "--" + option.flag;
+  OptionValue value = Storage().at(option.flag).value;
+  if (option.unit) {
+    CheckInRange(flag, value, option.unit->range);
+    if (option.unit->to_member) value = option.unit->to_member(std::get<double>(value), spec);
   }
-  throw Error("unknown --" + flag + "=" + text + "; known: " + known);
+  CheckInRange(flag, value, option.range);
+  option.set(value, options);
 }
 
 }  // namespace
 
+void DefineSolverFlags() {
+  for (const SolverOption& option : AllSolverOptions()) {
+    if (IsShared(option)) continue;
+    FlagStorage& storage = Storage()[option.flag];
+    storage.default_value = option.unit ? option.unit->default_value : option.get(SolverOptions());
+    storage.value = storage.default_value;
+    std::visit(
+        [&](auto& value) {
+          auto& default_value = std::get<std::decay_t<decltype(value)>>(storage.default_value);
+          gflags::FlagRegisterer(option.flag.c_str(), option.help.c_str(), __FILE__, &value,
+                                 &default_value);
+        },
+        storage.value);
+  }
+}
+
 const SolverEntry& SolverFromFlags() { return FindSolver(FLAGS_solver); }
 
 std::vector<std::string> CommonSolverFlags() {
-  return {"max_iterations", "max_seconds", "tolerance", "optimality_tolerance", "diagnose"};
+  std::vector<std::string> flags;
+  for (const SolverOption* option : OptionsReadBy({})) flags.push_back(option->flag);
+  return flags;
 }
 
 std::vector<std::string> ParticularSolverFlags() {
   std::vector<std::string> flags;
-  for (const ParticularFlag& entry : kParticularFlags) {
-    if (!IsShared(entry.flag)) flags.emplace_back(entry.flag);
+  for (const SolverOption& option : AllSolverOptions()) {
+    if (!option.common && !IsShared(option)) flags.push_back(option.flag);
   }
   return flags;
 }
 
 SolverOptions SolverOptionsFromFlags(const SolverEntry& solver, const ModelSpec& spec) {
   CheckThatSolverTakesFlags(solver);
-  if (FLAGS_max_iterations < 0) throw Error("--max_iterations is negative; give 0 or more");
-  if (!(FLAGS_max_seconds >= 0)) throw Error("--max_seconds must be a number >= 0; 0 is no limit");
-  if (!(FLAGS_tolerance >= 0 && FLAGS_tolerance < 1)) {
-    throw Error("--tolerance must be at least 0 and below 1");
-  }
-  if (!(FLAGS_optimality_tolerance >= 0 && FLAGS_optimality_tolerance < 1)) {
-    throw Error("--optimality_tolerance must be at least 0 and below 1");
-  }
-  if (!(FLAGS_g_filter >= 0 && FLAGS_g_filter <= 90)) {
-    throw Error("--g_filter must be from 0 to 90 degrees");
-  }
-  if (FLAGS_memory < 0) throw Error("--memory is negative; give 0 or more");
-  if (FLAGS_starts < 1) throw Error("--starts must be at least 1");
   SolverOptions options;
-  options.max_iterations = FLAGS_max_iterations;
-  if (FLAGS_max_seconds > 0) options.max_seconds = FLAGS_max_seconds;
-  options.relative_decrease_tolerance = FLAGS_tolerance;
-  options.optimality_tolerance = FLAGS_optimality_tolerance;
-  options.diagnose = FLAGS_diagnose;
-  options.g_filter_sigma = FLAGS_g_filter * spec.g_axis.size / 90;
-  options.positivity = FindChoice(
-      "positivity", FLAGS_positivity,
-      {Positivity::kActiveSet, Positivity::kBounds, Positivity::kSquares}, PositivityName);
-  options.trust_region =
-      FindChoice("trust_region", FLAGS_trust_region,
-                 {TrustRegion::kLevenbergMarquardt, TrustRegion::kDogleg}, TrustRegionName);
-  options.memory = FLAGS_memory;
-  options.starts = FLAGS_starts;
+  for (const SolverOption& option : AllSolverOptions()) {
+    if (!IsShared(option)) SetFromFlag(option, spec, &options);
+  }
   options.seed = static_cast<uint64_t>(FLAGS_seed);
   return options;
 }

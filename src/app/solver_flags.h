@@ -12,6 +12,9 @@ namespace trilobe {
 // --solver. Throws Error that lists the known names.
 const SolverEntry& SolverFromFlags();
 
+// Makes a flag of each option of AllSolverOptions() that has none. Before flags are parsed.
+void DefineSolverFlags();
+
 // The flags that stand for SolverOptions: those that every solver reads, and those that only some
 // do.
 std::vector<std::string> CommonSolverFlags();

@@ -68,13 +68,13 @@ OrderedJson TablesToJson(const FactorModel& model, const TableLayout& layout, Fa
   return Nest(tables, spec.sharing(factor), spec.lobes);
 }
 
-OrderedJson DeadToJson(const ModelFile& file, Factor factor) {
+OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
   const ModelSpec& spec = file.model.spec();
   OrderedJson lists = OrderedJson::array();
   for (int table = 0; table < spec.num_tables(factor); ++table) {
     OrderedJson list = OrderedJson::array();
     for (int entry = 0; entry < spec.table_size(factor); ++entry) {
-      if (file.dead[file.model.TableOffset(factor, table) + entry]) list.push_back(entry);
+      if (file.unobserved[file.model.TableOffset(factor, table) + entry]) list.push_back(entry);
     }
     lists.push_back(std::move(list));
   }
@@ -135,9 +135,9 @@ std::string FormatModel(const ModelFile& file) {
   for (const Factor factor : kFactors) {
     json[FactorName(factor)] = TablesToJson(model, layout, factor);
   }
-  if (!file.dead.empty()) {
+  if (!file.unobserved.empty()) {
     for (const Factor factor : kFactors) {
-      json["dead"][FactorName(factor)] = DeadToJson(file, factor);
+      json["dead"][FactorName(factor)] = UnobservedToJson(file, factor);
     }
   }
   json["fit"] = OrderedJson::object();

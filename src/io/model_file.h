@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-// A model file as ParseModel reads it: its text, and the file. Throws Error for numbers that are
+// A model file as ParseModel reads it: its text, and the file. Throws Error for parameters that are
 // not finite and >= 0, and if the file cannot be written.
 std::string FormatModel(const ModelFile& file);
 void WriteModel(const ModelFile& file, const std::string& path);

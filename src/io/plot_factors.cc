@@ -62,17 +62,18 @@ std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor fa
   const ModelSpec& spec = model.spec();
   std::string data, curves, hollow;
   std::vector<double> values;
-  bool any_dead = false;
+  bool any_unobserved = false;
   for (int t = 0; t < spec.num_tables(factor); ++t) {
     const auto [lobe, channel] = OwnerOf(spec, factor, t);
     const bool absent = spec.sharing(factor).per_lobe && Absent(model, lobe);
     const std::span<const double> table = model.table(factor, t);
-    std::vector<std::vector<double>> rows;  // abscissa, value, value where dead
+    std::vector<std::vector<double>> rows;  // abscissa, value, value where unobserved
     for (int i = 0; i < static_cast<int>(table.size()); ++i) {
-      const bool dead = file.dead[model.TableOffset(factor, t) + i];
+      const bool unobserved = file.unobserved[model.TableOffset(factor, t) + i];
       const bool drawn = !absent;
-      any_dead = any_dead || (dead && drawn);
-      rows.push_back({positions[i], drawn ? table[i] : kGap, drawn && dead ? table[i] : kGap});
+      any_unobserved = any_unobserved || (unobserved && drawn);
+      rows.push_back(
+          {positions[i], drawn ? table[i] : kGap, drawn && unobserved ? table[i] : kGap});
     }
     const auto through =
         std::span(light.through).subspan(model.TableOffset(factor, t), table.size());
@@ -94,7 +95,7 @@ std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor fa
         ", $" + block + " using 1:3 with points pointtype 6 pointsize 1.1 " + style + " notitle";
   }
   if (values.empty()) return "";
-  if (any_dead) {
+  if (any_unobserved) {
     curves +=
         hollow + ", NaN with points pointtype 6 pointsize 1.1 linecolor '#555555' title 'no data'";
   }
@@ -146,7 +147,7 @@ std::string AlbedoPanel(const LobeLight& light) {
 void DrawFactors(const ModelFile& file, const std::string& path) {
   const ModelSpec& spec = file.model.spec();
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
-  const LobeLight light = ComputeLobeLight(LiveEntries(file.dead), file.model);
+  const LobeLight light = ComputeLobeLight(ObservedEntries(file.unobserved), file.model);
   if (spec.anisotropic()) {
     DrawPolarFactors(file, light, path);
     return;

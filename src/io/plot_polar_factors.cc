@@ -59,11 +59,12 @@ std::vector<float> DiscOf(const ModelFile& file, Factor factor, int index) {
       float value = std::numeric_limits<float>::quiet_NaN();
       if (radius <= 1) {
         const Stencil at = axis.At(radius * DegreesToRadians(axis.theta.back()), std::atan2(y, x));
-        bool dead = false;
+        bool unobserved = false;
         for (int k = 0; k < at.size; ++k) {
-          dead = dead || file.dead[model.TableOffset(factor, index) + at.index[k]];
+          unobserved =
+              unobserved || file.unobserved[model.TableOffset(factor, index) + at.index[k]];
         }
-        if (!dead) value = static_cast<float>(at(table));
+        if (!unobserved) value = static_cast<float>(at(table));
       }
       disc.push_back(value);
     }

@@ -66,7 +66,7 @@ void DrawTradeOff(std::span<const TradeOff> models, const std::string& path) {
             Legend(1, "full model", kOkabeIto[5], 6, 640, height) +
             Legend(2, "pruned model", kOkabeIto[4], 7, 850, height);
   script += "set ytics (" + names + ") noenhanced\n";
-  script += Panel("numbers of the model [bytes]", 0, true, rows);
+  script += Panel("parameters of the model [bytes]", 0, true, rows);
   script += "unset label\nset ytics (" + ticks + ")\n";
   script += Panel("time x threads to make it [s]", 1, true, rows);
   script += Panel("PSNR [dB]", 2, false, rows);

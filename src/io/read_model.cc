@@ -275,10 +275,10 @@ void ReadNumbers(const Node& root, ModelFile* file) {
   file->layout = std::move(layout);
 }
 
-std::vector<bool> ReadDead(const Node& root, const FactorModel& model) {
+std::vector<bool> ReadUnobserved(const Node& root, const FactorModel& model) {
   const ModelSpec& spec = model.spec();
-  std::vector<bool> dead(spec.num_parameters(), false);
-  if (!root.has("dead")) return dead;
+  std::vector<bool> unobserved(spec.num_parameters(), false);
+  if (!root.has("dead")) return unobserved;
   const Node node = root["dead"].CheckObject();
   for (const Factor factor : kFactors) {
     const Node lists = node[FactorName(factor)];
@@ -287,11 +287,11 @@ std::vector<bool> ReadDead(const Node& root, const FactorModel& model) {
       const Node list = lists[table];
       for (size_t k = 0; k < list.ArraySize(); ++k) {
         const int entry = list[k].Integer(spec.table_size(factor) - 1);
-        dead[model.TableOffset(factor, table) + entry] = true;
+        unobserved[model.TableOffset(factor, table) + entry] = true;
       }
     }
   }
-  return dead;
+  return unobserved;
 }
 
 void Read(const Node& node, std::string* value) { *value = node.String(); }
@@ -335,7 +335,7 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
   }
   ModelFile file;
   ReadNumbers(root, &file);
-  file.dead = ReadDead(root, file.model);
+  file.unobserved = ReadUnobserved(root, file.model);
   file.fit = ReadFitInfo(root);
   return file;
 }

@@ -33,10 +33,11 @@ struct FitInfo {
 // A model as it is stored (docs/file-formats.md).
 struct ModelFile {
   FactorModel model;
-  std::vector<bool> dead;  // [num_parameters]: table entries that no data touched; display only
+  std::vector<bool>
+      unobserved;  // [num_parameters]: table entries that no data touched; display only
   FitInfo fit;
-  // Which of the model's numbers are stored; without one, all. The others follow from those, in the
-  // model too (ExpandStored).
+  // Which of the model's parameters are stored; without one, all. The others follow from those, in
+  // the model too (ExpandStored).
   std::optional<TableLayout> layout = std::nullopt;
 };
 
@@ -46,9 +47,9 @@ struct ModelFile {
 // where it is shared; "sharing" {"D": {"per_lobe": true, "per_channel": false}, ...} says so, and
 // may be missing for the paper's model. In a compact file, one with a layout, "d" and the rows of
 // "s" may be [1], and a table may be {"size", "nodes": [indices], "values": [as many]}.
-// "dead" {"D": [[indices], ...] a table, ...} lists dead bins. Unknown keys are ignored. Errors
-// name the file and the key. All numbers must be finite and
-// >= 0. Doubles read back bit for bit.
+// "dead" {"D": [[indices], ...] a table, ...} lists unobserved bins. Unknown keys are ignored.
+// Errors name the file and the key. All numbers must be finite and >= 0. Doubles read back bit for
+// bit.
 ModelFile ParseModel(std::string_view text, const std::string& source);
 ModelFile ReadModel(const std::string& path);
 

@@ -52,21 +52,21 @@ std::vector<FactorModel::Part> FactorModel::Parts() const {
   return parts;
 }
 
-void CheckNumbers(const FactorModel& model) {
+void CheckParameters(const FactorModel& model) {
   const std::span<const double> x = model.parameters();
   const auto bad = std::ranges::find_if(x, [](double number) {
     return !(number >= 0 && number <= std::numeric_limits<double>::max());
   });
   if (bad == x.end()) return;
   std::ostringstream message;
-  message << "number " << bad - x.begin() << " of the model is " << *bad
+  message << "parameter " << bad - x.begin() << " of the model is " << *bad
           << "; all must be finite and 0 or more";
   throw Error(message.str());
 }
 
 void CheckCoverage(std::span<const double> coverage, const FactorModel& model) {
   if (coverage.size() == model.parameters().size()) return;
-  throw Error("a coverage of " + std::to_string(coverage.size()) + " numbers, but the model has " +
+  throw Error("a coverage of " + std::to_string(coverage.size()) + " entries, but the model has " +
               std::to_string(model.parameters().size()) +
               "; take that of an objective of its spec");
 }

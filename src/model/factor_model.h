@@ -10,18 +10,18 @@
 
 namespace trilobe {
 
-// The numbers of a model, all >= 0, in one vector
+// The parameters of a model, all >= 0, in one vector
 //   [ d (3) | s (lobes x 3) | D tables | F tables | G tables ]
-// whose parts the accessors view. A value type: copying it copies the numbers.
+// whose parts the accessors view. A value type: copying it copies the parameters.
 class FactorModel {
  public:
   FactorModel() : FactorModel(ModelSpec{.lobes = 0}) {}
-  // All numbers zero. Throws Error if the spec is out of range.
+  // All parameters zero. Throws Error if the spec is out of range.
   explicit FactorModel(const ModelSpec& spec);
 
   const ModelSpec& spec() const { return spec_; }
 
-  // All numbers. [spec().num_parameters()]
+  // All parameters. [spec().num_parameters()]
   std::span<double> parameters() { return values_; }
   std::span<const double> parameters() const { return values_; }
 
@@ -56,7 +56,7 @@ class FactorModel {
     return table(Factor::kG, spec_.table(Factor::kG, lobe, channel));
   }
 
-  // Numbers of one kind in parameters(): d, then s of each lobe, then each table.
+  // Parameters of one kind in parameters(): d, then s of each lobe, then each table.
   struct Part {
     int begin, size;
   };
@@ -73,10 +73,10 @@ class FactorModel {
   std::vector<double> values_;
 };
 
-// Throws Error, with the place of the first that is not, unless all numbers are finite and >= 0.
-void CheckNumbers(const FactorModel& model);
+// Throws Error, with the place of the first that is not, unless all parameters are finite and >= 0.
+void CheckParameters(const FactorModel& model);
 
-// Throws Error unless these are as many numbers as the model has parameters.
+// Throws Error unless there are as many of these as the model has parameters.
 void CheckCoverage(std::span<const double> coverage, const FactorModel& model);
 
 // How one direction pair reads the tables: the model's value is

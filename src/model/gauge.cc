@@ -8,7 +8,7 @@
 #include "trilobe/brdf/directions.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/with_lobes.h"
+#include "trilobe/model/lobes.h"
 
 namespace trilobe {
 namespace {
@@ -30,15 +30,16 @@ double WeightedSum(std::span<const double> weights, std::span<const double> valu
 
 constexpr size_t kLookedAt = 5;
 
-// Linear between two live bins. Beyond the last one the median of the last `looked_at`: one alone,
-// at the edge of the data, may be anything.
-void FillDeadBins(std::span<const double> coverage, size_t looked_at, std::span<double> table) {
+// Linear between two observed bins. Beyond the last one the median of the last `looked_at`: one
+// alone, at the edge of the data, may be anything.
+void FillUnobservedBins(std::span<const double> coverage, size_t looked_at,
+                        std::span<double> table) {
   const int size = static_cast<int>(table.size());
-  std::vector<double> last;  // live values so far, at most `looked_at`
-  int left = -1;             // the last live bin before the gap
+  std::vector<double> last;  // observed values so far, at most `looked_at`
+  int left = -1;             // the last observed bin before the gap
   for (int k = 0; k <= size; ++k) {
     if (k < size && !(coverage[k] > 0)) continue;
-    if (left < 0 && k == size) return;  // no live bin at all
+    if (left < 0 && k == size) return;  // no observed bin at all
     double beyond = 0;
     if (k == size) {
       std::vector<double> sorted = last;
@@ -56,19 +57,20 @@ void FillDeadBins(std::span<const double> coverage, size_t looked_at, std::span<
   }
 }
 
-// Around each ring of one theta linearly between live nodes; a ring without any is as the one
+// Around each ring of one theta linearly between observed nodes; a ring without any is as the one
 // inside it, or, where there is none, as the one outside it.
-void FillDeadNodes(const Axis& axis, std::span<const double> coverage, std::span<double> table) {
+void FillUnobservedNodes(const Axis& axis, std::span<const double> coverage,
+                         std::span<double> table) {
   const int columns = axis.phi_nodes, rings = axis.size / columns;
   std::vector<bool> filled(rings, false);
   for (int a = 0; a < rings; ++a) {
     const auto ring = table.subspan(a * columns, columns);
-    const auto live = [&](int b) { return coverage[a * columns + b % columns] > 0; };
+    const auto observed = [&](int b) { return coverage[a * columns + b % columns] > 0; };
     int first = 0;
-    while (first < columns && !live(first)) ++first;
+    while (first < columns && !observed(first)) ++first;
     filled[a] = first < columns;
     for (int left = first, b = first + 1; filled[a] && b <= first + columns; ++b) {
-      if (!live(b)) continue;
+      if (!observed(b)) continue;
       for (int gap = left + 1; gap < b; ++gap) {
         const double t = static_cast<double>(gap - left) / (b - left);
         ring[gap % columns] = (1 - t) * ring[left % columns] + t * ring[b % columns];
@@ -85,20 +87,20 @@ void FillDeadNodes(const Axis& axis, std::span<const double> coverage, std::span
   for (int a = rings - 2; a >= 0; --a) copy(a + 1, a);
 }
 
-void FillDead(const Axis& axis, std::span<const double> coverage, size_t looked_at,
-              std::span<double> table) {
+void FillUnobserved(const Axis& axis, std::span<const double> coverage, size_t looked_at,
+                    std::span<double> table) {
   if (axis.polar()) {
-    FillDeadNodes(axis, coverage, table);
+    FillUnobservedNodes(axis, coverage, table);
   } else {
-    FillDeadBins(coverage, looked_at, table);
+    FillUnobservedBins(coverage, looked_at, table);
   }
 }
 
-// Fills the dead nodes of G from G / cos theta of the live ones.
+// Fills the unobserved nodes of G from G / cos theta of the observed ones.
 void ContinueShadowing(const Axis& axis, std::span<const double> coverage, std::span<double> G) {
   std::vector<double> ratio(G.begin(), G.end());
   for (int k = 0; k < axis.size; ++k) ratio[k] /= std::cos(axis.Theta(k));
-  FillDead(axis, coverage, kLookedAt, ratio);
+  FillUnobserved(axis, coverage, kLookedAt, ratio);
   for (int k = 0; k < axis.size; ++k) {
     if (!(coverage[k] > 0)) G[k] = ratio[k] * std::cos(axis.Theta(k));
   }
@@ -135,20 +137,20 @@ double ProjectedIntegral(const Axis& axis, std::span<const double> D) {
   return WeightedSum(ProjectedAngles(axis), D);
 }
 
-std::vector<bool> DeadParameters(std::span<const double> coverage) {
-  std::vector<bool> dead(coverage.size());
-  for (size_t k = 0; k < coverage.size(); ++k) dead[k] = !(coverage[k] > 0);
-  return dead;
+std::vector<bool> UnobservedParameters(std::span<const double> coverage) {
+  std::vector<bool> unobserved(coverage.size());
+  for (size_t k = 0; k < coverage.size(); ++k) unobserved[k] = !(coverage[k] > 0);
+  return unobserved;
 }
 
-std::vector<double> LiveEntries(const std::vector<bool>& dead) {
-  std::vector<double> live(dead.size());
-  for (size_t k = 0; k < dead.size(); ++k) live[k] = dead[k] ? 0 : 1;
-  return live;
+std::vector<double> ObservedEntries(const std::vector<bool>& unobserved) {
+  std::vector<double> observed(unobserved.size());
+  for (size_t k = 0; k < unobserved.size(); ++k) observed[k] = unobserved[k] ? 0 : 1;
+  return observed;
 }
 
-void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from,
-                        FactorModel* to) {
+void CopyUnobservedParameters(std::span<const double> coverage, const FactorModel& from,
+                              FactorModel* to) {
   CheckSameSpec(from.spec(), to->spec());
   CheckCoverage(coverage, from);
   for (size_t k = 0; k < coverage.size(); ++k) {
@@ -165,7 +167,7 @@ void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
       const auto weights = coverage.subspan(model->TableOffset(factor, t), table.size());
       const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
       if (!(total > 0)) continue;  // no data at all for these channels: nothing to normalise by
-      FillDead(spec.axis(factor), weights, 1, table);
+      FillUnobserved(spec.axis(factor), weights, 1, table);
       if (factor == Factor::kD) {
         Normalize(factor, t, ProjectedAngles(spec.d_axis), 1, model);
       } else {
@@ -176,7 +178,7 @@ void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
 }
 
 void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrder order) {
-  // Brings numbers into a range in which products neither overflow nor vanish.
+  // Brings parameters into a range in which products neither overflow nor vanish.
   NormalizeScale(coverage, model);
   const ModelSpec& spec = model->spec();
   LobeLight light = ComputeLobeLight(coverage, *model);
@@ -201,7 +203,7 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
       if (factor == Factor::kG) {
         ContinueShadowing(spec.g_axis, covered, table);
       } else {
-        FillDead(spec.axis(factor), covered, kLookedAt, table);
+        FillUnobserved(spec.axis(factor), covered, kLookedAt, table);
       }
       if (factor == Factor::kD) {
         Normalize(factor, t, half_vectors, 1, model);

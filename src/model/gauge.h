@@ -19,11 +19,11 @@ namespace trilobe {
 // - s carries the magnitude: 4 s is the albedo of a lobe whose F and G are 1. A lobe whose factors
 //   vanish gets s = 0, its vanished tables 1 everywhere before normalisation;
 // - the lobe that reflects most comes first.
-// Dead bins (coverage 0) are filled for display and for directions beyond the data first, from
-// their nearest live neighbours: linearly between two, beyond the last the median of the last five;
-// of G it is G / cos theta that is continued so, since that keeps the BRDF from growing towards the
-// horizon. `coverage` is Objective::coverage(), in the order of model->parameters(); these
-// functions throw Error if it has another size.
+// Unobserved bins (coverage 0) are filled for display and for directions beyond the data first,
+// from their nearest observed neighbours: linearly between two, beyond the last the median of the
+// last five; of G it is G / cos theta that is continued so, since that keeps the BRDF from growing
+// towards the horizon. `coverage` is Objective::coverage(), in the order of model->parameters();
+// these functions throw Error if it has another size.
 enum class LobeOrder { kByLight, kAsTheyAre };
 void Canonicalize(std::span<const double> coverage, FactorModel* model,
                   LobeOrder order = LobeOrder::kByLight);
@@ -36,13 +36,14 @@ void NormalizeScale(std::span<const double> coverage, FactorModel* model);
 double ProjectedIntegral(const Axis& axis, std::span<const double> D);
 
 // Makes the parameters of `to` that no data touch those of `from`, a model of the same spec.
-void CopyDeadParameters(std::span<const double> coverage, const FactorModel& from, FactorModel* to);
+void CopyUnobservedParameters(std::span<const double> coverage, const FactorModel& from,
+                              FactorModel* to);
 
 // True for the table entries that no data touch, in the order of parameters().
-std::vector<bool> DeadParameters(std::span<const double> coverage);
+std::vector<bool> UnobservedParameters(std::span<const double> coverage);
 
-// A coverage that says no more than that: 0 for the dead, 1 for the others.
-std::vector<double> LiveEntries(const std::vector<bool>& dead);
+// A coverage that says no more than that: 0 for the unobserved, 1 for the others.
+std::vector<double> ObservedEntries(const std::vector<bool>& unobserved);
 
 }  // namespace trilobe
 

@@ -89,8 +89,9 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
   LobeLight light;
   light.lobes.resize(spec.lobes);
   light.through.assign(model.parameters().size(), 0.0);
-  // Entries of a factor are live or dead in all its tables alike, but for channels without weight.
-  const auto live = [&](Factor factor, int entry) {
+  // Entries of a factor are observed or unobserved in all its tables alike, but for channels
+  // without weight.
+  const auto observed = [&](Factor factor, int entry) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {
       if (coverage[model.TableOffset(factor, t) + entry] > 0) return true;
     }
@@ -98,15 +99,15 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
   };
   const auto all_live = [&](const Stencil& stencil) {
     for (int k = 0; k < stencil.size; ++k) {
-      if (stencil.weight[k] != 0 && !live(Factor::kG, stencil.index[k])) return false;
+      if (stencil.weight[k] != 0 && !observed(Factor::kG, stencil.index[k])) return false;
     }
     return true;
   };
   double all = 0;
   for (int h = 0; h < spec.d_axis.size; ++h) {
-    if (!live(Factor::kD, h)) continue;
+    if (!observed(Factor::kD, h)) continue;
     for (int d = 0; d < spec.f_axis.size; ++d) {
-      if (!live(Factor::kF, d)) continue;
+      if (!observed(Factor::kF, d)) continue;
       const double solid_angle = cells.SolidAngle(h, d);
       for (int p = 0; p < cells.phi_steps(); ++p) {
         Cells::Pair pair;

@@ -10,7 +10,7 @@
 namespace trilobe {
 
 // What the parts of a model reflect of light that comes from everywhere alike, over the directions
-// that read no dead entry. These figures do not depend on the gauge, but for `through`.
+// that read no unobserved entry. These figures do not depend on the gauge, but for `through`.
 struct LobeLight {
   // Bihemispherical albedo, integral of rho cos theta_i cos theta_o d omega_i d omega_o / pi, of
   // the diffuse term and of each lobe. [lobes]
@@ -27,8 +27,8 @@ struct LobeLight {
   double DiffuseShare() const;
 };
 
-// `coverage` (Objective::coverage(), or no more than > 0 for live and 0 for dead entries) is in the
-// order of model.parameters().
+// `coverage` (Objective::coverage(), or no more than > 0 for observed and 0 for unobserved entries)
+// is in the order of model.parameters().
 LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model);
 
 // How much of the directions with a half vector in each bin of theta_h lies above the surface,

@@ -35,12 +35,12 @@ struct ModelSpec {
   Axis g_axis{.rule = Axis::Rule::kSpline};     // of theta, or of (theta, phi)
 
   // `lobes` lobes with D, G shared by the channels, F shared by the lobes (paper eq. 3):
-  // 822 numbers for three lobes on the MERL grid.
+  // 822 parameters for three lobes on the MERL grid.
   static ModelSpec SharedFactors(int lobes, const MerlGrid& grid = {});
   // The same with D and G over azimuths, too, on the nodes of UTIA's directions (paper eq. 4):
-  // 2,010 numbers for three lobes.
+  // 2,010 parameters for three lobes.
   static ModelSpec Anisotropic(int lobes);
-  // One lobe, nothing shared between channels (Bagher et al. 2016): 816 numbers.
+  // One lobe, nothing shared between channels (Bagher et al. 2016): 816 parameters.
   static ModelSpec IndependentG(const MerlGrid& grid = {});
 
   const TableSharing& sharing(Factor factor) const {

@@ -28,12 +28,12 @@ TableLayout TableLayout::Full(const ModelSpec& spec) {
   return layout;
 }
 
-int TableLayout::num_numbers(const ModelSpec& spec) const {
-  int numbers = (coloured_d ? kChannels : 1) + spec.lobes * (coloured_s ? kChannels : 1);
+int TableLayout::num_parameters(const ModelSpec& spec) const {
+  int parameters = (coloured_d ? kChannels : 1) + spec.lobes * (coloured_s ? kChannels : 1);
   for (const auto& tables : nodes) {
-    for (const std::vector<int>& table : tables) numbers += static_cast<int>(table.size());
+    for (const std::vector<int>& table : tables) parameters += static_cast<int>(table.size());
   }
-  return numbers;
+  return parameters;
 }
 
 int TableLayout::num_places(const ModelSpec& spec) const {

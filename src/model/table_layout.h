@@ -21,8 +21,8 @@ struct NodeWeights {
 // 0 makes a tail of zeros. `nodes` ascend; Error if there is none.
 NodeWeights WeightsAt(std::span<const int> nodes, int entry);
 
-// Which of a model's numbers are stored, if not all: the others follow from those. What is shared
-// by lobes or channels is no matter of the layout but of the spec.
+// Which of a model's parameters are stored, if not all: the others follow from those. What is
+// shared by lobes or channels is no matter of the layout but of the spec.
 struct TableLayout {
   bool coloured_d = true;  // false: d is the same in all channels, and stored once
   bool coloured_s = true;  // the same for the s of each lobe
@@ -38,8 +38,8 @@ struct TableLayout {
   }
   std::vector<int>& of(Factor factor, int table) { return nodes[static_cast<int>(factor)][table]; }
 
-  // How many numbers are stored: values alone, without the places of nodes.
-  int num_numbers(const ModelSpec& spec) const;
+  // How many parameters are stored: values alone, without the places of nodes.
+  int num_parameters(const ModelSpec& spec) const;
   // How many places of nodes are stored with them: those of tables that are not stored as a whole.
   int num_places(const ModelSpec& spec) const;
 
@@ -49,7 +49,7 @@ struct TableLayout {
 // Throws Error unless the layout is one of a model with this spec.
 void CheckLayout(const TableLayout& layout, const ModelSpec& spec);
 
-// Sets the numbers that are not stored from those that are.
+// Sets the parameters that are not stored from those that are.
 void ExpandStored(const TableLayout& layout, FactorModel* model);
 
 }  // namespace trilobe

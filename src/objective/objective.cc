@@ -115,7 +115,7 @@ CoverageByChannel ScatteredCoverage(const FoldedSamples& samples, const ModelSpe
 // Gives each parameter the weight of the samples of the channels that it serves.
 std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
                                          const ModelSpec& spec) {
-  FactorModel coverage(spec);  // borrowed for its layout: a number a parameter
+  FactorModel coverage(spec);  // borrowed for its layout: an entry a parameter
   for (int c = 0; c < kChannels; ++c) {
     double total = 0;
     for (const double w : by_channel[c].D) total += w;

@@ -43,7 +43,7 @@ class Objective {
   double MeasuredEnergy() const;
 
   // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
-  // order of FactorModel::parameters(). 0 marks a dead bin: not a parameter at all
+  // order of FactorModel::parameters(). 0 marks an unobserved bin: not a parameter at all
   // (docs/method.md).
   const std::vector<double>& coverage() const { return coverage_; }
 

@@ -9,20 +9,20 @@
 
 namespace trilobe {
 
-// The numbers of a model in the blocks in which a sample reads them. FactorModel keeps a table
+// The parameters of a model in the blocks in which a sample reads them. FactorModel keeps a table
 // together; a sample reads one entry, or a few, of all tables of a factor. So the blocks are
 //   [ d (3) | s (lobes x 3) | rows of D | rows of F | rows of G ],
 // where row k of a factor is entry k of each of its tables, in their order. A model without lobes
 // has the block d alone.
 class ParameterBlocks {
  public:
-  // All numbers zero. Throws Error if the spec is out of range.
+  // All parameters zero. Throws Error if the spec is out of range.
   explicit ParameterBlocks(const ModelSpec& spec);
 
   const ModelSpec& spec() const { return spec_; }
   int num_blocks() const { return static_cast<int>(begin_.size()) - 1; }
 
-  // The numbers of a block. Their place in memory stays.
+  // The parameters of a block. Their place in memory stays.
   std::span<double> block(int b) { return {values_.data() + begin_[b], size(b)}; }
   std::span<const double> block(int b) const { return {values_.data() + begin_[b], size(b)}; }
 

@@ -51,7 +51,7 @@ class SampleReader {
 
   SampleReader(const FoldedSamples& samples, const ModelSpec& spec);
 
-  // From now on, this model's numbers are read. It is not kept.
+  // From now on, this model's parameters are read. It is not kept.
   void SetModel(const FactorModel& model);
 
   // Samples [begin, end), kBatch at most. Residuals always; the rest where wanted.

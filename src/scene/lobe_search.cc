@@ -3,8 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "trilobe/model/merge_lobes.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/race/start_race.h"
 

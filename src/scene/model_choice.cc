@@ -14,7 +14,7 @@
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/scene/prune.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/joint/joint_step.h"
@@ -74,7 +74,7 @@ FactorModel Fit(const Objective& objective, const FactorModel& start,
   return stepper.current();
 }
 
-// The last live entry of each G; that of the table where data go on to its end.
+// The last observed entry of each G; that of the table where data go on to its end.
 std::vector<int> LastLiveNodes(const Objective& objective) {
   const ModelSpec& spec = objective.spec();
   const FactorModel layout(spec);
@@ -90,7 +90,7 @@ std::vector<int> LastLiveNodes(const Objective& objective) {
 }
 
 // A thinned G is constant beyond its last node, which makes the BRDF grow as 1 / cos^2 theta where
-// no data are. Two more nodes, at the last live entry and at the end, make it fall about as the
+// no data are. Two more nodes, at the last observed entry and at the end, make it fall about as the
 // cosine.
 void ContinueShadowing(const std::vector<int>& last_live, PrunedModel* pruned) {
   const ModelSpec& spec = pruned->model.spec();
@@ -107,14 +107,14 @@ void ContinueShadowing(const std::vector<int>& last_live, PrunedModel* pruned) {
     G[end] = G[last] * std::cos(spline.NodeAngle(end)) / std::cos(spline.NodeAngle(last));
   }
   ExpandStored(pruned->layout, &pruned->model);
-  pruned->numbers = pruned->layout.num_numbers(spec);
+  pruned->num_parameters = pruned->layout.num_parameters(spec);
 }
 
 }  // namespace
 
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options) {
-  if (options.max_numbers < 1) throw Error("a budget of numbers must be at least 1");
+  if (options.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
   ChosenModel best;
   Stopwatch stopwatch;
   const auto judge = [&](const std::string& name, const FactorModel& model,
@@ -124,7 +124,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     // Below all others, with which NaN has no order.
     if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
     best.candidates.push_back({.name = name,
-                               .numbers = layout.num_numbers(model.spec()),
+                               .num_parameters = layout.num_parameters(model.spec()),
                                .E = E,
                                .score = score,
                                .seconds = seconds});
@@ -134,7 +134,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
   // The last candidate, if it is the best that keeps to the budget.
   const auto choose = [&](const FactorModel& model, const TableLayout& layout) {
     const ModelCandidate& last = best.candidates.back();
-    if (last.numbers > options.max_numbers) return;
+    if (last.num_parameters > options.max_parameters) return;
     if (best.chosen >= 0 && !(last.score > best.candidates[best.chosen].score)) return;
     best.chosen = static_cast<int>(best.candidates.size()) - 1;
     best.model = model;
@@ -148,8 +148,8 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     PruneOptions prune;
     prune.lobes = prune.colour = false;
     // Not where next to nothing would be left.
-    const bool continues = continued > 0 && options.max_numbers > 4 * continued;
-    prune.max_numbers = options.max_numbers - (continues ? continued : 0);
+    const bool continues = continued > 0 && options.max_parameters > 4 * continued;
+    prune.max_parameters = options.max_parameters - (continues ? continued : 0);
     PrunedModel pruned = Prune(of, model, prune);
     if (continues) ContinueShadowing(last_live, &pruned);
     judge(name + ", thinned", pruned.model, pruned.layout, pruned.E);
@@ -161,14 +161,14 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
   choose(fitted, all);
   if (best.chosen < 0) thin("as fitted", objective, fitted);
   if (best.chosen < 0) {
-    // One number a table is still too much: lobes and colours have to go, and no form that shares
-    // less has a chance.
-    const PrunedModel pruned = Prune(objective, fitted, {.max_numbers = options.max_numbers});
+    // One parameter a table is still too much: lobes and colours have to go, and no form that
+    // shares less has a chance.
+    const PrunedModel pruned = Prune(objective, fitted, {.max_parameters = options.max_parameters});
     judge("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
     choose(pruned.model, pruned.layout);
     if (best.chosen < 0) {
-      throw Error("no form of the model keeps to " + std::to_string(options.max_numbers) +
-                  " numbers; its values overflow");
+      throw Error("no form of the model keeps to " + std::to_string(options.max_parameters) +
+                  " parameters; its values overflow");
     }
     return best;
   }
@@ -192,7 +192,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     if (options.stop() || form.score <= best.candidates[best.chosen].score) break;
     TieEntriesAtDataEdge(form.objective, &form.model);
     const TableLayout layout = TableLayout::Full(form.model.spec());
-    if (layout.num_numbers(form.model.spec()) > options.max_numbers) {
+    if (layout.num_parameters(form.model.spec()) > options.max_parameters) {
       thin(form.name, form.objective, form.model);
     } else {
       Canonicalize(form.objective.coverage(), &form.model);

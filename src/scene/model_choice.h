@@ -12,7 +12,7 @@
 namespace trilobe {
 
 struct ModelChoiceOptions {
-  int max_numbers = 822;  // stored: values, without the places of nodes
+  int max_parameters = 822;  // stored: values, without the places of nodes
 
   // How good a model is to the eye; the highest wins, the first of equals. Asked once a candidate.
   std::function<double(const FactorModel&)> judge;
@@ -23,26 +23,26 @@ struct ModelChoiceOptions {
 
 // One form that was tried.
 struct ModelCandidate {
-  std::string name;    // "as fitted", "F by lobe", "F by lobe, thinned", ...
-  int numbers = 0;     // stored
-  double E = 0;        // Objective::Value
-  double score = 0;    // by the judge; -infinity where that says NaN
-  double seconds = 0;  // that it took to make, from the one that it came from
+  std::string name;        // "as fitted", "F by lobe", "F by lobe, thinned", ...
+  int num_parameters = 0;  // stored
+  double E = 0;            // Objective::Value
+  double score = 0;        // by the judge; -infinity where that says NaN
+  double seconds = 0;      // that it took to make, from the one that it came from
 };
 
 struct ChosenModel {
   FactorModel model;   // of full-size tables, in canonical form but for the order of its lobes
-  TableLayout layout;  // which of its numbers are stored
+  TableLayout layout;  // which of its parameters are stored
   std::vector<ModelCandidate> candidates;  // in the order in which they were tried
   int chosen = -1;                         // which of them; there is always one
 };
 
-// The form that looks best within a budget of numbers (docs/model-choice.md): the fitted model
-// itself, thinned if it has more numbers; or one that shares less or has a lobe more, fitted from
-// there by some joint steps and thinned to the budget. Where one number a table is too much, what
-// Prune makes of the fitted model, with fewer lobes or colours. `fitted` is a fit of the objective,
-// in canonical form, and has its spec. The same bits for any number of threads, as long as `stop`
-// stays false. Throws Error for a budget below 1.
+// The form that looks best within a budget of parameters (docs/model-choice.md): the fitted model
+// itself, thinned if it has more parameters; or one that shares less or has a lobe more, fitted
+// from there by some joint steps and thinned to the budget. Where one parameter a table is too
+// much, what Prune makes of the fitted model, with fewer lobes or colours. `fitted` is a fit of the
+// objective, in canonical form, and has its spec. The same bits for any number of threads, as long
+// as `stop` stays false. Throws Error for a budget below 1.
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options);
 

@@ -7,20 +7,20 @@ namespace {
 
 std::vector<int> NeededEntries(std::span<const double> table, std::span<const double> coverage,
                                bool drop_equal) {
-  std::vector<int> live;
+  std::vector<int> observed;
   for (int k = 0; k < static_cast<int>(table.size()); ++k) {
-    if (coverage[k] > 0) live.push_back(k);
+    if (coverage[k] > 0) observed.push_back(k);
   }
-  if (live.empty()) live.push_back(0);
-  if (!drop_equal) return live;
+  if (observed.empty()) observed.push_back(0);
+  if (!drop_equal) return observed;
   std::vector<int> needed;
-  for (size_t i = 0; i < live.size(); ++i) {
-    const bool like_previous = i == 0 || table[live[i]] == table[live[i - 1]];
-    const bool like_next = i + 1 == live.size() || table[live[i]] == table[live[i + 1]];
+  for (size_t i = 0; i < observed.size(); ++i) {
+    const bool like_previous = i == 0 || table[observed[i]] == table[observed[i - 1]];
+    const bool like_next = i + 1 == observed.size() || table[observed[i]] == table[observed[i + 1]];
     // At an end of the table the inner end of the run serves all of it.
-    if (!like_previous || !like_next) needed.push_back(live[i]);
+    if (!like_previous || !like_next) needed.push_back(observed[i]);
   }
-  if (needed.empty()) needed.push_back(live.front());
+  if (needed.empty()) needed.push_back(observed.front());
   return needed;
 }
 

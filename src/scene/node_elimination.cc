@@ -14,7 +14,7 @@
 namespace trilobe {
 namespace {
 
-// A few numbers with a factor each.
+// A few parameters with a factor each.
 struct Term {
   int row;
   double factor;
@@ -27,12 +27,12 @@ struct Constraint {
   const Term* end() const { return terms.data() + size; }
 };
 
-// The minimum of a quadratic over numbers z >= 0 some of which, Z, are held at 0 while the others,
-// F, are free; and how it answers to constraints. With the matrix A of the quadratic and its
-// gradient q / 2 at the minimum, h = (z_F, -q_Z) and
+// The minimum of a quadratic over parameters z >= 0 some of which, Z, are held at 0 while the
+// others, F, are free; and how it answers to constraints. With the matrix A of the quadratic and
+// its gradient q / 2 at the minimum, h = (z_F, -q_Z) and
 //   T_FF = A_FF^-1,  T_FZ = -A_FF^-1 A_FZ,  T_ZZ = -(A_ZZ - A_ZF A_FF^-1 A_FZ),
-// the principal pivot transform of A^-1. The columns of T_FZ are how the free numbers follow one of
-// Z that is let go.
+// the principal pivot transform of A^-1. The columns of T_FZ are how the free parameters follow one
+// of Z that is let go.
 class Tableau {
  public:
   // All free. A: positive definite, column by column; it is taken over. Of no use if it is not.
@@ -53,7 +53,7 @@ class Tableau {
   double h(int k) const { return h_[k]; }
   void Set(int k, double h) { h_[k] = h; }
 
-  // Holds a free number at 0, or lets it go; the change of the minimum.
+  // Holds a free parameter at 0, or lets it go; the change of the minimum.
   double Pivot(int k) {
     const double pivot = At(k, k), scale = 1 / std::abs(pivot);
     const double h_k = h_[k];
@@ -108,7 +108,7 @@ class Tableau {
     return variance > 0 ? value * value / variance - release : 0;
   }
 
-  // Imposes it, its first number being free.
+  // Imposes it, its first parameter being free.
   void Impose(const Constraint& c) {
     t_.assign(size_, 0.0);
     double value = 0, variance = 0;
@@ -130,7 +130,7 @@ class Tableau {
     for (int i = 0; i < size_; ++i) h_[i] -= t_[i] * value / variance;
   }
 
-  // Forgets a number that follows from others. The last one takes its place.
+  // Forgets a parameter that follows from others. The last one takes its place.
   void Remove(int k) {
     const int last = --size_;
     for (int i = 0; i <= last; ++i) At(k, i) = At(last, i);
@@ -192,7 +192,7 @@ class Eliminator {
 
   std::vector<Elimination> Run() {
     std::vector<Elimination> order;
-    if (!tableau_.valid()) return order;  // numbers so large that H overflows
+    if (!tableau_.valid()) return order;  // parameters so large that H overflows
     double rise = 0;
     while (static_cast<int>(order.size()) < limits_.max_count) {
       int best = -1;
@@ -216,7 +216,7 @@ class Eliminator {
   }
 
  private:
-  // In numbers z = scale y in which the diagonal of J'J is about 1.
+  // In parameters z = scale y in which the diagonal of J'J is about 1.
   Tableau MakeTableau(QuadraticModel at, const FactorModel& model) {
     const int n = reduction_.size();
     const std::vector<double> y = reduction_.Restrict(model.parameters());
@@ -301,8 +301,8 @@ class Eliminator {
     return rise;
   }
 
-  // Holds numbers that went below 0, and lets go those that would rise from it; each once, so that
-  // it ends. The change of the minimum.
+  // Holds parameters that went below 0, and lets go those that would rise from it; each once, so
+  // that it ends. The change of the minimum.
   double RestoreSigns() {
     double change = 0;
     for (const bool free : {true, false}) {
@@ -320,7 +320,7 @@ class Eliminator {
   Tableau tableau_;
   std::vector<int> row_of_, number_of_;  // in the tableau of a number of y, and back
   int first_node_ = 0;
-  std::vector<Node> nodes_;  // of the numbers of y from the first node on
+  std::vector<Node> nodes_;  // of the parameters of y from the first node on
 };
 
 }  // namespace

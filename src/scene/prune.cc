@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,7 +9,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/merge_lobes.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/lobe_search.h"
 #include "trilobe/scene/needed_layout.h"
@@ -21,8 +20,6 @@
 
 namespace trilobe {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Where lobes that went took more than this share of the budget, it may be better spent on nodes.
 constexpr double kDear = 0.5;
@@ -35,7 +32,7 @@ std::string LobesText(int lobes) {
   return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
 }
 
-// The first shape that changes no number.
+// The first shape that changes no parameter.
 void ShareWhatIsEqual(Pruning* pruning) {
   const PruneState& state = pruning->state();
   for (const Shape& shape : ShapesWithin(state.spec(), state.layout, pruning->options().colour,
@@ -75,7 +72,7 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
   const TableLayout needed =
       NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
   for (int f = 0; f < 3; ++f) to.layout.nodes[f] = needed.nodes[f];
-  if (to.numbers() == pruning->state().numbers()) return;
+  if (to.num_parameters() == pruning->state().num_parameters()) return;
   ExpandStored(to.layout, &to.model);
   to.E = to.objective->Value(to.model);
   pruning->Decide("entries without data and runs of equal entries not stored", std::move(to), true,
@@ -143,12 +140,12 @@ void SpendBudget(Pruning* pruning) {
   PruneState fewer = pruning->GoOnFrom(std::move(with_one_more));
   const size_t end = pruning->decisions().size();
   ThinWithin(guide, pruning);
-  if (state.numbers() < fewer.numbers()) {
-    pruning->Withdraw(last_lobe, end, "with one lobe more fewer numbers are enough");
+  if (state.num_parameters() < fewer.num_parameters()) {
+    pruning->Withdraw(last_lobe, end, "with one lobe more fewer parameters are enough");
   } else {
     pruning->GoOnFrom(std::move(fewer));
     pruning->Withdraw(end, pruning->decisions().size(),
-                      "with one lobe less fewer numbers are enough");
+                      "with one lobe less fewer parameters are enough");
   }
 }
 
@@ -167,23 +164,23 @@ void AddLobes(Pruning* pruning) {
   }
 }
 
-// The lowest E that max_numbers reach: with as many lobes as there are, then with fewer as long
+// The lowest E that max_parameters reach: with as many lobes as there are, then with fewer as long
 // as that is better.
-void MeetNumbers(Pruning* pruning) {
+void MeetParameters(Pruning* pruning) {
   const PruneState& state = pruning->state();
-  while (state.numbers() <= pruning->options().max_numbers &&
+  while (state.num_parameters() <= pruning->options().max_parameters &&
          state.lobes() < pruning->options().max_lobes) {
     const std::vector<FactorModel> starts = WithOneLobeMore(state.model);
     if (starts.empty() || !TryLobes(starts, 0, pruning)) break;
   }
-  if (state.numbers() <= pruning->options().max_numbers) return;
+  if (state.num_parameters() <= pruning->options().max_parameters) return;
   PruneState lobes_kept = state;
   ChooseShape(pruning);
   ThinTables(pruning);
   while (pruning->options().lobes && lobes_kept.lobes() > 0) {
     PruneState best = pruning->GoOnFrom(lobes_kept);
     const size_t decided = pruning->decisions().size();
-    const bool met = best.numbers() <= pruning->options().max_numbers;
+    const bool met = best.num_parameters() <= pruning->options().max_parameters;
     const auto back_to_best = [&] {
       pruning->GoOnFrom(std::move(best));
       pruning->Withdraw(decided, pruning->decisions().size(), "with more lobes it ends lower");
@@ -195,13 +192,13 @@ void MeetNumbers(Pruning* pruning) {
     lobes_kept = state;
     ChooseShape(pruning);
     ThinTables(pruning);
-    const bool meets = state.numbers() <= pruning->options().max_numbers;
+    const bool meets = state.num_parameters() <= pruning->options().max_parameters;
     if (met && !(meets && state.E < best.E)) {
       back_to_best();
       break;
     }
   }
-  if (state.numbers() > pruning->options().max_numbers) {
+  if (state.num_parameters() > pruning->options().max_parameters) {
     pruning->Record("nothing else left out", state, false,
                     "what may be left out does not reach the budget");
   }
@@ -212,7 +209,7 @@ PrunedModel Finish(const Pruning& pruning) {
   PrunedModel result{.model = state.model,
                      .layout = state.layout,
                      .decisions = pruning.decisions(),
-                     .numbers = state.numbers()};
+                     .num_parameters = state.num_parameters()};
   // The layout knows lobes by their places.
   Canonicalize(state.objective->coverage(), &result.model, LobeOrder::kAsTheyAre);
   ExpandStored(result.layout, &result.model);
@@ -225,15 +222,15 @@ PrunedModel Finish(const Pruning& pruning) {
 PrunedModel Prune(const Objective& objective, const FactorModel& full,
                   const PruneOptions& options) {
   if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
-      options.max_numbers < 1) {
+      options.max_parameters < 1) {
     throw Error(
         "a budget must be a number, and at least one number must be left to store: check "
         "max_relative_rise, max_psnr_drop_db and max_numbers");
   }
   Pruning pruning(objective, full, options);
   LeaveOutWhatIsFree(&pruning);
-  if (pruning.by_numbers()) {
-    MeetNumbers(&pruning);
+  if (pruning.by_parameters()) {
+    MeetParameters(&pruning);
   } else if (!pruning.Keeps(pruning.state())) {
     AddLobes(&pruning);
   } else if (pruning.may_rise()) {

@@ -19,9 +19,9 @@ struct PruneOptions {
   double max_relative_rise = 0.01;
   // By how much the PSNR of `trilobe score` may fall [dB]. Below 0 it must rise.
   double max_psnr_drop_db = std::numeric_limits<double>::infinity();
-  // A budget in stored numbers instead: what is wanted is the lowest E that so many reach, and the
-  // two limits above do not count. A byte budget is 8 times as many.
-  int max_numbers = std::numeric_limits<int>::max();
+  // A budget in stored parameters instead: what is wanted is the lowest E that so many reach, and
+  // the two limits above do not count. A byte budget is 8 times as many.
+  int max_parameters = std::numeric_limits<int>::max();
 
   // What may be left out; what must not stays as it is.
   bool lobes = true;
@@ -38,7 +38,7 @@ struct PruneOptions {
 // One thing that was tried.
 struct PruneDecision {
   std::string what;  // "2 lobes instead of 3"
-  int numbers_before = 0, numbers_after = 0;
+  int parameters_before = 0, parameters_after = 0;
   double E_before = 0, E_after = 0;
   bool taken = false;
   std::string why;
@@ -46,10 +46,10 @@ struct PruneDecision {
 
 struct PrunedModel {
   FactorModel model;   // of full-size tables, in canonical form
-  TableLayout layout;  // which of its numbers are stored
+  TableLayout layout;  // which of its parameters are stored
   std::vector<PruneDecision> decisions;
-  double E = 0;     // Objective::Value of the model
-  int numbers = 0;  // stored
+  double E = 0;            // Objective::Value of the model
+  int num_parameters = 0;  // stored
 };
 
 // The smallest model found that keeps within the budget (docs/pruning.md). `full` is a fit of the
@@ -59,7 +59,7 @@ struct PrunedModel {
 // moves, and only what is free is left out.
 //
 // Costs less than a fit by the solver `auto`; the same bits for any number of threads.
-// Throws Error for a budget that is no number, or less than one stored number.
+// Throws Error for a budget that is no number, or less than one stored parameter.
 PrunedModel Prune(const Objective& objective, const FactorModel& full, const PruneOptions& options);
 
 }  // namespace trilobe

@@ -1,7 +1,6 @@
 #include "trilobe/scene/prune_tables.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -20,50 +19,50 @@
 namespace trilobe {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Of the fit in the numbers that are left: it ends when a step gains less than this fraction of the
-// budget, or of E where E is what counts; and when so many times what the last step gained would
-// not bring it down to the budget.
+// Of the fit in the parameters that are left: it ends when a step gains less than this fraction of
+// the budget, or of E where E is what counts; and when so many times what the last step gained
+// would not bring it down to the budget.
 constexpr int kMaxPolish = 8, kHope = 4;
 constexpr double kSmallGain = 0.02, kSmallDecrease = 1e-4;
 
 // Giving up nodes and refitting, again and again from where that led: what the errors of the
 // quadratic left of the budget is spent the next time. Where they were too large, a part of it is
-// tried, which grows again. It ends when few numbers went for all that was left.
+// tried, which grows again. It ends when few parameters went for all that was left.
 constexpr int kMaxAttempts = 8;
 constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
-constexpr double kFewNumbers = 0.04;
+constexpr double kFewParameters = 0.04;
 
-// Towards a budget of numbers: this part of those in excess goes at once, if they are more than
+// Towards a budget of parameters: this part of those in excess goes at once, if they are more than
 // few.
 constexpr double kExcessAtOnce = 0.75;
 constexpr int kFewInExcess = 10;
 
-EliminationLimits LimitsFor(const Pruning& pruning, double E, int numbers) {
+EliminationLimits LimitsFor(const Pruning& pruning, double E, int parameters) {
   EliminationLimits limits;
-  limits.max_rise = pruning.by_numbers() ? kInfinity : pruning.guide() - E;
-  limits.max_count =
-      pruning.by_numbers() ? std::max(numbers - pruning.options().max_numbers, 0) : numbers;
+  limits.max_rise = pruning.by_parameters() ? kInfinity : pruning.guide() - E;
+  limits.max_count = pruning.by_parameters()
+                         ? std::max(parameters - pruning.options().max_parameters, 0)
+                         : parameters;
   limits.may_thin = pruning.may_thin();
   return limits;
 }
 
-// Fits the numbers of the state's layout.
+// Fits the parameters of the state's layout.
 void Polish(const Pruning& pruning, PruneState* state) {
   const Reduction reduction(state->spec(), state->layout);
   PhaseSeconds phases;
   JointStepper stepper(*state->objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kAsItIs, &phases, &reduction);
   stepper.Restart(state->model);
-  const double small = pruning.by_numbers() ? kSmallDecrease * state->E
-                                            : kSmallGain * (pruning.guide() - pruning.E_full());
+  const double small = pruning.by_parameters() ? kSmallDecrease * state->E
+                                               : kSmallGain * (pruning.guide() - pruning.E_full());
   for (int step = 0; step < kMaxPolish && !stepper.exhausted(); ++step) {
     if (pruning.options().stop()) break;
     const double before = stepper.E();
     if (!stepper.Step()) continue;
     const double decrease = before - stepper.E();
-    const bool hopeless = !pruning.by_numbers() && stepper.E() - kHope * decrease > pruning.guide();
+    const bool hopeless =
+        !pruning.by_parameters() && stepper.E() - kHope * decrease > pruning.guide();
     if (decrease < small || hopeless) break;
   }
   state->model = stepper.current();
@@ -71,16 +70,16 @@ void Polish(const Pruning& pruning, PruneState* state) {
 }
 
 bool WithinBudget(const Pruning& pruning, const PruneState& to) {
-  return pruning.by_numbers() || (to.E <= pruning.guide() && pruning.Keeps(to));
+  return pruning.by_parameters() || (to.E <= pruning.guide() && pruning.Keeps(to));
 }
 
-// A shape, with the numbers that would be best by the quadratic.
+// A shape, with the parameters that would be best by the quadratic.
 struct ShapeOption {
   Shape shape;
   TableLayout layout;
   FactorModel model;
-  double E = 0;     // once nodes are given up too, predicted
-  int numbers = 0;  // then
+  double E = 0;            // once nodes are given up too, predicted
+  int num_parameters = 0;  // then
 };
 
 // What a shape promises; nothing if it is beyond the budget.
@@ -107,19 +106,19 @@ std::optional<ShapeOption> Promise(const Pruning& pruning, const Shape& shape,
     std::ranges::copy(inner.Expand(best.y), option.model.parameters().begin());
   }
   option.E = state.E + rise;
-  if (!pruning.by_numbers() && option.E > pruning.guide()) return std::nullopt;
+  if (!pruning.by_parameters() && option.E > pruning.guide()) return std::nullopt;
 
-  // The quadratic of the shape's numbers, moved there.
+  // The quadratic of the shape's parameters, moved there.
   QuadraticModel there = sharing(at);
   const std::vector<double> moved = sharing.Expand(option.model.parameters());
   std::vector<double> gradient = GradientChange(at, x, moved);
   for (size_t k = 0; k < x.size(); ++k) gradient[k] += at.gradient[k];
   there.gradient = sharing.Transpose(gradient);
-  option.numbers = option.layout.num_numbers(shape.spec);
+  option.num_parameters = option.layout.num_parameters(shape.spec);
   const std::vector<Elimination> order = OrderOfElimination(
-      there, option.model, option.layout, LimitsFor(pruning, option.E, option.numbers));
+      there, option.model, option.layout, LimitsFor(pruning, option.E, option.num_parameters));
   if (!order.empty()) option.E += order.back().rise;
-  option.numbers -= static_cast<int>(order.size());
+  option.num_parameters -= static_cast<int>(order.size());
   return option;
 }
 
@@ -160,16 +159,16 @@ void ChooseShape(Pruning* pruning) {
   std::vector<ShapeOption> options;
   for (const Shape& shape : ShapesWithin(pruning->state().spec(), pruning->state().layout,
                                          limits.colour, limits.shadowing)) {
-    // The shape as it is has the most numbers, and comes last.
+    // The shape as it is has the most parameters, and comes last.
     if (shape.name.empty() && options.empty()) return;
     if (auto option = Promise(*pruning, shape, pruning->Linearized())) {
       options.push_back(*std::move(option));
     }
   }
   std::ranges::stable_sort(options, [&](const ShapeOption& a, const ShapeOption& b) {
-    if (!pruning->by_numbers()) return a.numbers < b.numbers;
-    const int excess_a = std::max(a.numbers - limits.max_numbers, 0);
-    const int excess_b = std::max(b.numbers - limits.max_numbers, 0);
+    if (!pruning->by_parameters()) return a.num_parameters < b.num_parameters;
+    const int excess_a = std::max(a.num_parameters - limits.max_parameters, 0);
+    const int excess_b = std::max(b.num_parameters - limits.max_parameters, 0);
     return std::pair(excess_a, a.E) < std::pair(excess_b, b.E);
   });
   for (const ShapeOption& option : options) {
@@ -187,15 +186,15 @@ void ChooseShape(Pruning* pruning) {
 
 void ThinTables(Pruning* pruning) {
   const PruneState before = pruning->state();
-  const bool by_numbers = pruning->by_numbers();
+  const bool by_parameters = pruning->by_parameters();
   double share = 1;  // of what is left, to be spent next: less where predictions are too low
   for (int attempt = 0; attempt < kMaxAttempts && !pruning->options().stop();) {
     const PruneState from = pruning->state();
     const QuadraticModel& at = pruning->Linearized();
     const std::vector<Elimination> order = OrderOfElimination(
-        at, from.model, from.layout, LimitsFor(*pruning, from.E, from.numbers()));
+        at, from.model, from.layout, LimitsFor(*pruning, from.E, from.num_parameters()));
     int count = static_cast<int>(order.size());
-    if (by_numbers && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
+    if (by_parameters && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
     const double left = pruning->guide() - from.E;
     bool worth_more = false;
     for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
@@ -203,8 +202,8 @@ void ThinTables(Pruning* pruning) {
       PruneState to = Without(*pruning, order, count, at);
       taken = WithinBudget(*pruning, to);
       if (taken) {
-        const bool few = to.numbers() > (1 - kFewNumbers) * from.numbers();
-        worth_more = by_numbers || share < 1 || !few;
+        const bool few = to.num_parameters() > (1 - kFewParameters) * from.num_parameters();
+        worth_more = by_parameters || share < 1 || !few;
         share = std::min(1.0, kGrowth * share);
         pruning->GoOnFrom(std::move(to));
       } else {
@@ -213,7 +212,7 @@ void ThinTables(Pruning* pruning) {
     }
     if (!worth_more) break;
   }
-  if (pruning->state().numbers() == before.numbers()) return;
+  if (pruning->state().num_parameters() == before.num_parameters()) return;
   PruneState after = pruning->GoOnFrom(before);
   std::ostringstream what;
   what << "nodes of";

@@ -5,8 +5,8 @@
 
 namespace trilobe {
 
-// Goes on with the shape (what lobes and channels share) that promises the fewest numbers, or the
-// lowest E where the budget is one of numbers, once nodes are given up too.
+// Goes on with the shape (what lobes and channels share) that promises the fewest parameters, or
+// the lowest E where the budget is one of parameters, once nodes are given up too.
 void ChooseShape(Pruning* pruning);
 
 // Gives up nodes of the tables until the budget is spent.

@@ -21,8 +21,8 @@ Pruning::Pruning(const Objective& objective, const FactorModel& full, const Prun
       options_(options),
       state_(MakeState(objective.spec(), full)),
       E_full_(state_.E),
-      by_numbers_(options.max_numbers < std::numeric_limits<int>::max()) {
-  if (by_numbers_) return;
+      by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
+  if (by_parameters_) return;
   if (std::isfinite(options.max_psnr_drop_db)) {
     lowest_psnr_ = ScoreModel(objective, full).psnr_db - options.max_psnr_drop_db;
   }
@@ -57,7 +57,7 @@ const QuadraticModel& Pruning::Linearized() {
 bool Pruning::may_rise() const { return guide_ > E_full_ * (1 + kRounding); }
 
 bool Pruning::Keeps(const PruneState& state) const {
-  if (by_numbers_) return true;
+  if (by_parameters_) return true;
   if (!(state.E <= limit_ * (1 + kRounding))) return false;
   return !lowest_psnr_ || ScoreModel(*state.objective, state.model).psnr_db >= *lowest_psnr_;
 }
@@ -72,14 +72,14 @@ std::string Pruning::Against(double E, bool within) const {
   } else {
     out << "E is " << E << ", and of the full model 0";
   }
-  if (!by_numbers_) out << "; " << (within ? "within" : "beyond") << " the budget";
+  if (!by_parameters_) out << "; " << (within ? "within" : "beyond") << " the budget";
   return out.str();
 }
 
 void Pruning::Record(std::string what, const PruneState& to, bool taken, std::string why) {
   decisions_.push_back({.what = std::move(what),
-                        .numbers_before = state_.numbers(),
-                        .numbers_after = to.numbers(),
+                        .parameters_before = state_.num_parameters(),
+                        .parameters_after = to.num_parameters(),
                         .E_before = state_.E,
                         .E_after = to.E,
                         .taken = taken,

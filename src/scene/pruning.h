@@ -17,6 +17,8 @@
 
 namespace trilobe {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // A model on the way from the full to the pruned one, with its own objective.
 struct PruneState {
   std::shared_ptr<const Objective> objective;
@@ -26,7 +28,7 @@ struct PruneState {
 
   const ModelSpec& spec() const { return model.spec(); }
   int lobes() const { return model.spec().lobes; }
-  int numbers() const { return layout.num_numbers(spec()); }
+  int num_parameters() const { return layout.num_parameters(spec()); }
 };
 
 // What the parts of Prune share: the budget, where the model has got to, and what was decided.
@@ -42,13 +44,13 @@ class Pruning {
   // Goes on from another state, without a decision; returns that which was left.
   PruneState GoOnFrom(PruneState state) { return std::exchange(state_, std::move(state)); }
   std::shared_ptr<const Objective> ObjectiveFor(const ModelSpec& spec) const;
-  // Of a model with all its numbers, brought to canonical form.
+  // Of a model with all its parameters, brought to canonical form.
   PruneState MakeState(const ModelSpec& spec, const FactorModel& model) const;
   // The quadratic of E at the state's model, made once for each model.
   const QuadraticModel& Linearized();
 
-  // True where the budget is one of numbers, and E is to be low; else E has a limit.
-  bool by_numbers() const { return by_numbers_; }
+  // True where the budget is one of parameters, and E is to be low; else E has a limit.
+  bool by_parameters() const { return by_parameters_; }
   double E_full() const { return E_full_; }
   bool may_rise() const;  // by more than rounding
   double limit() const { return limit_; }
@@ -74,9 +76,9 @@ class Pruning {
   PruneState state_;
   double E_full_ = 0;
   std::optional<double> lowest_psnr_;
-  bool by_numbers_ = false;
-  double limit_ = std::numeric_limits<double>::infinity();
-  double guide_ = std::numeric_limits<double>::infinity();
+  bool by_parameters_ = false;
+  double limit_ = kInfinity;
+  double guide_ = kInfinity;
   QuadraticModel quadratic_;
   std::optional<FactorModel> linearized_;  // where quadratic_ was made
   std::vector<PruneDecision> decisions_;

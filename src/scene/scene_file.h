@@ -17,7 +17,7 @@ struct SceneBudget {
     kRelativeRise,  // of E, over that of the fit with nothing left out; 0.01 is 1 %, and below 0
                     // E is to fall, by more lobes
     kPsnrDrop,      // [dB], below that of the fit with nothing left out; below 0 it is to rise
-    kBytes,         // that the numbers of the model may take, 8 each
+    kBytes,         // that the parameters of the model may take, 8 each
     kSeconds,       // of fitting and leaving out
   };
   Unit unit = Unit::kRelativeRise;

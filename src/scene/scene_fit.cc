@@ -1,10 +1,8 @@
 #include "trilobe/scene/scene_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -17,14 +15,12 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
 #include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // With a budget of seconds: the share of it after which a fit stops. The rest is for leaving out
 // what is free.
@@ -88,7 +84,7 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
       options.max_psnr_drop_db = amount;
       break;
     case SceneBudget::Unit::kBytes:
-      options.max_numbers = static_cast<int>(std::min(amount / sizeof(double), 1e9));
+      options.max_parameters = static_cast<int>(std::min(amount / sizeof(double), 1e9));
       break;
     case SceneBudget::Unit::kSeconds:
       break;
@@ -100,83 +96,6 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
   const bool wants_more = amount < 0 || unit == SceneBudget::Unit::kBytes;
   options.max_lobes = options.lobes && wants_more ? kMoreLobes : 0;
   return options;
-}
-
-// What is kept of results between runs. Entries of another version of the program have other keys,
-// so one that cannot be decoded is a defect, or somebody's work; it is made again.
-template <typename T, typename Decode>
-std::optional<T> Cached(const FitCache& cache, const std::string& key, const Decode& decode) {
-  const std::optional<std::string> content = cache.Find(key);
-  if (!content) return std::nullopt;
-  try {
-    return decode(Json::parse(*content));
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
-Json Encode(const FullFit& fit) {
-  return {{"model", FormatModel(fit.file)}, {"seconds", fit.seconds}};
-}
-
-FullFit DecodeFullFit(const Json& json) {
-  return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds"), true};
-}
-
-Json Encode(const SceneScore& score) {
-  // JSON has no infinite PSNR, that of an exact fit.
-  return {{"objective", score.objective},
-          {"psnr_db", std::isfinite(score.psnr_db) ? Json(score.psnr_db) : Json()}};
-}
-
-SceneScore DecodeScore(const Json& json) {
-  const Json& psnr_db = json.at("psnr_db");
-  return {json.at("objective"),
-          psnr_db.is_null() ? std::numeric_limits<double>::infinity() : psnr_db.get<double>()};
-}
-
-Json Encode(const MaterialFit& fit) {
-  Json decisions = Json::array();
-  for (const PruneDecision& decision : fit.decisions) {
-    decisions.push_back({{"what", decision.what},
-                         {"numbers_before", decision.numbers_before},
-                         {"numbers_after", decision.numbers_after},
-                         {"E_before", decision.E_before},
-                         {"E_after", decision.E_after},
-                         {"taken", decision.taken},
-                         {"why", decision.why}});
-  }
-  return {{"model", FormatModel(fit.file)},   {"valid_samples", fit.valid_samples},
-          {"used_samples", fit.used_samples}, {"full_numbers", fit.full_numbers},
-          {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
-          {"numbers", fit.numbers},           {"decisions", decisions},
-          {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds}};
-}
-
-MaterialFit DecodeMaterialFit(const Json& json) {
-  MaterialFit fit;
-  fit.valid_samples = json.at("valid_samples");
-  fit.used_samples = json.at("used_samples");
-  fit.full_numbers = json.at("full_numbers");
-  fit.full = DecodeScore(json.at("full"));
-  fit.pruned = DecodeScore(json.at("pruned"));
-  fit.file = ParseModel(json.at("model").get<std::string>(), "cache");
-  fit.numbers = json.at("numbers");
-  for (const Json& decision : json.at("decisions")) {
-    fit.decisions.push_back({.what = decision.at("what"),
-                             .numbers_before = decision.at("numbers_before"),
-                             .numbers_after = decision.at("numbers_after"),
-                             .E_before = decision.at("E_before"),
-                             .E_after = decision.at("E_after"),
-                             .taken = decision.at("taken"),
-                             .why = decision.at("why")});
-  }
-  fit.fit_seconds = json.at("fit_seconds");
-  fit.prune_seconds = json.at("prune_seconds");
-  fit.fit_from_cache = fit.prune_from_cache = true;
-  return fit;
 }
 
 BrdfSamples InChannels(BrdfSamples samples, SceneChannels channels) {
@@ -202,18 +121,18 @@ class MaterialFitter {
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
     const std::string key = FitKey(purpose).text();
-    if (auto cached = Cached<FullFit>(settings_.cache, key, DecodeFullFit)) return cached;
+    if (auto cached = CachedFullFit(settings_.cache, key)) return cached;
     std::optional<FullFit> fit = FitAnew();
-    if (fit) settings_.cache.Keep(key, Encode(*fit).dump());
+    if (fit) KeepFit(*fit, key, settings_.cache);
     return fit;
   }
 
   std::optional<MaterialFit> FitAndPrune() {
     const std::string key = PruneKey();
-    std::optional<MaterialFit> fit = Cached<MaterialFit>(settings_.cache, key, DecodeMaterialFit);
+    std::optional<MaterialFit> fit = CachedMaterialFit(settings_.cache, key);
     if (!fit) {
       fit = PruneAnew();
-      if (fit) settings_.cache.Keep(key, Encode(*fit).dump());
+      if (fit) KeepFit(*fit, key, settings_.cache);
     }
     if (fit) fit->name = material_.name;
     return fit;
@@ -253,9 +172,9 @@ class MaterialFitter {
     key.Add("init", settings_.init);
     key.Add("init_seed", settings_.seed);
     key.Add("solver", settings_.solver);
-    for (const OptionValue& option :
-         OptionValues(settings_.options, FindSolver(settings_.solver).options)) {
-      std::visit([&](const auto& value) { key.Add(option.name, value); }, option.value);
+    for (const SolverOption* option : OptionsReadBy(FindSolver(settings_.solver).options)) {
+      std::visit([&](const auto& value) { key.Add(option->name, value); },
+                 option->get(settings_.options));
     }
     if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
       key.Add("seconds", material_.budget.amount);
@@ -319,7 +238,7 @@ class MaterialFitter {
     const SolverSummary summary = MakeSolver(settings_.solver)->Solve(objective, options, &model);
     if (summary.stop_reason == StopReason::kInterrupted) return std::nullopt;
     Canonicalize(objective.coverage(), &model);
-    fit.file.dead = DeadParameters(objective.coverage());
+    fit.file.unobserved = UnobservedParameters(objective.coverage());
     fit.file.fit = {.solver = settings_.solver,
                     .init = settings_.init,
                     .weighting = settings_.weighting,
@@ -353,16 +272,16 @@ class MaterialFitter {
     fit.fit_from_cache = full->from_cache;
     fit.valid_samples = valid_samples_;
     fit.used_samples = objective.samples().size();
-    fit.full_numbers = full->file.model.spec().num_parameters();
+    fit.full_parameters = full->file.model.spec().num_parameters();
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
     fit.file = {.model = std::move(pruned.model),
-                .dead = DeadParameters(of_pruned.coverage()),
+                .unobserved = UnobservedParameters(of_pruned.coverage()),
                 .fit = full->file.fit,
                 .layout = std::move(pruned.layout)};
     fit.file.fit.objective = fit.pruned.objective;
-    fit.numbers = pruned.numbers;
+    fit.num_parameters = pruned.num_parameters;
     fit.decisions = std::move(pruned.decisions);
     return fit;
   }

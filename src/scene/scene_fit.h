@@ -52,18 +52,18 @@ struct FullFit {
   bool from_cache = false;
 };
 
-// What numbers take in memory [bytes].
-inline int BytesOf(int numbers) { return numbers * static_cast<int>(sizeof(double)); }
+// What parameters take in memory [bytes].
+inline int BytesOf(int parameters) { return parameters * static_cast<int>(sizeof(double)); }
 
 // What a material needs.
 struct MaterialFit {
   std::string name;
   int valid_samples = 0;  // of the measurement
   int used_samples = 0;   // of these, by the fit
-  int full_numbers = 0;
+  int full_parameters = 0;
   SceneScore full, pruned;
-  ModelFile file;   // the pruned model, and how the full one came about
-  int numbers = 0;  // that it stores
+  ModelFile file;          // the pruned model, and how the full one came about
+  int num_parameters = 0;  // that it stores
   std::vector<PruneDecision> decisions;
   double fit_seconds = 0, prune_seconds = 0;  // when they were made
   bool fit_from_cache = false, prune_from_cache = false;

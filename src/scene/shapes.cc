@@ -49,7 +49,7 @@ std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout
     }
   }
   std::ranges::stable_sort(shapes, {}, [](const Shape& shape) {
-    return LayoutOf(shape, TableLayout::Full(shape.spec)).num_numbers(shape.spec);
+    return LayoutOf(shape, TableLayout::Full(shape.spec)).num_parameters(shape.spec);
   });
   return shapes;
 }

@@ -21,7 +21,7 @@ struct Shape {
 TableLayout LayoutOf(const Shape& shape, TableLayout layout);
 
 // The model's own shape, and those that share more of what may be shared; the one with the fewest
-// numbers first.
+// parameters first.
 std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
                                 bool shadowing);
 

@@ -12,7 +12,7 @@
 namespace trilobe {
 namespace {
 
-// Tables whose scale can move to s: those with a number that is not 0 in a column that is not 0.
+// Tables whose scale can move to s: those with a parameter that is not 0 in a column that is not 0.
 int GaugeDimensions(const FactorModel& model, const std::vector<double>& squared_lengths) {
   const ModelSpec& spec = model.spec();
   int dimensions = 0;
@@ -50,7 +50,7 @@ Diagnosis Diagnose(const Objective& objective, const FactorModel& model) {
   Diagnosis diagnosis;
   diagnosis.gradient = at.gradient;
   diagnosis.optimality = ScaledProjectedGradient(at, model.parameters());
-  diagnosis.live_parameters =
+  diagnosis.observed_parameters =
       static_cast<int>(std::ranges::count_if(objective.coverage(), [](double w) { return w > 0; }));
 
   const int n = static_cast<int>(at.gradient.size());

@@ -279,8 +279,8 @@ FactorModel MomentsModel(const Objective& objective, uint64_t seed) {
   return FromDistributions(objective, D);
 }
 
-// A number that is 0 could not move by a factor: it becomes a little of the mean of its kind, or of
-// what that was at the start.
+// A parameter that is 0 could not move by a factor: it becomes a little of the mean of its kind, or
+// of what that was at the start.
 void LiftZeros(const FactorModel& start, FactorModel* model) {
   constexpr double kLittle = 1e-3;
   for (const auto [begin, size] : model->Parts()) {
@@ -335,7 +335,7 @@ FactorModel RoughnessModel(const Objective& objective, uint64_t seed) {
   return RoughnessModel(objective, &engine);
 }
 
-// And every number times a log-uniform factor in [1/2, 2].
+// And every parameter times a log-uniform factor in [1/2, 2].
 FactorModel RandomModel(const Objective& objective, uint64_t seed) {
   std::mt19937_64 engine(seed);
   FactorModel model = RoughnessModel(objective, &engine);

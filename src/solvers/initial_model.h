@@ -15,8 +15,8 @@ namespace trilobe {
 struct InitialModel {
   std::string name;
   std::string description;
-  // A model with the objective's spec, finite and > 0 where a lobe is to live. `seed` matters to
-  // the random starts only.
+  // A model with the objective's spec, finite and > 0 where a lobe reflects anything. `seed`
+  // matters to the random starts only.
   FactorModel (*make)(const Objective& objective, uint64_t seed) = nullptr;
 };
 

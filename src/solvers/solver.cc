@@ -1,7 +1,5 @@
 #include "trilobe/solvers/solver.h"
 
-#include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "trilobe/base/error.h"
@@ -40,27 +38,6 @@ std::vector<SolverEntry>& MutableSolvers() {
   return solvers;
 }
 
-// Throws unless `holds`, which is what an option must be.
-template <typename T>
-void Require(bool holds, const char* option, const T& value, const char* must_be) {
-  if (holds) return;
-  std::ostringstream message;
-  message << option << " is " << value << "; it must be " << must_be;
-  throw Error(message.str());
-}
-
-void CheckOptions(const SolverOptions& options) {
-  const double decrease = options.relative_decrease_tolerance, sigma = options.g_filter_sigma;
-  const double optimality = options.optimality_tolerance;
-  Require(options.max_iterations >= 0, "max_iterations", options.max_iterations, "0 or more");
-  Require(options.max_seconds >= 0, "max_seconds", options.max_seconds, "0 or more");
-  Require(!std::isnan(decrease), "relative_decrease_tolerance", decrease, "a number");
-  Require(!std::isnan(optimality), "optimality_tolerance", optimality, "a number");
-  Require(sigma >= 0 && std::isfinite(sigma), "g_filter_sigma", sigma, "finite and 0 or more");
-  Require(options.memory >= 0, "memory", options.memory, "0 or more");
-  Require(options.starts >= 1, "starts", options.starts, "1 or more");
-}
-
 }  // namespace
 
 const char* StopReasonName(StopReason reason) {
@@ -83,30 +60,14 @@ const char* StopReasonName(StopReason reason) {
   return "";
 }
 
-const char* PositivityName(Positivity positivity) {
-  switch (positivity) {
-    case Positivity::kActiveSet:
-      return "active_set";
-    case Positivity::kBounds:
-      return "bounds";
-    case Positivity::kSquares:
-      return "squares";
-  }
-  return "";
-}
-
-const char* TrustRegionName(TrustRegion trust_region) {
-  return trust_region == TrustRegion::kDogleg ? "dogleg" : "levenberg_marquardt";
-}
-
 const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
 
 SolverSummary Solver::Solve(const Objective& objective, const SolverOptions& options,
                             FactorModel* model) const {
   if (model == nullptr) throw Error("a solver needs a model to start from, not null");
   CheckSameSpec(model->spec(), objective.spec());
-  CheckNumbers(*model);
-  CheckOptions(options);
+  CheckParameters(*model);
+  CheckSolverOptions(options);
   if (options.g_filter_sigma > 0) CheckIsotropic(objective.spec(), "the Gaussian filter on G");
   return DoSolve(objective, options, model);
 }
@@ -114,6 +75,7 @@ SolverSummary Solver::Solve(const Objective& objective, const SolverOptions& opt
 void RegisterSolver(SolverEntry entry) {
   if (entry.name.empty()) throw Error("a solver needs a name");
   if (!entry.make) throw Error("solver '" + entry.name + "' has no function that makes it");
+  for (const std::string& option : entry.options) FindSolverOption(option);
   for (const SolverEntry& known : Solvers()) {
     if (known.name == entry.name) {
       throw Error("there is a solver named '" + entry.name + "' already");

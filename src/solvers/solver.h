@@ -1,9 +1,7 @@
 #ifndef TRILOBE_SOLVERS_SOLVER_H_
 #define TRILOBE_SOLVERS_SOLVER_H_
 
-#include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/iteration_record.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/solvers/solver_options.h"
 
 namespace trilobe {
 
@@ -27,55 +26,6 @@ enum class StopReason {
   kInterrupted,  // a callback asked to stop
 };
 const char* StopReasonName(StopReason reason);  // "converged", "exact_fit", ...
-
-// How the joint solvers keep parameters >= 0 (docs/solvers.md compares them).
-enum class Positivity {
-  kActiveSet,  // step in the parameters that are free to move, projected on x >= 0
-  kBounds,     // Ceres' lower bounds: projected steps with a line search
-  kSquares,    // x = p^2, no bounds
-};
-const char* PositivityName(Positivity positivity);  // "active_set", "bounds", "squares"
-
-enum class TrustRegion { kLevenbergMarquardt, kDogleg };
-const char* TrustRegionName(TrustRegion trust_region);  // "levenberg_marquardt", "dogleg"
-
-// What a run is asked to do. The first part is common to all solvers; each option of the second
-// part is one that only some solvers read, and SolverEntry::options says which.
-struct SolverOptions {
-  int max_iterations = 100;
-  double max_seconds = std::numeric_limits<double>::infinity();
-
-  // Stop when an accepted iteration changes E by less than this fraction of it.
-  double relative_decrease_tolerance = 1e-5;
-
-  // Stop when the scaled projected gradient (Diagnosis::optimality) is at most this, where the
-  // solver knows it.
-  double optimality_tolerance = 1e-10;
-
-  // Fill SolverSummary::diagnosis: one pass over the data and one eigenvalue decomposition.
-  bool diagnose = true;
-
-  // Sees every record and the model it belongs to, from the solving thread; returns false to stop.
-  std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
-
-  // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no
-  // filter. With the filter E may rise.
-  double g_filter_sigma = 0;
-
-  // Sees the model after every update of a single element, or of a block of elements that move
-  // together, where a solver makes such updates. Slow; for checking that E never rises.
-  std::function<void(const FactorModel&)> on_element = nullptr;
-
-  Positivity positivity = Positivity::kActiveSet;
-  TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
-
-  // Earlier iterates that an accelerated solver combines.
-  int memory = 5;
-
-  // Starting points to try, the given one among them, and the seed of the random ones.
-  int starts = 8;
-  uint64_t seed = 1;
-};
 
 // Where the time of a run went [s], summed over what ran side by side. What a solver does besides
 // is in none of them.
@@ -92,7 +42,7 @@ struct PhaseSeconds {
 
 // How good a point is, by measures that do not depend on the gauge (docs/solvers.md).
 struct Diagnosis {
-  // dE/dx / 2 = J'r, in the order of FactorModel::parameters(); 0 at dead bins.
+  // dE/dx / 2 = J'r, in the order of FactorModel::parameters(); 0 at unobserved bins.
   std::vector<double> gradient;
 
   // The largest projected component of the gradient in the scale in which every column of J has
@@ -100,7 +50,7 @@ struct Diagnosis {
   // 0 at a stationary point, at most 1.
   double optimality = 0;
 
-  int live_parameters = 0;  // those that data touch
+  int observed_parameters = 0;  // those that data touch
   // Of J with its columns scaled to length 1, columns of length 0 left out: singular values above
   // `rank_tolerance` times the largest, and the largest over the smallest of those.
   int rank = 0;
@@ -150,8 +100,8 @@ class Solver {
   Solver& operator=(const Solver&) = delete;
   virtual ~Solver() = default;
 
-  // Starts at *model, whose spec is the objective's and whose numbers are finite and >= 0, and
-  // leaves the best model found there; dead bins stay as they were.
+  // Starts at *model, whose spec is the objective's and whose parameters are finite and >= 0, and
+  // leaves the best model found there; unobserved bins stay as they were.
   // Throws Error, with *model as it was, if that is no such model or E overflows there, if an
   // option is out of its range, or if this solver cannot work on this objective.
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
@@ -168,7 +118,7 @@ struct SolverEntry {
   std::string name;
   std::string description;                // one line
   std::string reference;                  // where the method is from
-  std::vector<std::string> options = {};  // members of SolverOptions that only some solvers read
+  std::vector<std::string> options = {};  // that it reads and not all do (AllSolverOptions)
   std::function<std::unique_ptr<Solver>()> make;
 };
 
@@ -176,8 +126,8 @@ struct SolverEntry {
 const std::vector<SolverEntry>& Solvers();
 
 // Adds a solver that is not part of the library (docs/adding-a-solver.md). Not thread-safe: call it
-// before any other use of the list. Throws Error if the name is empty or taken, or if there is
-// nothing to make it.
+// before any other use of the list. Throws Error if the name is empty or taken, if there is nothing
+// to make it, or if it reads an option that there is not.
 void RegisterSolver(SolverEntry entry);
 
 // Throws Error that lists the known names.

@@ -4,7 +4,6 @@
 #include <iomanip>
 #include <sstream>
 
-#include "trilobe/solvers/option_values.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -20,13 +19,11 @@ std::vector<std::string> ParticularOptions(const std::string& solver) {
 
 // "memory 3 (given 5), seed 1"
 std::string OptionsText(const SolverSummary& summary) {
-  const std::vector<std::string> particular = ParticularOptions(summary.solver);
-  const std::vector<OptionValue> given = OptionValues(summary.given, particular);
-  const std::vector<OptionValue> used = OptionValues(summary.used, particular);
   std::string text;
-  for (size_t k = 0; k < used.size(); ++k) {
-    text += (k > 0 ? ", " : "") + used[k].name + " " + ToText(used[k]);
-    if (used[k] != given[k]) text += " (given " + ToText(given[k]) + ")";
+  for (const SolverOption* option : OptionsReadBy(ParticularOptions(summary.solver))) {
+    const OptionValue given = option->get(summary.given), used = option->get(summary.used);
+    text += (text.empty() ? "" : ", ") + option->name + " " + ToText(used);
+    if (used != given) text += " (given " + ToText(given) + ")";
   }
   return text;
 }
@@ -79,9 +76,9 @@ std::string SolverSummary::FullReport() const {
   out << std::setprecision(3);
   if (diagnosis) {
     out << "diagnosis    optimality " << diagnosis->optimality << ", rank " << diagnosis->rank
-        << " of " << diagnosis->live_parameters << " live parameters (singular values above "
-        << diagnosis->rank_tolerance << " of the largest), condition " << diagnosis->condition
-        << "\n";
+        << " of " << diagnosis->observed_parameters
+        << " observed parameters (singular values above " << diagnosis->rank_tolerance
+        << " of the largest), condition " << diagnosis->condition << "\n";
   }
   out << "phases       ";
   if (phases.reading > 0) out << phases.reading << " s reading, ";

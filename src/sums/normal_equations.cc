@@ -107,8 +107,8 @@ void Clear(int num_parameters, QuadraticModel* result) {
   result->H.assign(static_cast<size_t>(num_parameters) * num_parameters, 0.0);
 }
 
-// A dead bin may have collected rounding errors.
-void ClearDeadParameters(std::span<const double> coverage, QuadraticModel* result) {
+// An unobserved bin may have collected rounding errors.
+void ClearUnobservedParameters(std::span<const double> coverage, QuadraticModel* result) {
   const size_t n = coverage.size();
   for (size_t k = 0; k < n; ++k) {
     if (coverage[k] > 0) continue;
@@ -119,7 +119,7 @@ void ClearDeadParameters(std::span<const double> coverage, QuadraticModel* resul
 
 }  // namespace
 
-void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
+void EvaluateReference(const Objective& objective, const FactorModel& model, Hessian hessian,
                        QuadraticModel* result) {
   const int n = model.spec().num_parameters();
   Clear(n, result);
@@ -142,7 +142,7 @@ void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hes
       }
     }
   }
-  ClearDeadParameters(objective.coverage(), result);
+  ClearUnobservedParameters(objective.coverage(), result);
 }
 
 // In a row (theta_h, theta_d) and channel rho = sum_a x_a phi_a as in CellSums, with x_m = s D F.
@@ -184,7 +184,7 @@ void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   } else {
     of_samples_->Evaluate(model, hessian, result);
   }
-  ClearDeadParameters(objective_.coverage(), result);
+  ClearUnobservedParameters(objective_.coverage(), result);
 }
 
 }  // namespace trilobe

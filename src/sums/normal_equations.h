@@ -31,7 +31,7 @@ class NormalEquations {
 
 // The same from each sample's own derivatives, in a time that only small data forgive: the
 // reference for tests.
-void EvaluateLiterally(const Objective& objective, const FactorModel& model, Hessian hessian,
+void EvaluateReference(const Objective& objective, const FactorModel& model, Hessian hessian,
                        QuadraticModel* result);
 
 }  // namespace trilobe

@@ -17,7 +17,9 @@ constexpr Kind kKinds[] = {Kind::kAmplitudes, Kind::kD, Kind::kF, Kind::kG};
 
 SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& spec,
                                  int num_threads, std::optional<Kind> only)
-    : reader_(samples, spec), num_threads_(num_threads), shares_(NumShares(samples.size())) {
+    : reader_(samples, spec),
+      num_threads_(num_threads),
+      accumulators_(NumAccumulators(samples.size())) {
   const FactorModel model(spec);
   int first = 0;  // parameter of the kind
   for (const Kind kind : kKinds) {
@@ -43,10 +45,10 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
         rows.parameter.push_back(parameter - begin);
       }
     }
-    const int numbers = static_cast<int>(rows.parameter.size());
-    first += numbers;
+    const int size = static_cast<int>(rows.parameter.size());
+    first += size;
     if (!rows.wanted) continue;
-    num_parameters_ += numbers;
+    num_parameters_ += size;
     const SampleRows& first_rows = layout_.of(Kind::kAmplitudes);
     rows.own_lines = SampleRows::kFirstAmplitude +
                      (first_rows.wanted ? first_rows.entries * first_rows.tables : 0);
@@ -63,13 +65,14 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
 
 void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   reader_.SetModel(model);
-  const int count = static_cast<int>(shares_.size());
+  const int count = static_cast<int>(accumulators_.size());
   std::vector<double> objectives(count);
   ParallelFor(count, num_threads_, [&](int k) {
     const int64_t size = reader_.samples().size();
-    shares_[k].assign(layout_.size, 0.0);
-    objectives[k] = AddSampleSums(reader_, layout_, hessian, static_cast<int>(size * k / count),
-                                  static_cast<int>(size * (k + 1) / count), shares_[k].data());
+    accumulators_[k].assign(layout_.size, 0.0);
+    objectives[k] =
+        AddSampleSums(reader_, layout_, hessian, static_cast<int>(size * k / count),
+                      static_cast<int>(size * (k + 1) / count), accumulators_[k].data());
   });
   result->objective =
       std::accumulate(objectives.begin(), objectives.end(), reader_.samples().constant);
@@ -78,7 +81,7 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   ParallelFor(static_cast<int>((layout_.size + kPiece - 1) / kPiece), num_threads_, [&](int piece) {
     const size_t begin = piece * kPiece, end = std::min(begin + kPiece, layout_.size);
     for (int k = 1; k < count; ++k) {
-      for (size_t i = begin; i < end; ++i) shares_[0][i] += shares_[k][i];
+      for (size_t i = begin; i < end; ++i) accumulators_[0][i] += accumulators_[k][i];
     }
   });
   const auto n = static_cast<size_t>(num_parameters_);
@@ -94,13 +97,13 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   MirrorTriangle(Triangle::kLower, n, result->H.data());
 }
 
-// A product of two numbers of one kind is in one place or the other, or half in both.
+// A product of two parameters of one kind is in one place or the other, or half in both.
 void SampleEquations::GatherRow(Kind kind, int entry, Hessian hessian,
                                 QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
   const SampleRows& rows = layout_.of(kind);
   const SampleRows& amplitudes = layout_.of(Kind::kAmplitudes);
-  const double* const sums = shares_[0].data();
+  const double* const sums = accumulators_[0].data();
   for (int t = 0; t < rows.tables; ++t) {
     const size_t p = rows.parameter[entry * rows.tables + t];
     const int lane = rows.lane[t];

@@ -12,14 +12,14 @@
 
 namespace trilobe {
 
-// The normal equations of any samples, of all numbers of a model or of one kind (AddSampleSums).
+// The normal equations of any samples, of all parameters of a model or of one kind (AddSampleSums).
 class SampleEquations {
  public:
   SampleEquations(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
                   std::optional<Kind> only = std::nullopt);
 
-  // Sets all of *result; where it is of one kind, its numbers alone. The same bits for any number
-  // of threads.
+  // Sets all of *result; where it is of one kind, its parameters alone. The same bits for any
+  // number of threads.
   void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:
@@ -29,7 +29,7 @@ class SampleEquations {
   const int num_threads_;
   SampleLayout layout_;
   int num_parameters_ = 0;
-  std::vector<std::vector<double>> shares_;
+  std::vector<std::vector<double>> accumulators_;
 };
 
 }  // namespace trilobe

@@ -10,7 +10,7 @@
 
 namespace trilobe {
 
-// The kinds of a model's numbers, in their order; d and s are amplitudes.
+// The kinds of a model's parameters, in their order; d and s are amplitudes.
 enum class Kind { kAmplitudes, kD, kF, kG };
 inline constexpr int kNumKinds = 4;
 constexpr Kind KindOf(Factor factor) { return static_cast<Kind>(1 + static_cast<int>(factor)); }

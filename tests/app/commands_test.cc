@@ -553,7 +553,7 @@ TEST(InfoTest, TellsWhatACompactModelStores) {
     "F": {"size": 90, "nodes": [0, 89], "values": [1, 2]},
     "G": [{"size": 90, "nodes": [45], "values": [1]}]})");
   EXPECT_THAT(RunProgram({"info", folder / "model.json"}).out,
-              AllOf(HasSubstr("8 numbers, and 6 places of nodes"), HasSubstr("3 stored")));
+              AllOf(HasSubstr("8 parameters, and 6 places of nodes"), HasSubstr("3 stored")));
   const json info = json::parse(RunProgram({"info", folder / "model.json", "--json"}).out);
   EXPECT_EQ(info["stored_numbers"], 8);
   EXPECT_EQ(info["tables"]["F"]["stored"], 2);

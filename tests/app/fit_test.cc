@@ -198,12 +198,12 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   ASSERT_EQ(result.status, 0) << result.err;
   const ModelFile file = ReadModel(out + "/model.json");
   ASSERT_TRUE(file.layout.has_value());
-  const int numbers = file.layout->num_numbers(file.model.spec());
-  EXPECT_LE(numbers, 300);
-  EXPECT_LT(numbers, file.model.spec().num_parameters());
+  const int parameters = file.layout->num_parameters(file.model.spec());
+  EXPECT_LE(parameters, 300);
+  EXPECT_LT(parameters, file.model.spec().num_parameters());
 
   const nlohmann::json report = Json(out + "/report.json");
-  EXPECT_EQ(report["stored_numbers"], numbers);
+  EXPECT_EQ(report["stored_numbers"], parameters);
   EXPECT_EQ(report["parameters"], file.model.spec().num_parameters());
   EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
   EXPECT_GT(report["seconds"]["finish"], 0);
@@ -223,7 +223,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
     if (candidate["numbers"] > 300) continue;
     best = std::max(best, candidate["psnr_db"].get<double>());
     like_the_chosen +=
-        candidate["numbers"] == numbers && candidate["objective"] == report["objective"];
+        candidate["numbers"] == parameters && candidate["objective"] == report["objective"];
   }
   EXPECT_EQ(like_the_chosen, 1);
   EXPECT_EQ(report["appearance"]["psnr_db"].get<double>(), best);  // what the judge saw

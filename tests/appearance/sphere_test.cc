@@ -68,7 +68,7 @@ struct Reference {
   std::vector<Rgb> radiance;
   std::vector<double> coverage;
 };
-Reference RenderLiterally(const std::function<Rgb(const DirectionPair&)>& brdf,
+Reference RenderReference(const std::function<Rgb(const DirectionPair&)>& brdf,
                           const std::vector<Light>& lights, int size, const Counts& counts) {
   Reference image{std::vector<Rgb>(size * size), std::vector<double>(size * size, -1.0)};
   for (int index = 0; index < size * size; ++index) {
@@ -138,20 +138,20 @@ TEST(SphereTest, ALambertianSphereIsWhatLambertSays) {
 }
 
 // A table without any symmetry: one that is turned the wrong way shows it.
-TEST(SphereTest, EqualsTheLiteralSum) {
+TEST(SphereTest, EqualsTheReferenceSum) {
   const BrdfTable table = RandomTable(kGrid, 1, 0.1);
   const BrdfTable mirrored = MirroredTable(table);
   const TabulatedBrdf brdf(table), other(mirrored);
   const std::vector<Light> lights = NotFromTheEye();
   const AngularBrdf materials[] = {Interpolated(brdf), Interpolated(other)};
   const std::vector<RenderedImage> images = RenderSpheres(materials, lights, kSize, Everything, 1);
-  const auto literal = [&](const TabulatedBrdf& of) {
-    return RenderLiterally([&](const DirectionPair& pair) { return of.Interpolate(pair); }, lights,
+  const auto reference = [&](const TabulatedBrdf& of) {
+    return RenderReference([&](const DirectionPair& pair) { return of.Interpolate(pair); }, lights,
                            kSize, Everything)
         .radiance;
   };
-  EXPECT_LT(LargestDifference(images[0].radiance, literal(brdf)), 1e-6);
-  EXPECT_LT(LargestDifference(images[1].radiance, literal(other)), 1e-6);
+  EXPECT_LT(LargestDifference(images[0].radiance, reference(brdf)), 1e-6);
+  EXPECT_LT(LargestDifference(images[1].radiance, reference(other)), 1e-6);
   EXPECT_GT(LargestDifference(images[0].radiance, images[1].radiance), 0.1);
 }
 
@@ -166,7 +166,7 @@ TEST(SphereTest, HandsOverTheAnglesOfTheDirections) {
   };
   const AngularBrdf materials[] = {wave};
   const RenderedImage image = RenderSpheres(materials, lights, kSize, Everything, 1).at(0);
-  const Reference expected = RenderLiterally(
+  const Reference expected = RenderReference(
       [&](const DirectionPair& pair) {
         return wave(ToHalfDiff(pair), {pair.wi[2], pair.wo[2]});
       },
@@ -183,7 +183,7 @@ TEST(SphereTest, LeavesOutWhatDoesNotCount) {
   };
   const AngularBrdf materials[] = {Interpolated(brdf)};
   const RenderedImage image = RenderSpheres(materials, lights, kSize, counts, 1).at(0);
-  const Reference expected = RenderLiterally(
+  const Reference expected = RenderReference(
       [&](const DirectionPair& pair) { return brdf.Interpolate(pair); }, lights, kSize, counts);
   EXPECT_LT(LargestDifference(image.radiance, expected.radiance), 1e-6);
   for (size_t k = 0; k < image.coverage.size(); ++k) {

@@ -189,8 +189,8 @@ TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {
   file.model = FactorModel(ModelSpec::SharedFactors(3, grid));
   for (double& x : file.model.parameters()) x = 0.5;
   for (double& x : file.model.s(1)) x = 0;  // absent
-  file.dead.assign(file.model.parameters().size(), false);
-  file.dead.back() = true;
+  file.unobserved.assign(file.model.parameters().size(), false);
+  file.unobserved.back() = true;
   file.fit.source = "a 'strange_name' {$x}\n";
   const IterationRecord trace[] = {
       {0, 0, 10, false}, {1, 0.5, 10, false, false}, {2, 0.75, 0, true}};  // E = 0 has no logarithm
@@ -218,8 +218,8 @@ TEST_F(GnuplotTest, DrawsAnisotropicPicturesTheSameEachTime) {
   for (double& number : file.model.parameters()) number = x = 3.7 * x * (1 - x);
   for (double& s : file.model.s(3)) s = 0;
   for (double& d : file.model.table(Factor::kD, 2)) d = 0;
-  file.dead.assign(file.model.parameters().size(), false);
-  file.dead[file.model.TableOffset(Factor::kD, 0) + 20] = true;
+  file.unobserved.assign(file.model.parameters().size(), false);
+  file.unobserved[file.model.TableOffset(Factor::kD, 0) + 20] = true;
   file.fit.source = "a 'strange_name' {$x}\n";
   const auto draw = [&](int threads) {
     return DrawPictures(file, measured, {}, folder_.string(), Appearance(threads));
@@ -266,12 +266,12 @@ TEST_F(GnuplotTest, DrawsDegenerateInput) {
   BrdfTable black = MakeInvalidTable("black", grid);
   for (auto& plane : black.stored) plane.assign(plane.size(), 0);
   ModelFile file;
-  file.dead.assign(file.model.parameters().size(), false);
+  file.unobserved.assign(file.model.parameters().size(), false);
   const IterationRecord trace[] = {{0, 0, 1, false}};
   EXPECT_EQ(DrawPictures(file, {.table = &black}, trace, folder_.string(), Appearance(1)).size(),
             4U);
   file.model = FactorModel(ModelSpec::IndependentG(grid));
-  file.dead.assign(file.model.parameters().size(), true);
+  file.unobserved.assign(file.model.parameters().size(), true);
   EXPECT_EQ(DrawPictures(file, {}, {}, folder_.string(), Appearance(1)).size(), 1U);
   EXPECT_THROW(DrawTrace({}, "", Path("none.png")), Error);
 }

@@ -92,11 +92,11 @@ TEST(ModelFile, ReadsBackTheSameBits) {
   }
 }
 
-TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
+TEST(ModelFile, KeepsUnobservedBinsAndTheStoryOfTheFit) {
   ModelFile file = RandomModel(ModelSpec::IndependentG());
   for (const Factor factor : kFactors) {
     const int offset = file.model.TableOffset(factor, 2);
-    file.dead[offset] = file.dead[offset + 89] = true;
+    file.unobserved[offset] = file.unobserved[offset + 89] = true;
   }
   file.fit = {.solver = "awls",
               .init = "random",
@@ -113,7 +113,7 @@ TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
               .program = "trilobe 0.1.0",
               .date = "2024-01-31T12:00:00Z"};
   const ModelFile read = ParseModel(FormatModel(file), "model.json");
-  EXPECT_EQ(read.dead, file.dead);
+  EXPECT_EQ(read.unobserved, file.unobserved);
   EXPECT_EQ(FormatModel(read), FormatModel(file));
   EXPECT_EQ(read.fit.solver, "awls");
   EXPECT_EQ(read.fit.objective, 0.1 + 0.2);
@@ -124,7 +124,7 @@ TEST(ModelFile, KeepsDeadBinsAndTheStoryOfTheFit) {
   EXPECT_EQ(read.fit.date, file.fit.date);
 }
 
-// One of which some numbers are left out.
+// One of which some parameters are left out.
 ModelFile CompactModel(const ModelSpec& spec) {
   ModelFile file{FactorModel(spec), std::vector<bool>(spec.num_parameters(), false), {}};
   for (size_t k = 0; k < file.model.parameters().size(); ++k) {
@@ -243,7 +243,7 @@ TEST(ModelFile, IgnoresUnknownKeysAndTakesDefaultsForOptionalOnes) {
   }
   const ModelFile read = ParseModel(document.dump(), "model.json");
   EXPECT_TRUE(SameBits(read.model, file.model));
-  EXPECT_EQ(read.dead, file.dead);
+  EXPECT_EQ(read.unobserved, file.unobserved);
   EXPECT_EQ(read.fit.solver, "");
   EXPECT_EQ(read.fit.iterations, 0);
 }

@@ -13,7 +13,7 @@
 #include "trilobe/model/axis.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {
@@ -72,7 +72,7 @@ TEST(Axis, RefusesNodesThatDoNotAscendOrAreTooMany) {
 }
 
 // Eq. 4 written out by itself.
-double LiteralValue(const FactorModel& model, const SphericalAngles& at, int c) {
+double ReferenceValue(const FactorModel& model, const SphericalAngles& at, int c) {
   const auto bilinear = [](std::span<const double> table, double theta, double phi) {
     const double a = std::min(RadiansToDegrees(theta) / 15, 5.0);
     const double b = RadiansToDegrees(std::fmod(phi + 4 * kPi, 2 * kPi)) / 7.5;
@@ -115,7 +115,7 @@ TEST(Anisotropic, ValuesAreThoseOfEquation4) {
                                 random.Uniform(0.05, 1.5), random.Uniform(-kPi, kPi)};
     const Rgb value = Evaluate(model, ToDirections(at));
     for (int c = 0; c < kChannels; ++c) {
-      EXPECT_NEAR(value[c] / LiteralValue(model, at, c), 1, 1e-6) << k;
+      EXPECT_NEAR(value[c] / ReferenceValue(model, at, c), 1, 1e-6) << k;
     }
   }
 }

@@ -212,10 +212,11 @@ TEST(Arguments, SizesOfArrays) {
   const std::vector<double> coverage(model.parameters().size() - 1, 1.0);
   EXPECT_THAT(ErrorOf([&] { Canonicalize(coverage, &model); }), HasSubstr("coverage"));
   EXPECT_THAT(ErrorOf([&] { NormalizeScale(coverage, &model); }), HasSubstr("coverage"));
-  EXPECT_THAT(ErrorOf([&] { CopyDeadParameters(coverage, model, &model); }), HasSubstr("coverage"));
+  EXPECT_THAT(ErrorOf([&] { CopyUnobservedParameters(coverage, model, &model); }),
+              HasSubstr("coverage"));
   EXPECT_THAT(ErrorOf([&] { ComputeLobeLight(coverage, model); }), HasSubstr("coverage"));
   FactorModel other;
-  EXPECT_THAT(ErrorOf([&] { CopyDeadParameters(coverage, model, &other); }),
+  EXPECT_THAT(ErrorOf([&] { CopyUnobservedParameters(coverage, model, &other); }),
               HasSubstr("another spec"));
   const LobeLight light =
       ComputeLobeLight(std::vector<double>(model.parameters().size(), 1.0), model);

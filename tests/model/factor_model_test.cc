@@ -27,7 +27,7 @@ TEST(FactorModel, RefusesABadSpec) {
                Error);
 }
 
-// [ d | s | D | F | G ]: the accessors walk over all numbers once, in this order.
+// [ d | s | D | F | G ]: the accessors walk over all parameters once, in this order.
 TEST(FactorModel, ParametersLieInTheirOrder) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     FactorModel model(spec);

@@ -9,7 +9,7 @@
 #include "tests/test_util.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/lobe_light.h"
-#include "trilobe/model/with_lobes.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {
@@ -163,25 +163,25 @@ TEST(Gauge, CanonicalFormIsUnique) {
   ExpectSameModel(in_place, shuffled, 1e-12, "as they are");
 }
 
-TEST(Gauge, DeadBinsAreFilledFromTheirNeighbours) {
+TEST(Gauge, UnobservedBinsAreFilledFromTheirNeighbours) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(TableWithGaps(), spec);
   FactorModel model = RandomModel(spec, 4);
-  const std::vector<bool> dead = DeadParameters(objective.coverage());
+  const std::vector<bool> unobserved = UnobservedParameters(objective.coverage());
   Canonicalize(objective.coverage(), &model);
   for (int t = 0; t < 2; ++t) {
     const auto D = model.table(Factor::kD, t);
     for (const int k : {0, 1, 4, 5, 9}) {
-      EXPECT_TRUE(dead[model.TableOffset(Factor::kD, t) + k]);
+      EXPECT_TRUE(unobserved[model.TableOffset(Factor::kD, t) + k]);
     }
-    EXPECT_FALSE(dead[model.TableOffset(Factor::kD, t) + 2]);
+    EXPECT_FALSE(unobserved[model.TableOffset(Factor::kD, t) + 2]);
     EXPECT_DOUBLE_EQ(D[0], D[2]);
     EXPECT_DOUBLE_EQ(D[1], D[2]);
     EXPECT_DOUBLE_EQ(D[4], (2 * D[3] + D[6]) / 3);
     EXPECT_DOUBLE_EQ(D[5], (D[3] + 2 * D[6]) / 3);
-    std::vector<double> live = {D[2], D[3], D[6], D[7], D[8]};
-    std::ranges::sort(live);
-    EXPECT_DOUBLE_EQ(D[9], live[2]);
+    std::vector<double> observed = {D[2], D[3], D[6], D[7], D[8]};
+    std::ranges::sort(observed);
+    EXPECT_DOUBLE_EQ(D[9], observed[2]);
   }
   const auto F = model.table(Factor::kF, 0);
   EXPECT_DOUBLE_EQ(F[3], (F[2] + F[4]) / 2);
@@ -189,7 +189,7 @@ TEST(Gauge, DeadBinsAreFilledFromTheirNeighbours) {
   std::ranges::sort(last_F);
   EXPECT_DOUBLE_EQ(F[8], last_F[2]);
   const auto G = model.table(Factor::kG, 1);
-  ASSERT_TRUE(dead[model.TableOffset(Factor::kG, 1) + 8]);
+  ASSERT_TRUE(unobserved[model.TableOffset(Factor::kG, 1) + 8]);
   // G / cos theta goes on as it is.
   const CatmullRom spline(spec.g_axis.size);
   std::vector<double> last_G;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 45, .theta_d = 30, .phi_d = 36};
 
-std::vector<double> AllLive(const FactorModel& model) {
+std::vector<double> AllObserved(const FactorModel& model) {
   return std::vector<double>(model.parameters().size(), 1.0);
 }
 
@@ -59,7 +59,7 @@ Rgb BihemisphericalAlbedo(const FactorModel& model) {
 
 TEST(LobeLight, AgreesWithTheDirectionalAlbedosOfEachPart) {
   const FactorModel model = SmoothModel();
-  const LobeLight light = ComputeLobeLight(AllLive(model), model);
+  const LobeLight light = ComputeLobeLight(AllObserved(model), model);
   FactorModel part = model;
   for (double& s : part.s(0)) s = 0;
   for (double& s : part.s(1)) s = 0;
@@ -91,8 +91,8 @@ TEST(LobeLight, FourTimesSIsTheAlbedo) {
   for (double& d : model.d()) d = 0;
   for (int t = 0; t < 3; ++t) std::ranges::fill(model.table(Factor::kF, t), 2.0);
   for (int m = 0; m < 2; ++m) std::ranges::fill(model.table(Factor::kG, m), 3.0);
-  Canonicalize(AllLive(model), &model);
-  const LobeLight light = ComputeLobeLight(AllLive(model), model);
+  Canonicalize(AllObserved(model), &model);
+  const LobeLight light = ComputeLobeLight(AllObserved(model), model);
   for (int m = 0; m < 2; ++m) {
     for (int c = 0; c < kChannels; ++c) {
       EXPECT_NEAR(light.lobes[m][c], 4 * model.s(m)[c], 0.02 * light.lobes[m][c]);
@@ -105,24 +105,24 @@ TEST(LobeLight, DoesNotDependOnTheGauge) {
   FactorModel other = model;
   for (double& x : other.table(Factor::kD, 0)) x *= 1e6;
   for (double& s : other.s(0)) s *= 1e-6;
-  const LobeLight a = ComputeLobeLight(AllLive(model), model);
-  const LobeLight b = ComputeLobeLight(AllLive(model), other);
+  const LobeLight a = ComputeLobeLight(AllObserved(model), model);
+  const LobeLight b = ComputeLobeLight(AllObserved(model), other);
   for (int m = 0; m < 2; ++m) {
     EXPECT_NEAR(a.Share(m), b.Share(m), 1e-13);
     for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(a.lobes[m][c], b.lobes[m][c], 1e-13);
   }
 }
 
-TEST(LobeLight, LeavesOutDeadEntriesAndBlackModels) {
+TEST(LobeLight, LeavesOutUnobservedEntriesAndBlackModels) {
   FactorModel model = SmoothModel();
-  std::vector<double> live = AllLive(model);
-  for (int m = 0; m < 2; ++m) live[model.TableOffset(Factor::kD, m)] = 0;
-  const LobeLight light = ComputeLobeLight(live, model);
+  std::vector<double> observed = AllObserved(model);
+  for (int m = 0; m < 2; ++m) observed[model.TableOffset(Factor::kD, m)] = 0;
+  const LobeLight light = ComputeLobeLight(observed, model);
   EXPECT_EQ(light.through[model.TableOffset(Factor::kD, 0)], 0);
   EXPECT_GT(light.through[model.TableOffset(Factor::kD, 0) + 1], 0);
 
   for (double& x : model.parameters()) x = 0;
-  const LobeLight black = ComputeLobeLight(AllLive(model), model);
+  const LobeLight black = ComputeLobeLight(AllObserved(model), model);
   EXPECT_EQ(black.Share(0), 0);
   EXPECT_EQ(black.DiffuseShare(), 0);
 }

@@ -15,7 +15,7 @@ constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 4};
 TEST(TableLayout, TheFullOneStoresEverythingAndChangesNothing) {
   for (const NamedSpec& named : TestSpecs(kGrid)) {
     const TableLayout layout = TableLayout::Full(named.spec);
-    EXPECT_EQ(layout.num_numbers(named.spec), named.spec.num_parameters()) << named.name;
+    EXPECT_EQ(layout.num_parameters(named.spec), named.spec.num_parameters()) << named.name;
     EXPECT_EQ(layout.num_places(named.spec), 0);
     const FactorModel model = RandomModel(named.spec, 1);
     FactorModel expanded = model;
@@ -40,7 +40,7 @@ TEST(TableLayout, IsLinearBetweenNodesAndConstantBeyond) {
   for (const double g : G) EXPECT_EQ(g, 7);
   EXPECT_EQ(model.s(0)[2], 5);
   const int dropped = (6 - 2) + (model.spec().g_axis.size - 1) + 2;
-  EXPECT_EQ(layout.num_numbers(model.spec()), model.spec().num_parameters() - dropped);
+  EXPECT_EQ(layout.num_parameters(model.spec()), model.spec().num_parameters() - dropped);
   EXPECT_EQ(layout.num_places(model.spec()), 3);
 }
 

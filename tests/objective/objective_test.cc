@@ -171,8 +171,8 @@ TEST(Objective, CoverageCountsTheWeightOfTheReaders) {
             << name << ", parameter " << k;
       }
       if (!scattered && spec.lobes > 0) {
-        const int dead = FactorModel(spec).TableOffset(Factor::kD, 0) + 3;
-        EXPECT_EQ(objective.coverage()[dead], 0);
+        const int unobserved = FactorModel(spec).TableOffset(Factor::kD, 0) + 3;
+        EXPECT_EQ(objective.coverage()[unobserved], 0);
       }
     }
   }

@@ -33,7 +33,7 @@ TEST(Luminance, OfAModelIsThatOfItsValues) {
       const SampleStencils at = GridStencils(spec, kGrid, bin);
       const Rgb rho = {Evaluate(model, at, 0), Evaluate(model, at, 1), Evaluate(model, at, 2)};
       for (int c = 0; c < kChannels; ++c) {
-        // A handful of additions and products of numbers >= 0, but for the spline's own weights.
+        // A handful of additions and products of parameters >= 0, but for the spline's own weights.
         EXPECT_NEAR(Evaluate(grey, at, c), Luminance(rho), 1e-13 * (1 + Luminance(rho))) << name;
       }
     }

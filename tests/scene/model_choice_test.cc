@@ -90,13 +90,13 @@ struct Fit {
   }
   double E() const { return objective.Value(model); }
   // The lowest E wins.
-  ModelChoiceOptions ByE(int max_numbers) const {
-    return {.max_numbers = max_numbers, .judge = [this](const FactorModel& candidate) {
+  ModelChoiceOptions ByE(int max_parameters) const {
+    return {.max_parameters = max_parameters, .judge = [this](const FactorModel& candidate) {
               return -Objective(objective, candidate.spec()).Value(candidate);
             }};
   }
-  ChosenModel Choose(int max_numbers) const {
-    return ChooseModel(objective, model, ByE(max_numbers));
+  ChosenModel Choose(int max_parameters) const {
+    return ChooseModel(objective, model, ByE(max_parameters));
   }
 
   Objective objective;
@@ -106,37 +106,37 @@ struct Fit {
 Fit MakeFit() { return {Noisy(TableOf(Material(FByLobe()), kGrid), 0.01), Spec(2)}; }
 
 // What holds for whatever was chosen.
-void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_numbers) {
+void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_parameters) {
   ASSERT_FALSE(result.candidates.empty());
   const ModelCandidate& first = result.candidates[0];
   EXPECT_EQ(first.name, "as fitted");
-  EXPECT_EQ(first.numbers, fit.model.spec().num_parameters());
+  EXPECT_EQ(first.num_parameters, fit.model.spec().num_parameters());
   EXPECT_EQ(first.E, fit.E());
   for (const ModelCandidate& candidate : result.candidates) {
     EXPECT_GE(candidate.seconds, 0) << candidate.name;
-    EXPECT_GT(candidate.numbers, 0) << candidate.name;
+    EXPECT_GT(candidate.num_parameters, 0) << candidate.name;
   }
   ASSERT_GE(result.chosen, 0);
   ASSERT_LT(result.chosen, static_cast<int>(result.candidates.size()));
   const ModelCandidate& chosen = result.candidates[result.chosen];
-  EXPECT_LE(chosen.numbers, max_numbers);
+  EXPECT_LE(chosen.num_parameters, max_parameters);
   CheckLayout(result.layout, result.model.spec());
-  EXPECT_EQ(chosen.numbers, result.layout.num_numbers(result.model.spec()));
+  EXPECT_EQ(chosen.num_parameters, result.layout.num_parameters(result.model.spec()));
   EXPECT_EQ(chosen.E, Objective(fit.objective, result.model.spec()).Value(result.model));
-  // The model is what its stored numbers say.
+  // The model is what its stored parameters say.
   FactorModel expanded = result.model;
   ExpandStored(result.layout, &expanded);
   EXPECT_TRUE(std::ranges::equal(expanded.parameters(), result.model.parameters()));
 }
 
 // Where the judge has the last word, none that keeps to the budget was better.
-void ExpectBestOfThoseWithin(const ChosenModel& result, int max_numbers) {
+void ExpectBestOfThoseWithin(const ChosenModel& result, int max_parameters) {
   for (const ModelCandidate& candidate : result.candidates) {
     // One that was only fitted is not stored yet: its ends are not tied, its scale is not fixed.
     const bool stored = candidate.name.starts_with("as fitted") ||
                         candidate.name.ends_with(", thinned") ||
                         candidate.name.ends_with(", finished");
-    if (!stored || candidate.numbers > max_numbers) continue;
+    if (!stored || candidate.num_parameters > max_parameters) continue;
     EXPECT_GE(result.candidates[result.chosen].score, candidate.score) << candidate.name;
   }
 }
@@ -145,14 +145,14 @@ TEST(ModelChoice, NeverExceedsTheBudget) {
   const Fit fit = MakeFit();
   const int own = fit.model.spec().num_parameters();
   double E = 0;
-  for (const int numbers : {kPlenty, own + 8, own, own - 1, 50, 25, 12, 5, 1}) {
-    SCOPED_TRACE(numbers);
-    const ChosenModel result = fit.Choose(numbers);
-    ExpectConsistent(fit, result, numbers);
-    ExpectBestOfThoseWithin(result, numbers);
+  for (const int parameters : {kPlenty, own + 8, own, own - 1, 50, 25, 12, 5, 1}) {
+    SCOPED_TRACE(parameters);
+    const ChosenModel result = fit.Choose(parameters);
+    ExpectConsistent(fit, result, parameters);
+    ExpectBestOfThoseWithin(result, parameters);
     const ModelCandidate& chosen = result.candidates[result.chosen];
     EXPECT_EQ(chosen.score, -chosen.E);
-    EXPECT_GE(chosen.E, E);  // fewer numbers reach no less
+    EXPECT_GE(chosen.E, E);  // fewer parameters reach no less
     E = 0.98 * chosen.E;     // but for where each thinning ends
   }
 }
@@ -160,8 +160,9 @@ TEST(ModelChoice, NeverExceedsTheBudget) {
 TEST(ModelChoice, TheJudgeDecides) {
   const Fit fit = MakeFit();
   // One that likes lobes more than E, though E is worse.
-  ModelChoiceOptions options = {
-      .max_numbers = kPlenty, .judge = [](const FactorModel& model) { return model.spec().lobes; }};
+  ModelChoiceOptions options = {.max_parameters = kPlenty, .judge = [](const FactorModel& model) {
+                                  return model.spec().lobes;
+                                }};
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).model.spec().lobes, 3);
   // To one that sees no difference the fitted model is good enough.
   options.judge = [](const FactorModel&) { return 1.0; };
@@ -193,10 +194,10 @@ TEST(ModelChoice, FindsTheFormThatTheDataHave) {
     EXPECT_EQ(all.candidates[all.chosen].name, of.name + ", finished");
     EXPECT_EQ(all.model.spec(), of.spec);
     EXPECT_LT(all.candidates[all.chosen].E, 0.1 * fit.E());
-    // No more numbers than the fitted model has.
-    const int numbers = fit.model.spec().num_parameters();
-    const ChosenModel same = fit.Choose(numbers);
-    ExpectConsistent(fit, same, numbers);
+    // No more parameters than the fitted model has.
+    const int parameters = fit.model.spec().num_parameters();
+    const ChosenModel same = fit.Choose(parameters);
+    ExpectConsistent(fit, same, parameters);
     EXPECT_EQ(same.candidates[same.chosen].name, of.name + ", thinned");
     EXPECT_LT(same.candidates[same.chosen].E, 0.5 * fit.E());
   }
@@ -210,7 +211,7 @@ TEST(ModelChoice, FinishesWhatItDoesNotThin) {
   LimitAngles(DegreesToRadians(75), Unmeasured::kBeyondMaxAngle, &measured);
   const Fit fit(measured, spec);
   const ModelChoiceOptions options = {
-      .max_numbers = kPlenty,
+      .max_parameters = kPlenty,
       .judge = [](const FactorModel& model) { return model.spec().D.per_channel ? 1.0 : 0.0; }};
   const ChosenModel result = ChooseModel(fit.objective, fit.model, options);
   ASSERT_EQ(result.candidates[result.chosen].name, "D by channel, finished");
@@ -303,10 +304,10 @@ TEST(ModelChoice, TriesWhatTheSpecAllows) {
 TEST(ModelChoice, AnySpecKeepsToAnyBudget) {
   for (const NamedSpec& named : TestSpecs(kGrid)) {
     if (named.spec.lobes > (kSanitized ? 2 : 3)) continue;
-    for (const int numbers : {40, 2}) {
-      SCOPED_TRACE(named.name + ", " + std::to_string(numbers));
+    for (const int parameters : {40, 2}) {
+      SCOPED_TRACE(named.name + ", " + std::to_string(parameters));
       const Fit fit(RandomTable(kGrid, 1), named.spec, 2);
-      ExpectConsistent(fit, fit.Choose(numbers), numbers);
+      ExpectConsistent(fit, fit.Choose(parameters), parameters);
     }
   }
 }
@@ -321,11 +322,11 @@ TEST(ModelChoice, StopAtOnceLeavesTheFittedModel) {
   EXPECT_EQ(result.candidates.size(), 1U);
   EXPECT_TRUE(std::ranges::equal(result.model.parameters(), fit.model.parameters()));
   // A budget is kept to nevertheless.
-  for (const int numbers : {own - 1, 20, 3, 1}) {
-    SCOPED_TRACE(numbers);
-    options.max_numbers = numbers;
+  for (const int parameters : {own - 1, 20, 3, 1}) {
+    SCOPED_TRACE(parameters);
+    options.max_parameters = parameters;
     result = ChooseModel(fit.objective, fit.model, options);
-    ExpectConsistent(fit, result, numbers);
+    ExpectConsistent(fit, result, parameters);
     for (const ModelCandidate& candidate : result.candidates) {
       EXPECT_THAT(candidate.name, StartsWith("as fitted"));
     }
@@ -334,8 +335,8 @@ TEST(ModelChoice, StopAtOnceLeavesTheFittedModel) {
 
 TEST(ModelChoice, StopAtAnyTimeLeavesTheBestSoFar) {
   const Fit fit = MakeFit();
-  const int numbers = fit.model.spec().num_parameters() - 10;
-  ModelChoiceOptions options = fit.ByE(numbers);
+  const int parameters = fit.model.spec().num_parameters() - 10;
+  ModelChoiceOptions options = fit.ByE(parameters);
   int asked = 0;
   options.stop = [&asked] { return ++asked, false; };
   const size_t in_all = ChooseModel(fit.objective, fit.model, options).candidates.size();
@@ -345,7 +346,7 @@ TEST(ModelChoice, StopAtAnyTimeLeavesTheBestSoFar) {
     SCOPED_TRACE(after);
     asked = 0;
     int judged = 0, judged_before = 0;
-    options.judge = [&, by_E = fit.ByE(numbers).judge](const FactorModel& candidate) {
+    options.judge = [&, by_E = fit.ByE(parameters).judge](const FactorModel& candidate) {
       ++judged;
       return by_E(candidate);
     };
@@ -354,8 +355,8 @@ TEST(ModelChoice, StopAtAnyTimeLeavesTheBestSoFar) {
       return asked > after;
     };
     const ChosenModel result = ChooseModel(fit.objective, fit.model, options);
-    ExpectConsistent(fit, result, numbers);
-    ExpectBestOfThoseWithin(result, numbers);
+    ExpectConsistent(fit, result, parameters);
+    ExpectBestOfThoseWithin(result, parameters);
     EXPECT_LE(judged, judged_before + 1);  // the one that was in the works
     EXPECT_LE(result.candidates.size(), in_all);
     fewest = std::min(fewest, result.candidates.size());
@@ -366,18 +367,18 @@ TEST(ModelChoice, StopAtAnyTimeLeavesTheBestSoFar) {
 TEST(ModelChoice, TheSameBitsForAnyNumberOfThreads) {
   const BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);
   const Fit one(measured, Spec(2));
-  const int numbers = one.model.spec().num_parameters();
-  const ChosenModel expected = one.Choose(numbers);
+  const int parameters = one.model.spec().num_parameters();
+  const ChosenModel expected = one.Choose(parameters);
   for (const int threads : {2, 3}) {
     const Fit fit(measured, Spec(2), 20, threads);
-    const ChosenModel result = fit.Choose(numbers);
+    const ChosenModel result = fit.Choose(parameters);
     EXPECT_EQ(result.chosen, expected.chosen);
     EXPECT_EQ(result.layout, expected.layout);
     EXPECT_TRUE(std::ranges::equal(result.model.parameters(), expected.model.parameters()));
     ASSERT_EQ(result.candidates.size(), expected.candidates.size());
     for (size_t k = 0; k < result.candidates.size(); ++k) {
       EXPECT_EQ(result.candidates[k].name, expected.candidates[k].name);
-      EXPECT_EQ(result.candidates[k].numbers, expected.candidates[k].numbers);
+      EXPECT_EQ(result.candidates[k].num_parameters, expected.candidates[k].num_parameters);
       EXPECT_EQ(result.candidates[k].E, expected.candidates[k].E);
       EXPECT_EQ(result.candidates[k].score, expected.candidates[k].score);
     }
@@ -385,18 +386,18 @@ TEST(ModelChoice, TheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(ModelChoice, AModelFileKeepsWhatWasChosen) {
-  // Data that end, so that there are dead entries.
+  // Data that end, so that there are unobserved entries.
   BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);
   LimitAngles(DegreesToRadians(70), Unmeasured::kBeyondMaxAngle, &measured);
   const Fit fit(measured, Spec(2));
   const TestDirectory directory;
-  for (const int numbers : {kPlenty, 50, 12}) {
-    SCOPED_TRACE(numbers);
-    const ChosenModel chosen = fit.Choose(numbers);
-    ExpectConsistent(fit, chosen, numbers);
+  for (const int parameters : {kPlenty, 50, 12}) {
+    SCOPED_TRACE(parameters);
+    const ChosenModel chosen = fit.Choose(parameters);
+    ExpectConsistent(fit, chosen, parameters);
     ASSERT_GT(chosen.model.spec().lobes, 0);
     const Objective objective(fit.objective, chosen.model.spec());
-    WriteModel({chosen.model, DeadParameters(objective.coverage()), {}, chosen.layout},
+    WriteModel({chosen.model, UnobservedParameters(objective.coverage()), {}, chosen.layout},
                directory.Path("model.json"));
     const ModelFile file = ReadModel(directory.Path("model.json"));
     EXPECT_EQ(file.model.spec(), chosen.model.spec());
@@ -421,9 +422,9 @@ TEST(ModelChoice, DegenerateMeasurements) {
   const BrdfTable spiky = RandomTable(kGrid, 1, /*lost=*/0.6, /*sigma=*/10);
   for (const BrdfTable& measured : {black, spiky}) {
     const Fit fit(measured, Spec(2), 5);
-    for (const int numbers : {kPlenty, 30, 4}) {
+    for (const int parameters : {kPlenty, 30, 4}) {
       SCOPED_TRACE(measured.Value(0, 0) == 0 ? "black" : "spiky");
-      ExpectConsistent(fit, fit.Choose(numbers), numbers);
+      ExpectConsistent(fit, fit.Choose(parameters), parameters);
     }
   }
 }
@@ -432,18 +433,18 @@ TEST(ModelChoice, ScatteredSamples) {
   const BrdfSamples samples = Scattered(ValidSamples(TableOf(Material(FByLobe()), kGrid)));
   Fit fit = MakeFit();
   fit.objective = Objective(samples, Spec(2), FindWeighting("compressive"));
-  for (const int numbers : {kPlenty, 60}) {
-    SCOPED_TRACE(numbers);
-    const ChosenModel result = fit.Choose(numbers);
-    ExpectConsistent(fit, result, numbers);
+  for (const int parameters : {kPlenty, 60}) {
+    SCOPED_TRACE(parameters);
+    const ChosenModel result = fit.Choose(parameters);
+    ExpectConsistent(fit, result, parameters);
     EXPECT_LT(result.candidates[result.chosen].E, fit.E());
   }
 }
 
 TEST(ModelChoice, ABudgetBelowOneIsAnError) {
   const Fit fit(RandomTable(kGrid, 1), Spec(0), 1);
-  for (const int numbers : {0, -1, std::numeric_limits<int>::min()}) {
-    EXPECT_THROW(fit.Choose(numbers), Error) << numbers;
+  for (const int parameters : {0, -1, std::numeric_limits<int>::min()}) {
+    EXPECT_THROW(fit.Choose(parameters), Error) << parameters;
   }
 }
 

@@ -53,7 +53,7 @@ EliminationLimits NoLimits(int count) {
   return {.max_rise = std::numeric_limits<double>::infinity(), .max_count = count};
 }
 
-// E after a fit of the numbers that are left.
+// E after a fit of the parameters that are left.
 double Refitted(const Fit& fit, const TableLayout& layout) {
   const Reduction reduction(fit.model.spec(), layout);
   FactorModel start(fit.model.spec());
@@ -76,7 +76,7 @@ TEST(NodeElimination, PredictsTheTrueRise) {
   for (const Elimination& next : OrderOfElimination(fit.at, fit.model, layout, NoLimits(8))) {
     std::erase(layout.of(next.factor, next.table), next.entry);
     const double rise = Refitted(fit, layout) - E;
-    EXPECT_NEAR(next.rise, rise, 0.1 * rise + 1e-6 * E) << layout.num_numbers(fit.model.spec());
+    EXPECT_NEAR(next.rise, rise, 0.1 * rise + 1e-6 * E) << layout.num_parameters(fit.model.spec());
   }
 }
 

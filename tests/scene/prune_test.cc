@@ -79,19 +79,19 @@ Fit MakeFit(const FactorModel& material, double sigma = 0.01, uint64_t seed = 1)
   return MakeFit(Noisy(TableOf(material, kGrid), sigma, seed), 3);
 }
 
-// The model is what its stored numbers say, and E what they give.
+// The model is what its stored parameters say, and E what they give.
 void ExpectConsistent(const Fit& fit, const PrunedModel& pruned) {
   FactorModel expanded = pruned.model;
   ExpandStored(pruned.layout, &expanded);
   EXPECT_TRUE(std::ranges::equal(expanded.parameters(), pruned.model.parameters()));
-  EXPECT_EQ(pruned.numbers, pruned.layout.num_numbers(pruned.model.spec()));
+  EXPECT_EQ(pruned.num_parameters, pruned.layout.num_parameters(pruned.model.spec()));
   const Objective own(fit.objective.samples(), pruned.model.spec(), fit.objective.weighting());
   EXPECT_EQ(pruned.E, own.Value(pruned.model));
 }
 
-// With N = 2000 values and p numbers the E of a fit is about 1 - p / N times that of the truth. So
-// what the 86 numbers of three lobes more than needed gain of the noise is 4 %: with 10 % to spend
-// they go, and what the material has and one number more or less is not enough for stays.
+// With N = 2000 values and p parameters the E of a fit is about 1 - p / N times that of the truth.
+// So what the 86 parameters of three lobes more than needed gain of the noise is 4 %: with 10 % to
+// spend they go, and what the material has and one number more or less is not enough for stays.
 const PruneOptions kGenerous{.max_relative_rise = 0.1};
 
 TEST(Prune, OneLobeStaysOne) {
@@ -105,7 +105,7 @@ TEST(Prune, ALambertianKeepsNone) {
   const Fit fit = MakeFit(Material(0, false));
   const PrunedModel pruned = Prune(fit.objective, fit.model, kGenerous);
   EXPECT_EQ(pruned.model.spec().lobes, 0);
-  EXPECT_EQ(pruned.numbers, 3);
+  EXPECT_EQ(pruned.num_parameters, 3);
   ExpectConsistent(fit, pruned);
 }
 
@@ -113,7 +113,7 @@ TEST(Prune, ThreeDistinctLobesStayThree) {
   const Fit fit = MakeFit(Material(3, false), 0.001);
   const PrunedModel pruned = Prune(fit.objective, fit.model, kGenerous);
   EXPECT_EQ(pruned.model.spec().lobes, 3);
-  EXPECT_LT(pruned.numbers, fit.model.spec().num_parameters());
+  EXPECT_LT(pruned.num_parameters, fit.model.spec().num_parameters());
   ExpectConsistent(fit, pruned);
 }
 
@@ -144,7 +144,7 @@ TEST(Prune, NeverOverrunsTheBudget) {
       for (const double rise : {0.0, 1e-4, 0.01, 0.5}) {
         const PrunedModel pruned = Prune(fit.objective, fit.model, {.max_relative_rise = rise});
         EXPECT_LE(pruned.E, E * (1 + rise) * (1 + 1e-12)) << sigma << " " << seed << " " << rise;
-        EXPECT_LE(pruned.numbers, fit.model.spec().num_parameters());
+        EXPECT_LE(pruned.num_parameters, fit.model.spec().num_parameters());
         ExpectConsistent(fit, pruned);
       }
     }
@@ -159,17 +159,17 @@ TEST(Prune, NeverLosesMorePsnrThanItMay) {
         Prune(fit.objective, fit.model, {.max_relative_rise = kInfinity, .max_psnr_drop_db = drop});
     const Objective own(fit.objective.samples(), pruned.model.spec(), fit.objective.weighting());
     EXPECT_GE(ScoreModel(own, pruned.model).psnr_db, psnr - drop);
-    EXPECT_LT(pruned.numbers, fit.model.spec().num_parameters());
+    EXPECT_LT(pruned.num_parameters, fit.model.spec().num_parameters());
   }
 }
 
 TEST(Prune, ABudgetOfNumbersIsMet) {
   const Fit fit = MakeFit(Material(2, false), 0.02);
   double E = 0;
-  for (const int numbers : {90, 50, 20, 8, 1}) {
-    const PrunedModel pruned = Prune(fit.objective, fit.model, {.max_numbers = numbers});
-    EXPECT_LE(pruned.numbers, numbers);
-    EXPECT_GE(pruned.E, E) << numbers;  // fewer numbers reach no less
+  for (const int parameters : {90, 50, 20, 8, 1}) {
+    const PrunedModel pruned = Prune(fit.objective, fit.model, {.max_parameters = parameters});
+    EXPECT_LE(pruned.num_parameters, parameters);
+    EXPECT_GE(pruned.E, E) << parameters;  // fewer parameters reach no less
     E = pruned.E;
     ExpectConsistent(fit, pruned);
   }
@@ -235,7 +235,7 @@ TEST(Prune, EverySwitchLeavesItsPartAlone) {
   for (const auto& nodes : pruned.layout.nodes[1]) EXPECT_EQ(nodes.size(), spec.f_axis.size);
   options.lobes = options.colour = options.shadowing = false;
   pruned = Prune(fit.objective, fit.model, options);
-  EXPECT_EQ(pruned.numbers, spec.num_parameters());
+  EXPECT_EQ(pruned.num_parameters, spec.num_parameters());
   for (int k = 0; k < spec.num_parameters(); ++k) {
     EXPECT_DOUBLE_EQ(pruned.model.parameters()[k], fit.model.parameters()[k]);
   }
@@ -285,7 +285,7 @@ TEST(Prune, OtherSharingAndScatteredSamples) {
   MakeSolver("newton")->Solve(objective, {.max_iterations = 10, .diagnose = false}, &model);
   const PrunedModel pruned = Prune(objective, model, {});
   EXPECT_LE(pruned.E, 1.01 * objective.Value(model));
-  EXPECT_LT(pruned.numbers, model.spec().num_parameters());
+  EXPECT_LT(pruned.num_parameters, model.spec().num_parameters());
 }
 
 TEST(Prune, DegenerateMeasurements) {
@@ -301,7 +301,7 @@ TEST(Prune, DegenerateMeasurements) {
     const double E = fit.objective.Value(fit.model);
     const PrunedModel pruned = Prune(fit.objective, fit.model, {});
     EXPECT_LE(pruned.E, 1.01 * E);
-    EXPECT_LE(Prune(fit.objective, fit.model, {.max_numbers = 10}).numbers, 10);
+    EXPECT_LE(Prune(fit.objective, fit.model, {.max_parameters = 10}).num_parameters, 10);
     // Not a fit at all.
     FactorModel far = RandomModel(fit.model.spec(), 1, 3);
     EXPECT_LE(Prune(fit.objective, far, {}).E, 1.01 * fit.objective.Value(far));
@@ -312,7 +312,7 @@ TEST(Prune, BadBudgets) {
   const Fit fit = MakeFit(Material(0, false));
   for (const PruneOptions& options : {PruneOptions{.max_relative_rise = std::nan("")},
                                       {.max_psnr_drop_db = std::nan("")},
-                                      {.max_numbers = 0}}) {
+                                      {.max_parameters = 0}}) {
     EXPECT_THROW(Prune(fit.objective, fit.model, options), Error);
   }
 }

@@ -37,9 +37,9 @@ SceneMaterial Material(const std::string& synth) {
 void ExpectSame(const MaterialFit& a, const MaterialFit& b) {
   EXPECT_THAT(a.file.model.parameters(), testing::ElementsAreArray(b.file.model.parameters()));
   EXPECT_EQ(a.file.layout, b.file.layout);
-  EXPECT_EQ(a.file.dead, b.file.dead);
-  EXPECT_EQ(a.numbers, b.numbers);
-  EXPECT_EQ(a.full_numbers, b.full_numbers);
+  EXPECT_EQ(a.file.unobserved, b.file.unobserved);
+  EXPECT_EQ(a.num_parameters, b.num_parameters);
+  EXPECT_EQ(a.full_parameters, b.full_parameters);
   EXPECT_EQ(a.valid_samples, b.valid_samples);
   EXPECT_EQ(a.used_samples, b.used_samples);
   EXPECT_EQ(a.full.objective, b.full.objective);
@@ -58,8 +58,8 @@ TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
   const auto fit = FitMaterial(Material("felt"), Settings(), 1);
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->name, "felt");
-  EXPECT_EQ(fit->full_numbers, ModelSpec::SharedFactors(1).num_parameters());
-  EXPECT_LT(fit->numbers, fit->full_numbers);
+  EXPECT_EQ(fit->full_parameters, ModelSpec::SharedFactors(1).num_parameters());
+  EXPECT_LT(fit->num_parameters, fit->full_parameters);
   EXPECT_LT(fit->used_samples, fit->valid_samples);
   EXPECT_LE(fit->pruned.objective, 1.01 * fit->full.objective * (1 + 1e-12));
   EXPECT_FALSE(fit->decisions.empty());

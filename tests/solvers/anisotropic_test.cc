@@ -17,7 +17,7 @@
 namespace trilobe {
 namespace {
 
-// Few nodes, so that the literal solvers take their time in a test.
+// Few nodes, so that the reference solvers take their time in a test.
 ModelSpec SmallSpec(int lobes) {
   ModelSpec spec = ModelSpec::Anisotropic(lobes);
   spec.d_axis = Axis::Polar({0, 15, 30, 45}, 6);
@@ -43,38 +43,38 @@ Objective NoisyObjective(const ModelSpec& spec, int num_threads = 1) {
   return {PolarSamples(Cloth(spec), 4, 6, 0.2), spec, FindWeighting("appearance"), num_threads};
 }
 
-TEST(Anisotropic, NormalEquationsAreTheLiteralOnes) {
+TEST(Anisotropic, NormalEquationsAreThoseOfTheReference) {
   const ModelSpec spec = SmallSpec(2);
   const Objective objective = NoisyObjective(spec, 2);
   const FactorModel model = RandomModel(spec, 2);
   for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
-    QuadraticModel fast, literal;
+    QuadraticModel fast, reference;
     NormalEquations(objective).Evaluate(model, hessian, &fast);
-    EvaluateLiterally(objective, model, hessian, &literal);
-    ASSERT_EQ(fast.H.size(), literal.H.size());
+    EvaluateReference(objective, model, hessian, &reference);
+    ASSERT_EQ(fast.H.size(), reference.H.size());
     double largest = 0;
-    for (const double h : literal.H) largest = std::max(largest, std::abs(h));
+    for (const double h : reference.H) largest = std::max(largest, std::abs(h));
     for (size_t k = 0; k < fast.H.size(); ++k) {
-      ASSERT_NEAR(fast.H[k], literal.H[k], 1e-12 * largest);
+      ASSERT_NEAR(fast.H[k], reference.H[k], 1e-12 * largest);
     }
-    EXPECT_NEAR(fast.objective / literal.objective, 1, 1e-12);
+    EXPECT_NEAR(fast.objective / reference.objective, 1, 1e-12);
   }
 }
 
-TEST(Anisotropic, AwlsIsTheLiteralOne) {
+TEST(Anisotropic, AwlsIsTheReference) {
   const ModelSpec spec = SmallSpec(2);
   const Objective objective = NoisyObjective(spec);
   const FactorModel start = FindInitialModel("random").make(objective, 3);
-  FactorModel fast = start, literal = start;
+  FactorModel fast = start, reference = start;
   const SolverOptions options{.max_iterations = 10, .relative_decrease_tolerance = 0};
   const auto fast_run = MakeSolver("awls")->Solve(objective, options, &fast);
-  const auto literal_run = MakeSolver("awls_literal")->Solve(objective, options, &literal);
-  ASSERT_EQ(fast_run.trace.size(), literal_run.trace.size());
+  const auto reference_run = MakeSolver("awls_literal")->Solve(objective, options, &reference);
+  ASSERT_EQ(fast_run.trace.size(), reference_run.trace.size());
   for (size_t k = 0; k < fast_run.trace.size(); ++k) {
-    const double E = literal_run.trace[k].objective;
+    const double E = reference_run.trace[k].objective;
     EXPECT_NEAR(fast_run.trace[k].objective, E, 1e-9 * E) << k;
   }
-  EXPECT_LT(literal_run.final_objective, 0.5 * literal_run.initial_objective);
+  EXPECT_LT(reference_run.final_objective, 0.5 * reference_run.initial_objective);
 }
 
 TEST(Anisotropic, AwlsNeverRaisesEElementByElement) {

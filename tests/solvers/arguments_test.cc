@@ -45,7 +45,7 @@ TEST_P(SolverArguments, StartsThatAreNoModel) {
     for (const size_t k : {size_t{0}, size_t{5}, size_t{12}}) {
       FactorModel model = RandomModel(spec_, 1);
       model.parameters()[k] = bad;
-      EXPECT_THAT(ErrorFrom(model), HasSubstr("number " + std::to_string(k))) << bad;
+      EXPECT_THAT(ErrorFrom(model), HasSubstr("parameter " + std::to_string(k))) << bad;
     }
   }
   for (const NamedSpec& other : TestSpecs(kGrid)) {
@@ -114,7 +114,7 @@ TEST(SolverRoom, ModelsOfAnotherSpec) {
   EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &other); }), HasSubstr("another spec"));
   FactorModel bad(objective.spec());
   bad.d()[1] = kNaN;
-  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("number 1"));
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("parameter 1"));
 }
 
 }  // namespace

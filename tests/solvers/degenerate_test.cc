@@ -1,5 +1,5 @@
 // Inputs that no measurement has, and starts that nobody would choose: no solver crashes, hangs,
-// makes E worse or leaves the numbers that a model may have.
+// makes E worse or leaves the parameters that a model may have.
 #include <gtest/gtest.h>
 
 #include <algorithm>

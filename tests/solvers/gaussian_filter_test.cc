@@ -75,15 +75,15 @@ TEST(GaussianFilter, SmoothsGAlone) {
   }
 }
 
-// Dead nodes are neither changed nor read.
-TEST(GaussianFilter, SkipsDeadNodes) {
+// Unobserved nodes are neither changed nor read.
+TEST(GaussianFilter, SkipsUnobservedNodes) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   FactorModel model(spec);
   std::ranges::copy(std::vector<double>{1, 777, 2, 8, 777, 777, 4},
                     model.table(Factor::kG, 0).begin());
   std::vector<double> coverage = Live(spec);
   const int first = model.TableOffset(Factor::kG, 0);
-  for (const int dead : {1, 4, 5}) coverage[first + dead] = 0;
+  for (const int unobserved : {1, 4, 5}) coverage[first + unobserved] = 0;
   SmoothG(0.5, coverage, &model);  // cut at two nodes
   const auto G = model.table(Factor::kG, 0);
   const double e1 = std::exp(-2.0), e2 = std::exp(-8.0);
@@ -91,7 +91,7 @@ TEST(GaussianFilter, SkipsDeadNodes) {
   EXPECT_NEAR(G[2], (2 + 8 * e1 + 1 * e2) / (1 + e1 + e2), 1e-14);
   EXPECT_NEAR(G[3], (8 + 2 * e1) / (1 + e1), 1e-14);
   EXPECT_EQ(G[6], 4);
-  for (const int dead : {1, 4, 5}) EXPECT_EQ(G[dead], 777);
+  for (const int unobserved : {1, 4, 5}) EXPECT_EQ(G[unobserved], 777);
 }
 
 TEST(GaussianFilter, AnyWidth) {

@@ -1,6 +1,6 @@
 // What must not matter to a fit, to the last bit: the unit of the measurement and, but for Ceres'
 // sums, the number of threads and whether it has been done before. And what must stay as it is:
-// dead bins.
+// unobserved bins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -110,7 +110,7 @@ TEST(Invariance, ThreadsThatThereAreNot) {
   }
 }
 
-TEST(Invariance, DeadBinsStayAsTheyWere) {
+TEST(Invariance, UnobservedBinsStayAsTheyWere) {
   BrdfTable table = RandomTable(kGrid, 2);
   for (int bin = 0; bin < kGrid.size(); ++bin) {
     const int h = bin / (kGrid.theta_d * kGrid.phi_d), d = bin / kGrid.phi_d % kGrid.theta_d;
@@ -121,8 +121,8 @@ TEST(Invariance, DeadBinsStayAsTheyWere) {
   }
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     const Objective objective = MakeObjective(table, spec);
-    const std::vector<bool> dead = DeadParameters(objective.coverage());
-    EXPECT_EQ(std::ranges::count(dead, true) > 0, spec.lobes > 0);
+    const std::vector<bool> unobserved = UnobservedParameters(objective.coverage());
+    EXPECT_EQ(std::ranges::count(unobserved, true) > 0, spec.lobes > 0);
     const FactorModel start = RandomModel(spec, 3);
     for (const SolverEntry& solver : kLibrarySolvers) {
       for (const double sigma : {0.0, 1.0}) {
@@ -131,7 +131,7 @@ TEST(Invariance, DeadBinsStayAsTheyWere) {
         options.g_filter_sigma = sigma;
         solver.make()->Solve(objective, options, &model);
         for (int k = 0; k < spec.num_parameters(); ++k) {
-          if (!dead[k]) continue;
+          if (!unobserved[k]) continue;
           EXPECT_EQ(model.parameters()[k], start.parameters()[k])
               << name << ", " << solver.name << ", parameter " << k;
         }

@@ -62,7 +62,7 @@ void ExpectRightFit(const SolverEntry& solver, const Objective& objective) {
   EXPECT_GT(summary.final_objective, 0);
   ASSERT_TRUE(summary.diagnosis);
   EXPECT_TRUE(std::isfinite(summary.diagnosis->optimality));
-  EXPECT_NO_THROW(CheckNumbers(model));
+  EXPECT_NO_THROW(CheckParameters(model));
   const ScoreReport score = ScoreModel(objective, model);
   // For awls_gss G is linear between nodes, which on so coarse a grid are far apart: it ends
   // higher.

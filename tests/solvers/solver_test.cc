@@ -6,7 +6,6 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/solvers/option_values.h"
 
 namespace trilobe {
 namespace {
@@ -80,13 +79,13 @@ TEST(Solver, ReportsInFull) {
   }
   summary.diagnosis = {.gradient = {},
                        .optimality = 0.125,
-                       .live_parameters = 9,
+                       .observed_parameters = 9,
                        .rank = 7,
                        .rank_tolerance = 1e-9,
                        .condition = 1e6};
   summary.phases.reading = 0.25;
   const std::string full = summary.FullReport();
-  EXPECT_THAT(full, testing::HasSubstr("optimality 0.125, rank 7 of 9 live parameters"));
+  EXPECT_THAT(full, testing::HasSubstr("optimality 0.125, rank 7 of 9 observed parameters"));
   EXPECT_THAT(full, testing::HasSubstr("phases       0.25 s reading, 1.5 s solving"));
 }
 
@@ -95,28 +94,6 @@ TEST(Solver, ReportsWhatIsThere) {
   EXPECT_THAT(SolverSummary().FullReport(), testing::HasSubstr("options      max_iterations 100"));
   EXPECT_EQ(SolverSummary().BestIteration(), 0);
   EXPECT_EQ(SolverSummary().RejectedSteps(), 0);
-}
-
-TEST(Solver, NamesOptionsThatExist) {
-  for (const SolverEntry& entry : Solvers()) {
-    const size_t common = OptionValues({}, {}).size();
-    EXPECT_EQ(OptionValues({}, entry.options).size(), common + entry.options.size()) << entry.name;
-  }
-}
-
-TEST(OptionValues, AreThoseThatTheSolverReads) {
-  SolverOptions options;
-  options.positivity = Positivity::kSquares;
-  options.seed = 0xffffffffffffffff;
-  const std::vector<std::string> particular = {"seed", "positivity"};
-  const std::vector<OptionValue> values = OptionValues(options, particular);
-  ASSERT_EQ(values.size(), 7U);
-  std::vector<std::string> texts;
-  for (const OptionValue& value : values) texts.push_back(value.name + "=" + ToText(value));
-  EXPECT_THAT(texts, testing::ElementsAre("max_iterations=100", "max_seconds=inf",
-                                          "relative_decrease_tolerance=1e-05",
-                                          "optimality_tolerance=1e-10", "diagnose=true",
-                                          "positivity=squares", "seed=18446744073709551615"));
 }
 
 TEST(Solver, AllFitScatteredSamples) {

@@ -170,7 +170,7 @@ TEST(SquaredCondition, IsWarnedOfWhereItIsTooLarge) {
   const SolverSummary good = diagnosed(0.3);
   ASSERT_TRUE(good.diagnosis);
   EXPECT_EQ(good.diagnosis->unresolved, 0);
-  EXPECT_EQ(good.diagnosis->rank + kGaugeDimensions, good.diagnosis->live_parameters);
+  EXPECT_EQ(good.diagnosis->rank + kGaugeDimensions, good.diagnosis->observed_parameters);
   EXPECT_THAT(good.notes, testing::IsEmpty());
 
   const SolverSummary near = diagnosed(0.02);

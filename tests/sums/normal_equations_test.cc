@@ -32,7 +32,7 @@ void ExpectEqual(const QuadraticModel& actual, const QuadraticModel& expected,
   EXPECT_EQ(wrong, 0) << what;
 }
 
-// Sets a third of all numbers to 0, the bound.
+// Sets a third of all parameters to 0, the bound.
 void PutSomeAtZero(FactorModel* model) {
   Random random(5);
   for (double& x : model->parameters()) {
@@ -40,7 +40,7 @@ void PutSomeAtZero(FactorModel* model) {
   }
 }
 
-TEST(NormalEquations, CondensedEqualsLiteral) {
+TEST(NormalEquations, CondensedEqualsReference) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     for (const char* const weighting : {"compressive", "uniform"}) {
       const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, weighting);
@@ -51,7 +51,7 @@ TEST(NormalEquations, CondensedEqualsLiteral) {
         QuadraticModel actual, expected;
         for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
           equations.Evaluate(model, hessian, &actual);
-          EvaluateLiterally(objective, model, hessian, &expected);
+          EvaluateReference(objective, model, hessian, &expected);
           ExpectEqual(actual, expected,
                       name + ", " + weighting + (zeros ? ", with zeros" : "") +
                           (hessian == Hessian::kNewton ? ", Newton" : ""));
@@ -61,7 +61,7 @@ TEST(NormalEquations, CondensedEqualsLiteral) {
   }
 }
 
-TEST(NormalEquations, OfScatteredSamplesEqualLiteral) {
+TEST(NormalEquations, OfScatteredSamplesEqualReference) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     BrdfSamples samples = Scattered(ValidSamples(RandomTable(kGrid, 3)));
     for (HalfDiffAngles& at : samples.angles) at.theta_h *= 0.9;
@@ -77,7 +77,7 @@ TEST(NormalEquations, OfScatteredSamplesEqualLiteral) {
           by_threads.emplace_back();
           equations.Evaluate(model, hessian, &by_threads.back());
           equations.Evaluate(model, hessian, &by_threads.back());  // anew, in the same place
-          EvaluateLiterally(objective, model, hessian, &expected);
+          EvaluateReference(objective, model, hessian, &expected);
           ExpectEqual(by_threads.back(), expected, name + (zeros ? ", with zeros" : ""));
         }
       }
@@ -91,7 +91,7 @@ TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
   const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
   const FactorModel model = RandomModel(spec, 6);
   QuadraticModel at;
-  EvaluateLiterally(objective, model, Hessian::kNewton, &at);
+  EvaluateReference(objective, model, Hessian::kNewton, &at);
   for (int k = 0; k < spec.num_parameters(); ++k) {
     constexpr double kStep = 1e-5;
     FactorModel below = model, above = model;
@@ -100,8 +100,8 @@ TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
     const double slope = (objective.Value(above) - objective.Value(below)) / (2 * kStep);
     EXPECT_NEAR(2 * at.gradient[k], slope, 1e-6 * at.objective) << k;
     QuadraticModel at_below, at_above;
-    EvaluateLiterally(objective, below, Hessian::kNewton, &at_below);
-    EvaluateLiterally(objective, above, Hessian::kNewton, &at_above);
+    EvaluateReference(objective, below, Hessian::kNewton, &at_below);
+    EvaluateReference(objective, above, Hessian::kNewton, &at_above);
     for (int l = 0; l < spec.num_parameters(); ++l) {
       const double curvature = (at_above.gradient[l] - at_below.gradient[l]) / (2 * kStep);
       EXPECT_NEAR(at.H[static_cast<size_t>(k) * spec.num_parameters() + l], curvature,
@@ -127,7 +127,7 @@ TEST(NormalEquations, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(NormalEquations, DeadBinsAreZero) {
+TEST(NormalEquations, UnobservedBinsAreZero) {
   BrdfTable table = RandomTable(kGrid, 3);
   InvalidateThetaH(2, 0, &table);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
@@ -135,14 +135,14 @@ TEST(NormalEquations, DeadBinsAreZero) {
   QuadraticModel result;
   NormalEquations(objective).Evaluate(RandomModel(spec, 4), Hessian::kNewton, &result);
   const size_t n = result.gradient.size();
-  int dead = 0;
+  int unobserved = 0;
   for (size_t k = 0; k < n; ++k) {
     if (objective.coverage()[k] > 0) continue;
-    ++dead;
+    ++unobserved;
     EXPECT_EQ(result.gradient[k], 0);
     for (size_t l = 0; l < n; ++l) EXPECT_EQ(result.H[k * n + l], 0);
   }
-  EXPECT_GE(dead, 2);
+  EXPECT_GE(unobserved, 2);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ class MatchTest(unittest.TestCase):
         self.assertAlmostEqual(lobes.scores(lobes.Model(a), lobes.Model(b))[0, 0],
                                s[0] / math.sqrt(s @ s))
 
-    def test_dead_entries_do_not_count(self):
+    def test_unobserved_entries_do_not_count(self):
         a = content(1)
         b = {**a, "D": [[*a["D"][0][:-1], 1e6]], "dead": {"D": [[BINS - 1]], "F": [], "G": []}}
         self.assertAlmostEqual(lobes.scores(lobes.Model(a), lobes.Model(b))[0, 0], 1)

@@ -24,7 +24,7 @@ class Awls : public Solver {
 
 SolverEntry AwlsEntry() {
   return {.name = "awls",
-          .description = "alternating weighted least squares, one number at a time",
+          .description = "alternating weighted least squares, one parameter at a time",
           .reference = "Peng, Zheng, Lv, section 2.3; exact sums: docs/method.md",
           .options = {"g_filter_sigma"},
           .make = [] { return std::make_unique<Awls>(); }};

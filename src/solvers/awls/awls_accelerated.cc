@@ -73,10 +73,10 @@ class AndersonMemory {
 };
 
 // Models as vectors that can be combined: in canonical form, as scale drifts between the factors
-// from sweep to sweep, and with dead bins left out.
+// from sweep to sweep, and with unobserved bins left out.
 class Coordinates {
  public:
-  // Dead bins of all models are those of `start`.
+  // Unobserved bins of all models are those of `start`.
   Coordinates(const Objective& objective, const FactorModel& start)
       : coverage_(objective.coverage()), start_(start) {}
 
@@ -87,7 +87,7 @@ class Coordinates {
     return x;
   }
 
-  // Numbers below 0 become 0. None if a number is too large for a model.
+  // Parameters below 0 become 0. None if one is too large for a model.
   std::optional<FactorModel> ToModel(const VectorXd& x) const {
     FactorModel model = start_;
     for (Eigen::Index k = 0; k < x.size(); ++k) {
@@ -99,7 +99,7 @@ class Coordinates {
   }
 
   // A diagonal metric that makes parts of a model commensurable: changes relative to the mean of d,
-  // of a lobe's s or of a table, by the root of the weight that the data give a number.
+  // of a lobe's s or of a table, by the root of the weight that the data give a parameter.
   VectorXd Metric(const VectorXd& x) const {
     VectorXd W = VectorXd::Zero(x.size());
     for (const auto [begin, size] : start_.Parts()) {

@@ -80,9 +80,9 @@ SampleLists SamplesByEntry(const std::vector<WeightedSample>& samples, const Mod
   return lists;
 }
 
-class LiteralSweep {
+class ReferenceSweep {
  public:
-  LiteralSweep(const Objective& objective, const SolverOptions& options)
+  ReferenceSweep(const Objective& objective, const SolverOptions& options)
       : objective_(objective), options_(options), samples_(objective.weighted_samples()) {
     for (const Factor factor : kFactors) {
       by_entry_.push_back(SamplesByEntry(samples_, objective.spec(), factor));
@@ -157,7 +157,7 @@ class AwlsLiteral : public Solver {
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("awls_literal", objective, options, model);
-    std::optional<LiteralSweep> sweep;
+    std::optional<ReferenceSweep> sweep;
     {
       const ScopedTimer timer = run.Time(&PhaseSeconds::preparing);
       sweep.emplace(objective, options);
@@ -175,7 +175,7 @@ class AwlsLiteral : public Solver {
 
 SolverEntry AwlsLiteralEntry() {
   return {.name = "awls_literal",
-          .description = "awls, element by element over the samples: slow, on any samples",
+          .description = "awls from every sample, element by element: slow, the reference for awls",
           .reference = "Peng, Zheng, Lv, section 2.3",
           .options = {"g_filter_sigma"},
           .make = [] { return std::make_unique<AwlsLiteral>(); }};

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// Sweeps from exact sums, on a grid: the same element updates in the same order as the literal one,
+// Sweeps from exact sums, on a grid: the same element updates in the same order as the reference,
 // but with one pass over the samples for d, s, D, F (CellSums) and one for each table of G
 // (ShadowingSums), instead of one for each element's share of them. Several rounds of blocks take
 // no further pass.

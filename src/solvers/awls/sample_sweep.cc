@@ -3,11 +3,11 @@
 #include <array>
 #include <cstddef>
 
-#include "trilobe/math/bounded_quadratic.h"
+#include "trilobe/math/nonnegative_least_squares.h"
 
 namespace trilobe {
 
-static_assert(1 + kMaxLobes <= kMaxBoundedUnknowns);
+static_assert(1 + kMaxLobes <= kMaxNonnegativeUnknowns);
 
 SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
                          PhaseSeconds* phases)
@@ -26,15 +26,15 @@ void SampleSweep::Accumulate(Kind kind, const FactorModel& model) {
   equations_[static_cast<int>(kind)].Evaluate(model, Hessian::kGaussNewton, &at_);
 }
 
-void SampleSweep::Update(std::span<const int> numbers, int first, double E, FactorModel* model) {
-  const size_t size = numbers.size(), n = at_.gradient.size();
-  std::array<double, kMaxBoundedUnknowns> g{}, steps{};
-  std::array<double, kMaxBoundedUnknowns * kMaxBoundedUnknowns> H{};
-  std::array<double*, kMaxBoundedUnknowns> elements{};
+void SampleSweep::Update(std::span<const int> places, int first, double E, FactorModel* model) {
+  const size_t size = places.size(), n = at_.gradient.size();
+  std::array<double, kMaxNonnegativeUnknowns> g{}, steps{};
+  std::array<double, kMaxNonnegativeUnknowns * kMaxNonnegativeUnknowns> H{};
+  std::array<double*, kMaxNonnegativeUnknowns> elements{};
   for (size_t k = 0; k < size; ++k) {
-    elements[k] = &model->parameters()[first + numbers[k]];
-    g[k] = -at_.gradient[numbers[k]];
-    for (size_t l = 0; l < size; ++l) H[k * size + l] = at_.H[numbers[k] * n + numbers[l]];
+    elements[k] = &model->parameters()[first + places[k]];
+    g[k] = -at_.gradient[places[k]];
+    for (size_t l = 0; l < size; ++l) H[k * size + l] = at_.H[places[k] * n + places[l]];
   }
   if (!MoveToMinimum({H.data(), size * size}, {g.data(), size}, E, {elements.data(), size},
                      steps.data())) {
@@ -42,15 +42,15 @@ void SampleSweep::Update(std::span<const int> numbers, int first, double E, Fact
   }
   for (size_t k = 0; k < size; ++k) {
     if (steps[k] == 0) continue;
-    const double* const row = &at_.H[numbers[k] * n];
+    const double* const row = &at_.H[places[k] * n];
     for (size_t l = 0; l < n; ++l) at_.gradient[l] += steps[k] * row[l];
   }
 }
 
 void SampleSweep::operator()(const OnElement& on_element, FactorModel* model) {
-  const auto update = [&](int number, int first) {
+  const auto update = [&](int place, int first) {
     const ScopedTimer timer(&phases_->linear_algebra);
-    Update({&number, 1}, first, 0, model);
+    Update({&place, 1}, first, 0, model);
     if (on_element) on_element(*model);
   };
   Accumulate(Kind::kAmplitudes, *model);
@@ -65,17 +65,17 @@ void SampleSweep::operator()(const OnElement& on_element, FactorModel* model) {
 
 void SampleSweep::UpdateBlocks(double E, int rounds, const OnElement& on_block,
                                FactorModel* model) {
-  const auto update = [&](std::span<const int> numbers, int first) {
+  const auto update = [&](std::span<const int> places, int first) {
     const ScopedTimer timer(&phases_->linear_algebra);
-    Update(numbers, first, E, model);
+    Update(places, first, E, model);
     if (on_block) on_block(*model);
   };
-  std::array<int, kMaxBoundedUnknowns> numbers{};
+  std::array<int, kMaxNonnegativeUnknowns> places{};
   for (int round = 0; round < rounds; ++round) {
     Accumulate(Kind::kAmplitudes, *model);
     for (int c = 0; c < kChannels; ++c) {
-      for (int a = 0; a <= spec_.lobes; ++a) numbers[a] = kChannels * a + c;
-      update({numbers.data(), static_cast<size_t>(1 + spec_.lobes)}, 0);
+      for (int a = 0; a <= spec_.lobes; ++a) places[a] = kChannels * a + c;
+      update({places.data(), static_cast<size_t>(1 + spec_.lobes)}, 0);
     }
     for (const Factor factor : {Factor::kD, Factor::kF}) {
       // Tables that serve the same channels: those of the lobes.
@@ -86,8 +86,8 @@ void SampleSweep::UpdateBlocks(double E, int rounds, const OnElement& on_block,
       const int table_size = spec_.table_size(factor);
       for (int k = 0; k < table_size; ++k) {
         for (int c = 0; c < groups; ++c) {
-          for (int m = 0; m < count; ++m) numbers[m] = spec_.table(factor, m, c) * table_size + k;
-          update({numbers.data(), static_cast<size_t>(count)}, model->TableOffset(factor, 0));
+          for (int m = 0; m < count; ++m) places[m] = spec_.table(factor, m, c) * table_size + k;
+          update({places.data(), static_cast<size_t>(count)}, model->TableOffset(factor, 0));
         }
       }
     }

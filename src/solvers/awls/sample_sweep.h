@@ -14,7 +14,7 @@
 namespace trilobe {
 
 // Sweeps from the samples themselves, whatever tables they read and where: the same element updates
-// in the same order as the literal one. In d and s, in D, and in F E is quadratic, so one pass over
+// in the same order as the reference. In d and s, in D, and in F E is quadratic, so one pass over
 // the samples for each of the three gives sums from which all of its elements can be updated. G
 // goes node by node (SampleShadowing).
 class SampleSweep : public Sweep {
@@ -28,10 +28,10 @@ class SampleSweep : public Sweep {
   void UpdateBlocks(double E, int rounds, const OnElement& on_block, FactorModel* model) override;
   void UpdateG(const OnElement& on_element, FactorModel* model) override;
 
-  // Sets at_ to E around the model as a function of the numbers of one kind.
+  // Sets at_ to E around the model as a function of the parameters of one kind.
   void Accumulate(Kind kind, const FactorModel& model);
-  // Puts numbers of that kind, by their places in at_ and in the model, where E is lowest.
-  void Update(std::span<const int> numbers, int first, double E, FactorModel* model);
+  // Puts parameters of that kind, by their places in at_ and in the model, where E is lowest.
+  void Update(std::span<const int> places, int first, double E, FactorModel* model);
 
   const ModelSpec spec_;
   PhaseSeconds* const phases_;

@@ -6,7 +6,7 @@
 namespace trilobe {
 
 void Sweep::InBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model) {
-  // What other numbers do to E: docs/solvers.md.
+  // What other parameters do to E: docs/solvers.md.
   constexpr int kElementSweeps = 3;
   if (last.iteration < kElementSweeps) {
     (*this)(on_block, model);

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// Sweeps of AWLS (paper 2.3) over all numbers of a model, each put where E is lowest with the
+// Sweeps of AWLS (paper 2.3) over all parameters of a model, each put where E is lowest with the
 // others held, in the order d, s, D, F, G.
 class Sweep {
  public:
@@ -23,10 +23,10 @@ class Sweep {
   virtual void operator()(const OnElement& on_element, FactorModel* model) = 0;
 
   // Updates d, s, D, F in blocks several times, and every node of G once. The blocks, in each of
-  // which E is quadratic (MinimizeBounded): d and s of one channel, then an entry of D of all
-  // lobes, then one of F. The first sweeps of a run go element by element all the same: as long as
-  // G is far off, exact blocks settle too early which lobe is what. `last` is the record of the
-  // model as it comes. `on_block`, if set, sees it after each block and node.
+  // which E is quadratic (SolveNonnegativeLeastSquares): d and s of one channel, then an entry of D
+  // of all lobes, then one of F. The first sweeps of a run go element by element all the same: as
+  // long as G is far off, exact blocks settle too early which lobe is what. `last` is the record of
+  // the model as it comes. `on_block`, if set, sees it after each block and node.
   void InBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model);
 
   // Updates those blocks once, and not G. E: of the model as it comes.

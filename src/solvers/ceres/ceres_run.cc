@@ -132,7 +132,7 @@ FactorModel CeresParameters::Model(FactorModel p) const {
     for (double& x : p.parameters()) x *= x;
   }
   FactorModel model = Scaled(std::move(p), value_unit_);
-  CopyDeadParameters(objective_.coverage(), start_, &model);
+  CopyUnobservedParameters(objective_.coverage(), start_, &model);
   return model;
 }
 

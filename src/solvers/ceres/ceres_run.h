@@ -15,13 +15,13 @@ class Problem;
 
 namespace trilobe {
 
-// A model's numbers x as Ceres sees them. d and s are measured in the power of two next to the
+// A model's parameters x as Ceres sees them. d and s are measured in the power of two next to the
 // weighted root mean square of the data, and residuals in that next to theirs at a black model,
 // since Ceres' scaling of columns and its damping contain absolute constants. x >= 0 is kept by
-// bounds or, with squares, by Ceres' numbers being p, x = p^2: a number at 0 stays there.
+// bounds or, with squares, by Ceres' parameters being p, x = p^2: a parameter at 0 stays there.
 class CeresParameters {
  public:
-  // Whether the cost function holds numbers on their bounds (IsHeld).
+  // Whether the cost function holds parameters on their bounds (IsHeld).
   enum class ActiveSet { kNone, kInCost };
 
   // Takes from the run's options whether they are squares. Ceres itself has no active set: where
@@ -32,17 +32,18 @@ class CeresParameters {
   double residual_unit() const { return residual_unit_; }  // E becomes E / residual_unit^2
   bool squares() const { return squares_; }
 
-  // True for a number that is 0 and that a lower E would push below, with dE/dx given, where there
-  // is an active set. As Ceres would project its step only after it is made for all numbers
-  // together, such a number spoils the steps of the others: it is to have no derivative.
+  // True for a parameter that is 0 and that a lower E would push below, with dE/dx given, where
+  // there is an active set. As Ceres would project its step only after it is made for all
+  // parameters together, such a parameter spoils the steps of the others: it is to have no
+  // derivative.
   bool IsHeld(double p, double gradient) const { return holds_ && p <= 0 && gradient > 0; }
 
-  // The starting point in Ceres' numbers, each in the place of the model's.
+  // The starting point in Ceres' parameters, each in the place of the model's.
   FactorModel Start() const;
-  // The model of such numbers. Dead bins are the starting point's, to the last bit.
+  // The model of such parameters. Unobserved bins are the starting point's, to the last bit.
   FactorModel Model(FactorModel p) const;
   // 0 <= x <= kMaxParameter, or the start if that is above, for a block of the problem that holds
-  // such numbers of the starting point; nothing with squares.
+  // such parameters of the starting point; nothing with squares.
   void SetBounds(std::span<double> block, ceres::Problem* problem) const;
 
  private:

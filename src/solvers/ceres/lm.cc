@@ -30,7 +30,7 @@ class CondensedCost : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(n);
   }
 
-  // The model of Ceres' numbers p, and E if it was the last that residuals were asked for.
+  // The model of Ceres' parameters p, and E if it was the last that residuals were asked for.
   CeresPoint Point(const double* p) const {
     CeresPoint point{.model = Model(p)};
     if (IsLast(p)) point.objective = last_objective_;

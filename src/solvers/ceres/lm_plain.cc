@@ -109,20 +109,20 @@ class PlainProblem {
     problem_.AddResidualBlock(cost, nullptr, parameters);
   }
 
-  // Bounds, and dead bins stay as they are.
+  // Bounds, and unobserved bins stay as they are.
   void Constrain(int b, const std::vector<double>& coverage) {
     double* const values = blocks_.block(b).data();
     if (!problem_.HasParameterBlock(values)) return;
     const int size = static_cast<int>(blocks_.block(b).size());
-    std::vector<int> dead;
+    std::vector<int> unobserved;
     parameters_.SetBounds(blocks_.block(b), &problem_);
     for (int k = 0; k < size; ++k) {
-      if (coverage[blocks_.parameters(b)[k]] == 0) dead.push_back(k);
+      if (coverage[blocks_.parameters(b)[k]] == 0) unobserved.push_back(k);
     }
-    if (static_cast<int>(dead.size()) == size) {
+    if (static_cast<int>(unobserved.size()) == size) {
       problem_.SetParameterBlockConstant(values);
-    } else if (!dead.empty()) {
-      problem_.SetManifold(values, new ceres::SubsetManifold(size, dead));
+    } else if (!unobserved.empty()) {
+      problem_.SetManifold(values, new ceres::SubsetManifold(size, unobserved));
     }
   }
 

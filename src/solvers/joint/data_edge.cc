@@ -21,8 +21,8 @@ constexpr int kSteps = 12;
 constexpr double kSmallDecrease = 1e-3;
 constexpr double kMaxRise = 0.05;
 
-// From which entry on the live ones [0, end) are to be tied because few samples read them; `end`
-// where data go on to the end of the table.
+// From which entry on the observed ones [0, end) are to be tied because few samples read them;
+// `end` where data go on to the end of the table.
 int FirstUncovered(std::span<const double> coverage, int end) {
   if (end == static_cast<int>(coverage.size())) return end;
   int first = end;
@@ -50,14 +50,14 @@ enum class Rule { kBoth, kCoverage };
 // none is to be tied.
 int NumKept(Rule rule, std::span<const double> coverage, std::span<const double> table) {
   const auto size = static_cast<int>(coverage.size());
-  const auto dead = [&](int entry) { return !(coverage[entry] > 0); };
+  const auto unobserved = [&](int entry) { return !(coverage[entry] > 0); };
   int end = size;
-  while (end > 0 && dead(end - 1)) --end;
+  while (end > 0 && unobserved(end - 1)) --end;
   int kept = FirstUncovered(coverage, end);
   if (rule == Rule::kBoth) kept = std::min(kept, FirstRunaway(table, end));
   if (kept == end) return size;
-  // A dead one has nothing to tell the others.
-  while (kept > 0 && dead(kept - 1)) --kept;
+  // An unobserved one has nothing to tell the others.
+  while (kept > 0 && unobserved(kept - 1)) --kept;
   return kept > 0 ? kept : size;
 }
 
@@ -77,7 +77,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
       const int kept = NumKept(rule, coverage, model->table(factor, t));
       if (kept == spec.table_size(factor)) continue;
       any = true;
-      // The others follow, dead ones too, as they do beyond the last node of a layout.
+      // The others follow, unobserved ones too, as they do beyond the last node of a layout.
       layout.of(factor, t).resize(kept);
     }
   }
@@ -105,7 +105,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
 bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
                           const std::function<bool()>& stop) {
   CheckSameSpec(model->spec(), objective.spec());
-  CheckNumbers(*model);
+  CheckParameters(*model);
   // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the
   // spline reads.
   return Tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||

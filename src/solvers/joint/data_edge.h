@@ -12,13 +12,14 @@ namespace trilobe {
 // entries of D, F and G are read by few samples of little weight, which leave them free to trade
 // huge values against tiny ones of each other. At the bins these fit; between them, and beyond the
 // data, their products run wild: white rings around a sphere. This ties such entries to the last
-// one before them, and refits all numbers by a few joint steps. Tied are, at the end of a table,
-// - before dead entries, those with less than a twentieth of the coverage of the third one inwards;
+// one before them, and refits all parameters by a few joint steps. Tied are, at the end of a table,
+// - before unobserved entries, those with less than a twentieth of the coverage of the third one
+//   inwards;
 // - those from the first on, in the last third, that is five times the median of the five before
 // it. True, with the new model, if E came back to within 5 % of what it was (0.01 to 3 % are seen,
 // in samples at the very edge); false, and the model as it was, if not, or if there is nothing to
 // tie. `stop` is asked before each step of the refit: once it says so there are no more, and the
-// model is judged as it is. Throws Error for a model of another spec, or with numbers that none
+// model is judged as it is. Throws Error for a model of another spec, or with parameters that none
 // has.
 bool TieEntriesAtDataEdge(
     const Objective& objective, FactorModel* model,

@@ -141,17 +141,6 @@ double JointStepper::Optimality() {
   return ScaledProjectedGradient(at_, y_);
 }
 
-SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
-                                JointStepper::Trial trial, const Objective& objective,
-                                const SolverOptions& options, FactorModel* model) {
-  Run run(std::move(solver), objective, options, model);
-  JointStepper stepper(objective, curvature, trial, &run.summary().phases);
-  stepper.Restart(*model);
-  run.Start(stepper.Optimality());
-  RepeatJointSteps(&stepper, &run);
-  return run.Finish();
-}
-
 void RepeatJointSteps(JointStepper* stepper, Run* run) {
   for (bool go_on = !run->stopped(); go_on;) {
     Run::Step step{.accepted = stepper->Step()};

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "trilobe/solvers/awls/sweep.h"
@@ -18,7 +17,7 @@ namespace trilobe {
 // Damped Newton or Gauss-Newton iterations on all parameters at once, under x >= 0, one trial step
 // at a time. Damping as in Levenberg-Marquardt, by Nielsen's rule (Damping parameter in Marquardt's
 // method, 1999): lambda falls smoothly with the gain of an accepted step, and rises ever faster
-// while steps are rejected. A number that the data hardly see is damped like its table's others
+// while steps are rejected. A parameter that the data hardly see is damped like its table's others
 // (docs/solvers.md): on its own it could go anywhere, and where its partners in the product
 // are small it would go far, and spoil the product once they grow.
 class JointStepper {
@@ -38,7 +37,7 @@ class JointStepper {
   };
 
   // Times go to *phases. With a reduction, which must outlive the stepper, the steps are of its
-  // numbers y; trials cannot be projected then.
+  // parameters y; trials cannot be projected then.
   JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases,
                const Reduction* reduction = nullptr);
 
@@ -74,7 +73,7 @@ class JointStepper {
   double E_ = 0;
   bool linearized_ = false;
   QuadraticModel at_;      // of the current point, if linearized_; in y with a reduction
-  std::vector<double> y_;  // what steps move: the reduction's numbers, or all
+  std::vector<double> y_;  // what steps move: the reduction's parameters, or all
   NonnegativeStep step_;
   std::vector<bool> binding_;
   double lambda_;
@@ -83,15 +82,10 @@ class JointStepper {
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
 
-// The metric S of the damping of steps in numbers that make up these parts, from the squared
+// The metric S of the damping of steps in parameters that make up these parts, from the squared
 // lengths of the columns of J. 0 where that is 0.
 std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
                                   std::span<const double> squared_lengths);
-
-// A solver that makes nothing but such steps, from its starting point on.
-SolverSummary SolveByJointSteps(std::string solver, JointStepper::Curvature curvature,
-                                JointStepper::Trial trial, const Objective& objective,
-                                const SolverOptions& options, FactorModel* model);
 
 // Makes and records steps of the stepper, which stands at the run's last point, until the run
 // stops.

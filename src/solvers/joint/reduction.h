@@ -11,16 +11,16 @@
 
 namespace trilobe {
 
-// The numbers x of a model as sums of fewer numbers y >= 0:  x = B y,  B >= 0 and sparse. Every y_j
-// is also the one x_k that it alone makes up, k = source()[j]. With E quadratic in x, it is so in
-// y, by B'g and B'H B.
+// The parameters x of a model as sums of fewer parameters y >= 0:  x = B y,  B >= 0 and sparse.
+// Every y_j is also the one x_k that it alone makes up, k = source()[j]. With E quadratic in x, it
+// is so in y, by B'g and B'H B.
 class Reduction {
  public:
-  // y: the stored numbers of a model with this spec, in the order of parameters().
+  // y: the stored parameters of a model with this spec, in the order of parameters().
   Reduction(const ModelSpec& spec, const TableLayout& layout);
 
-  // y: the numbers of a model whose spec `fewer` shares more tables than `spec` does, and has the
-  // same lobes and table sizes.
+  // y: the parameters of a model whose spec `fewer` shares more tables than `spec` does, and has
+  // the same lobes and table sizes.
   static Reduction BySharing(const ModelSpec& spec, const ModelSpec& fewer);
 
   // x = B y,  y = C z  to  x = B C z.
@@ -30,7 +30,7 @@ class Reduction {
   int num_parameters() const { return static_cast<int>(begin_.size()) - 1; }
   const std::vector<int>& source() const { return source_; }
 
-  // Numbers of one kind in y, as FactorModel::Parts().
+  // Parameters of one kind in y, as FactorModel::Parts().
   const std::vector<FactorModel::Part>& parts() const { return parts_; }
 
   std::vector<double> Expand(std::span<const double> y) const;     // x
@@ -43,7 +43,7 @@ class Reduction {
 
  private:
   Reduction() = default;
-  // Rows of B one by one, and new numbers of y with the row that is theirs alone.
+  // Rows of B one by one, and new parameters of y with the row that is theirs alone.
   void Add(int column, double weight);
   void EndRow();
   int NewColumn();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trilobe/model/gauge.h"
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/race/start_race.h"
@@ -88,22 +88,22 @@ class Starts {
     const auto grow = [this, sweeps]() -> std::optional<FactorModel> {
       const ModelSpec& spec = objective_.spec();
       if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
-      return WithDeadBins(Grow(race_->thinned(), sweeps, seed_, stop_));
+      return WithUnobservedBins(Grow(race_->thinned(), sweeps, seed_, stop_));
     };
     race_->Enter(name, grow, {.count = sweeps});
   }
 
   void EnterInitial(const char* init, uint64_t seed, std::string name) {
     race_->Enter(std::move(name), [this, init, seed]() -> std::optional<FactorModel> {
-      FactorModel model = WithDeadBins(FindInitialModel(init).make(objective_, seed));
+      FactorModel model = WithUnobservedBins(FindInitialModel(init).make(objective_, seed));
       if (std::ranges::equal(model.parameters(), given_.parameters())) return std::nullopt;
       return model;
     });
   }
 
-  // Dead bins are the caller's, and stay.
-  FactorModel WithDeadBins(FactorModel model) const {
-    CopyDeadParameters(objective_.coverage(), given_, &model);
+  // Unobserved bins are the caller's, and stay.
+  FactorModel WithUnobservedBins(FactorModel model) const {
+    CopyUnobservedParameters(objective_.coverage(), given_, &model);
     return model;
   }
 
@@ -124,7 +124,7 @@ struct Leg {
 };
 
 // By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
-// beyond what follows from a fit of p numbers to n values: (1 + p / n) / (1 - p / n).
+// beyond what follows from a fit of p parameters to n values: (1 + p / n) / (1 - p / n).
 constexpr double kLargeMismatch = 0.03;
 
 // The winner of the race has not been fitted to all samples; with so many steps it must have come
@@ -206,7 +206,7 @@ class Auto : public Solver {
             {.starts = 7, .tries = 100, .keep = 1}};
   }
 
-  // A step of some two thousand numbers costs ten times as much, and the data are not so dense
+  // A step of some two thousand parameters costs ten times as much, and the data are not so dense
   // that much could be left out.
   static std::vector<Leg> FewLegs() {
     return {{.starts = 2, .tries = 4, .keep = 2},

@@ -7,15 +7,15 @@
 
 #include "trilobe/base/multiversion.h"
 #include "trilobe/base/parallel.h"
-#include "trilobe/math/bounded_quadratic.h"
 #include "trilobe/math/element_step.h"
+#include "trilobe/math/nonnegative_least_squares.h"
 #include "trilobe/model/shadowing_pieces.h"
 
 namespace trilobe {
 namespace {
 
 constexpr int kMaxBasis = 1 + kMaxLobes;
-static_assert(kMaxBasis <= kMaxBoundedUnknowns);
+static_assert(kMaxBasis <= kMaxNonnegativeUnknowns);
 
 // b_a = sum w residual phi_a and A_ae = sum w phi_a phi_e over the samples of a row.
 TRILOBE_MULTIVERSION

@@ -33,11 +33,11 @@ class CellSums {
   // sums of this model. `on_element`, if set, sees the model after each.
   void UpdateAll(const std::function<void(const FactorModel&)>& on_element, FactorModel* model);
 
-  // Puts blocks of elements where E is lowest with the others held (MinimizeBounded), by the sums
-  // of this model: d and s of one channel, then D of one theta_h bin and all lobes, then F of one
-  // theta_d bin and all lobes; channels that share no table apart. E: of the model that Accumulate
-  // saw, which tells what the sums can resolve. `on_block`, if set, sees the model after each. The
-  // same bits for any number of threads.
+  // Puts blocks of elements where E is lowest with the others held (SolveNonnegativeLeastSquares),
+  // by the sums of this model: d and s of one channel, then D of one theta_h bin and all lobes,
+  // then F of one theta_d bin and all lobes; channels that share no table apart. E: of the model
+  // that Accumulate saw, which tells what the sums can resolve. `on_block`, if set, sees the model
+  // after each. The same bits for any number of threads.
   void UpdateBlocks(double E, int num_threads,
                     const std::function<void(const FactorModel&)>& on_block, FactorModel* model);
 

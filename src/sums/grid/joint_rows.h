@@ -10,6 +10,9 @@
 
 namespace trilobe {
 
+class RowLayout;
+struct RowAccumulator;
+
 // The part of H and J'r in which d, s, D or F take part, from one streaming pass over the rows
 // (theta_h, theta_d) of a folded grid (docs/method.md).
 //
@@ -19,9 +22,9 @@ namespace trilobe {
 //   X_t z_tk,   X_t = sum of x_m over the lobes m that t serves,
 //   z_tk = (B_k(theta_i) G_t(theta_o) + G_t(theta_i) B_k(theta_o)) / (cos cos),
 // so its product with the former is the sum of  q z_tk,  q = w X_t v.phi.  A sample reads four
-// nodes a side, and a row has one number each of d, s, D and F a channel and lobe: the sample's q
-// of all of them times its weights B go to their places in the cache, those of d, s and D from all
-// rows of a theta_h, those of F from all rows of a theta_d.
+// nodes a side, and a row has one parameter each of d, s, D and F a channel and lobe: the sample's
+// q of all of them times its weights B go to their places in the cache, those of d, s and D from
+// all rows of a theta_h, those of F from all rows of a theta_d.
 //
 // One more q, w X_t r (r the residual), gives the gradient of G. The second derivatives of E beyond
 // J'J: rho = s D F K is linear in each of s, D, F, so these are  b = sum w r K  times what is left
@@ -36,21 +39,21 @@ class JointRows {
   void Evaluate(const FactorModel& model, Hessian hessian, int num_threads, QuadraticModel* result);
 
  private:
-  class Layout;
-  struct Share;
-
   void ReadRow(const FactorModel& model, const std::vector<std::vector<CatmullRom::Piece>>& G,
-               int h, int d, Share* share) const;
-  void AddProducts(const FactorModel& model, Hessian hessian, int h, int d, Share* share) const;
-  void AddCrossProducts(Hessian hessian, int d, Share* share) const;
-  void SpreadNear(const FactorModel& model, Hessian hessian, int h, Share* share) const;
-  void MoveNear(const FactorModel& model, int h, Share* share, QuadraticModel* result) const;
-  void SetFar(const FactorModel& model, Hessian hessian, int d, QuadraticModel* result) const;
-  void SetNear(const FactorModel& model, QuadraticModel* result) const;
+               int h, int d, RowAccumulator* accumulator) const;
+  void AddProducts(const FactorModel& model, Hessian hessian, int h, int d,
+                   RowAccumulator* accumulator) const;
+  void AddCrossProducts(Hessian hessian, int d, RowAccumulator* accumulator) const;
+  void SpreadThetaH(const FactorModel& model, Hessian hessian, int h,
+                    RowAccumulator* accumulator) const;
+  void TakeThetaH(const FactorModel& model, int h, RowAccumulator* accumulator,
+                  QuadraticModel* result) const;
+  void SetThetaD(const FactorModel& model, Hessian hessian, int d, QuadraticModel* result) const;
+  void SetAmplitudes(const FactorModel& model, QuadraticModel* result) const;
 
   const FoldedGrid& folded_;
-  const std::unique_ptr<const Layout> layout_;
-  std::vector<std::unique_ptr<Share>> shares_;
+  const std::unique_ptr<const RowLayout> layout_;
+  std::vector<std::unique_ptr<RowAccumulator>> accumulators_;
 };
 
 }  // namespace trilobe

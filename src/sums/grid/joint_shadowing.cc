@@ -138,8 +138,8 @@ struct JointShadowing::Pass {
   std::vector<Side> sides;  // [interval]
 };
 
-struct JointShadowing::Share {
-  Share(size_t pairs, size_t tables, size_t padded_nodes)
+struct JointShadowing::Accumulator {
+  Accumulator(size_t pairs, size_t tables, size_t padded_nodes)
       : moments(pairs),
         residual_moments(tables),
         across(pairs * padded_nodes * padded_nodes),
@@ -180,14 +180,14 @@ JointShadowing::JointShadowing(const SplineCells& samples, const ModelSpec& spec
   for (int m = spec.lobes - 1; m >= 0; --m) {
     for (int c = 0; c < kChannels; ++c) first_lobe_[spec.table(Factor::kG, m, c)][c] = m;
   }
-  // As many samples in each share as in any other, in one piece.
+  // As many samples for each accumulator as in any other, in one piece.
   first_cell_.assign(1, 0);
-  const int num_shares = NumShares(static_cast<int>(samples.row.size()));
-  for (int share = 0; share < num_shares; ++share) {
-    const size_t end = samples.row.size() * (share + 1) / num_shares;
+  const int count = NumAccumulators(static_cast<int>(samples.row.size()));
+  for (int k = 0; k < count; ++k) {
+    const size_t end = samples.row.size() * (k + 1) / count;
     first_cell_.push_back(static_cast<int>(std::ranges::count_if(
         samples.cells, [end](const auto& cell) { return static_cast<size_t>(cell.begin) < end; })));
-    shares_.push_back(std::make_unique<Share>(pairs_.size(), tables, padded_nodes_));
+    accumulators_.push_back(std::make_unique<Accumulator>(pairs_.size(), tables, padded_nodes_));
   }
 }
 
@@ -224,10 +224,10 @@ std::vector<JointShadowing::Side> JointShadowing::MakeSides(const FactorModel& m
 // The moments of sum_C w y_t y_u in one cell for each pair of tables and, for second derivatives,
 // those of sum_C w (rho - rho*) y_t for each table.
 void JointShadowing::SetMoments(const SplineCells::Cell& cell, const Pass& pass,
-                                Share* share) const {
+                                Accumulator* accumulator) const {
   const size_t num_rows = static_cast<size_t>(samples_.grid.theta_h) * samples_.grid.theta_d;
   const int tables = static_cast<int>(pass.G.size());
-  Share& of = *share;
+  Accumulator& of = *accumulator;
   std::ranges::fill(of.moments, SplineMoments());
   std::ranges::fill(of.residual_moments, SplineMoments());
   const bool curvature = pass.hessian == Hessian::kNewton;
@@ -280,23 +280,24 @@ void JointShadowing::SetMoments(const SplineCells::Cell& cell, const Pass& pass,
 }
 
 // The moments of a cell contracted with the polynomials of its two sides.
-void JointShadowing::AddCell(const SplineCells::Cell& cell, const Pass& pass, Share* share) const {
+void JointShadowing::AddCell(const SplineCells::Cell& cell, const Pass& pass,
+                             Accumulator* accumulator) const {
   const Side &i = pass.sides[cell.interval_i], &o = pass.sides[cell.interval_o];
   const size_t nodes = padded_nodes_;
   const size_t at_oi = cell.interval_o * nodes + cell.interval_i;
   const size_t at_io = cell.interval_i * nodes + cell.interval_o;
   for (size_t p = 0; p < pairs_.size(); ++p) {
     const auto [t, u] = pairs_[p];
-    double* const across = &share->across[p * nodes * nodes];
-    double* const along = &share->along[p * nodes * kStride];
-    AddPair(share->moments[p], {&i.BG[t], &o.BG[t], &i.BG[u], &o.BG[u], &i.GG[p], &o.GG[p]}, nodes,
-            t == u ? nullptr : across + at_io, across + at_oi, along + cell.interval_i * kStride,
-            along + cell.interval_o * kStride);
+    double* const across = &accumulator->across[p * nodes * nodes];
+    double* const along = &accumulator->along[p * nodes * kStride];
+    AddPair(accumulator->moments[p], {&i.BG[t], &o.BG[t], &i.BG[u], &o.BG[u], &i.GG[p], &o.GG[p]},
+            nodes, t == u ? nullptr : across + at_io, across + at_oi,
+            along + cell.interval_i * kStride, along + cell.interval_o * kStride);
   }
   if (pass.hessian == Hessian::kGaussNewton) return;
   for (size_t t = 0; t < pass.G.size(); ++t) {
-    AddCurvature(share->residual_moments[t], i.B, o.B, nodes,
-                 &share->curvature[t * nodes * nodes + at_oi]);
+    AddCurvature(accumulator->residual_moments[t], i.B, o.B, nodes,
+                 &accumulator->curvature[t * nodes * nodes + at_oi]);
   }
 }
 
@@ -305,13 +306,13 @@ void JointShadowing::SetPair(size_t pair, const Pass& pass, QuadraticModel* resu
   const auto [t, u] = pairs_[pair];
   const size_t nodes = padded_nodes_, size = nodes * nodes;
   const bool curvature = t == u && pass.hessian == Hessian::kNewton;
-  double* const across = &shares_[0]->across[pair * size];
-  double* const along = &shares_[0]->along[pair * nodes * kStride];
-  double* const curvature_sums = &shares_[0]->curvature[t * size];
-  for (size_t s = 1; s < shares_.size(); ++s) {
-    AddTo(size, &shares_[s]->across[pair * size], across);
-    AddTo(nodes * kStride, &shares_[s]->along[pair * nodes * kStride], along);
-    if (curvature) AddTo(size, &shares_[s]->curvature[t * size], curvature_sums);
+  double* const across = &accumulators_[0]->across[pair * size];
+  double* const along = &accumulators_[0]->along[pair * nodes * kStride];
+  double* const curvature_sums = &accumulators_[0]->curvature[t * size];
+  for (size_t s = 1; s < accumulators_.size(); ++s) {
+    AddTo(size, &accumulators_[s]->across[pair * size], across);
+    AddTo(nodes * kStride, &accumulators_[s]->along[pair * nodes * kStride], along);
+    if (curvature) AddTo(size, &accumulators_[s]->curvature[t * size], curvature_sums);
   }
   for (size_t interval = 0; interval < pass.sides.size(); ++interval) {
     for (int a = 0; a < 4; ++a) {
@@ -342,12 +343,12 @@ void JointShadowing::Evaluate(const FactorModel& model, Hessian hessian, int num
                               QuadraticModel* result) {
   const Pass pass{model, hessian, ShadowingPieces(model), LobeAmplitudes(samples_.grid, model),
                   MakeSides(model)};
-  ParallelFor(static_cast<int>(shares_.size()), num_threads, [&](int s) {
-    Share* const share = shares_[s].get();
-    share->Clear();
+  ParallelFor(static_cast<int>(accumulators_.size()), num_threads, [&](int s) {
+    Accumulator* const accumulator = accumulators_[s].get();
+    accumulator->Clear();
     for (int k = first_cell_[s]; k < first_cell_[s + 1]; ++k) {
-      SetMoments(samples_.cells[k], pass, share);
-      AddCell(samples_.cells[k], pass, share);
+      SetMoments(samples_.cells[k], pass, accumulator);
+      AddCell(samples_.cells[k], pass, accumulator);
     }
   });
   ParallelFor(static_cast<int>(pairs_.size()), num_threads,

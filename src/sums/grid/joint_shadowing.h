@@ -33,12 +33,12 @@ class JointShadowing {
 
  private:
   struct Side;
-  struct Share;
+  struct Accumulator;
   struct Pass;
 
   std::vector<Side> MakeSides(const FactorModel& model) const;
-  void SetMoments(const SplineCells::Cell& cell, const Pass& pass, Share* share) const;
-  void AddCell(const SplineCells::Cell& cell, const Pass& pass, Share* share) const;
+  void SetMoments(const SplineCells::Cell& cell, const Pass& pass, Accumulator* accumulator) const;
+  void AddCell(const SplineCells::Cell& cell, const Pass& pass, Accumulator* accumulator) const;
   void SetPair(size_t pair, const Pass& pass, QuadraticModel* result) const;
 
   const SplineCells& samples_;
@@ -48,8 +48,8 @@ class JointShadowing {
   // Pairs of tables t <= u that serve some channel in common.
   std::vector<std::pair<int, int>> pairs_;
   std::vector<std::array<int, kChannels>> first_lobe_;  // that a table serves in a channel, or -1
-  std::vector<int> first_cell_;                         // of each share, and the end
-  std::vector<std::unique_ptr<Share>> shares_;
+  std::vector<int> first_cell_;                         // of each accumulator, and the end
+  std::vector<std::unique_ptr<Accumulator>> accumulators_;
 };
 
 }  // namespace trilobe

@@ -54,7 +54,8 @@ double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe,
 
 TRILOBE_MULTIVERSION
 void AddRowSums(int size, int basis, const double* w, const double* w_residual, const double* phi,
-                const double* f, const double* g, double* sums, double* near, double* far) {
+                const double* f, const double* g, double* sums, double* theta_h_sums,
+                double* theta_d_sums) {
   constexpr int kRows = 4;  // of A at a time
   const auto add = [&](int a, int e, const Lanes4& sum) {
     const double f_a = a < basis ? f[a] : 1, g_a = a < basis ? g[a] : 1;
@@ -63,12 +64,12 @@ void AddRowSums(int size, int basis, const double* w, const double* w_residual, 
     std::memcpy(&f_e, f + e, sizeof(f_e));
     std::memcpy(&g_e, g + e, sizeof(g_e));
     std::memcpy(sums + at, &sum, sizeof(sum));
-    std::memcpy(&old, near + at, sizeof(old));
+    std::memcpy(&old, theta_h_sums + at, sizeof(old));
     old += f_a * f_e * sum;
-    std::memcpy(near + at, &old, sizeof(old));
-    std::memcpy(&old, far + at, sizeof(old));
+    std::memcpy(theta_h_sums + at, &old, sizeof(old));
+    std::memcpy(&old, theta_d_sums + at, sizeof(old));
     old += g_a * g_e * sum;
-    std::memcpy(far + at, &old, sizeof(old));
+    std::memcpy(theta_d_sums + at, &old, sizeof(old));
   };
   for (int e = 0; e < basis; e += 4) {
     for (int a = 0; a < basis; a += kRows) {
@@ -171,14 +172,14 @@ template <typename Lanes>
 }  // namespace
 
 TRILOBE_MULTIVERSION
-void AddCrossSums(const RowOfNodes& row, int near_lines, int far_lines, const double* q,
-                  double* near, double* far) {
-  const int lines = near_lines + far_lines;
-  for (int line = 0; line < near_lines; line += 8) {
-    AddLanes<Lanes8>(row, lines, q + line, near_lines, near + line);
+void AddCrossSums(const RowOfNodes& row, int theta_h_lines, int theta_d_lines, const double* q,
+                  double* theta_h_sums, double* theta_d_sums) {
+  const int lines = theta_h_lines + theta_d_lines;
+  for (int line = 0; line < theta_h_lines; line += 8) {
+    AddLanes<Lanes8>(row, lines, q + line, theta_h_lines, theta_h_sums + line);
   }
-  for (int line = 0; line < far_lines; line += 4) {
-    AddLanes<Lanes4>(row, lines, q + near_lines + line, far_lines, far + line);
+  for (int line = 0; line < theta_d_lines; line += 4) {
+    AddLanes<Lanes4>(row, lines, q + theta_h_lines + line, theta_d_lines, theta_d_sums + line);
   }
 }
 

@@ -39,11 +39,12 @@ double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe, con
 
 // Sums over the samples of a row and channel, by rows of a square matrix of whole vectors:
 //   A_ae = sum w phi_a phi_e  and, in one more row,  b_e = sum w r phi_e.
-// Adds f_a f_e A_ae and f_e b_e to near, g_a g_e A_ae and g_e b_e to far.
-// phi: [size][basis]; sums, near, far: [basis + 1][basis]; f, g: [basis]. `basis` is padded with
-// phi = 0.
+// Adds f_a f_e A_ae and f_e b_e to the sums of its theta_h, g_a g_e A_ae and g_e b_e to those of
+// its theta_d. phi: [size][basis]; sums, theta_h_sums, theta_d_sums: [basis + 1][basis]; f, g:
+// [basis]. `basis` is padded with phi = 0.
 void AddRowSums(int size, int basis, const double* w, const double* w_residual, const double* phi,
-                const double* f, const double* g, double* sums, double* near, double* far);
+                const double* f, const double* g, double* sums, double* theta_h_sums,
+                double* theta_d_sums);
 
 // Adds one channel's q (see JointRows) to those of each sample. q: [lines][line_size]
 void AddChannel(int size, double X, const double* w, const double* w_residual, int lobes,
@@ -61,10 +62,10 @@ struct RowOfNodes {
   const double *H_i, *H_o;
 };
 
-// Adds z q to near [node][near lines] and far [node][far lines], for the four nodes of both sides
-// of each sample. q: [size][near lines, then far lines]
-void AddCrossSums(const RowOfNodes& row, int near_lines, int far_lines, const double* q,
-                  double* near, double* far);
+// Adds z q to theta_h_sums [node][theta_h lines] and theta_d_sums [node][theta_d lines], for the
+// four nodes of both sides of each sample. q: [size][theta_h lines, then theta_d lines]
+void AddCrossSums(const RowOfNodes& row, int theta_h_lines, int theta_d_lines, const double* q,
+                  double* theta_h_sums, double* theta_d_sums);
 
 }  // namespace trilobe
 

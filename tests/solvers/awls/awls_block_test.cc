@@ -107,8 +107,8 @@ TEST(CellBlocks, KeepTheSums) {
   }
 }
 
-// Where no element can move, no block can: with bounds on single numbers only, a minimum along each
-// is one of the convex whole.
+// Where no element can move, no block can: with bounds on single parameters only, a minimum along
+// each is one of the convex whole.
 TEST(CellBlocks, StayAtAFixedPointOfElements) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);

@@ -1,4 +1,4 @@
-// The fast solver makes the same element updates as the literal one: E after each of 20 sweeps
+// The fast solver makes the same element updates as the reference: E after each of 20 sweeps
 // agrees to 1e-9.
 #include <gtest/gtest.h>
 
@@ -25,26 +25,27 @@ SolverOptions Sweeps(int count, double g_filter_sigma = 0) {
 
 void ExpectSameSweeps(const Objective& objective, const FactorModel& start,
                       const SolverOptions& options, const std::string& what) {
-  FactorModel fast = start, literal = start;
+  FactorModel fast = start, reference = start;
   const SolverSummary fast_run = MakeSolver("awls")->Solve(objective, options, &fast);
-  const SolverSummary literal_run = MakeSolver("awls_literal")->Solve(objective, options, &literal);
-  ASSERT_EQ(literal_run.iterations, options.max_iterations) << what;
-  ASSERT_EQ(fast_run.trace.size(), literal_run.trace.size()) << what;
+  const SolverSummary reference_run =
+      MakeSolver("awls_literal")->Solve(objective, options, &reference);
+  ASSERT_EQ(reference_run.iterations, options.max_iterations) << what;
+  ASSERT_EQ(fast_run.trace.size(), reference_run.trace.size()) << what;
   for (size_t k = 0; k < fast_run.trace.size(); ++k) {
-    const double expected = literal_run.trace[k].objective;
+    const double expected = reference_run.trace[k].objective;
     ASSERT_NEAR(fast_run.trace[k].objective, expected, 1e-9 * expected) << what << ", sweep " << k;
   }
   // The fit has moved, or agreement would mean nothing.
   if (start.spec().lobes > 0) {
-    const double first = literal_run.trace.front().objective;
-    const double last = literal_run.trace.back().objective;
+    const double first = reference_run.trace.front().objective;
+    const double last = reference_run.trace.back().objective;
     if (options.g_filter_sigma > 0) {  // the filter may raise E, and does on thin data
       EXPECT_GT(std::abs(last - first), 0.01 * first) << what;
     } else {
       EXPECT_LT(last, 0.99 * first) << what;
     }
   }
-  // Numbers too, to a share of their table's largest: small ones may be poorly determined.
+  // Parameters too, to a share of their table's largest: small ones may be poorly determined.
   const auto expect_same = [&](std::span<const double> a, std::span<const double> b,
                                const std::string& part) {
     const double scale = std::ranges::max(b);
@@ -53,11 +54,11 @@ void ExpectSameSweeps(const Objective& objective, const FactorModel& start,
     }
   };
   const ModelSpec& spec = start.spec();
-  expect_same(fast.d(), literal.d(), "d");
-  for (int m = 0; m < spec.lobes; ++m) expect_same(fast.s(m), literal.s(m), "s");
+  expect_same(fast.d(), reference.d(), "d");
+  for (int m = 0; m < spec.lobes; ++m) expect_same(fast.s(m), reference.s(m), "s");
   for (const Factor factor : kFactors) {
     for (int t = 0; t < spec.num_tables(factor); ++t) {
-      expect_same(fast.table(factor, t), literal.table(factor, t), FactorName(factor));
+      expect_same(fast.table(factor, t), reference.table(factor, t), FactorName(factor));
     }
   }
 }

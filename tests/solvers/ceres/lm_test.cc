@@ -117,9 +117,9 @@ TEST(Lm, GoesWhereLmPlainGoesOnALargeProblem) {
   ExpectSameIterates(objective, start, options, "bounds");
 }
 
-// Numbers that a step has put on their bound, and that E holds there, do not spoil the steps of the
-// others: of a material that the model can represent nothing is left. By bounds alone the run ends
-// far from any stationary point.
+// Parameters that a step has put on their bound, and that E holds there, do not spoil the steps of
+// the others: of a material that the model can represent nothing is left. By bounds alone the run
+// ends far from any stationary point.
 TEST(Lm, GoesOnWhereNumbersAreOnTheirBounds) {
   constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 8};
   FactorModel truth = RandomModel(ModelSpec::SharedFactors(2, kGrid), 3, 0.3);

@@ -61,8 +61,8 @@ bool SameBits(const FactorModel& a, const FactorModel& b) {
   return std::ranges::equal(a.parameters(), b.parameters());
 }
 
-// The live entries at the end of a table that are read by so little weight that they are to be
-// tied: [begin, end). Empty where the table is live up to its end.
+// The observed entries at the end of a table that are read by so little weight that they are to be
+// tied: [begin, end). Empty where the table is observed up to its end.
 struct Tail {
   int begin, end;
 };
@@ -285,7 +285,7 @@ TEST(DataEdge, TheSameBitsForAnyNumberOfThreads) {
 }
 
 // Before those that are tied there may be one that no sample reads.
-TEST(DataEdge, EntriesAreNotTiedToADeadOne) {
+TEST(DataEdge, EntriesAreNotTiedToAnUnobservedOne) {
   BrdfTable measured = Measured(1, 75);
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   const auto D_tail = [&] {
@@ -294,16 +294,16 @@ TEST(DataEdge, EntriesAreNotTiedToADeadOne) {
                                                 spec.d_axis.size));
   };
   // Three entries apart, so that neither counts as poor beside the other.
-  const int dead = D_tail().begin - 1;
-  for (const int theta_h : {dead, dead - 3}) InvalidateThetaH(theta_h, 0, &measured);
+  const int unobserved = D_tail().begin - 1;
+  for (const int theta_h : {unobserved, unobserved - 3}) InvalidateThetaH(theta_h, 0, &measured);
   const Tail tail = D_tail();
-  ASSERT_EQ(tail.begin - 1, dead);
+  ASSERT_EQ(tail.begin - 1, unobserved);
   ASSERT_GT(tail.end, tail.begin);
   const Objective objective = MakeObjective(measured, spec);
   FactorModel model = Fitted(objective);
   ASSERT_TRUE(TieEntriesAtDataEdge(objective, &model));
   const auto D = model.table(Factor::kD, 0);
-  for (int k = dead; k < spec.d_axis.size; ++k) EXPECT_EQ(D[k], D[dead - 1]) << k;
+  for (int k = unobserved; k < spec.d_axis.size; ++k) EXPECT_EQ(D[k], D[unobserved - 1]) << k;
 }
 
 TEST(DataEdge, NothingToTieWithoutLobesOrWeights) {

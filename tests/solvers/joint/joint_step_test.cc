@@ -158,7 +158,7 @@ TEST_P(WarmStart, StaysAtAnExactFit) {
 }
 
 TEST_P(WarmStart, StaysAtAMinimum) {
-  // Noise leaves a residual, and some numbers at 0.
+  // Noise leaves a residual, and some parameters at 0.
   FactorModel truth = RandomModel(ModelSpec::SharedFactors(2, kGrid), 5, 0.7);
   for (int h = 0; h < kGrid.theta_h; h += 3) truth.table(Factor::kD, 0)[h] = 0;
   BrdfTable table = TableOf(truth, kGrid);

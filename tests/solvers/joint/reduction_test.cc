@@ -24,7 +24,7 @@ TEST(Reduction, ExpandsAsALayoutDoes) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const TableLayout layout = ThinLayout(spec);
   const Reduction reduction(spec, layout);
-  EXPECT_EQ(reduction.size(), layout.num_numbers(spec));
+  EXPECT_EQ(reduction.size(), layout.num_parameters(spec));
   FactorModel model = RandomModel(spec, 1);
   ExpandStored(layout, &model);
   const std::vector<double> y = reduction.Restrict(model.parameters());

@@ -157,19 +157,19 @@ TEST_P(Multistart, GivesTheSameBitsForAnyThreads) {
 }
 
 // Whichever start wins, what no sample reads is the caller's.
-TEST_P(Multistart, LeavesDeadBinsToTheCaller) {
+TEST_P(Multistart, LeavesUnobservedBinsToTheCaller) {
   BrdfTable table = RandomTable(kGrid, 2);
   InvalidateThetaH(4, 2, &table);
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(table, spec);
-  const std::vector<bool> dead = DeadParameters(objective.coverage());
-  ASSERT_GE(std::ranges::count(dead, true), spec.lobes);
+  const std::vector<bool> unobserved = UnobservedParameters(objective.coverage());
+  ASSERT_GE(std::ranges::count(unobserved, true), spec.lobes);
   const FactorModel start = RandomModel(spec, 3, 2);  // so bad that another one wins
   FactorModel model = start;
   const SolverSummary summary = Solve(objective, Iterations(kWholeRace), &model);
   EXPECT_NE(summary.starts.front().name, "given");
   for (int k = 0; k < spec.num_parameters(); ++k) {
-    if (!dead[k]) continue;
+    if (!unobserved[k]) continue;
     EXPECT_EQ(model.parameters()[k], start.parameters()[k]) << "parameter " << k;
   }
 }

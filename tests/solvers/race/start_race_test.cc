@@ -59,12 +59,12 @@ TEST(StartRace, RanksByAFewOfManySamples) {
 TEST(StartRace, ThinsNoMoreThanAskedFor) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kFine);
   const Objective objective = MakeObjective(RandomTable(kFine, 1), spec);
-  const int all = objective.samples().size(), numbers = spec.num_parameters();
+  const int all = objective.samples().size(), parameters = spec.num_parameters();
   for (const int per_number : {10, 25, 100}) {
     const StartRace race(objective, {.samples_per_parameter = per_number, .max_stride = 1000},
                          Never);
-    EXPECT_GE(1.1 * race.thinned().samples().size(), std::min(all, 2 * per_number * numbers));
-    EXPECT_LE(race.thinned().samples().size(), std::max(0.7 * all, 4.4 * per_number * numbers));
+    EXPECT_GE(1.1 * race.thinned().samples().size(), std::min(all, 2 * per_number * parameters));
+    EXPECT_LE(race.thinned().samples().size(), std::max(0.7 * all, 4.4 * per_number * parameters));
   }
   const StartRace race(objective, {.samples_per_parameter = 1, .max_stride = 1}, Never);
   EXPECT_EQ(race.thinned().samples().size(), all);

@@ -1,4 +1,4 @@
-#include "trilobe/math/bounded_quadratic.h"
+#include "trilobe/math/nonnegative_least_squares.h"
 
 #include <gtest/gtest.h>
 
@@ -34,8 +34,8 @@ struct Problem {
   VectorXd Solve() const {
     const Eigen::Index n = x.size();
     std::vector<double> values(x.data(), x.data() + n);
-    MinimizeBounded({H.data(), static_cast<size_t>(H.size())}, {g.data(), static_cast<size_t>(n)},
-                    E, values);
+    SolveNonnegativeLeastSquares({H.data(), static_cast<size_t>(H.size())},
+                                 {g.data(), static_cast<size_t>(n)}, E, values);
     return Eigen::Map<const VectorXd>(values.data(), n);
   }
 };
@@ -85,8 +85,8 @@ double Tolerance(const Problem& problem, const VectorXd& to) {
   return kPenalty * penalty + 1e-13 * (size + penalty);
 }
 
-TEST(BoundedQuadratic, FindsTheLowestOfAllActiveSets) {
-  for (int n = 2; n <= kMaxBoundedUnknowns; ++n) {
+TEST(NonnegativeLeastSquares, FindsTheLowestOfAllActiveSets) {
+  for (int n = 2; n <= kMaxNonnegativeUnknowns; ++n) {
     for (uint64_t seed = 1; seed <= (n > 6 ? 5 : 50); ++seed) {
       const Problem problem = RandomProblem(n, n + 2, seed);
       const VectorXd to = problem.Solve();
@@ -97,10 +97,10 @@ TEST(BoundedQuadratic, FindsTheLowestOfAllActiveSets) {
   }
 }
 
-// A singular H has many minima on a face, of which some may have negative numbers and others none:
+// A singular H has many minima on a face, of which some may have negative entries and others none:
 // a case for the conditions of optimality, not for brute force.
-TEST(BoundedQuadratic, IsOptimalWhereHIsSingular) {
-  for (int n = 2; n <= kMaxBoundedUnknowns; ++n) {
+TEST(NonnegativeLeastSquares, IsOptimalWhereHIsSingular) {
+  for (int n = 2; n <= kMaxNonnegativeUnknowns; ++n) {
     for (int rank = 1; rank < n; ++rank) {
       for (uint64_t seed = 1; seed <= 10; ++seed) {
         const Problem problem = RandomProblem(n, rank, seed);
@@ -123,7 +123,7 @@ TEST(BoundedQuadratic, IsOptimalWhereHIsSingular) {
   }
 }
 
-TEST(BoundedQuadratic, StaysAtAMinimum) {
+TEST(NonnegativeLeastSquares, StaysAtAMinimum) {
   for (uint64_t seed = 1; seed <= 50; ++seed) {
     Problem problem = RandomProblem(4, 6, seed);
     const VectorXd to = problem.Solve();
@@ -135,7 +135,7 @@ TEST(BoundedQuadratic, StaysAtAMinimum) {
 }
 
 // Two equal columns: what one takes the other loses, and neither is asked to.
-TEST(BoundedQuadratic, StaysInFlatDirections) {
+TEST(NonnegativeLeastSquares, StaysInFlatDirections) {
   Problem problem{MatrixXd::Constant(2, 2, 3), VectorXd::Constant(2, 6), VectorXd(2)};
   problem.x << 5, 1;
   const VectorXd to = problem.Solve();
@@ -148,7 +148,7 @@ TEST(BoundedQuadratic, StaysInFlatDirections) {
 
 // Rounding errors of g that are out of H's range look like a decrease of 2^30 times their square;
 // without E they would move x by 2^30 times themselves.
-TEST(BoundedQuadratic, DoesNotFollowRoundingErrors) {
+TEST(NonnegativeLeastSquares, DoesNotFollowRoundingErrors) {
   Problem problem{MatrixXd::Ones(2, 2), VectorXd(2), VectorXd::Ones(2)};
   problem.g << kEpsilon, -kEpsilon;
   EXPECT_GT((problem.Solve() - problem.x).norm(), 1e6 * kEpsilon);
@@ -156,7 +156,7 @@ TEST(BoundedQuadratic, DoesNotFollowRoundingErrors) {
   EXPECT_LE((problem.Solve() - problem.x).norm(), 4 * kEpsilon);
 }
 
-TEST(BoundedQuadratic, HoldsWhatEDoesNotDependOn) {
+TEST(NonnegativeLeastSquares, HoldsWhatEDoesNotDependOn) {
   Problem problem{MatrixXd::Zero(3, 3), VectorXd::Zero(3), VectorXd(3)};
   problem.x << 0, 1, 2;
   EXPECT_EQ(problem.Solve(), problem.x);
@@ -167,7 +167,7 @@ TEST(BoundedQuadratic, HoldsWhatEDoesNotDependOn) {
   EXPECT_TRUE(problem.Solve().isApprox(expected, kPenalty));
 }
 
-TEST(BoundedQuadratic, DoesNotDependOnUnits) {
+TEST(NonnegativeLeastSquares, DoesNotDependOnUnits) {
   const Problem problem = RandomProblem(5, 5, 1);
   const VectorXd to = problem.Solve();
   VectorXd units(5);
@@ -179,7 +179,7 @@ TEST(BoundedQuadratic, DoesNotDependOnUnits) {
 }
 
 // Nothing here is a number or small enough for a model; what comes back is.
-TEST(BoundedQuadratic, SurvivesWhatIsNoNumber) {
+TEST(NonnegativeLeastSquares, SurvivesWhatIsNoNumber) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double bad : {kInfinity, -kInfinity, std::nan(""), 1e300}) {
     for (const double diagonal : {1e-300, 1.0, bad}) {

@@ -1,16 +1,29 @@
-#include "trilobe/model/split_lobe.h"
+#include "trilobe/model/lobes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/with_lobes.h"
 
 namespace trilobe {
 namespace {
+
+void CheckLobe(const FactorModel& model, int lobe) {
+  if (lobe >= 0 && lobe < model.spec().lobes) return;
+  throw Error("there is no lobe " + std::to_string(lobe) + ": the model has " +
+              std::to_string(model.spec().lobes));
+}
+
+// Sum of s in the channels of a table.
+double Size(const FactorModel& model, int lobe, ModelSpec::ChannelRange channels) {
+  double sum = 0;
+  for (int c = channels.begin; c < channels.end; ++c) sum += model.s(lobe)[c];
+  return sum;
+}
 
 // Solid angle that an entry of D stands for, in some unit.
 double SolidAngle(const Axis& axis, int entry) {
@@ -46,6 +59,54 @@ std::vector<double> NarrowShare(const Axis& axis, std::span<const double> D) {
 }
 
 }  // namespace
+
+FactorModel WithLobes(const FactorModel& model, std::span<const int> lobes) {
+  for (const int lobe : lobes) CheckLobe(model, lobe);
+  ModelSpec spec = model.spec();
+  spec.lobes = static_cast<int>(lobes.size());
+  FactorModel result(spec);
+  std::ranges::copy(model.d(), result.d().begin());
+  for (int m = 0; m < spec.lobes; ++m) {
+    std::ranges::copy(model.s(lobes[m]), result.s(m).begin());
+    for (const Factor factor : kFactors) {
+      for (int c = 0; c < kChannels; ++c) {
+        std::ranges::copy(model.table(factor, model.spec().table(factor, lobes[m], c)),
+                          result.table(factor, spec.table(factor, m, c)).begin());
+      }
+    }
+  }
+  return result;
+}
+
+FactorModel WithoutLobe(const FactorModel& model, int lobe) {
+  CheckLobe(model, lobe);
+  std::vector<int> others(model.spec().lobes);
+  std::iota(others.begin(), others.end(), 0);
+  others.erase(others.begin() + lobe);
+  return WithLobes(model, others);
+}
+
+FactorModel WithLobesMerged(const FactorModel& model, int lobe, int other) {
+  CheckLobe(model, lobe);
+  CheckLobe(model, other);
+  if (lobe == other) throw Error("a lobe cannot be merged with itself");
+  const ModelSpec& spec = model.spec();
+  FactorModel merged = model;
+  for (const Factor factor : kFactors) {
+    if (!spec.sharing(factor).per_lobe) continue;
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const auto channels = spec.channels(factor, t);
+      if (!spec.serves(factor, t, lobe, channels.begin)) continue;
+      const double mine = Size(model, lobe, channels), others = Size(model, other, channels);
+      const double share = mine + others > 0 ? others / (mine + others) : 0;
+      const auto with = model.table(factor, spec.table(factor, other, channels.begin));
+      const auto to = merged.table(factor, t);
+      for (size_t k = 0; k < to.size(); ++k) to[k] += share * (with[k] - to[k]);
+    }
+  }
+  for (int c = 0; c < kChannels; ++c) merged.s(lobe)[c] += model.s(other)[c];
+  return WithoutLobe(merged, other);
+}
 
 FactorModel SplitLobe(const FactorModel& model, int lobe) {
   if (!model.spec().D.per_lobe) throw Error("lobes that share D cannot be split");

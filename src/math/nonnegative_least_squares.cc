@@ -1,4 +1,4 @@
-#include "trilobe/math/bounded_quadratic.h"
+#include "trilobe/math/nonnegative_least_squares.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -18,8 +18,9 @@ constexpr double kPenalty = 0x1p-30;
 
 // No allocations: there are thousands of these small problems in a sweep.
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
-                             kMaxBoundedUnknowns, kMaxBoundedUnknowns>;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxBoundedUnknowns, 1>;
+                             kMaxNonnegativeUnknowns, kMaxNonnegativeUnknowns>;
+using Vector =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxNonnegativeUnknowns, 1>;
 using ConstMatrix = Eigen::Map<const Matrix>;
 using ConstVector = Eigen::Map<const Vector>;
 
@@ -45,7 +46,7 @@ class ActiveSet {
   // there, and the way ends. True if it was reached.
   bool MoveToFreeMinimum() {
     const int n = static_cast<int>(h_.size());
-    int index[kMaxBoundedUnknowns], count = 0;
+    int index[kMaxNonnegativeUnknowns], count = 0;
     for (int k = 0; k < n; ++k) {
       if (free_[k]) index[count++] = k;
     }
@@ -94,7 +95,7 @@ class ActiveSet {
   const Vector& h_;
   const Vector& lower_;
   Vector delta_;
-  bool free_[kMaxBoundedUnknowns] = {};
+  bool free_[kMaxNonnegativeUnknowns] = {};
 };
 
 // True where the change is a decrease by more than the rounding errors of its own terms and of g.
@@ -124,8 +125,8 @@ void MinimizeOneByOne(const ConstMatrix& H, Vector g, std::span<double> x) {
 
 }  // namespace
 
-void MinimizeBounded(std::span<const double> H_values, std::span<const double> g_values, double E,
-                     std::span<double> x) {
+void SolveNonnegativeLeastSquares(std::span<const double> H_values,
+                                  std::span<const double> g_values, double E, std::span<double> x) {
   const int n = static_cast<int>(x.size());
   const ConstMatrix H(H_values.data(), n, n);
   const ConstVector g(g_values.data(), n);

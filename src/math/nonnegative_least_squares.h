@@ -1,5 +1,5 @@
-#ifndef TRILOBE_MATH_BOUNDED_QUADRATIC_H_
-#define TRILOBE_MATH_BOUNDED_QUADRATIC_H_
+#ifndef TRILOBE_MATH_NONNEGATIVE_LEAST_SQUARES_H_
+#define TRILOBE_MATH_NONNEGATIVE_LEAST_SQUARES_H_
 
 #include <array>
 #include <cstddef>
@@ -9,8 +9,9 @@
 
 namespace trilobe {
 
-// Most unknowns that MinimizeBounded takes: enough for d and s of all lobes, in one channel.
-inline constexpr int kMaxBoundedUnknowns = 9;
+// Most unknowns that SolveNonnegativeLeastSquares takes: enough for d and s of all lobes, in one
+// channel.
+inline constexpr int kMaxNonnegativeUnknowns = 9;
 
 // How E changes when a few parameters x, in which it is quadratic, move by delta and all others
 // stay: exactly  E(x + delta) - E(x) = delta'H delta - 2 g'delta.
@@ -25,20 +26,20 @@ inline constexpr int kMaxBoundedUnknowns = 9;
 // and raises E instead: those of less than (4 epsilon)^2 E / 2^-30 are not believed. There, and
 // where an x would pass kMaxParameter, the parameters go to their best places one by one instead
 // (BestElement).
-void MinimizeBounded(std::span<const double> H, std::span<const double> g, double E,
-                     std::span<double> x);
+void SolveNonnegativeLeastSquares(std::span<const double> H, std::span<const double> g, double E,
+                                  std::span<double> x);
 
 // The same for elements wherever they stand, one of them by BestElement: moves them, and says by
 // how much. False if none moved. H, g, E as above. steps: [elements.size()].
 inline bool MoveToMinimum(std::span<const double> H, std::span<const double> g, double E,
                           std::span<double* const> elements, double* steps) {
   const size_t size = elements.size();
-  std::array<double, kMaxBoundedUnknowns> x;
+  std::array<double, kMaxNonnegativeUnknowns> x;
   for (size_t k = 0; k < size; ++k) x[k] = *elements[k];
   if (size == 1) {
     x[0] = BestElement(x[0], {.c1 = -2 * g[0], .c2 = H[0]});
   } else {
-    MinimizeBounded(H, g, E, {x.data(), size});
+    SolveNonnegativeLeastSquares(H, g, E, {x.data(), size});
   }
   bool any = false;
   for (size_t k = 0; k < size; ++k) {
@@ -51,4 +52,4 @@ inline bool MoveToMinimum(std::span<const double> H, std::span<const double> g, 
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_MATH_BOUNDED_QUADRATIC_H_
+#endif  // TRILOBE_MATH_NONNEGATIVE_LEAST_SQUARES_H_

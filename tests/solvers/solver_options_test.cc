@@ -1,0 +1,135 @@
+#include "trilobe/solvers/solver_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "tests/io/test_directory.h"
+#include "trilobe/base/error.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// All values of all options, in their order.
+std::vector<OptionValue> Values(const SolverOptions& options) {
+  std::vector<OptionValue> values;
+  for (const SolverOption& option : AllSolverOptions()) values.push_back(option.get(options));
+  return values;
+}
+
+// Another value than the default, in the range.
+OptionValue OtherValue(const SolverOption& option) {
+  const OptionValue value = option.get({});
+  if (const auto* const choice = std::get_if<std::string>(&value)) {
+    return *choice == "active_set" ? "squares" : "dogleg";
+  }
+  return std::visit(
+      [](const auto& of_type) -> OptionValue {
+        using T = std::decay_t<decltype(of_type)>;
+        if constexpr (std::is_same_v<T, bool>) {
+          return !of_type;
+        } else if constexpr (std::is_same_v<T, std::string>) {
+          return of_type;
+        } else {
+          return static_cast<T>(7);
+        }
+      },
+      value);
+}
+
+TEST(SolverOptions, EachIsItsMemberAndNoOther) {
+  const std::vector<SolverOption>& all = AllSolverOptions();
+  const std::vector<OptionValue> defaults = Values({});
+  for (size_t k = 0; k < all.size(); ++k) {
+    const OptionValue other = OtherValue(all[k]);
+    ASSERT_NE(other, defaults[k]) << all[k].name;
+    SolverOptions options;
+    all[k].set(other, &options);
+    EXPECT_NO_THROW(CheckSolverOptions(options)) << all[k].name;
+    std::vector<OptionValue> expected = defaults;
+    expected[k] = other;
+    EXPECT_EQ(Values(options), expected) << all[k].name;
+  }
+}
+
+TEST(SolverOptions, HaveNamesAndFlagsOfTheirOwn) {
+  std::set<std::string> names, flags;
+  for (const SolverOption& option : AllSolverOptions()) {
+    EXPECT_TRUE(names.insert(option.name).second) << option.name;
+    EXPECT_TRUE(flags.insert(option.flag).second) << option.flag;
+    EXPECT_EQ(&FindSolverOption(option.name), &option);
+  }
+  EXPECT_THAT(ErrorOf([] { FindSolverOption("x"); }), testing::HasSubstr("known: max_iterations"));
+}
+
+// Flags in another unit begin at the member's default, too.
+TEST(SolverOptions, FlagsStandForTheDefaults) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1);
+  int units = 0;
+  for (const SolverOption& option : AllSolverOptions()) {
+    if (!option.unit) continue;
+    ++units;
+    const double flag = option.unit->default_value;
+    EXPECT_NO_THROW(CheckInRange(option.flag, flag, option.unit->range));
+    const bool same = option.unit->to_member == nullptr;
+    EXPECT_EQ(OptionValue(same ? flag : option.unit->to_member(flag, spec)), option.get({}))
+        << option.name;
+  }
+  EXPECT_GT(units, 0);
+}
+
+TEST(SolverOptions, ChoicesAreKnownByName) {
+  SolverOptions options;
+  FindSolverOption("positivity").set("bounds", &options);
+  EXPECT_EQ(options.positivity, Positivity::kBounds);
+  EXPECT_STREQ(PositivityName(options.positivity), "bounds");
+  EXPECT_STREQ(TrustRegionName(TrustRegion::kDogleg), "dogleg");
+  EXPECT_EQ(FindSolverOption("positivity").help,
+            "how parameters are kept >= 0: active_set, bounds or squares");
+  EXPECT_THAT(ErrorOf([&] { FindSolverOption("positivity").set("x", &options); }),
+              testing::HasSubstr("'x'; known: active_set, bounds, squares"));
+}
+
+TEST(SolverOptions, OutOfRangeNameTheValueAndTheRange) {
+  SolverOptions options;
+  options.starts = 0;
+  EXPECT_EQ(ErrorOf([&] { CheckSolverOptions(options); }), "starts is 0; it must be 1 or more");
+}
+
+TEST(SolverOptions, OfASolverAreThoseThatItReads) {
+  SolverOptions options;
+  options.positivity = Positivity::kSquares;
+  options.seed = 0xffffffffffffffff;
+  const std::vector<std::string> particular = {"seed", "positivity"};
+  std::vector<std::string> texts;
+  for (const SolverOption* option : OptionsReadBy(particular)) {
+    texts.push_back(option->name + "=" + ToText(option->get(options)));
+  }
+  EXPECT_THAT(texts, testing::ElementsAre("max_iterations=100", "max_seconds=inf",
+                                          "relative_decrease_tolerance=1e-05",
+                                          "optimality_tolerance=1e-10", "diagnose=true",
+                                          "positivity=squares", "seed=18446744073709551615"));
+}
+
+TEST(SolverOptions, AreThereWhereASolverNamesThem) {
+  for (const SolverEntry& entry : Solvers()) {
+    for (const std::string& name : entry.options) {
+      EXPECT_FALSE(FindSolverOption(name).common) << entry.name << ", " << name;
+    }
+  }
+  SolverEntry entry = FindSolver("awls");
+  entry.name = "own";
+  entry.options = {"x"};
+  EXPECT_THAT(ErrorOf([&] { RegisterSolver(entry); }), testing::HasSubstr("'x'; known: "));
+}
+
+}  // namespace
+}  // namespace trilobe
