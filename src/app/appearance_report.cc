@@ -43,6 +43,11 @@ std::string Describe(const AppearanceReport& report) {
                      Text(report.at_centers.log, 3) + " at " +
                      (report.at_nodes ? "nodes" : "bin centres") + ", " +
                      Text(report.between_centers.log, 3) + " between them\n";
+  if (report.from_formula) {
+    text += "             from the material's own formula, which was measured: PSNR " +
+            Text(report.from_formula->fitted.psnr_db) + " dB; of the measurement, interpolated, " +
+            Text(report.from_formula->measured.psnr_db) + " dB\n";
+  }
   if (report.beyond) {
     const BeyondData& beyond = *report.beyond;
     text += "             beyond the data (" + Text(100 * beyond.share, 2) +
@@ -61,6 +66,14 @@ Json ToJson(const AppearanceReport& report) {
     if (report.at_nodes) angles["phi_i_deg"] = RadiansToDegrees(report.albedo.phi_i[k]);
     angles.update({{"measured", report.albedo.measured[k]}, {"fitted", report.albedo.fitted[k]}});
     albedo.push_back(std::move(angles));
+  }
+  Json from_formula;
+  if (report.from_formula) {
+    const auto sphere_error = [](const SphereError& error) -> Json {
+      return {{"psnr_db", error.psnr_db}, {"mean_delta_e", error.mean_delta_e}};
+    };
+    from_formula = {{"fitted", sphere_error(report.from_formula->fitted)},
+                    {"measured", sphere_error(report.from_formula->measured)}};
   }
   Json beyond;
   if (report.beyond) {
@@ -84,6 +97,7 @@ Json ToJson(const AppearanceReport& report) {
        {{"mean_error", report.albedo.mean}, {"max_error", report.albedo.max}, {"values", albedo}}},
       {"at_centers", ToJson(report.at_centers)},
       {"between_centers", ToJson(report.between_centers)},
+      {"from_formula", from_formula},
       {"beyond", beyond}};
 }
 

@@ -69,8 +69,8 @@ FactorModel StartFromFile() {
   FactorModel model = ReadModel(FLAGS_init).model;
   if (ModelIsGiven()) {
     throw Error(FLAGS_init +
-                " brings its own lobes and tables; leave out --model, --lobes, --d_nodes "
-                "and --g_nodes");
+                " brings its own lobes and tables; leave out --model, --lobes, --d_nodes, "
+                "--f_bins and --g_nodes");
   }
   return model;
 }
@@ -81,7 +81,7 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags =
-      WithSourceFlags({"solver", "init", "weighting", "robust", "max_numbers"});
+      WithSourceFlags({"solver", "init", "weighting", "guide", "robust", "max_numbers"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "probe", "shard", "scene",
@@ -117,6 +117,7 @@ FitSettings SettingsFromFlags() {
                      .max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0,
                      .appearance = AppearanceOptionsFromFlags()};
   settings.spec = SpecFromFlags;
+  settings.guide = GuideFromFlags();
   CheckModelFlags();
   SolverOptionsFromFlags(*settings.solver, ModelSpec());
   settings.source = SourceOptionsFromFlags();
@@ -181,8 +182,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init", "model", "d_nodes", "g_nodes", "max_numbers", "robust", "probe", "course",
-        "reconstruction", "plots", "diagnose", "shard"}) {
+       {"init", "model", "d_nodes", "f_bins", "g_nodes", "guide", "max_numbers", "robust", "probe",
+        "course", "reconstruction", "plots", "diagnose", "shard"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

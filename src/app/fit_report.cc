@@ -62,6 +62,12 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
   return array;
 }
 
+std::string Describe(const FitReport::Guide& guide) {
+  return "guide        a small model, fitted first, speaks for " + std::to_string(guide.samples) +
+         " directions between the measured ones, of weight " + Text(guide.weight) +
+         "; the solver's E counts them, all that follows does not\n";
+}
+
 // What was chosen, and what it was chosen from.
 std::string Describe(const FitReport::Finished& finished) {
   std::string text;
@@ -112,6 +118,9 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"parameters", report.spec.num_parameters()},
           {"stored_numbers", report.stored_parameters},
           {"candidates", ToJson(report.finished.candidates)},
+          {"guide", report.guide
+                        ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
+                        : Json()},
           {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
           {"threads", fit.threads},
           {"options",
@@ -165,7 +174,7 @@ void Print(const FitReport& report) {
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
-            << Describe(report.finished)
+            << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
             << (report.appearance
                     ? Describe(*report.appearance)
                     : "appearance   samples on no grid of directions make no picture\n")

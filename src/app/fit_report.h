@@ -34,6 +34,12 @@ struct FitReport {
   int64_t seed = 0;
   BinCounts bins;  // of the source: how many were left out, and why
   SolverSummary summary;
+  // Samples that joined the data for the solver, whose E counts them (WithGuide).
+  struct Guide {
+    double weight = 0;
+    int samples = 0;
+  };
+  std::optional<Guide> guide;
   // What came after the solver (FinishedFit).
   struct Finished {
     std::optional<double> tied;

@@ -25,8 +25,10 @@
 #include "trilobe/io/utia_file.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
+#include "trilobe/model/with_axes.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/fit_cache.h"
+#include "trilobe/solvers/guide.h"
 
 namespace trilobe {
 namespace {
@@ -81,6 +83,17 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
           .program = Program(),
           .date = UtcNow(),
           .run = run};
+}
+
+// An anisotropic model with F in the 90 bins that all readers of model files know, if those have
+// the centres of its own fewer bins among theirs: the same function.
+FactorModel WithFileBins(FactorModel model) {
+  constexpr int kFileBins = 90;
+  ModelSpec spec = model.spec();
+  const int bins = spec.f_axis.size;
+  if (!spec.anisotropic() || kFileBins % bins != 0 || kFileBins / bins % 2 == 0) return model;
+  spec.f_axis.size = kFileBins;
+  return WithAxes(model, spec);
 }
 
 }  // namespace
@@ -139,6 +152,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   BrdfSamples samples = SamplesOf(measured);
   report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured);
   const Objective objective(std::move(samples), report.spec, settings.weighting, num_threads);
+  const auto interrupted = [] { return InterruptGuard::signal() != 0; };
   report.seconds.prepare = stopwatch.Lap();
   FactorModel model = settings.start_model
                           ? *settings.start_model
@@ -158,22 +172,35 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     return InterruptGuard::signal() == 0;
   };
   SolverSummary& summary = report.summary;
-  summary = settings.solver->make()->Solve(objective, options, &model);
+  std::optional<Objective> guided;
+  if (report.spec.anisotropic() && settings.guide > 0) {
+    guided.emplace(WithGuide(objective, {.weight = settings.guide, .stop = interrupted}),
+                   report.spec, settings.weighting, num_threads);
+    report.guide = {settings.guide, guided->samples().size() - objective.samples().size()};
+  }
+  const Objective& solved = guided ? *guided : objective;
+  summary = settings.solver->make()->Solve(solved, options, &model);
   summary.phases.reading = report.seconds.read;
   report.seconds.solve = stopwatch.Lap();
   report.fit = InfoOf(settings, summary, source, measured, objective,
                       folder == nullptr ? "" : folder->run());
   // As the solver left it; what follows may take longer than somebody who ends the program waits.
   if (folder != nullptr && InterruptGuard::signal() == 0) {
-    FactorModel canonical = model;
-    Canonicalize(objective.coverage(), &canonical);
-    WriteModelInto({canonical, UnobservedParameters(objective.coverage()), report.fit}, folder);
+    FactorModel canonical = WithFileBins(model);
+    const Objective of(objective, canonical.spec());
+    Canonicalize(of.coverage(), &canonical);
+    WriteModelInto({canonical, UnobservedParameters(of.coverage()), report.fit}, folder);
     unsaved.reset();
   }
   FinishOptions finish = settings.finish;
   finish.appearance.num_threads = num_threads;
-  finish.stop = [] { return InterruptGuard::signal() != 0; };
-  FinishedFit fit = FinishFit(objective, table, std::move(model), finish);
+  finish.stop = interrupted;
+  FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
+  if (report.spec.anisotropic()) {  // the guide has done its work
+    fit.model = WithFileBins(std::move(fit.model));
+    fit.objective = Objective(objective, fit.model.spec());
+    Canonicalize(fit.objective.coverage(), &fit.model);
+  }
   report.finished = {fit.tied, fit.candidates, fit.chosen};
   report.spec = fit.model.spec();
   report.stored_parameters =

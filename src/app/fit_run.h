@@ -30,6 +30,7 @@ struct FitSettings {
   const InitialModel* start = nullptr;  // or else:
   std::optional<FactorModel> start_model;
   std::function<ModelSpec(const Measurement&)> spec;
+  double guide = 0;  // GuideOptions::weight, of anisotropic models
   SourceOptions source;
   FinishOptions finish;
   int64_t seed = 0;

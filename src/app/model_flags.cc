@@ -8,25 +8,36 @@
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/io/picture_data.h"
 #include "trilobe/io/text_lines.h"
 
 DEFINE_string(
     model, "shared",
     "shared: D and G shared by the channels, F by the lobes (Peng et al.), isotropic, or "
-    "anisotropic "
-    "where the measurement is; isotropic, anisotropic: that one of the two; independent: "
-    "one lobe, nothing shared (Bagher et al.); auto: what looks best within --max_numbers "
-    "(docs/model-choice.md)");
+    "anisotropic where the measurement is; isotropic: though it is not; anisotropic: on the nodes "
+    "of the paper and without a guide; independent: one lobe, nothing shared (Bagher et al.); "
+    "auto: what looks best within --max_numbers (docs/model-choice.md)");
 DEFINE_string(
-    d_nodes, "6x48",
+    d_nodes, "",
     "of an anisotropic model, nodes of D: so many theta_h by so many phi_h, theta_h at even "
-    "steps, or with an r (12rx48) of the root of theta_h");
-DEFINE_string(g_nodes, "6x48", "of an anisotropic model, nodes of G: theta by phi, at even steps");
+    "steps, or with an r (12rx48) of the root of theta_h; by default 12rx36, or fewer phi_h where "
+    "the data have fewer; with --model=anisotropic 6x48");
+DEFINE_int32(f_bins, 0,
+             "of an anisotropic model, bins of F over theta_d, from 4; by default 6, with "
+             "--model=anisotropic 90");
+DEFINE_string(g_nodes, "",
+              "of an anisotropic model, nodes of G: theta by phi, at even steps; by default 6x24, "
+              "or fewer phi "
+              "where the data have fewer; with --model=anisotropic 6x48");
+DEFINE_double(
+    guide, 1,
+    "of an anisotropic model: how much a small model, fitted first, counts between the measured "
+    "directions (docs/anisotropic.md); 0: not at all, the default with --model=anisotropic");
 
 namespace trilobe {
 namespace {
 
-constexpr double kUtiaMaxTheta = 75;  // [degrees]
+constexpr double kMaxTheta = 75;  // [degrees] of the last nodes
 
 // "6x48", or "12rx48" where `with_root` may be.
 Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
@@ -45,18 +56,36 @@ Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   std::vector<double> nodes;
   for (int a = 0; a < *rings; ++a) {
     const double t = static_cast<double>(a) / (*rings - 1);
-    nodes.push_back(kUtiaMaxTheta * (root ? t * t : t));
+    nodes.push_back(kMaxTheta * (root ? t * t : t));
   }
   Axis axis = Axis::Polar(std::move(nodes), *phi);
   CheckAxis(axis, flag[0] == 'd' ? "D" : "G");
   return axis;
 }
 
-ModelSpec Spec(const MerlGrid& grid, bool anisotropic) {
-  if (!anisotropic) {
-    for (const char* const flag : {"d_nodes", "g_nodes"}) {
-      if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
-    }
+// What the flag says, or by default `rings` by as many phi as follow from those of the data.
+std::string NodesOr(const std::string& given, const char* rings, int phis) {
+  if (!given.empty()) return given;
+  if (FLAGS_model == "anisotropic") return "6x48";
+  std::string nodes(rings);
+  return nodes.append("x").append(std::to_string(phis));
+}
+
+ModelSpec AnisotropicSpec(const HemisphereGrid& data) {
+  ModelSpec spec = ModelSpec::Anisotropic(FLAGS_lobes);
+  spec.d_axis =
+      ParseNodes("d_nodes", NodesOr(FLAGS_d_nodes, "12r", std::clamp(data.phis, 4, 36)), true);
+  spec.g_axis =
+      ParseNodes("g_nodes", NodesOr(FLAGS_g_nodes, "6", std::clamp(data.phis / 2, 4, 24)), false);
+  const bool as_published = FLAGS_model == "anisotropic";
+  spec.f_axis.size = !IsDefault("f_bins") ? FLAGS_f_bins : as_published ? 90 : 6;
+  CheckSpec(spec);
+  return spec;
+}
+
+ModelSpec IsotropicSpec(const MerlGrid& grid) {
+  for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "guide"}) {
+    if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
   }
   if (FLAGS_model == "independent") {
     if (!IsDefault("lobes") && FLAGS_lobes != 1) {
@@ -64,12 +93,7 @@ ModelSpec Spec(const MerlGrid& grid, bool anisotropic) {
     }
     return ModelSpec::IndependentG(grid);
   }
-  ModelSpec spec = anisotropic ? ModelSpec::Anisotropic(FLAGS_lobes)
-                               : ModelSpec::SharedFactors(FLAGS_lobes, grid);
-  if (anisotropic) {
-    spec.d_axis = ParseNodes("d_nodes", FLAGS_d_nodes, true);
-    spec.g_axis = ParseNodes("g_nodes", FLAGS_g_nodes, false);
-  }
+  ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes, grid);
   CheckSpec(spec);
   return spec;
 }
@@ -84,11 +108,12 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
                   " knows no azimuths; an anisotropic model needs scattered samples with several "
                   "phi_i");
     }
-    return Spec(measurement.table->grid, false);
+    return IsotropicSpec(measurement.table->grid);
   }
   const bool anisotropic =
       FLAGS_model == "anisotropic" || (FLAGS_model == "shared" && measurement.anisotropic);
-  return Spec(measurement.samples.grid, anisotropic);
+  if (!anisotropic) return IsotropicSpec(measurement.samples.grid);
+  return AnisotropicSpec(GridOf(measurement).value_or(HemisphereGrid()));
 }
 
 void CheckModelFlags() {
@@ -97,7 +122,12 @@ void CheckModelFlags() {
     throw Error("unknown model '" + FLAGS_model +
                 "'; known: shared, isotropic, anisotropic, independent, auto");
   }
-  Spec({}, FLAGS_model == "anisotropic" || FLAGS_model == "shared");
+  if (!(FLAGS_guide >= 0 && FLAGS_guide <= 1e6)) throw Error("--guide must be from 0 to 1e6");
+  if (FLAGS_model == "anisotropic" || FLAGS_model == "shared") {
+    AnisotropicSpec({});
+  } else {
+    IsotropicSpec({});
+  }
 }
 
 bool ModelIsGiven() {
@@ -107,6 +137,10 @@ bool ModelIsGiven() {
 
 bool ChoosesModel() { return FLAGS_model == "auto"; }
 
-std::vector<std::string> ModelFlags() { return {"model", "lobes", "d_nodes", "g_nodes"}; }
+std::vector<std::string> ModelFlags() { return {"model", "lobes", "d_nodes", "f_bins", "g_nodes"}; }
+
+double GuideFromFlags() {
+  return FLAGS_model == "anisotropic" && IsDefault("guide") ? 0 : FLAGS_guide;
+}
 
 }  // namespace trilobe

@@ -9,9 +9,10 @@
 
 namespace trilobe {
 
-// The model that --model, --lobes, --d_nodes and --g_nodes ask for, for this measurement: the
-// paper's isotropic one by default, or its anisotropic one, where azimuths were measured and
-// matter. Throws Error for flags that contradict each other or the measurement.
+// The model that --model, --lobes, --d_nodes, --f_bins and --g_nodes ask for, for this measurement:
+// the paper's isotropic one by default, or where azimuths were measured and matter an anisotropic
+// one, on nodes that the data can tell apart. Throws Error for flags that contradict each other or
+// the measurement.
 ModelSpec SpecFromFlags(const Measurement& measurement);
 
 // Throws Error for what no measurement could mend.
@@ -24,6 +25,9 @@ bool ModelIsGiven();
 bool ChoosesModel();
 
 std::vector<std::string> ModelFlags();
+
+// GuideOptions::weight.
+double GuideFromFlags();
 
 }  // namespace trilobe
 

@@ -11,6 +11,7 @@
 #include "trilobe/appearance/point_errors.h"
 #include "trilobe/appearance/render.h"
 #include "trilobe/appearance/sphere.h"
+#include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/brdf/channels.h"
 #include "trilobe/brdf/node_brdf.h"
@@ -51,6 +52,12 @@ struct AppearanceReport {
   PointErrors at_centers, between_centers;
   bool at_nodes = false;
   std::optional<BeyondData> beyond;  // nothing where the measurement covers all directions
+  // Where it is known what was measured, a synthetic material: how far from that, on the sphere,
+  // are the fit and the measurement itself, interpolated.
+  struct FromFormula {
+    SphereError fitted, measured;
+  };
+  std::optional<FromFormula> from_formula = {};
 };
 
 struct AppearanceOptions {
@@ -69,7 +76,8 @@ const Environment& EnvironmentOf(const AppearanceOptions& options);
 AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,
                                    const AppearanceOptions& options);
 AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf& fitted,
-                                   const AppearanceOptions& options);
+                                   const AppearanceOptions& options,
+                                   const BrdfFunction& formula = nullptr);
 
 // Throws Error, which names the source, where a figure overflows.
 void CheckFinite(const AppearanceReport& report, const std::string& source);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -45,19 +47,37 @@ PointErrors CompareAtPoints(const NodeBrdf& measured, const SphericalBrdf& fitte
   return MeanOf(sums);
 }
 
+RenderedImages RenderShape(const NodeBrdf& measured, std::span<const SphericalBrdf> brdfs,
+                           Shape shape, bool whole_too, const AppearanceOptions& options) {
+  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
+  const View view =
+      shape == Shape::kSphere ? ViewSphere(options.size) : ViewCloth(options.size, lights);
+  return Render(
+      view, brdfs, lights, [&measured](const SphericalAngles& at) { return measured.Measured(at); },
+      whole_too, options.num_threads);
+}
+
 }  // namespace
 
 AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf& fitted,
-                                   const AppearanceOptions& options) {
+                                   const AppearanceOptions& options, const BrdfFunction& formula) {
   const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};
   AppearanceReport report;
   report.environment = EnvironmentOf(options).name;
   report.lights = options.lights;
   report.size = options.size;
   report.at_nodes = true;
-  const ImagePair pair =
-      RenderPairs(measured, fitted, Shape::kSphere, /*whole_too=*/false, options).counted;
-  report.sphere = CompareSpheres(pair.measured, pair.fitted);
+  std::vector<SphericalBrdf> rendered(std::begin(brdfs), std::end(brdfs));
+  if (formula) {
+    rendered.emplace_back([&](const SphericalAngles& at) { return formula(ToDirections(at)); });
+  }
+  const std::vector<RenderedImage> images =
+      RenderShape(measured, rendered, Shape::kSphere, /*whole_too=*/false, options).counted;
+  report.sphere = CompareSpheres(images[0], images[1]);
+  if (formula) {
+    report.from_formula = {CompareSpheres(images[2], images[1]),
+                           CompareSpheres(images[2], images[0])};
+  }
   const double along_and_across[] = {0, kPi / 2};
   report.albedo = CompareAlbedos(OfMeasured(brdfs[0], measured), OfMeasured(brdfs[1], measured),
                                  along_and_across, options.num_threads);
@@ -69,13 +89,8 @@ AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf
 
 ImagePairs RenderPairs(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
                        bool whole_too, const AppearanceOptions& options) {
-  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
-  const View view =
-      shape == Shape::kSphere ? ViewSphere(options.size) : ViewCloth(options.size, lights);
   const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};
-  RenderedImages images = Render(
-      view, brdfs, lights, [&measured](const SphericalAngles& at) { return measured.Measured(at); },
-      whole_too, options.num_threads);
+  RenderedImages images = RenderShape(measured, brdfs, shape, whole_too, options);
   const auto pair = [](std::vector<RenderedImage>& of) {
     return of.empty() ? ImagePair{} : ImagePair{std::move(of[0]), std::move(of[1])};
   };

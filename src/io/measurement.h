@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/brdf/channels.h"
@@ -25,6 +26,7 @@ struct Measurement {
   std::optional<BrdfTable> table = {};
   std::shared_ptr<const RglBrdf> rgl = nullptr;  // what the data of an RGL file were made from
   bool anisotropic = false;                      // azimuths matter, not only how far apart they are
+  BrdfFunction formula = nullptr;                // of a synthetic material: what was measured
   std::vector<std::string> notes = {};           // one sentence each: what looks wrong in the data
 
   // Of scattered data:

@@ -59,7 +59,7 @@ PictureData PictureDataOf(const Measurement& measurement) {
   if (measurement.table) return {.table = &*measurement.table};
   const std::optional<HemisphereGrid> grid = GridOf(measurement);
   if (!grid) return {};
-  return {.nodes = NodeBrdf(ValuesAtNodes(measurement, *grid))};
+  return {.nodes = NodeBrdf(ValuesAtNodes(measurement, *grid)), .formula = measurement.formula};
 }
 
 void CheckIsotropic(const PictureData& measured, const Material& fitted) {
@@ -74,7 +74,9 @@ void CheckIsotropic(const PictureData& measured, const Material& fitted) {
 
 AppearanceReport CompareAppearance(const PictureData& measured, const Material& fitted,
                                    const AppearanceOptions& options) {
-  if (measured.nodes) return CompareAppearance(*measured.nodes, fitted.spherical, options);
+  if (measured.nodes) {
+    return CompareAppearance(*measured.nodes, fitted.spherical, options, measured.formula);
+  }
   CheckIsotropic(measured, fitted);
   return CompareAppearance(*measured.table, fitted.angular, options);
 }

@@ -19,6 +19,7 @@ std::optional<HemisphereGrid> GridOf(const Measurement& scattered);
 struct PictureData {
   const BrdfTable* table = nullptr;
   std::optional<NodeBrdf> nodes = {};
+  BrdfFunction formula = nullptr;  // what the nodes were measured of, if known
 
   bool empty() const { return table == nullptr && !nodes; }
 };

@@ -244,6 +244,7 @@ Measurement SynthesizeSamples(const SynthMaterial& material, double noise, uint6
   }
   Measurement measurement = collector.Take();
   measurement.anisotropic = true;
+  measurement.formula = material.brdf;
   return measurement;
 }
 

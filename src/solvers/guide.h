@@ -1,0 +1,30 @@
+#ifndef TRILOBE_SOLVERS_GUIDE_H_
+#define TRILOBE_SOLVERS_GUIDE_H_
+
+#include <functional>
+
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/objective/objective.h"
+
+namespace trilobe {
+
+// What a fit goes by between the directions of a sparse measurement.
+//
+// UTIA's directions are 15 degrees apart, and highlights narrower. There the data determine the
+// product of D, F and G^2 at their own directions only: factors that trade a hundredfold between
+// neighbouring nodes fit them as well as smooth ones do, and shine wrongly in between. The guide is
+// a model of too few numbers for that, one lobe on few nodes, fitted first; samples of it between
+// the measured ones then join the data, and any solver fits both.
+struct GuideOptions {
+  double weight =
+      1;  // >= 0: how much the guide's samples count, together, where the data's count 6
+  std::function<bool()> stop = [] { return false; };  // ends the fit of the guide early
+};
+
+// The objective's samples and the guide's, one for six of them, with the objective's number of
+// threads; deterministic. Throws Error for samples without directions.
+BrdfSamples WithGuide(const Objective& data, const GuideOptions& options);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_GUIDE_H_

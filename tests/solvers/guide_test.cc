@@ -1,0 +1,101 @@
+#include "trilobe/solvers/guide.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/synth.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+constexpr HemisphereGrid kGrid = {6, 16};
+
+const SynthMaterial& Steel() { return FindSynthMaterial("aniso_ggx_steel"); }
+
+BrdfSamples SteelAtNodes() { return SamplesOf(SynthesizeSamples(Steel(), 0, 1, kGrid)); }
+
+ModelSpec Spec(int f_bins) {
+  ModelSpec spec = ModelSpec::Anisotropic(2);
+  spec.d_axis = Axis::Polar({0, 2, 6, 14, 25, 39, 55, 75}, 16);
+  spec.f_axis.size = f_bins;
+  spec.g_axis = Axis::Polar({0, 15, 30, 45, 60, 75}, 16);
+  return spec;
+}
+
+// Relative, by the light that is reflected, halfway between the nodes.
+double ErrorBetween(const FactorModel& model) {
+  BrdfSamples between;
+  std::vector<Rgb> wanted;
+  constexpr int kNodes = 5 * 16;
+  for (int i = 0; i < kNodes; ++i) {
+    for (int o = 0; o < kNodes; ++o) {
+      const SphericalAngles at = kGrid.Angles(i, o, 0.5);
+      between.directions.push_back(at);
+      between.angles.push_back(ToHalfDiff(ToDirections(at)));
+      wanted.push_back(Steel().brdf(ToDirections(at)));
+    }
+  }
+  between.rho.assign(wanted.size(), {});
+  const std::vector<Rgb> fitted = EvaluateSamples(model, between, 2);
+  double difference = 0, sum = 0;
+  for (size_t k = 0; k < wanted.size(); ++k) {
+    const double cosines =
+        std::cos(between.directions[k].theta_i) * std::cos(between.directions[k].theta_o);
+    difference += cosines * std::abs(fitted[k][1] - wanted[k][1]);
+    sum += cosines * wanted[k][1];
+  }
+  return difference / sum;
+}
+
+double ErrorOfFit(const BrdfSamples& samples, int f_bins) {
+  const Objective objective(samples, Spec(f_bins), Weightings().front(), 2);
+  FactorModel model = FindInitialModel("moments").make(objective, 1);
+  SolverOptions options;
+  options.max_iterations = 40;
+  options.diagnose = false;
+  MakeSolver("varpro")->Solve(objective, options, &model);
+  return ErrorBetween(model);
+}
+
+TEST(Guide, AddsSamplesBetweenThoseOfTheData) {
+  const BrdfSamples data = SteelAtNodes();
+  const Objective one(data, Spec(6), Weightings().front(), 1);
+  const Objective three(data, Spec(6), Weightings().front(), 3);
+  const BrdfSamples both = WithGuide(one, {.weight = 0.25});
+  CheckSamples(both);
+  ASSERT_EQ(both.size(), data.size() + data.size() / 6);
+  EXPECT_TRUE(std::equal(data.rho.begin(), data.rho.end(), both.rho.begin()));
+  for (int j = 0; j < both.size(); ++j) {
+    ASSERT_EQ(both.Multiplicity(j), j < data.size() ? 1 : 0.25);
+    ASSERT_LE(both.directions[j].theta_o, DegreesToRadians(75) + 1e-9);
+  }
+  EXPECT_EQ(WithGuide(three, {.weight = 0.25}).rho, both.rho);
+  EXPECT_EQ(WithGuide(one, {.weight = 0}).size(), data.size());
+}
+
+// Factors that trade between neighbouring nodes fit these as well, and are wrong in between.
+TEST(Guide, KeepsAFitRightBetweenTheSamples) {
+  const BrdfSamples data = SteelAtNodes();
+  const Objective objective(data, Spec(6), Weightings().front(), 2);
+  const double guided = ErrorOfFit(WithGuide(objective, {}), 6);
+  EXPECT_LT(guided, 0.15);
+  EXPECT_LT(2 * guided, ErrorOfFit(data, 90));
+}
+
+TEST(Guide, NeedsDirections) {
+  BrdfSamples samples = SteelAtNodes();
+  samples.directions.clear();
+  const Objective objective(samples, ModelSpec::SharedFactors(1), Weightings().front());
+  EXPECT_THROW(WithGuide(objective, {}), Error);
+}
+
+}  // namespace
+}  // namespace trilobe
