@@ -103,12 +103,13 @@ def _filter_row(result, fit):
             "G_roughness": _roughness(fit)}
 
 
-def tabulate(_, results):
+def tabulate(setting, results):
     there = [result for result in results if result.folder]
     of_run = {}
     for result in there:
         of_run.setdefault(result.labels["run"], []).append(result)
-    solver_fits = [(result, Fit(result.folder)) for result in of_run.get("solvers", [])]
+    solver_fits = [(result, Fit(result.folder, fits.clock(setting)))
+                   for result in of_run.get("solvers", [])]
     best = {}
     for result, fit in solver_fits:
         name = result.labels["material"]
