@@ -134,6 +134,10 @@ def _clock(rows):
     return fits.CLOCKS[rows[0]["clock"]]
 
 
+def _threads(number):
+    return "1 thread" if number == 1 else f"{number} threads"
+
+
 def _draw_shares(axes, of_solver, solvers, low, high):
     """Share of problems at most x, over a logarithmic x; the highest line labelled first."""
     from lab import plots
@@ -167,8 +171,8 @@ def _profile_figure(rows, solvers, threads):
     _draw_shares(axes, ratios, solvers, 1, max(1.1 * max(finite), 2))
     axes.set(title="performance profile: within 1 %", ylabel="share of materials (%)",
              xlabel="time over that of the soonest solver")
-    figure.suptitle(f"How soon near the best E: all solvers, {len(names)} materials, {threads} "
-                    "threads", x=0.01, ha="left")
+    figure.suptitle(f"How soon near the best E: all solvers, {len(names)} materials, "
+                    f"{_threads(threads)}", x=0.01, ha="left")
     return figure
 
 
@@ -214,8 +218,8 @@ def _median_figure(curves, rows, solvers, threads):
         plots.plain_numbers(axes.yaxis)
         plots.plain_numbers(axes.xaxis)
         plots.label_ends(axes)
-    panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} "
-                        "threads; bands: quartiles of auto and awls")
+    panels[0].set_title(f"Error against time: median over {len(names)} materials, "
+                        f"{_threads(threads)}; bands: quartiles of auto and awls")
     panels[-1].set_xlabel(f"{_clock(rows)}, reading and preparing included")
     return figure
 
@@ -402,8 +406,11 @@ def draw(drawn, _):
     if count > names:
         wide = [row for row in everywhere if row["solver"] in widest]
         summary += f"\nAll {count} materials:\n\n{_summary(wide, widest)}\n"
-    products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads),
-                "threads.md": _thread_table(runs), "repeats.md": _repeat_table(drawn["runs"])}
+    products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads)}
+    for name, table in (("threads.md", _thread_table(runs)),
+                        ("repeats.md", _repeat_table(drawn["runs"]))):
+        if table:  # empty where the manifest does not ask for it
+            products[name] = table
     if curves:
         products["errors.md"] = _errors_table(curves, solvers, threads)
         products["median"] = _median_figure(curves, rows, solvers, threads)
