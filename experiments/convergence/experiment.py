@@ -98,17 +98,20 @@ def _filter_row(result, fit):
             "filter_deg": fit.report["options"]["given"]["g_filter_sigma"],
             "sweeps": fit.report["iterations"], "best_sweep": fit.report["best_iteration"],
             "sweeps_that_raised_E": len(rises), "worst_rise": max(rises, default=0.0),
-            "objective": fit.report["objective"], "last_objective": fit.trace[-1]["objective"],
+            # Of the sweeps: the report's E is that after entries at the edge of the data are tied.
+            "objective": min(row["objective"] for row in fit.trace),
+            "last_objective": fit.trace[-1]["objective"],
             "psnr_db": fit.report["psnr_db"], "mean_log_error": fit.report["mean_log_error"],
             "G_roughness": _roughness(fit)}
 
 
-def tabulate(_, results):
+def tabulate(setting, results):
     there = [result for result in results if result.folder]
     of_run = {}
     for result in there:
         of_run.setdefault(result.labels["run"], []).append(result)
-    solver_fits = [(result, Fit(result.folder)) for result in of_run.get("solvers", [])]
+    solver_fits = [(result, Fit(result.folder, fits.clock(setting)))
+                   for result in of_run.get("solvers", [])]
     best = {}
     for result, fit in solver_fits:
         name = result.labels["material"]
@@ -195,6 +198,8 @@ def _filter_figure(rows):
         for k, name in enumerate(names):
             shown = [w for w in widths if (name, w) in at]
             base = at[name, 0][column]
+            if base is None or math.isnan(base):  # no G table that data touch everywhere
+                continue
             axes.plot(shown, [stats.ratio(at[name, w][column], base) for w in shown], marker="o",
                       label=name, color=plots.SERIES[k % len(plots.SERIES)], linewidth=1.4,
                       linestyle="-" if k < len(plots.SERIES) else "--")
@@ -267,7 +272,8 @@ def draw(drawn, _):
         products["curves"] = _curves_figure(drawn["curves"])
     if drawn["elements"]:
         products["elements.md"] = _elements_table(drawn["elements"], drawn["missing"])
-        products["elements"] = _elements_figure(drawn["elements"])
+        if any(row["raised"] for row in drawn["elements"]):  # else there is nothing to see
+            products["elements"] = _elements_figure(drawn["elements"])
     if drawn["filter"]:
         products["filter.md"] = _filter_table(drawn["filter"])
         products["filter"] = _filter_figure(drawn["filter"])

@@ -19,9 +19,10 @@ def units(setting):
 # --- tables ---------------------------------------------------------------------------------------
 
 
-def _labels(result):
-    return {key: result.labels[key] for key in ("material", "solver", "start", "seed", "threads",
-                                                  "repeat")}
+def _labels(result, setting):
+    return {**{key: result.labels[key] for key in ("material", "solver", "start", "seed",
+                                                   "threads", "repeat")},
+            "clock": fits.clock(setting)}
 
 
 def _best_objectives(fit_of):
@@ -33,11 +34,11 @@ def _best_objectives(fit_of):
     return best
 
 
-def _run_row(result, fit, best, database):
+def _run_row(result, fit, best, labels, database):
     times = [row["clock"] for row in fit.trace]
     objectives = stats.best_so_far([row["objective"] for row in fit.trace])
     report = fit.report
-    row = {**_labels(result), "database": database[result.labels["material"]],
+    row = {**labels, "database": database[result.labels["material"]],
            "objective": objectives[-1], "excess": stats.excess(objectives[-1], best)}
     for target in TARGETS:
         row[f"seconds_to_{100 * target:g}_percent"] = stats.time_to_target(
@@ -95,16 +96,18 @@ def _curves(results, fit_of, best, grid):
 
 
 def tabulate(setting, results):
-    fit_of = [(result, Fit(result.folder)) for result in results if result.folder]
+    fit_of = [(result, Fit(result.folder, fits.clock(setting)))
+              for result in results if result.folder]
     best = _best_objectives(fit_of)
     database = {source.name: source.database for source in setting.sources}
     fit_at = {result.unit.key: fit for result, fit in fit_of}
     runs = []
     for result in results:
+        labels = _labels(result, setting)
         if fit := fit_at.get(result.unit.key):
-            runs.append(_run_row(result, fit, best[result.labels["material"]], database))
+            runs.append(_run_row(result, fit, best[result.labels["material"]], labels, database))
         else:
-            runs.append({**_labels(result), "database": database[result.labels["material"]],
+            runs.append({**labels, "database": database[result.labels["material"]],
                          "excess": math.inf, "stop_reason": "missing",
                          **{f"seconds_to_{100 * target:g}_percent": math.inf
                             for target in TARGETS}})
@@ -125,6 +128,14 @@ def _complete(runs):
     names = {name for name, of in tables.groups(rows, "material").items()
              if {row["solver"] for row in of} == set(solvers)}
     return [row for row in rows if row["material"] in names], solvers, threads
+
+
+def _clock(rows):
+    return fits.CLOCKS[rows[0]["clock"]]
+
+
+def _threads(number):
+    return "1 thread" if number == 1 else f"{number} threads"
 
 
 def _draw_shares(axes, of_solver, solvers, low, high):
@@ -150,7 +161,7 @@ def _profile_figure(rows, solvers, threads):
         times = {s: [at[name, s][column] for name in names] for s in solvers}
         finite = [t for of in times.values() for t in of if math.isfinite(t)] or [1]
         _draw_shares(axes, times, solvers, 0.8 * min(finite), 1.1 * max(finite))
-        axes.set(title=f"within {100 * target:g} % of the best E", xlabel="seconds on the clock",
+        axes.set(title=f"within {100 * target:g} % of the best E", xlabel=_clock(rows),
                  ylabel="share of materials (%)")
     column = "seconds_to_1_percent"
     ratios = stats.performance_ratios({s: [at[name, s][column] for name in names]
@@ -160,8 +171,8 @@ def _profile_figure(rows, solvers, threads):
     _draw_shares(axes, ratios, solvers, 1, max(1.1 * max(finite), 2))
     axes.set(title="performance profile: within 1 %", ylabel="share of materials (%)",
              xlabel="time over that of the soonest solver")
-    figure.suptitle(f"How soon near the best E: all solvers, {len(names)} materials, {threads} "
-                    "threads", x=0.01, ha="left")
+    figure.suptitle(f"How soon near the best E: all solvers, {len(names)} materials, "
+                    f"{_threads(threads)}", x=0.01, ha="left")
     return figure
 
 
@@ -207,9 +218,9 @@ def _median_figure(curves, rows, solvers, threads):
         plots.plain_numbers(axes.yaxis)
         plots.plain_numbers(axes.xaxis)
         plots.label_ends(axes)
-    panels[0].set_title(f"Error against time: median over {len(names)} materials, {threads} "
-                        "threads; bands: quartiles of auto and awls")
-    panels[-1].set_xlabel("seconds on the clock, reading and preparing included")
+    panels[0].set_title(f"Error against time: median over {len(names)} materials, "
+                        f"{_threads(threads)}; bands: quartiles of auto and awls")
+    panels[-1].set_xlabel(f"{_clock(rows)}, reading and preparing included")
     return figure
 
 
@@ -237,7 +248,7 @@ def _material_figure(curves, rows, solvers, threads):
         axes.minorticks_off()
     for axes in panels.flat[len(names):]:
         axes.set_axis_off()
-    figure.supxlabel("seconds on the clock")
+    figure.supxlabel(_clock(rows))
     figure.supylabel("excess of E over the best (%)")
     plots.legend_above(figure, panels.flat[0])
     return figure
@@ -395,8 +406,11 @@ def draw(drawn, _):
     if count > names:
         wide = [row for row in everywhere if row["solver"] in widest]
         summary += f"\nAll {count} materials:\n\n{_summary(wide, widest)}\n"
-    products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads),
-                "threads.md": _thread_table(runs), "repeats.md": _repeat_table(drawn["runs"])}
+    products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads)}
+    for name, table in (("threads.md", _thread_table(runs)),
+                        ("repeats.md", _repeat_table(drawn["runs"]))):
+        if table:  # empty where the manifest does not ask for it
+            products[name] = table
     if curves:
         products["errors.md"] = _errors_table(curves, solvers, threads)
         products["median"] = _median_figure(curves, rows, solvers, threads)

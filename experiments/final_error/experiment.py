@@ -12,39 +12,41 @@ from lab.units import FOLDER, Product, Unit
 
 ONE = ("threads", "start")  # of these the tables know one
 MEASURES = ("psnr_db", "mean_relative_error", "mean_log_error")
-COMPRESSIVE = "compressive"
 PUBLISHED = "published, one lobe"
 OURS = "three lobes"
 BELOW = 75  # degrees; beyond, the published fits do not follow the measurements
 
 
 def _published(setting, judged):
-    """The units that score the published one-lobe fits, if their file is given: on all samples, and
-    on those below BELOW degrees together with a fit of judged, {material: its unit}."""
+    """The units that score the published one-lobe fits of the materials of judged, {material: the
+    unit of its fit}, if their file is given: on all samples, and together with that fit on those
+    below BELOW degrees."""
     picture, names = setting.place("npf"), setting.place("npf_names")
     if not picture or not names:
         return []
     known = set(names.read_text().split())
     scores = []
     for source in setting.sources:
-        if source.name in known:
-            model = Unit(f"npf/{source.name}/model", pathlib.Path(__file__).with_name("npf_model"),
-                         (str(picture), str(names), source.name, f"{FOLDER}/model.json"),
-                         "model.json",
-                         labels={"run": "npf model"})
-            scores += [model, Unit(
-                f"npf/{source.name}/score", setting.program(),
-                ("score", Product(model, "model.json"), source.path, "--json",
-                 f"--weighting={COMPRESSIVE}", *fits.words(setting.reading(source))),
-                labels={"material": source.name, "solver": PUBLISHED, "run": PUBLISHED,
-                        "weighting": COMPRESSIVE})]
-            if source.name in judged:
-                scores.append(Unit(
-                    f"npf/{source.name}/below", pathlib.Path(__file__).with_name("score_below"),
-                    (str(setting.program()), source.path, str(BELOW), COMPRESSIVE, FOLDER,
-                     Product(judged[source.name], "model.json"), Product(model, "model.json")),
-                    modules=(pathlib.Path(merl.__file__),),
-                    labels={"material": source.name, "run": "below"}))
+        if source.name not in known or source.name not in judged:
+            continue
+        fitted = judged[source.name]
+        weighting = fitted.labels["weighting"]
+        flags = fits.words(fits.of_weighting(setting, weighting))
+        model = Unit(f"npf/{source.name}/model", pathlib.Path(__file__).with_name("npf_model"),
+                     (str(picture), str(names), source.name, f"{FOLDER}/model.json"), "model.json",
+                     labels={"run": "npf model"})
+        scores += [
+            model,
+            Unit(f"npf/{source.name}/score", setting.program(),
+                 ("score", Product(model, "model.json"), source.path, "--json", *flags,
+                  *fits.words(setting.reading(source))),
+                 labels={"material": source.name, "solver": PUBLISHED, "run": PUBLISHED,
+                         "weighting": weighting}),
+            Unit(f"npf/{source.name}/below", pathlib.Path(__file__).with_name("score_below"),
+                 (str(setting.program()), source.path, str(BELOW), FOLDER,
+                  Product(fitted, "model.json"), Product(model, "model.json"), *flags),
+                 modules=(pathlib.Path(merl.__file__),),
+                 labels={"material": source.name, "run": "below"})]
     return scores
 
 
@@ -67,7 +69,7 @@ def units(setting):
 # --- tables ---------------------------------------------------------------------------------------
 
 
-def _row(result):
+def _row(result, clock):
     labels = result.labels
     row = {"material": labels["material"], "run": labels["run"], "solver": labels["solver"],
            "weighting": labels["weighting"]}
@@ -78,13 +80,13 @@ def _row(result):
         return {**row, **{key: score[key] for key in
                           ("valid_samples", "objective", "relative_objective", "psnr_peak",
                            *MEASURES)}}
-    fit = Fit(result.folder)
+    fit = Fit(result.folder, clock)
     report = fit.report
     return {**row, **{key: report[key] for key in
                       ("valid_samples", "initial_objective", "objective", "relative_objective",
                        "psnr_peak", *MEASURES, "iterations", "stop_reason")},
             "optimality": report["diagnosis"] and report["diagnosis"]["optimality"],
-            "solve_s": report["seconds"]["solve"], "all_s": sum(report["seconds"].values())}
+            "solve_s": fit.taken("solve"), "all_s": fit.taken()}
 
 
 def _for_a_page(path):
@@ -100,7 +102,7 @@ def _for_a_page(path):
 
 
 def tabulate(setting, results):
-    rows = [_row(result) for result in results
+    rows = [_row(result, fits.clock(setting)) for result in results
             if result.labels["run"] not in ("pictures", "npf model", "below")]
     database = {source.name: source.database for source in setting.sources}
     for row in rows:

@@ -10,6 +10,9 @@ import re
 from lab import UsageError
 from lab.units import FOLDER, Unit
 
+# What times are: of the clock on the wall, or of all threads' processors, which is what a fit takes
+# whatever else runs beside it.
+CLOCKS = {"wall": "seconds", "processor": "processor seconds"}
 DEFAULT = "default"  # the weighting that the program takes if it is told none
 # The members of a run, and what they are if they are not given.
 RUN = {"solvers": None, "every": 1, "starts": ["analytic"], "seeds": [1], "threads": [2],
@@ -34,7 +37,7 @@ def file_name(text):
     return re.sub(r"[^\w.+-]+", "-", text)
 
 
-def _of_weighting(setting, weighting):
+def of_weighting(setting, weighting):
     """The flags that stand for a weighting: those that the manifest gives the name, if it does."""
     own = {} if weighting == DEFAULT else {"weighting": weighting}
     return setting.manifest.get("weightings", {}).get(weighting, own)
@@ -52,7 +55,7 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
     repeat: the same fit is made once for each number, where its times are the question.
     """
     flags = {"solver": solver, "init": start, "seed": seed, "threads": threads, "noise": 0,
-             **_of_weighting(setting, weighting), **setting.reading(source), **(flags or {}),
+             **of_weighting(setting, weighting), **setting.reading(source), **(flags or {}),
              **setting.manifest.get("solvers", {}).get(solver, {})}
     program = flags.pop("program", None)
     limit = flags.get("max_seconds", 0)
@@ -105,11 +108,27 @@ def planned(setting):
     return list(units.values())
 
 
-class Fit:
-    """What `trilobe fit` wrote into a folder (docs/file-formats.md)."""
+def clock(setting):
+    """The manifest's "clock", one of CLOCKS."""
+    name = setting.manifest.get("clock", "wall")
+    if name not in CLOCKS:
+        raise UsageError(f"the manifest's \"clock\" is {name!r}, not one of {', '.join(CLOCKS)}")
+    return name
 
-    def __init__(self, folder):
+
+class Fit:
+    """What `trilobe fit` wrote into a folder (docs/file-formats.md).
+
+    clock: one of CLOCKS. The trace has seconds on the wall; the processor's are these times the
+    share of the processors that the whole command had.
+    """
+
+    def __init__(self, folder, clock="wall"):
         self.folder = folder
+        self.pace = 1.0
+        if clock == "processor":
+            unit = json.loads((folder / "unit.json").read_text())
+            self.pace = unit["processor_seconds"] / unit["seconds"]
         self.report = json.loads((folder / "report.json").read_text())
         lacking = [name for name in ("objective", "seconds", "phases") if name not in self.report]
         if lacking:
@@ -124,8 +143,12 @@ class Fit:
     @property
     def before(self):
         """Seconds from the start of reading to the solver's start."""
+        return self.taken("read", "prepare", "init")
+
+    def taken(self, *phases):
+        """Seconds of these phases, by their names in report.json; of all if none is named."""
         seconds = self.report["seconds"]
-        return seconds["read"] + seconds["prepare"] + seconds["init"]
+        return self.pace * sum(seconds[phase] for phase in phases or seconds)
 
     @functools.cached_property
     def trace(self):
@@ -134,7 +157,8 @@ class Fit:
         rows = self._rows("trace.csv")
         a_row = self.report["phases"]["tracing"] / len(rows)
         for row in rows:
-            row["clock"] = self.before + row["seconds"] - a_row * (row["iteration"] + 1)
+            row["clock"] = self.before + self.pace * (
+                row["seconds"] - a_row * (row["iteration"] + 1))
         return rows
 
     @functools.cached_property

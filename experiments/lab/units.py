@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import socket
@@ -95,6 +96,12 @@ def _with_hash(argument):
         if os.sep in path and os.path.isfile(path):
             return [start, file_hash(path)]
     return argument
+
+
+def _processor_seconds():
+    """Of all commands that have ended: what they had of all processors, whatever else ran."""
+    of = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return of.ru_utime + of.ru_stime
 
 
 def _interpreted(words):
@@ -194,7 +201,7 @@ class Store:
         words = self.command(unit, folder)
         # Should this process be killed, the kernel ends the command too.
         guard = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
-        begin = time.monotonic()
+        begin, used = time.monotonic(), _processor_seconds()
         with open(folder / "stdout.txt", "wb") as out, open(folder / "stderr.txt", "wb") as err:
             # A session of its own: Ctrl-C comes here alone, or the command would end as if done.
             process = subprocess.Popen(guard + _interpreted(words), stdin=subprocess.DEVNULL,
@@ -207,7 +214,7 @@ class Store:
                 if process.poll() is None:
                     os.killpg(process.pid, signal.SIGKILL)
                     process.wait()
-        seconds = time.monotonic() - begin
+        seconds, used = time.monotonic() - begin, _processor_seconds() - used
         if status == 0 and not (folder / unit.product).exists():
             status = f"did not write {unit.product}"
         if status != 0:
@@ -219,7 +226,7 @@ class Store:
             raise UnitFailed(f"{unit.path}: {how}" + (f": {said[-1]}" if said else ""))
         return {"command": self.command(unit, FOLDER), "program_sha256": unit.program_sha256,
                 "revision": machine.revision(),
-                "seconds": round(seconds, 3),
+                "seconds": round(seconds, 3), "processor_seconds": round(used, 3),
                 "finished": datetime.datetime.now(datetime.timezone.utc).isoformat("T", "seconds"),
                 "machine": machine.describe()}
 

@@ -15,6 +15,7 @@ COLLAPSED = 1e-4  # of the reflected light: less is no lobe
 COPY = 0.99  # match score of two lobes of one model
 BLOWN_UP = 2.0  # times what the reference reflects
 AGREEING = 0.9  # match score of the least alike of a run's lobes
+STABLE = 0.9  # of a material's runs agree
 
 
 def _noisy_fits(setting):
@@ -60,10 +61,12 @@ def units(setting):
 class _Run:
     """A fit, its model and its lobes' albedos."""
 
-    def __init__(self, result):
+    def __init__(self, result, clock):
         self.labels = result.labels
         self.key = result.unit.key
-        self.report = Fit(result.folder).report
+        fit = Fit(result.folder, clock)
+        self.report = fit.report
+        self.seconds = fit.taken("read", "prepare", "init", "solve")
         self.model = lobes.Model.read(result.folder / "model.json")
         self.albedos = lobes.albedos(self.model)
         self.order = None  # its lobes in the order of the reference's
@@ -107,7 +110,7 @@ def _row(run, reference):
         # Under noise E is mostly noise, which a model must not follow.
         "excess": (stats.excess(report["objective"], reference.report["objective"])
                    if run.group[1] != "noise" else None),
-        "seconds": sum(report["seconds"][phase] for phase in ("read", "prepare", "init", "solve")),
+        "seconds": run.seconds,
         "stop_reason": report["stop_reason"], "iterations": report["iterations"],
         "reference": int(run.key == reference.key), "least_match": min(matches, default=1.0),
         "light_match": float(numpy.average(matches, weights=shares[list(run.order)]))
@@ -117,6 +120,7 @@ def _row(run, reference):
         "albedo": total, "albedo_over_reference": total / float(reference.albedos.sum()),
         **{f"share_{k + 1}": float(shares[m]) for k, m in enumerate(run.order)},
         "share_diffuse": float(shares[-1]),
+        "psnr_db": (report.get("appearance") or {}).get("psnr_db"),
         **{name: diagnosis.get(name) for name in ("rank", "condition", "unresolved")}}
 
 
@@ -168,18 +172,18 @@ def _weakest(spectrum, order):
 
 
 def tabulate(setting, results):
-    runs = [_Run(result) for result in results
+    runs = [_Run(result, fits.clock(setting)) for result in results
             if result.folder and result.labels["run"] != "spectrum"]
     references = _references(runs)
     compared = [run for run in runs if run.group in references]
     rows = [_row(run, references[run.group]) for run in compared]
-    shown = setting.manifest["shown_solver"]
+    shown = setting.manifest["shown"]
     bands = []
     for group, reference in references.items():
         material, kind, _ = group
         of = [run for run in compared if run.group == group and run.labels["run"] == kind
-              and (kind == "noise" or run.labels["solver"] == shown)]
-        if of and kind != "lobes":
+              and (kind == "noise" or run.labels["solver"] == shown["solver"])]
+        if of and kind != "lobes" and material in shown.get("materials", [material]):
             bands += [{"run": kind, "material": material, **row} for row in _bands(of, reference)]
     order_of = {run.key: run.order for run in compared if run.labels["run"] == "lobes"}
     spectra, weakest = [], []
@@ -254,8 +258,12 @@ def _shares_figure(rows):
     count = max(row["lobes"] for row in rows)
     columns = [*(f"share_{k + 1}" for k in range(count)), "share_diffuse"]
     names = [*(f"lobe {k + 1}" for k in range(count)), "diffuse"]
-    figure, panels = plots.plt.subplots(1, len(by_material), sharey=True, squeeze=False,
-                                        figsize=(3.4 * len(by_material) + 1, 4.4))
+    across = min(5, len(by_material))
+    lines = math.ceil(len(by_material) / across)
+    figure, panels = plots.plt.subplots(lines, across, sharey=True, squeeze=False,
+                                        figsize=(2.9 * across + 1, 3.2 * lines + 0.6))
+    for axes in panels.flat[len(by_material):]:
+        axes.set_axis_off()
     for axes, (material, of_material) in zip(panels.flat, by_material.items()):
         for i, solver in enumerate(solvers):
             of = [row for row in of_material if row["solver"] == solver]
@@ -270,10 +278,43 @@ def _shares_figure(rows):
         axes.set_xticks(range(len(names)), names, fontsize=9)
         axes.grid(visible=False, axis="x")
         plots.plain_numbers(axes.yaxis)
-    panels[0, 0].set_ylabel("share of the reflected light (%)")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("share of the reflected light (%)")
     panels[0, 0].text(0.02, 70 * COLLAPSED, "collapsed", fontsize=8, color="#555555",
                       transform=panels[0, 0].get_yaxis_transform(), va="top")
     plots.legend_above(figure, panels[0, 0])
+    return figure
+
+
+def _stability_figure(rows):
+    """A line a material: the least match and E of each run of the solver shown, and noise."""
+    from lab import plots
+    kinds = {"starts": (plots.BLUE, "another seed"), "noise": (plots.ORANGE, "noise")}
+    by_material = tables.groups([row for row in rows if not row["reference"]], "material")
+    names = sorted(by_material, key=lambda name: stats.median(
+        [row["least_match"] for row in by_material[name]]))
+    figure, panels = plots.plt.subplots(1, 3, sharey=True,
+                                        figsize=(13, 0.42 * len(names) + 1.6))
+    for y, name in enumerate(names):
+        for k, (kind, (colour, label)) in enumerate(kinds.items()):
+            of = [row for row in by_material[name] if row["run"] == kind]
+            heights = y + 0.18 * (1 - 2 * k) + 0.14 * (numpy.linspace(-1, 1, len(of))
+                                                      if len(of) > 1 else numpy.zeros(len(of)))
+            style = {"color": colour, "markersize": 4, "alpha": 0.75, "linestyle": "",
+                     "marker": "o", "label": label if y == 0 else "_"}
+            panels[0].plot([row["least_match"] for row in of], heights, **style)
+            if kind == "starts":
+                panels[1].plot([100 * max(row["excess"], 1e-6) for row in of], heights, **style)
+                panels[2].plot([row["psnr_db"] for row in of], heights, **style)
+    panels[0].axvline(AGREEING, color=plots.GREY, linewidth=1)
+    panels[0].set(xlim=(-0.03, 1.03), xlabel="match of the least alike lobe (1: the same)")
+    panels[0].set_yticks(range(len(names)), names)
+    panels[1].set(xscale="log", xlabel="E above the lowest (%)")
+    plots.plain_numbers(panels[1].xaxis)
+    panels[2].set(xlabel="PSNR of the sphere (dB)")
+    for axes in panels:
+        axes.grid(visible=False, axis="y")
+    plots.legend_above(figure, panels[0])
     return figure
 
 
@@ -336,11 +377,11 @@ def _percent(rows, holds):
     return f"{100 * sum(map(holds, rows)) / len(rows):.0f}" if rows else "–"
 
 
-def _range(values):
+def _range(values, digits=3):
     if not values:
         return "–"
-    low, middle, high = (stats.quantile(values, q) for q in (.05, .5, .95))
-    return f"{middle:.3g} [{low:.3g}, {high:.3g}]"
+    middle, low, high = (f"{stats.quantile(values, q):.{digits}g}" for q in (.5, .05, .95))
+    return f"{middle} [{low}, {high}]"
 
 
 def _agree(rows):
@@ -383,10 +424,28 @@ def _stability_table(rows):
             _percent(of, lambda row: row["swapped"]), _percent(of, lambda row: row["collapsed"]),
             _percent(of, lambda row: row["likest_pair"] > COPY),
             _percent(of, lambda row: row["albedo_over_reference"] > BLOWN_UP),
-            f"{max(row['albedo_over_reference'] for row in of):.4g}"])
+            f"{max(row['albedo_over_reference'] for row in of):.4g}",
+            _range([row["psnr_db"] for row in of if row["psnr_db"] is not None], 4)])
     return tables.markdown(
         ["runs of", "material", "solver", "n", "least match", "match by light", "agree, %",
-         "swapped, %", "collapsed, %", "copies, %", "blown up, %", "largest albedo"], lines)
+         "swapped, %", "collapsed, %", "copies, %", "blown up, %", "largest albedo",
+         "sphere PSNR, dB"], lines)
+
+
+def _stable_table(rows):
+    """On how many materials the same lobes come back."""
+    lines = []
+    for (run, solver), of in tables.groups(rows, "run", "solver").items():
+        by_material = tables.groups([row for row in of if not row["reference"]], "material")
+        agree = {name: sum(row["least_match"] >= AGREEING for row in runs) / len(runs)
+                 for name, runs in by_material.items()}
+        lines.append([run, solver, str(len(agree)),
+                      *(str(sum(share >= least for share in agree.values()))
+                        for least in (STABLE, 0.5)),
+                      ", ".join(name for name, share in agree.items() if share < STABLE) or "–"])
+    return tables.markdown(["runs of", "solver", "materials",
+                            f"{100 * STABLE:.0f} % of the runs agree on", "half of them on",
+                            "fewer agree on"], lines)
 
 
 def _lobes_table(rows):
@@ -430,6 +489,10 @@ def draw(drawn, _):
         products["shares"] = _shares_figure(starts)
     if starts or noise:
         products["stability.md"] = _stability_table(starts + noise)
+        products["stable.md"] = _stable_table(starts + noise)
+        solver = noise[0]["solver"] if noise else starts[0]["solver"]
+        products["stability"] = _stability_figure(
+            [row for row in starts + noise if row["solver"] == solver])
     if by_count:
         products["lobes.md"] = _lobes_table(by_count)
         products["lobes"] = _lobes_figure(by_count)

@@ -97,6 +97,22 @@ class FitsTest(FolderTest):
         self.assertEqual(fit.course[1]["psnr_db"], math.inf)
         self.assertTrue(math.isnan(fit.trace[0]["optimality"]))
 
+    def test_processor_seconds_are_the_share_that_the_command_had(self):
+        (self.folder / "report.json").write_text(json.dumps(REPORT))
+        (self.folder / "trace.csv").write_text(TRACE)
+        (self.folder / "unit.json").write_text('{"seconds": 8, "processor_seconds": 4}')
+        fit = fits.Fit(self.folder, "processor")
+        for clock, expected in zip((row["clock"] for row in fit.trace), (1.75, 2.2, 2.65)):
+            self.assertAlmostEqual(clock, expected)
+        self.assertAlmostEqual(fit.taken(), 1.75)
+        self.assertAlmostEqual(fit.taken("read", "init"), 0.75)
+
+    def test_a_clock_that_is_none_is_refused(self):
+        self.assertEqual(fits.clock(self.setting([])), "wall")
+        self.assertEqual(fits.clock(self.setting([], clock="processor")), "processor")
+        with self.assertRaisesRegex(UsageError, "\"clock\" is 'sun'"):
+            fits.clock(self.setting([], clock="sun"))
+
 
 if __name__ == "__main__":
     unittest.main()

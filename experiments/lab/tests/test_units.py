@@ -50,6 +50,7 @@ class UnitsTest(FolderTest):
         record = json.loads((folder / "unit.json").read_text())
         self.assertEqual(record["command"], [str(self.program), FOLDER, "a"])
         self.assertGreater(record["machine"]["cores"], 0)
+        self.assertGreater(record["processor_seconds"], 0)
         same = self.unit("a", labels={"of": "another experiment"})
         self.assertEqual(self.store.make(same), folder)
         self.assertEqual(self.times_run(), 1)
