@@ -28,7 +28,9 @@ Json ToJson(const PointErrors& errors) {
 AppearanceOptions AppearanceOptionsFromFlags() {
   static const Environment probe =
       FLAGS_probe.empty() ? StudioEnvironment() : ReadProbe(FLAGS_probe);
-  return {.environment = &probe, .num_threads = ThreadsFromFlags()};
+  // For tests, which would spend most of their time under its lights.
+  const int lights = google::Int32FromEnv("TRILOBE_TEST_LIGHTS", AppearanceOptions().lights);
+  return {.environment = &probe, .lights = lights, .num_threads = ThreadsFromFlags()};
 }
 
 std::string Describe(const AppearanceReport& report) {

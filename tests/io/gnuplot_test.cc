@@ -69,7 +69,7 @@ class GnuplotTest : public testing::Test {
   };
 
   static AppearanceOptions Appearance(int num_threads) {
-    return {.lights = 60, .num_threads = num_threads};
+    return {.lights = 6, .num_threads = num_threads};
   }
 
   std::filesystem::path folder_;

@@ -7,9 +7,11 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/io/test_directory.h"
+#include "tests/test_util.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/source.h"
 
@@ -187,6 +189,7 @@ TEST(UtiaFile, ANoteTellsNumbersInAnotherOrder) {
   for (const char* name : {"charmeuse", "velvet", "linen", "rolled_brass", "varnished_plywood",
                            "aniso_ggx_steel", "aniso_ggx_lacquer", "plastic@6x48", "felt@6x48"}) {
     SCOPED_TRACE(name);
+    if (kSanitized && name != std::string_view("velvet")) continue;
     const Measurement measurement =
         LoadMeasurement(std::string("synth:") + name, {.noise = 0.03, .missing = 0.01});
     const UtiaNumbers numbers(measurement);

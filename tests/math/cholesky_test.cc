@@ -28,9 +28,14 @@ TEST(FactorCholesky, MultipliesBackToTheMatrix) {
     std::vector<double> factor = A;
     ASSERT_TRUE(FactorCholesky(n, factor.data(), 2));
     const Eigen::Map<const Eigen::MatrixXd> L(factor.data(), n, n), wanted(A.data(), n, n);
-    const Eigen::MatrixXd lower = L.triangularView<Eigen::Lower>();
-    const Eigen::MatrixXd product = lower * lower.transpose();
-    EXPECT_LT((product - wanted).cwiseAbs().maxCoeff(), 1e-12 * wanted.cwiseAbs().maxCoeff()) << n;
+    // By the products with a vector, in which each entry has its part.
+    Random random(2);
+    Eigen::VectorXd x(n);
+    for (double& number : x) number = random.Normal();
+    const Eigen::VectorXd half = L.triangularView<Eigen::Lower>().transpose() * x;
+    const Eigen::VectorXd product = L.triangularView<Eigen::Lower>() * half;
+    EXPECT_LT((product - wanted * x).cwiseAbs().maxCoeff(), 1e-12 * wanted.cwiseAbs().maxCoeff())
+        << n;
   }
 }
 

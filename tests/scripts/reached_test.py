@@ -21,6 +21,15 @@ FILES = {
     "CMakeLists.txt": "",
     "README.md": "",
 }
+LISTS = """cmake_minimum_required(VERSION 3.25)
+project(some LANGUAGES CXX)
+add_library(math OBJECT src/math/cubic.cc src/math/stencil.cc)
+file(CONFIGURE OUTPUT made.cc CONTENT "int made;")
+add_library(made OBJECT made.cc)
+"""
+PRESETS = {"version": 6, "configurePresets": [{
+    "name": "build", "generator": "Ninja", "binaryDir": "${sourceDir}/${presetName}",
+    "cacheVariables": {"CMAKE_EXPORT_COMPILE_COMMANDS": "ON"}}]}
 SOURCES = [name for name in FILES if name.endswith(".cc")]
 
 
@@ -89,8 +98,32 @@ class Reached(unittest.TestCase):
         self.assertEqual(self.reached(), ["src/math/stencil.cc"])
         self.assertEqual(self.reached("nowhere"), SOURCES)
         self.assertEqual(self.reached(""), SOURCES)
-        self.write("CMakeLists.txt", "# changed\n")
+        self.write(".clang-tidy", "# changed\n")
         self.assertEqual(self.reached(), SOURCES)
+        (self.root / ".clang-tidy").unlink()
+        self.write("CMakePresets.json", "none\n")
+        self.assertEqual(self.reached(), SOURCES)  # there was no preset before
+
+    def test_sees_what_is_compiled_otherwise(self):
+        self.git("switch", "main")
+        self.write("CMakeLists.txt", LISTS)
+        self.write("CMakePresets.json", json.dumps(PRESETS))
+        self.commit()
+        self.git("switch", "branch")
+        self.git("merge", "main")
+
+        def configured(text):
+            self.write("CMakeLists.txt", text)
+            subprocess.run(["cmake", "--preset", "build"], cwd=self.root, check=True,
+                           capture_output=True)
+            return self.reached()
+
+        self.assertEqual(configured(LISTS + "# changed\n"), [])
+        self.assertEqual(configured(LISTS + "target_compile_definitions(math PRIVATE X)\n"),
+                         ["src/math/cubic.cc", "src/math/stencil.cc"])
+        self.assertEqual(configured(LISTS.replace("int made", "long made")), ["build/made.cc"])
+        self.assertEqual(configured(LISTS + "add_library(more OBJECT tests/math/cubic_test.cc)\n"),
+                         ["tests/math/cubic_test.cc"])
 
 
 unittest.main()

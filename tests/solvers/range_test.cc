@@ -20,9 +20,11 @@ namespace trilobe {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 12};
-constexpr int kExponents[] = {-300, -250, -200, -167, -163, -150, -120, -100, -70,
-                              -52,  -48,  -30,  -10,  0,    10,   30,   48,   52,
-                              70,   100,  140,  154,  167,  200,  250,  300};
+std::vector<int> Exponents() {
+  if (kSanitized) return {-300, -167, -100, -48, 0, 48, 154, 300};
+  return {-300, -250, -200, -167, -163, -150, -120, -100, -70, -52, -48, -30, -10,
+          0,    10,   30,   48,   52,   70,   100,  140,  154, 167, 200, 250, 300};
+}
 
 BrdfSamples Scaled(BrdfSamples samples, double factor) {
   for (Rgb& rho : samples.rho) {
@@ -78,7 +80,7 @@ TEST_P(Range, ARightFitOrAnErrorThatNamesTheFactor) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   int fitted = 0, refused = 0;
   for (const Weighting& weighting : Weightings()) {
-    for (const int exponent : kExponents) {
+    for (const int exponent : Exponents()) {
       SCOPED_TRACE(weighting.name + ", 1e" + std::to_string(exponent));
       const BrdfSamples samples = Scaled(Measured(), std::pow(10.0, exponent));
       if (std::abs(exponent) < 50) {

@@ -52,6 +52,7 @@ TEST(RecordedModels, AreMadeAgain) {
     ASSERT_EQ(recorded.size(), std::size(kMaterials));
   }
   for (const char* const material : kMaterials) {
+    if (kSanitized && material != kMaterials[0]) continue;
     const BrdfTable table = Synthesize(FindSynthMaterial(material), 0.05, 1, kGrid);
     const ModelSpec spec = ModelSpec::SharedFactors(3, kGrid);
     const Objective objective(ValidSamples(table), spec, FindWeighting("appearance"), 1);
