@@ -18,7 +18,7 @@
 namespace trilobe {
 namespace {
 
-constexpr MerlGrid kGrid{.theta_h = 10, .theta_d = 9, .phi_d = 15};
+constexpr MerlGrid kGrid{.theta_h = 7, .theta_d = 6, .phi_d = 9};
 
 SolverOptions Sweeps(int count) {
   SolverOptions options;

@@ -16,7 +16,7 @@
 namespace trilobe {
 namespace {
 
-constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
+constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 12};
 
 BrdfTable Scaled(BrdfTable table, double by) {
   for (auto& plane : table.stored) {
@@ -45,7 +45,7 @@ BrdfTable MakeTable(const std::string& kind) {
   }
   if (kind == "spiky") {
     BrdfTable table = RandomTable(kGrid, 4);
-    for (const int bin : {77, 500, 501, 800}) table.stored[bin % 3][bin] = 1e6 * 1500;
+    for (const int bin : {31, 210, 211, 340}) table.stored[bin % 3][bin] = 1e6 * 1500;
     return table;
   }
   if (kind == "wide") return RandomTable(kGrid, 1, 0.2, 3);  // five orders of magnitude
