@@ -51,6 +51,7 @@ std::vector<double> ReadAngles(const TensorFile& file, const char* name, double 
     if (!(angles[k] >= min - kRounding && angles[k] <= max + kRounding)) {
       fail("angles are in radians, from " + Text(min) + " to " + Text(max));
     }
+    angles[k] = std::max(angles[k], min);  // no direction has a theta below 0
     if (k > 0 && angles[k] <= angles[k - 1]) {
       fail("it must be above the entry before it, " + Text(angles[k - 1]));
     }

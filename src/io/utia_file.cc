@@ -14,9 +14,11 @@
 namespace trilobe {
 namespace {
 
-constexpr int kNodes = kUtiaGrid.nodes();
-constexpr int kPlane = kNodes * kNodes;
-static_assert(kUtiaSize == sizeof(double) * kChannels * kPlane);
+constexpr size_t Bytes(const HemisphereGrid& grid) {
+  const auto nodes = static_cast<size_t>(grid.nodes());
+  return sizeof(double) * kChannels * nodes * nodes;
+}
+static_assert(kUtiaSize == Bytes(kUtiaGrid));
 
 // IEC 61966-2-1, from code to linear light; unlike LinearizeSrgb for codes above 1, which BRDFs
 // have.
@@ -33,17 +35,17 @@ double AsDupuy(double stored, double /*cos_theta_i*/) {
 
 // Where a file might have the value of a pair of directions.
 struct Order {
+  const HemisphereGrid& grid;
   bool rows_by_phi = false, columns_by_phi = false;  // index 6 b + a in the place of 48 a + b
   bool interleaved = false;                          // R, G, B of a pair side by side
 
-  static int Index(int a, int b, bool by_phi) {
-    return by_phi ? kUtiaGrid.thetas * b + a : kUtiaGrid.phis * a + b;
+  int Index(int node, bool by_phi) const {
+    return by_phi ? grid.thetas * (node % grid.phis) + node / grid.phis : node;
   }
   size_t operator()(int channel, int i, int o) const {
-    const int row = Index(i / kUtiaGrid.phis, i % kUtiaGrid.phis, rows_by_phi);
-    const int column = Index(o / kUtiaGrid.phis, o % kUtiaGrid.phis, columns_by_phi);
-    const int pair = kNodes * row + column;
-    return interleaved ? kChannels * pair + channel : kPlane * channel + pair;
+    const auto nodes = static_cast<size_t>(grid.nodes());
+    const size_t pair = nodes * Index(i, rows_by_phi) + Index(o, columns_by_phi);
+    return interleaved ? kChannels * pair + channel : nodes * nodes * channel + pair;
   }
 };
 
@@ -67,12 +69,13 @@ class MeanDifference {
 // alone is blind to some order: swapping all azimuths with all elevations keeps reciprocity.
 double Roughness(const std::vector<double>& stored, const Order& order) {
   MeanDifference swapped, beside_i, beside_o;
-  const auto next = [](int node) {
-    const int b = node % kUtiaGrid.phis;
-    return node - b + (b + 1) % kUtiaGrid.phis;
+  const HemisphereGrid& grid = order.grid;
+  const auto next = [&grid](int node) {
+    const int b = node % grid.phis;
+    return node - b + (b + 1) % grid.phis;
   };
-  for (int i = 0; i < kNodes; ++i) {
-    for (int o = 0; o < kNodes; ++o) {
+  for (int i = 0; i < grid.nodes(); ++i) {
+    for (int o = 0; o < grid.nodes(); ++o) {
       const double value = stored[order(1, i, o)];
       swapped.Add(value, stored[order(1, o, i)]);
       beside_i.Add(value, stored[order(1, next(i), o)]);
@@ -83,18 +86,21 @@ double Roughness(const std::vector<double>& stored, const Order& order) {
 }
 
 // A sentence where another order makes the numbers much smoother; empty otherwise.
-std::string OtherOrder(const std::vector<double>& stored) {
-  const double as_read = Roughness(stored, {});
+std::string OtherOrder(const std::vector<double>& stored, const HemisphereGrid& grid) {
+  const auto order_of = [&grid](int k) {
+    return Order{grid, (k & 1) != 0, (k & 2) != 0, (k & 4) != 0};
+  };
+  const double as_read = Roughness(stored, order_of(0));
   double least = as_read;
-  Order best;
+  int least_at = 0;
   for (int k = 1; k < 8; ++k) {
-    const Order order = {(k & 1) != 0, (k & 2) != 0, (k & 4) != 0};
-    const double roughness = Roughness(stored, order);
+    const double roughness = Roughness(stored, order_of(k));
     if (roughness < least) {
       least = roughness;
-      best = order;
+      least_at = k;
     }
   }
+  const Order best = order_of(least_at);
   constexpr double kMuch = 0.7;
   if (!(least < kMuch * as_read)) return "";
   std::string text = "the numbers look as if they stood in another order: ";
@@ -128,40 +134,44 @@ const std::vector<UtiaRadiometry>& UtiaRadiometries() {
 }
 
 Measurement ParseUtia(std::string_view bytes, const std::string& source,
-                      std::string_view radiometry) {
+                      std::string_view radiometry, const HemisphereGrid& grid) {
   const UtiaRadiometry& meaning = FindNamed("radiometry", radiometry, UtiaRadiometries());
-  if (bytes.size() != kUtiaSize) {
+  if (const size_t size = Bytes(grid); bytes.size() != size) {
+    const std::string nodes = std::to_string(grid.nodes());
     throw Error(source + ": " + std::to_string(bytes.size()) + " bytes; a UTIA file has " +
-                std::to_string(kUtiaSize) + ", 3 x 288 x 288 float64" +
-                (bytes.size() < kUtiaSize ? "; get it once more" : ""));
+                std::to_string(size) + ", 3 x " + nodes + " x " + nodes + " float64" +
+                (bytes.size() < size ? "; get it once more" : ""));
   }
-  std::vector<double> stored(kChannels * kPlane);
-  std::memcpy(stored.data(), bytes.data(), kUtiaSize);
+  std::vector<double> stored(bytes.size() / sizeof(double));
+  std::memcpy(stored.data(), bytes.data(), bytes.size());
   SampleCollector collector(source, "UTIA measurement");
-  for (int i = 0; i < kNodes; ++i) {
-    const double cos_theta_i = std::cos(kUtiaGrid.Theta(i));
-    for (int o = 0; o < kNodes; ++o) {
+  const Order order = {grid};
+  for (int i = 0; i < grid.nodes(); ++i) {
+    const double cos_theta_i = std::cos(grid.Theta(i));
+    for (int o = 0; o < grid.nodes(); ++o) {
       Rgb rho;
       for (int c = 0; c < kChannels; ++c) {
-        rho[c] = meaning.to_brdf(stored[Order()(c, i, o)], cos_theta_i);
+        rho[c] = meaning.to_brdf(stored[order(c, i, o)], cos_theta_i);
       }
-      collector.Add(kUtiaGrid.Angles(i, o), rho);
+      collector.Add(grid.Angles(i, o), rho);
     }
   }
   Measurement measurement = collector.Take();
   measurement.anisotropic = true;
-  if (const std::string note = OtherOrder(stored); !note.empty()) measurement.notes = {note};
+  if (const std::string note = OtherOrder(stored, grid); !note.empty()) measurement.notes = {note};
   return measurement;
 }
 
 void WriteUtia(const Measurement& scattered, const std::string& path) {
   const NodeTable values = ValuesAtNodes(scattered, kUtiaGrid);
-  std::vector<double> plane(kPlane);
+  std::vector<double> plane(values.rho.size());
   WriteFile(path, [&](std::ostream& out) {
     for (int c = 0; c < kChannels; ++c) {
-      for (int k = 0; k < kPlane; ++k) plane[k] = values.present[k] ? values.rho[k][c] : -1;
+      for (size_t k = 0; k < plane.size(); ++k) {
+        plane[k] = values.present[k] ? values.rho[k][c] : -1;
+      }
       out.write(reinterpret_cast<const char*>(plane.data()),
-                static_cast<std::streamsize>(sizeof(double) * kPlane));
+                static_cast<std::streamsize>(sizeof(double) * plane.size()));
     }
   });
 }

@@ -24,9 +24,11 @@ struct UtiaRadiometry {
 const std::vector<UtiaRadiometry>& UtiaRadiometries();  // the default first
 
 // Scattered samples, with phi as in the file, at theta = 0, too. A note says where the numbers look
-// as if they stood in another order. Throws Error for other sizes and unknown radiometries.
+// as if they stood in another order. Throws Error for other sizes and unknown radiometries. Reads
+// the same format on another grid, too, if told so.
 Measurement ParseUtia(std::string_view bytes, const std::string& source,
-                      std::string_view radiometry = UtiaRadiometries().front().name);
+                      std::string_view radiometry = UtiaRadiometries().front().name,
+                      const HemisphereGrid& grid = kUtiaGrid);
 
 // Writes samples at these directions as BRDF [1/sr]; -1 where there is none. Throws Error where one
 // is at another direction, or two are at the same.

@@ -393,6 +393,17 @@ TEST(RglFile, SamplesAnAnisotropicMaterialAtItsNodes) {
   EXPECT_GT(AtNodes(loaded, HemisphereGrid(), 1).counts.valid, 60000);
 }
 
+// theta_i is float32, and may come a rounding below 0, where no direction is.
+TEST(RglFile, AThetaJustBelow0Is0) {
+  TinyRgl file = FileOf(Grained, -kPi, kPi);
+  const Measurement expected = Parse(file).Sample("tiny.bsdf", false);
+  ASSERT_EQ(file.theta_i.front(), 0);
+  file.theta_i.front() = -1e-5F;
+  const Measurement measurement = Parse(file).Sample("tiny.bsdf", false);
+  CheckSamples(measurement.samples);
+  EXPECT_EQ(measurement.samples.rho, expected.samples.rho);
+}
+
 // What a symmetry repeats is not in the file, but in the samples and the function.
 TEST(RglFile, UndoesTheSymmetriesThatFilesLeaveOut) {
   const auto turned_alike = [](const DirectionPair& pair) {
