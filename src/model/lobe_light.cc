@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/merl_grid.h"
@@ -32,25 +34,45 @@ class Cells {
     return spec_.d_axis.CellOf(h).SolidAngle() * std::sin(theta_d) * std::cos(theta_d);
   }
 
+  // Two directions above the surface, theta and, where G is polar, phi, but for D's own.
   struct Pair {
+    int d;
     Cosines cosines;
-    Stencil G_i, G_o;
+    double theta_i, phi_i, theta_o, phi_o;
   };
-  // Whether both directions are above the surface; if so, how they read G.
-  bool At(int h, int d, int p, Pair* pair) const {
-    HalfDiffAngles angles = grid_.Center(0, d, p);
-    angles.theta_h = spec_.d_axis.Theta(h);
-    pair->cosines = ToCosines(angles);
-    if (!(pair->cosines.i > 0 && pair->cosines.o > 0)) return false;
-    double phi_i = 0, phi_o = 0;
-    if (spec_.g_axis.polar()) {
-      const SphericalAngles at = ToSphericalAngles(ToDirections(angles));
-      phi_i = at.phi_i + spec_.d_axis.Phi(h);
-      phi_o = at.phi_o + spec_.d_axis.Phi(h);
+  // The same for all entries of D of the theta_h of entry h.
+  std::vector<Pair> PairsAt(int h) const {
+    std::vector<Pair> pairs;
+    for (int d = 0; d < spec_.f_axis.size; ++d) {
+      for (int p = 0; p < phi_steps(); ++p) {
+        HalfDiffAngles angles = grid_.Center(0, d, p);
+        angles.theta_h = spec_.d_axis.Theta(h);
+        Pair pair{.d = d,
+                  .cosines = ToCosines(angles),
+                  .theta_i = 0,
+                  .phi_i = 0,
+                  .theta_o = 0,
+                  .phi_o = 0};
+        if (!(pair.cosines.i > 0 && pair.cosines.o > 0)) continue;
+        pair.theta_i = std::acos(pair.cosines.i);
+        pair.theta_o = std::acos(pair.cosines.o);
+        if (spec_.g_axis.polar()) {
+          const SphericalAngles at = ToSphericalAngles(ToDirections(angles));
+          pair.phi_i = at.phi_i;
+          pair.phi_o = at.phi_o;
+        }
+        pairs.push_back(pair);
+      }
     }
-    pair->G_i = spec_.g_axis.At(std::acos(pair->cosines.i), phi_i);
-    pair->G_o = spec_.g_axis.At(std::acos(pair->cosines.o), phi_o);
-    return true;
+    return pairs;
+  }
+
+  // How they read G.
+  std::pair<Stencil, Stencil> ReadG(int h, const Pair& pair) const {
+    const Axis& g = spec_.g_axis;
+    if (!g.polar()) return {g.At(pair.theta_i, 0), g.At(pair.theta_o, 0)};
+    const double phi = spec_.d_axis.Phi(h);
+    return {g.At(pair.theta_i, pair.phi_i + phi), g.At(pair.theta_o, pair.phi_o + phi)};
   }
 
  private:
@@ -104,35 +126,33 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
     return true;
   };
   double all = 0;
+  std::vector<Cells::Pair> pairs;
   for (int h = 0; h < spec.d_axis.size; ++h) {
+    if (!spec.d_axis.polar() || h % spec.d_axis.phi_nodes == 0) pairs = cells.PairsAt(h);
     if (!observed(Factor::kD, h)) continue;
-    for (int d = 0; d < spec.f_axis.size; ++d) {
-      if (!observed(Factor::kF, d)) continue;
-      const double solid_angle = cells.SolidAngle(h, d);
-      for (int p = 0; p < cells.phi_steps(); ++p) {
-        Cells::Pair pair;
-        if (!cells.At(h, d, p, &pair)) continue;
-        const auto& [cosines, G_i, G_o] = pair;
-        if (!all_live(G_i) || !all_live(G_o)) continue;
-        const double white = solid_angle * cosines.i * cosines.o;
-        all += white;
-        for (int c = 0; c < kChannels; ++c) {
-          light.diffuse[c] += white * model.d()[c];
-          for (int m = 0; m < spec.lobes; ++m) {
-            const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
-            const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + d;
-            const int G = model.TableOffset(Factor::kG, spec.table(Factor::kG, m, c));
-            // The cosines of the lobe's denominator and those of the integral cancel.
-            const double part = solid_angle * model.s(m)[c] * model.parameters()[D] *
-                                model.parameters()[F] * std::max(G_i(model.G(m, c)), 0.0) *
-                                std::max(G_o(model.G(m, c)), 0.0);
-            light.lobes[m][c] += part;
-            light.through[D] += part;
-            light.through[F] += part;
-            for (const Stencil* const stencil : {&G_i, &G_o}) {
-              for (int k = 0; k < stencil->size; ++k) {
-                light.through[G + stencil->index[k]] += part * std::abs(stencil->weight[k]);
-              }
+    for (const Cells::Pair& pair : pairs) {
+      if (!observed(Factor::kF, pair.d)) continue;
+      const auto [G_i, G_o] = cells.ReadG(h, pair);
+      if (!all_live(G_i) || !all_live(G_o)) continue;
+      const double solid_angle = cells.SolidAngle(h, pair.d);
+      const double white = solid_angle * pair.cosines.i * pair.cosines.o;
+      all += white;
+      for (int c = 0; c < kChannels; ++c) {
+        light.diffuse[c] += white * model.d()[c];
+        for (int m = 0; m < spec.lobes; ++m) {
+          const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
+          const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
+          const int G = model.TableOffset(Factor::kG, spec.table(Factor::kG, m, c));
+          // The cosines of the lobe's denominator and those of the integral cancel.
+          const double part = solid_angle * model.s(m)[c] * model.parameters()[D] *
+                              model.parameters()[F] * std::max(G_i(model.G(m, c)), 0.0) *
+                              std::max(G_o(model.G(m, c)), 0.0);
+          light.lobes[m][c] += part;
+          light.through[D] += part;
+          light.through[F] += part;
+          for (const Stencil* const stencil : {&G_i, &G_o}) {
+            for (int k = 0; k < stencil->size; ++k) {
+              light.through[G + stencil->index[k]] += part * std::abs(stencil->weight[k]);
             }
           }
         }

@@ -178,8 +178,8 @@ NormalEquations::~NormalEquations() = default;
 
 void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   CheckSameSpec(model.spec(), objective_.spec());
-  Clear(model.spec().num_parameters(), result);
   if (condensed_ != nullptr) {
+    Clear(model.spec().num_parameters(), result);
     condensed_->Evaluate(model, hessian, objective_.num_threads(), result);
   } else {
     of_samples_->Evaluate(model, hessian, result);

@@ -27,6 +27,7 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
     const bool amplitudes = kind == Kind::kAmplitudes;
     const Factor factor = amplitudes ? Factor::kD : FactorOf(kind);
     rows.wanted = !only || *only == kind;
+    rows.by_cell = kind == Kind::kD || kind == Kind::kF;
     rows.entries = amplitudes ? kChannels : spec.table_size(factor);
     rows.tables = amplitudes ? 1 + spec.lobes : spec.num_tables(factor);
     rows.lanes = amplitudes ? reader_.amplitude_lanes() : reader_.lanes(factor).size;
@@ -58,7 +59,9 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
       const SampleRows& of = layout_.rows[k];
       if (!of.wanted) continue;
       rows.blocks[k] = layout_.size;
-      layout_.size += static_cast<size_t>(of.entries) * rows.entries * of.tables * rows.lanes;
+      layout_.size += &of == &rows && rows.by_cell
+                          ? rows.InCell(static_cast<int>(samples.cells_of(factor).size()), 0)
+                          : static_cast<size_t>(of.entries) * rows.entries * of.tables * rows.lanes;
     }
   }
 }
@@ -89,54 +92,118 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   result->squared_lengths.assign(n, 0.0);
   result->H.assign(n * n, 0.0);
   for (const Kind kind : kKinds) {
-    const SampleRows& rows = layout_.rows[static_cast<int>(kind)];
+    const SampleRows& rows = layout_.of(kind);
     if (!rows.wanted) continue;
-    ParallelFor(rows.entries, num_threads_,
-                [&](int entry) { GatherRow(kind, entry, hessian, result); });
+    // Entries by threes of tables fill lines of the cache.
+    constexpr int kEntries = 8;
+    ParallelFor((rows.entries + kEntries - 1) / kEntries, num_threads_, [&](int chunk) {
+      const int begin = chunk * kEntries, end = std::min(begin + kEntries, rows.entries);
+      for (int entry = begin; entry < end; ++entry) GatherOwn(kind, entry, result);
+      GatherBlocks(kind, begin, end, result);
+    });
+    if (rows.by_cell) GatherCells(kind, result);
+    GatherSquaredLengths(kind, hessian, result);
   }
   MirrorTriangle(Triangle::kLower, n, result->H.data());
 }
 
-// A product of two parameters of one kind is in one place or the other, or half in both.
-void SampleEquations::GatherRow(Kind kind, int entry, Hessian hessian,
-                                QuadraticModel* result) const {
+// The gradient, and products with amplitudes. A product of two parameters of one kind is in one
+// place or the other, or half in both.
+void SampleEquations::GatherOwn(Kind kind, int entry, QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
   const SampleRows& rows = layout_.of(kind);
   const SampleRows& amplitudes = layout_.of(Kind::kAmplitudes);
   const double* const sums = accumulators_[0].data();
   for (int t = 0; t < rows.tables; ++t) {
     const size_t p = rows.parameter[entry * rows.tables + t];
-    const int lane = rows.lane[t];
-    const double* const own = sums + rows.own + entry * rows.own_size() + lane;
+    const double* const own = sums + rows.own + entry * rows.own_size() + rows.lane[t];
     result->gradient[p] = own[SampleRows::kGradient * rows.lanes];
     double* const to = &result->H[p * n];
     for (size_t i = 0; i < amplitudes.parameter.size() && amplitudes.wanted; ++i) {
       to[amplitudes.parameter[i]] = own[(SampleRows::kFirstAmplitude + i) * rows.lanes];
     }
-    if (kind == Kind::kAmplitudes) {
-      for (int u = 0; u < rows.tables; ++u) {
-        const size_t line = SampleRows::kFirstAmplitude + entry * rows.tables + t;
-        to[rows.parameter[entry * rows.tables + u]] +=
-            sums[rows.own + entry * rows.own_size() + line * rows.lanes + rows.lane[u]];
-      }
+    if (kind != Kind::kAmplitudes) continue;
+    for (int u = 0; u < rows.tables; ++u) {
+      const size_t line = SampleRows::kFirstAmplitude + entry * rows.tables + t;
+      to[rows.parameter[entry * rows.tables + u]] +=
+          sums[rows.own + entry * rows.own_size() + line * rows.lanes + rows.lane[u]];
     }
-    for (int k = 1; k <= static_cast<int>(kind); ++k) {
-      const SampleRows& of = layout_.rows[k];
-      if (!of.wanted) continue;
-      const int block = of.tables * rows.lanes;
-      const auto at = [&](int e_of, int e) {
-        return sums + rows.blocks[k] + (static_cast<size_t>(e_of) * rows.entries + e) * block;
-      };
-      for (int e = 0; e < of.entries; ++e) {
-        for (int u = 0; u < of.tables; ++u) {
-          double value = at(e, entry)[u * rows.lanes + lane];
-          if (&of == &rows) value += at(entry, e)[t * rows.lanes + rows.lane[u]];
-          to[of.parameter[e * of.tables + u]] = value;
+  }
+}
+
+// Products of all pairs of entries, for these of the kind.
+void SampleEquations::GatherBlocks(Kind kind, int first_entry, int last_entry,
+                                   QuadraticModel* result) const {
+  const auto n = static_cast<size_t>(num_parameters_);
+  const SampleRows& rows = layout_.of(kind);
+  for (int k = 1; k <= static_cast<int>(kind); ++k) {
+    const SampleRows& of = layout_.rows[k];
+    const bool own = &of == &rows;
+    if (!of.wanted || (own && rows.by_cell)) continue;
+    const double* const blocks = accumulators_[0].data() + rows.blocks[k];
+    const int block = of.tables * rows.lanes;
+    const auto at = [&](int e_of, int e) {
+      return blocks + (static_cast<size_t>(e_of) * rows.entries + e) * block;
+    };
+    for (int e = 0; e < of.entries; ++e) {
+      const int* const columns = &of.parameter[e * of.tables];
+      for (int entry = first_entry; entry < last_entry; ++entry) {
+        const double* const from = at(e, entry);
+        const double* const mirrored = own ? at(entry, e) : nullptr;
+        for (int t = 0; t < rows.tables; ++t) {
+          const int lane = rows.lane[t];
+          double* const to = &result->H[rows.parameter[entry * rows.tables + t] * n];
+          for (int u = 0; u < of.tables; ++u) {
+            double value = from[u * rows.lanes + lane];
+            if (own) value += mirrored[t * rows.lanes + rows.lane[u]];
+            to[columns[u]] = value;
+          }
         }
       }
     }
-    result->squared_lengths[p] =
-        hessian == Hessian::kNewton ? own[SampleRows::kSquaredLength * rows.lanes] : to[p];
+  }
+}
+
+// Those within a kind, cell by cell.
+void SampleEquations::GatherCells(Kind kind, QuadraticModel* result) const {
+  const auto n = static_cast<size_t>(num_parameters_);
+  const SampleRows& rows = layout_.of(kind);
+  const double* const blocks = accumulators_[0].data() + rows.blocks[static_cast<int>(kind)];
+  const int block = rows.tables * rows.lanes;
+  const std::vector<Cell>& cells = reader_.samples().cells_of(FactorOf(kind));
+  for (size_t number = 0; number < cells.size(); ++number) {
+    const Cell& cell = cells[number];
+    const auto at = [&](int k, int l) {
+      return blocks + rows.InCell(static_cast<int>(number), k) + static_cast<ptrdiff_t>(l) * block;
+    };
+    for (int k = 0; k < cell.size; ++k) {
+      for (int l = 0; l < cell.size; ++l) {
+        for (int t = 0; t < rows.tables; ++t) {
+          const size_t p = rows.parameter[cell.entry[k] * rows.tables + t];
+          for (int u = 0; u < rows.tables; ++u) {
+            const size_t q = rows.parameter[cell.entry[l] * rows.tables + u];
+            if (q > p) continue;  // the other triangle
+            result->H[p * n + q] +=
+                at(l, k)[u * rows.lanes + rows.lane[t]] + at(k, l)[t * rows.lanes + rows.lane[u]];
+          }
+        }
+      }
+    }
+  }
+}
+
+void SampleEquations::GatherSquaredLengths(Kind kind, Hessian hessian,
+                                           QuadraticModel* result) const {
+  const SampleRows& rows = layout_.of(kind);
+  const double* const own = accumulators_[0].data() + rows.own;
+  for (int entry = 0; entry < rows.entries; ++entry) {
+    for (int t = 0; t < rows.tables; ++t) {
+      const size_t p = rows.parameter[entry * rows.tables + t];
+      result->squared_lengths[p] = hessian == Hessian::kNewton
+                                       ? own[entry * rows.own_size() +
+                                             SampleRows::kSquaredLength * rows.lanes + rows.lane[t]]
+                                       : result->H[p * (static_cast<size_t>(num_parameters_) + 1)];
+    }
   }
 }
 

@@ -23,7 +23,10 @@ class SampleEquations {
   void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:
-  void GatherRow(Kind kind, int entry, Hessian hessian, QuadraticModel* result) const;
+  void GatherOwn(Kind kind, int entry, QuadraticModel* result) const;
+  void GatherBlocks(Kind kind, int first_entry, int last_entry, QuadraticModel* result) const;
+  void GatherCells(Kind kind, QuadraticModel* result) const;
+  void GatherSquaredLengths(Kind kind, Hessian hessian, QuadraticModel* result) const;
 
   SampleReader reader_;
   const int num_threads_;

@@ -1,6 +1,7 @@
 #include "trilobe/sums/sample_sums.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "trilobe/base/multiversion.h"
 
@@ -30,6 +31,7 @@ struct SumJob {
 // One reading of a sample: how its value moves with it in each channel, and the same times w.
 struct Slopes {
   const Cell* cell;
+  int cell_number;
   double weight[Stencil::kMaxSize];                               // of the stencil
   const double* reading;                                          // [lanes]
   const double* slope;                                            // [kChannels][lanes]
@@ -102,9 +104,10 @@ TRILOBE_ALWAYS_INLINE void AddToBlocks(const double* from, int size, double scal
   }
 }
 
-TRILOBE_ALWAYS_INLINE void AddToCell(const double* from, int size, double scale, const Slopes& to,
-                                     ptrdiff_t stride, double* blocks) {
-  const int* const entry = to.cell->entry.data();
+// To those of the entries that a reading reads.
+TRILOBE_ALWAYS_INLINE void AddToEntries(const double* from, int size, double scale,
+                                        const Slopes& to, const int* entry, ptrdiff_t stride,
+                                        double* blocks) {
   switch (to.cell->size) {
     case 4:
       AddToBlocks<4>(from, size, scale, to.weight, entry, stride, blocks);
@@ -179,7 +182,8 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   }
   double* const of_entry = job.sums + rows.own + (kNewton ? 0 : SampleRows::kGradient * lanes);
   const auto own_size = static_cast<ptrdiff_t>(rows.own_size());
-  AddToCell(lines, static_cast<int>(to - lines), 1, own, own_size, of_entry);
+  const int* const entry = own.cell->entry.data();
+  AddToEntries(lines, static_cast<int>(to - lines), 1, own, entry, own_size, of_entry);
 
   alignas(sizeof(Lanes8)) double products[kMaxTables * kMaxLanes];  // [tables][lanes]
   for (int q = job.one_kind ? first_own : 0; q <= r; ++q) {
@@ -202,9 +206,15 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
     }
     const int size = static_cast<int>(to - products);
     double* const blocks = job.sums + rows.blocks[static_cast<int>(KindOf(factor))];
+    const bool by_cell = q == r && rows.by_cell;
+    constexpr int kInCell[] = {0, 1, 2, 3};
+    static_assert(std::size(kInCell) == Stencil::kMaxSize);
     for (int l = 0; l < of.cell->size; ++l) {
-      AddToCell(products, size, q == r ? 0.5 * of.weight[l] : of.weight[l], own, size,
-                blocks + static_cast<ptrdiff_t>(of.cell->entry[l]) * rows.entries * size);
+      AddToEntries(
+          products, size, q == r ? 0.5 * of.weight[l] : of.weight[l], own,
+          by_cell ? kInCell : entry, size,
+          blocks + (by_cell ? rows.InCell(own.cell_number, l)
+                            : static_cast<size_t>(of.cell->entry[l]) * rows.entries * size));
     }
   }
   if (!kNewton) return;
@@ -254,7 +264,8 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
       const Factor factor = FactorOf(kReadings[r]);
       const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
       Slopes& of = at->of[r];
-      of.cell = &samples.cells_of(factor)[readings.cell[j]];
+      of.cell_number = readings.cell[j];
+      of.cell = &samples.cells_of(factor)[of.cell_number];
       for (int k = 0; k < of.cell->size; ++k) of.weight[k] = readings.weight[k][j];
       of.reading = batch.reading[r].data() + n * lanes;
       if (r < 2) {

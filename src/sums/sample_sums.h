@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "trilobe/math/stencil.h"
 #include "trilobe/objective/sample_reader.h"
 #include "trilobe/sums/normal_equations.h"
 
@@ -18,20 +19,27 @@ constexpr Factor FactorOf(Kind kind) { return static_cast<Factor>(static_cast<in
 
 // How the sums of one kind lie. Each entry of its tables (of amplitudes, each channel; their tables
 // are s of each lobe, then d) has lines of its own: its squared length, its gradient, and its
-// products with amplitudes. Products with entries of each kind up to this one are in blocks, one a
-// pair of entries: those for one entry of the other kind follow each other, as do the entries that
-// a sample reads. A line is a vector over the kind's tables.
+// products with amplitudes. Products with entries of kinds before it are in blocks, one a pair of
+// entries: those for one entry of the other kind follow each other, as do the entries that a sample
+// reads. So are products within G, which a sample reads twice. Within D and F, which it reads once,
+// only entries of one cell have any; there they are by cell. A line is a vector over the kind's
+// tables.
 struct SampleRows {
   static constexpr int kSquaredLength = 0, kGradient = 1, kFirstAmplitude = 2;
 
-  bool wanted = false;
+  bool wanted = false, by_cell = false;
   int entries = 0, tables = 0, lanes = 0, own_lines = 0;
   std::vector<int> lane;       // [tables]
   std::vector<int> parameter;  // [entries][tables]
   size_t own = 0;              // [entries][own_lines][lanes] begin here
-  // Of D, F and G as far as there are any: [their entries][entries][their tables][lanes].
+  // Of D, F and G as far as there are any: [their entries][entries][their tables][lanes]; of itself
+  // by_cell [cells][Stencil::kMaxSize][Stencil::kMaxSize][tables][lanes].
   std::array<size_t, kNumKinds> blocks{};
   size_t own_size() const { return static_cast<size_t>(own_lines) * lanes; }
+  // Where the blocks begin of the k-th entry of a cell with all entries of it.
+  size_t InCell(int cell, int k) const {
+    return (static_cast<size_t>(cell) * Stencil::kMaxSize + k) * Stencil::kMaxSize * tables * lanes;
+  }
 };
 
 struct SampleLayout {

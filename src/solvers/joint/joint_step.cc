@@ -50,12 +50,26 @@ JointStepper::JointStepper(const Objective& objective, Curvature curvature, Tria
       reduction_(reduction),
       hessian_(curvature == Curvature::kNewton ? Hessian::kNewton : Hessian::kGaussNewton),
       phases_(phases),
-      equations_(objective),
+      trial_(trial),
       step_(objective.num_threads()),
       lambda_(kInitialLambda) {
   CHECK(reduction == nullptr || trial == Trial::kAsItIs)
       << "a projection would leave the reduction";
-  if (trial == Trial::kProjected) sweep_ = MakeSweep(objective, phases);
+}
+
+void JointStepper::Wake() {
+  if (equations_) return;
+  equations_.emplace(objective_);
+  if (trial_ == Trial::kProjected) sweep_ = MakeSweep(objective_, phases_);
+}
+
+void JointStepper::Rest() {
+  equations_.reset();
+  sweep_.reset();
+  if (linearized_) binding_ = step_.binding();
+  step_ = NonnegativeStep(objective_.num_threads());
+  at_ = {};
+  linearized_ = false;
 }
 
 void JointStepper::Restart(const FactorModel& model) {
@@ -73,9 +87,10 @@ double JointStepper::Evaluate(const FactorModel& model) {
 
 void JointStepper::Linearize() {
   if (linearized_) return;
+  Wake();
   {
     const ScopedTimer timer(&phases_->evaluating);
-    equations_.Evaluate(current_, hessian_, &at_);
+    equations_->Evaluate(current_, hessian_, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
   const std::span<const double> x = current_.parameters();

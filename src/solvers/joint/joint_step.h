@@ -2,6 +2,7 @@
 #define TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,10 +56,14 @@ class JointStepper {
 
   const FactorModel& current() const { return current_; }
   double E() const { return E_; }
+  // Gives back what it can make again, some hundred megabytes for a model of 2,000 parameters,
+  // until the next step.
+  void Rest();
   // Diagnosis::optimality of the point. Passes over the data when the point is new.
   double Optimality();
 
  private:
+  void Wake();
   double Evaluate(const FactorModel& model);
   void Linearize();
 
@@ -67,8 +72,10 @@ class JointStepper {
   const Reduction* const reduction_;
   Hessian hessian_;  // of the next point
   PhaseSeconds* const phases_;
-  NormalEquations equations_;
-  std::unique_ptr<Sweep> sweep_;  // if trials are projected
+  const Trial trial_;
+  // None while it rests; a sweep only if trials are projected.
+  std::optional<NormalEquations> equations_;
+  std::unique_ptr<Sweep> sweep_;
   FactorModel current_;
   double E_ = 0;
   bool linearized_ = false;

@@ -37,7 +37,7 @@ class NonnegativeStep {
   void SetBinding(std::vector<bool> binding) { binding_ = std::move(binding); }
 
  private:
-  const int num_threads_;  // for the factors of large ones
+  int num_threads_;  // for the factors of large ones
 
   // How the active set was, seen from its solution.
   enum class Outcome { kRight, kChanged, kIndefinite };

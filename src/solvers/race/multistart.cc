@@ -165,6 +165,7 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
     Starts starts(objective, given, run->options().seed, &race, stop);
     for (const Leg& leg : legs) {
       starts.EnterUpTo(leg.starts);
+      stepper->Rest();
       race.Advance(leg.tries);
       race.Keep(leg.keep);
       if (race.leader() == nullptr) continue;

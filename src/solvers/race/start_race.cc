@@ -57,6 +57,7 @@ class StartRace::Entrant {
     }
     model_ = stepper_->current();
     E_ = stepper_->E();
+    stepper_->Rest();  // others' turn may come
   }
 
   void Leave() {
