@@ -85,15 +85,22 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
           .run = run};
 }
 
-// An anisotropic model with F in the 90 bins that all readers of model files know, if those have
-// the centres of its own fewer bins among theirs: the same function.
-FactorModel WithFileBins(FactorModel model) {
+// Of anisotropic models, F in the 90 bins that all readers of model files know, if those have the
+// centres of its own fewer bins among theirs: the same function.
+ModelSpec WithFileBins(ModelSpec spec) {
   constexpr int kFileBins = 90;
-  ModelSpec spec = model.spec();
   const int bins = spec.f_axis.size;
-  if (!spec.anisotropic() || kFileBins % bins != 0 || kFileBins / bins % 2 == 0) return model;
-  spec.f_axis.size = kFileBins;
-  return WithAxes(model, spec);
+  if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) {
+    spec.f_axis.size = kFileBins;
+  }
+  return spec;
+}
+
+// The model on the axes of this objective, in its canonical form.
+FactorModel InForm(const Objective& objective, const FactorModel& model) {
+  FactorModel canonical = WithAxes(model, objective.spec());
+  Canonicalize(objective.coverage(), &canonical);
+  return canonical;
 }
 
 }  // namespace
@@ -184,12 +191,12 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.seconds.solve = stopwatch.Lap();
   report.fit = InfoOf(settings, summary, source, measured, objective,
                       folder == nullptr ? "" : folder->run());
+  const ModelSpec file_spec = WithFileBins(report.spec);
+  const Objective in_file = file_spec == report.spec ? objective : Objective(objective, file_spec);
   // As the solver left it; what follows may take longer than somebody who ends the program waits.
   if (folder != nullptr && InterruptGuard::signal() == 0) {
-    FactorModel canonical = WithFileBins(model);
-    const Objective of(objective, canonical.spec());
-    Canonicalize(of.coverage(), &canonical);
-    WriteModelInto({canonical, UnobservedParameters(of.coverage()), report.fit}, folder);
+    WriteModelInto({InForm(in_file, model), UnobservedParameters(in_file.coverage()), report.fit},
+                   folder);
     unsaved.reset();
   }
   FinishOptions finish = settings.finish;
@@ -197,9 +204,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   finish.stop = interrupted;
   FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
   if (report.spec.anisotropic()) {  // the guide has done its work
-    fit.model = WithFileBins(std::move(fit.model));
-    fit.objective = Objective(objective, fit.model.spec());
-    Canonicalize(fit.objective.coverage(), &fit.model);
+    fit.model = InForm(in_file, fit.model);
+    fit.objective = in_file;
   }
   report.finished = {fit.tied, fit.candidates, fit.chosen};
   report.spec = fit.model.spec();

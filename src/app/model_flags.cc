@@ -37,8 +37,6 @@ DEFINE_double(
 namespace trilobe {
 namespace {
 
-constexpr double kMaxTheta = 75;  // [degrees] of the last nodes
-
 // "6x48", or "12rx48" where `with_root` may be.
 Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   const size_t x = text.find('x');
@@ -53,12 +51,7 @@ Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
                 " are no nodes; give theta x phi, as 6x48" +
                 (with_root ? ", or 12rx48 for steps of the root of theta" : ""));
   }
-  std::vector<double> nodes;
-  for (int a = 0; a < *rings; ++a) {
-    const double t = static_cast<double>(a) / (*rings - 1);
-    nodes.push_back(kMaxTheta * (root ? t * t : t));
-  }
-  Axis axis = Axis::Polar(std::move(nodes), *phi);
+  Axis axis = Axis::EvenPolar(*rings, root ? Axis::Steps::kOfRoot : Axis::Steps::kOfTheta, *phi);
   CheckAxis(axis, flag[0] == 'd' ? "D" : "G");
   return axis;
 }

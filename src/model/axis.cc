@@ -60,7 +60,17 @@ Axis Axis::Polar(std::vector<double> theta_degrees, int phi_nodes) {
           .phi_nodes = phi_nodes};
 }
 
-Axis Axis::Utia() { return Polar({0, 15, 30, 45, 60, 75}, 48); }
+Axis Axis::EvenPolar(int thetas, Steps steps, int phi_nodes) {
+  constexpr double kLast = 75;
+  std::vector<double> nodes;
+  for (int a = 0; a < thetas; ++a) {
+    const double t = thetas > 1 ? static_cast<double>(a) / (thetas - 1) : 0;
+    nodes.push_back(kLast * (steps == Steps::kOfRoot ? t * t : t));
+  }
+  return Polar(std::move(nodes), phi_nodes);
+}
+
+Axis Axis::Utia() { return EvenPolar(6, Steps::kOfTheta, 48); }
 
 Stencil Axis::At(double theta_radians, double phi_radians) const {
   switch (rule) {

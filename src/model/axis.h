@@ -24,6 +24,10 @@ struct Axis {
   int phi_nodes = 1;
 
   static Axis Polar(std::vector<double> theta_degrees, int phi_nodes);
+  // theta_a at so many even steps from 0 to 75 degrees, the last of UTIA's; or at steps of
+  // sqrt(theta), which are denser where highlights are.
+  enum class Steps { kOfTheta, kOfRoot };
+  static Axis EvenPolar(int thetas, Steps steps, int phi_nodes);
   // The nodes 0, 15, ... 75 degrees by 0, 7.5, ... 352.5 of UTIA's directions (docs/method.md).
   static Axis Utia();
 

@@ -7,6 +7,7 @@
 namespace trilobe {
 
 FactorModel WithAxes(const FactorModel& model, const ModelSpec& spec) {
+  if (spec == model.spec()) return model;  // to the bit
   ModelSpec same = model.spec();
   same.d_axis = spec.d_axis;
   same.f_axis = spec.f_axis;

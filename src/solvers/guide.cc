@@ -21,12 +21,9 @@ constexpr int kDataPerSample = 6;  // samples of the data for one of the guide
 
 FactorModel FitGuide(const Objective& data, const std::function<bool()>& stop) {
   ModelSpec spec = ModelSpec::Anisotropic(std::min(data.spec().lobes, 1));
-  constexpr int kRings = 12;
-  std::vector<double> rings(kRings);
-  for (int k = 0; k < kRings; ++k) rings[k] = 75.0 * k * k / ((kRings - 1) * (kRings - 1));
-  spec.d_axis = Axis::Polar(std::move(rings), 24);
+  spec.d_axis = Axis::EvenPolar(12, Axis::Steps::kOfRoot, 24);
   spec.f_axis.size = 6;
-  spec.g_axis = Axis::Polar({0, 15, 30, 45, 60, 75}, 8);
+  spec.g_axis = Axis::EvenPolar(6, Axis::Steps::kOfTheta, 8);
   const Objective objective(data, spec);
   FactorModel model = FindInitialModel("moments").make(objective, 0);
   SolverOptions options;
@@ -69,11 +66,13 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (measured.directions.empty()) {
     throw Error(measured.source + ": a guide needs samples with their directions");
   }
+  if (!(options.weight > 0))
+    throw Error(measured.source + ": the weight of a guide must be above 0");
   BrdfSamples guide;
   guide.source = measured.source;
   guide.grid = measured.grid;
   guide.directions = PairsBetween(measured, measured.rho.size() / kDataPerSample);
-  if (guide.directions.empty() || !(options.weight > 0)) return measured;
+  if (guide.directions.empty()) return measured;
   for (const SphericalAngles& at : guide.directions) {
     guide.angles.push_back(ToHalfDiff(ToDirections(at)));
   }

@@ -78,7 +78,7 @@ TEST(Guide, AddsSamplesBetweenThoseOfTheData) {
     ASSERT_LE(both.directions[j].theta_o, DegreesToRadians(75) + 1e-9);
   }
   EXPECT_EQ(WithGuide(three, {.weight = 0.25}).rho, both.rho);
-  EXPECT_EQ(WithGuide(one, {.weight = 0}).size(), data.size());
+  EXPECT_THROW(WithGuide(one, {.weight = 0}), Error);
 }
 
 // Factors that trade between neighbouring nodes fit these as well, and are wrong in between.
