@@ -33,6 +33,14 @@ ModelSpec ModelSpec::Anisotropic(int lobes) {
   return spec;
 }
 
+ModelSpec ModelSpec::AnisotropicFor(int lobes, int data_phis) {
+  ModelSpec spec = SharedFactors(lobes);
+  spec.d_axis = Axis::EvenPolar(12, Axis::Steps::kOfRoot, std::clamp(data_phis, 4, 36));
+  spec.f_axis.size = 6;
+  spec.g_axis = Axis::EvenPolar(6, Axis::Steps::kOfTheta, std::clamp(data_phis / 2, 4, 24));
+  return spec;
+}
+
 ModelSpec ModelSpec::IndependentG(const MerlGrid& grid) {
   ModelSpec spec = SharedFactors(1, grid);
   spec.D = spec.F = spec.G = {.per_lobe = true, .per_channel = true};

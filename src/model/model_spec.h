@@ -40,6 +40,9 @@ struct ModelSpec {
   // The same with D and G over azimuths, too, on the nodes of UTIA's directions (paper eq. 4):
   // 2,010 parameters for three lobes.
   static ModelSpec Anisotropic(int lobes);
+  // The same on the nodes that proved right between samples (docs/anisotropic.md), for data with so
+  // many phi: D on 12 theta by 36 phi at most, F in 6 bins, G on 6 by 24 at most.
+  static ModelSpec AnisotropicFor(int lobes, int data_phis);
   // One lobe, nothing shared between channels (Bagher et al. 2016): 816 parameters.
   static ModelSpec IndependentG(const MerlGrid& grid = {});
 

@@ -221,12 +221,6 @@ PrunedModel Finish(const Pruning& pruning) {
 
 PrunedModel Prune(const Objective& objective, const FactorModel& full,
                   const PruneOptions& options) {
-  if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
-      options.max_parameters < 1) {
-    throw Error(
-        "a budget must be a number, and at least one number must be left to store: check "
-        "max_relative_rise, max_psnr_drop_db and max_numbers");
-  }
   Pruning pruning(objective, full, options);
   LeaveOutWhatIsFree(&pruning);
   if (pruning.by_parameters()) {

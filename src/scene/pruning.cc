@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"
@@ -22,6 +23,12 @@ Pruning::Pruning(const Objective& objective, const FactorModel& full, const Prun
       state_(MakeState(objective.spec(), full)),
       E_full_(state_.E),
       by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
+  if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
+      options.max_parameters < 1) {
+    throw Error(
+        "a budget must be a number, and at least one number must be left to store: check "
+        "max_relative_rise, max_psnr_drop_db and max_numbers");
+  }
   if (by_parameters_) return;
   if (std::isfinite(options.max_psnr_drop_db)) {
     lowest_psnr_ = ScoreModel(objective, full).psnr_db - options.max_psnr_drop_db;

@@ -13,10 +13,13 @@
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/base/utc_time.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/picture_data.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
+#include "trilobe/scene/prune_anisotropic.h"
+#include "trilobe/solvers/guide.h"
 #include "trilobe/solvers/initial_model.h"
 
 namespace trilobe {
@@ -140,7 +143,7 @@ class MaterialFitter {
 
   std::vector<SceneScore> Score(std::span<const FactorModel> models) const {
     const bool grey = material_.channels == SceneChannels::kLuminance;
-    const BrdfSamples used = UsedSamples(ValidSamples(Table()), material_.directions);
+    const BrdfSamples used = UsedSamples(SamplesOf(Measured()), material_.directions);
     const Objective objective(InChannels(used, material_.channels), models.front().spec(),
                               FindWeighting(settings_.weighting), num_threads_);
     std::vector<SceneScore> scores;
@@ -195,29 +198,44 @@ class MaterialFitter {
     return key.text();
   }
 
-  BrdfTable Table() const {
+  Measurement Measured() const {
     const SourceOptions options = {.noise = settings_.noise,
                                    .seed = settings_.seed,
                                    .num_threads = num_threads_,
                                    .max_angle_deg = settings_.max_angle_deg,
                                    .extrapolated = settings_.extrapolated};
-    return IsSynthetic(material_.source) ? LoadSource(material_.source, options)
-                                         : ParseSource(bytes_, material_.source, options);
+    return IsSynthetic(material_.source) ? LoadMeasurement(material_.source, options)
+                                         : ParseMeasurement(bytes_, material_.source, options);
   }
 
-  // What is fitted.
-  const Objective& FitObjective() {
+  // What models are judged by.
+  const Objective& MeasuredObjective() {
     if (!objective_) {
-      const BrdfTable table = Table();
-      BrdfSamples samples = ValidSamples(table);
+      const Measurement measured = Measured();
+      BrdfSamples samples = SamplesOf(measured);
       valid_samples_ = samples.size();
-      max_angle_ = MaxAngleDegrees(table);
+      max_angle_ = MaxAngleDegrees(measured);
+      const ModelSpec spec =
+          measured.anisotropic
+              ? ModelSpec::AnisotropicFor(settings_.lobes,
+                                          GridOf(measured).value_or(HemisphereGrid()).phis)
+              : ModelSpec::SharedFactors(settings_.lobes, samples.grid);
       if (material_.reductions.samples) samples = UsedSamples(samples, material_.directions);
-      const ModelSpec spec = ModelSpec::SharedFactors(settings_.lobes, samples.grid);
       objective_.emplace(InChannels(std::move(samples), material_.channels), spec,
                          FindWeighting(settings_.weighting), num_threads_);
     }
     return *objective_;
+  }
+
+  // What they are fitted to.
+  const Objective& FitObjective() {
+    const Objective& measured = MeasuredObjective();
+    if (!measured.spec().anisotropic()) return measured;
+    if (!guided_) {
+      guided_.emplace(WithGuide(measured, {.stop = settings_.stop}), measured.spec(),
+                      measured.weighting(), num_threads_);
+    }
+    return *guided_;
   }
 
   std::optional<FullFit> FitAnew() {
@@ -237,19 +255,20 @@ class MaterialFitter {
     }
     const SolverSummary summary = MakeSolver(settings_.solver)->Solve(objective, options, &model);
     if (summary.stop_reason == StopReason::kInterrupted) return std::nullopt;
-    Canonicalize(objective.coverage(), &model);
-    fit.file.unobserved = UnobservedParameters(objective.coverage());
+    const Objective& measured = MeasuredObjective();
+    Canonicalize(measured.coverage(), &model);
+    fit.file.unobserved = UnobservedParameters(measured.coverage());
     fit.file.fit = {.solver = settings_.solver,
                     .init = settings_.init,
                     .weighting = settings_.weighting,
-                    .objective = objective.Value(model),
+                    .objective = measured.Value(model),
                     .initial_objective = summary.initial_objective,
                     .stop_reason = StopReasonName(summary.stop_reason),
                     .iterations = summary.iterations,
                     .seconds = summary.seconds,
                     .threads = num_threads_,
                     .source = material_.source,
-                    .valid_samples = objective.samples().size(),
+                    .valid_samples = measured.samples().size(),
                     .max_angle = max_angle_,
                     .program = settings_.program,
                     .date = UtcNow()};
@@ -260,11 +279,14 @@ class MaterialFitter {
   std::optional<MaterialFit> PruneAnew() {
     const std::optional<FullFit> full = Fit("scene");
     if (!full || settings_.stop()) return std::nullopt;
-    const Objective& objective = FitObjective();
+    const Objective& objective = MeasuredObjective();
     Stopwatch stopwatch;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
-    PrunedModel pruned = Prune(objective, full->file.model, prune_options);
+    const FactorModel& model = full->file.model;
+    PrunedModel pruned = model.spec().anisotropic()
+                             ? PruneAnisotropic(objective, FitObjective(), model, prune_options)
+                             : Prune(objective, model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
@@ -280,6 +302,7 @@ class MaterialFitter {
                 .unobserved = UnobservedParameters(of_pruned.coverage()),
                 .fit = full->file.fit,
                 .layout = std::move(pruned.layout)};
+    if (fit.file.model.spec().anisotropic()) fit.file.layout.reset();  // all is stored
     fit.file.fit.objective = fit.pruned.objective;
     fit.num_parameters = pruned.num_parameters;
     fit.decisions = std::move(pruned.decisions);
@@ -291,7 +314,7 @@ class MaterialFitter {
   const int num_threads_;
   const std::string bytes_;
   const std::string bytes_hash_;
-  std::optional<Objective> objective_;
+  std::optional<Objective> objective_, guided_;
   int valid_samples_ = 0;
   double max_angle_ = 90;  // [degrees] that the measurement reaches
 };

@@ -129,16 +129,32 @@ TEST_F(AnisotropicCommands, WhatCannotBeIsOneLine) {
   ExpectRefusal({"fit", kVelvet, "--model=auto"}, "--model=auto chooses among isotropic models");
   ExpectRefusal({"score", kVelvet, kVelvet}, "needs a table");
   ExpectRefusal({"compare", In("fit")}, "plan.json");
+}
+
+TEST_F(AnisotropicCommands, ASceneNeedsLess) {
   std::ofstream(In("scene.json")) << R"({"format": "trilobe-scene", "version": 1,
-      "materials": [{"name": "curtain", "source": "synth:velvet"}]})";
-  ExpectRefusal({"compare", In("scene.json"), "--nocache"}, "needs a table");
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"plan", In("scene.json"), "--nocache"},
-        {"fit", "--scene=" + In("scene.json"), "--nocache", "--out=" + In("scene")}}) {
-    const ProgramResult result = RunProgram(command);
-    EXPECT_EQ(result.status, 3);
-    EXPECT_THAT(result.out, HasSubstr("curtain failed: synth:velvet: this command needs a table"));
+      "budget": {"psnr_drop_db": 3}, "materials": [
+      {"name": "curtain", "source": "synth:velvet@4x8", "directions": {"theta_i": [0, 50]}},
+      {"name": "round", "source": "synth:felt@4x8"}]})";
+  const std::string quick = "--lobes=1";
+  const ProgramResult fit = RunProgram(
+      {"fit", "--scene=" + In("scene.json"), quick, "--nocache", "--out=" + In("scene")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("kept:     isotropic instead of anisotropic"));
+  EXPECT_THAT(fit.out, HasSubstr("left out: isotropic instead of anisotropic"));
+  const json plan = Parse(Contents(In("scene/plan.json")));
+  for (const json& material : plan["materials"]) {
+    EXPECT_LT(material["numbers"]["pruned"], material["numbers"]["full"]);
+    EXPECT_LE(material["psnr_db"]["full"].get<double>() - 3,
+              material["psnr_db"]["pruned"].get<double>() + 1e-9);
   }
+  const ProgramResult info = RunProgram({"info", In("scene/curtain.json"), "--json"});
+  EXPECT_TRUE(Parse(info.out)["anisotropic"]) << info.err;
+  const ProgramResult score = RunProgram({"score", In("scene/curtain.json"), "synth:velvet@4x8"});
+  EXPECT_EQ(score.status, 0) << score.err;
+  const ProgramResult compare = RunProgram({"compare", In("scene.json"), quick, "--nocache"});
+  EXPECT_EQ(compare.status, 0) << compare.err;
+  EXPECT_THAT(compare.out, HasSubstr("curtain"));
 }
 
 }  // namespace
