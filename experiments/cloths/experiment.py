@@ -71,7 +71,7 @@ def units(setting):
         for scene, words in scenes.items():
             for seed in (1, noise.AGAIN) if source.name in again else (1,):
                 made.append(_rendered(setting, source, scene, fitted, words, seed))
-            if source.name in setting.manifest["agreement"]:
+            if source.name in setting.manifest["agreement"] and setting.place("probe"):
                 made.append(_agreement(setting, source, scene, fitted, words))
     return made
 
