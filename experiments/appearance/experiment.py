@@ -1,6 +1,4 @@
 """Appearance: see README.md beside this file."""
-import importlib.util
-import io
 import itertools
 import json
 import math
@@ -8,13 +6,11 @@ import pathlib
 import sys
 
 import numpy
-from PIL import Image, ImageDraw, ImageFont
 
 from lab import UsageError, fits, lobes, merl, stats, tables
 from lab.units import FOLDER, Product, Unit
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import pictures  # noqa: E402
+from renderer import noise, pictures
+from renderer import units as rendering
 
 ONE = ("threads", "start")  # of these the tables know one
 SHARED, INDEPENDENT = "shared", "independent"  # the runs that everything is held against
@@ -23,12 +19,11 @@ FACTORS = {"awls": 0, "awls, filtered": 1}  # the fits of which D, F and G are d
 PUBLISHED = ("NPF", "SGD", "ABC", "Cook-Torrance", "Ward")  # the first as a model, not a formula
 PEER = "network"
 BUILT_IN = "built-in"
-AGAIN = 2  # the seed of the second pictures, that tell the noise
 HERE = pathlib.Path(__file__).resolve().parent
+PICTURED = (HERE / "bins.py", *rendering.modules("pictures.py"))  # what `render` reads
 NPF_MODEL = HERE.parent / "final_error" / "npf_model"
 # What is worse than everything, for what is missing.
 WORST = {"psnr_db": -math.inf, "linear_psnr_db": -math.inf, "flip": math.inf}
-PICTURES_BYTES = 300_000  # at most
 
 
 # --- units ----------------------------------------------------------------------------------------
@@ -38,8 +33,7 @@ def _script(path, name, *arguments, product="stdout.txt", modules=(), **labels):
     """A unit of a program of this folder."""
     program = name if isinstance(name, pathlib.Path) else HERE / name
     return Unit(path, program, arguments, product,
-                modules=(pathlib.Path(merl.__file__), *(HERE / module for module in modules)),
-                labels=labels)
+                modules=(pathlib.Path(merl.__file__), *modules), labels=labels)
 
 
 def _scenes(setting):
@@ -48,10 +42,8 @@ def _scenes(setting):
     if (mesh is None) != (mesh_probe is None):
         raise UsageError("give mesh and mesh_probe together")
     if probe or mesh:
-        if importlib.util.find_spec("mitsuba") is None:
-            raise UsageError("probes and meshes need Mitsuba: run experiments/appearance/setup, "
-                             "then build/renderer/bin/python experiments/trilobe-experiments ...")
-    elif setting.quick and importlib.util.find_spec("mitsuba") is None:
+        rendering.require_mitsuba()
+    elif setting.quick and not rendering.has_mitsuba():
         print("appearance: without Mitsuba no mesh is shown, and nothing is held against its own "
               "pictures", file=sys.stderr)
     found = {}
@@ -60,13 +52,6 @@ def _scenes(setting):
         if name == "sphere" or mesh:
             found[name] = tuple(fits.words({**flags, **{k: v for k, v in given.items() if v}}))
     return found
-
-
-def _paths(setting, scene, flags, seed):
-    return Product(_script(f"appearance/paths/{scene}-{seed}", "light_paths", FOLDER, *flags,
-                           f"--seed={seed}", *fits.words(setting.manifest["paths"]),
-                           product="paths.npz", modules=("scene.py", "light_lobes.py")),
-                   "paths.npz")
 
 
 def _published(setting, source):
@@ -109,7 +94,7 @@ def _fitted(setting, source, planned):
                for name, unit in _of_factors(setting, source).items()})
     of[BIVARIATE] = Product(_script(
         f"appearance/{source.name}/bivariate", "bivariate", str(setting.program()), source.path,
-        FOLDER, *reading, product="table.npy", modules=("bins.py",)), "table.npy")
+        FOLDER, *reading, product="table.npy", modules=(HERE / "bins.py",)), "table.npy")
     return {**of, **_published(setting, source)}
 
 
@@ -117,7 +102,7 @@ def _rendered(setting, source, scene, fitted, paths, seed):
     words = [word for pair in fitted.items() for word in pair]
     return _script(f"appearance/{source.name}/{scene}-{seed}", "render", str(setting.program()),
                    source.path, FOLDER, *words, paths, *fits.words(setting.reading(source)),
-                   product="scores.json", modules=("bins.py", "pictures.py"),
+                   product="scores.json", modules=PICTURED,
                    material=source.name, scene=scene, seed=seed, kind="render")
 
 
@@ -130,7 +115,8 @@ def _agreement(setting, source, scene, flags, fitted):
     return _script(f"appearance/{source.name}/{scene}-mitsuba", "mitsuba_picture",
                    str(setting.program()), source.path, FOLDER, *names, *words, *flags,
                    f"--samples={setting.manifest['samples']}", product="pictures.npz",
-                   modules=("bins.py", "scene.py", "light_lobes.py"),
+                   modules=(HERE / "bins.py", *rendering.modules(
+                       "bsdf.py", "scene.py", "light_lobes.py")),
                    material=source.name, scene=scene, kind="mitsuba")
 
 
@@ -160,18 +146,18 @@ def units(setting):
         for scene, flags in scenes.items():
             if scene == "mesh" and source.name not in meshed:
                 continue
-            for seed in (1, AGAIN) if source.name in again else (1,):
-                made.append(_rendered(setting, source, scene, fitted,
-                                      _paths(setting, scene, flags, seed), seed))
+            paths = {seed: rendering.light_paths(setting, "appearance", scene, flags, seed)
+                     for seed in (1, noise.AGAIN)}
+            for seed in (1, noise.AGAIN) if source.name in again else (1,):
+                made.append(_rendered(setting, source, scene, fitted, paths[seed], seed))
             if source.name in setting.manifest["agreement"]:
                 made.append(_agreement(setting, source, scene, flags, fitted))
                 if source.path.endswith("_rgb.bsdf"):  # the same directions as in Mitsuba's
                     made.append(_script(
                         f"appearance/{source.name}/{scene}-whole", "render",
                         str(setting.program()), source.path, FOLDER, SHARED, fitted[SHARED],
-                        _paths(setting, scene, flags, 1), "--extrapolated", product="scores.json",
-                        modules=("bins.py", "pictures.py"), material=source.name, scene=scene,
-                        kind="whole"))
+                        paths[1], "--extrapolated", product="scores.json", modules=PICTURED,
+                        material=source.name, scene=scene, kind="whole"))
     return made
 
 
@@ -215,29 +201,6 @@ def _render_rows(setting, results, source_of):
 
 def _pictures(folder):
     return dict(numpy.load(folder / "pictures.npz"))
-
-
-def _noise_rows(results):
-    """What two renderings of different paths differ by."""
-    at = {(r.labels["material"], r.labels["scene"], r.labels["seed"]): r.folder for r in results
-          if r.labels.get("kind") == "render" and r.folder}
-    rows = []
-    for (material, scene, seed), folder in at.items():
-        if seed != AGAIN or (material, scene, 1) not in at:
-            continue
-        one, two = _pictures(at[material, scene, 1]), _pictures(folder)
-        counts = (one["share"] > 0) & (two["share"] > 0)
-        factor = pictures.exposure(one["measured"], counts)
-        for fit in (name for name in one if name not in ("measured", "share")):
-            shown = [[pictures.encoded(of[name] * factor)[counts] for name in ("measured", fit)]
-                     for of in (one, two)]
-            rows.append({
-                "material": material, "scene": scene, "fit": fit,
-                "psnr_db": pictures.psnr(*shown[0]), "again_psnr_db": pictures.psnr(*shown[1]),
-                "noise_db": pictures.psnr(shown[0][0], shown[1][0]),
-                "difference_noise_db": pictures.psnr(shown[0][1] - shown[0][0],
-                                                     shown[1][1] - shown[1][0])})
-    return rows
 
 
 def _agreement_rows(results):
@@ -290,47 +253,18 @@ def _factor_rows(results):
     return rows
 
 
-def _jpeg(page):
-    """The best that is small enough for a page, or else the smallest."""
-    for quality in (92, 88, 82, 75, 65, 50):
-        text = io.BytesIO()
-        page.save(text, "JPEG", quality=quality, optimize=True)
-        if text.tell() <= PICTURES_BYTES:
-            break
-    return text.getvalue()
-
-
 def _beside(chosen):
     """A page of rows [(caption, folder)]: measured and fitted, with the PSNR of each."""
-    from matplotlib import font_manager
-    path = font_manager.findfont("DejaVu Sans")
-    large, small = (ImageFont.truetype(path, size) for size in (15, 12))
-    fitted = ["measured", SHARED, INDEPENDENT, BIVARIATE]
-    width = 190
     rows = []
     for caption, folder in chosen:
         of = _pictures(folder)
         scores = json.loads((folder / "scores.json").read_text())
         factor = pictures.exposure(of["measured"], of["share"] > 0)
-        shown = []
-        for name in fitted:
-            picture = Image.fromarray(
-                (255 * pictures.encoded(of[name] * factor) + 0.5).astype("u1"))
-            height = width * picture.height // picture.width
-            text = name + (f"\n{scores[name]['psnr_db']:.1f} dB" if name in scores else "")
-            shown.append((picture.resize((width, height), Image.LANCZOS), text))
-        rows.append((caption, shown))
-    across = max((len(shown) for _, shown in rows), default=1) * (width + 10)
-    page = Image.new("RGB", (across + 20, sum(shown[0][0].height + 70 for _, shown in rows) + 10),
-                     "white")
-    pen, y = ImageDraw.Draw(page), 10
-    for caption, shown in rows:
-        pen.text((10, y), caption, "#111111", large)
-        for k, (picture, text) in enumerate(shown):
-            page.paste(picture, (10 + k * (width + 10), y + 24))
-            pen.text((10 + k * (width + 10), y + 26 + picture.height), text, "#444444", small)
-        y += shown[0][0].height + 70
-    return _jpeg(page)
+        rows.append((caption, [
+            (pictures.encoded(of[name] * factor),
+             name + (f"\n{scores[name]['psnr_db']:.1f} dB" if name in scores else ""))
+            for name in ("measured", SHARED, INDEPENDENT, BIVARIATE)]))
+    return pictures.side_by_side(rows)
 
 
 def _best_and_worst(rows, results, scene):
@@ -348,9 +282,11 @@ def _best_and_worst(rows, results, scene):
 def tabulate(setting, results):
     """renders: a row for each picture; noise, agreement, factors: README.md; aims."""
     source_of = {source.name: source for source in setting.sources}
+    folder_of = {(r.labels["material"], r.labels["scene"], r.labels["seed"]): r.folder
+                 for r in results if r.labels.get("kind") == "render" and r.folder}
     rows = _render_rows(setting, results, source_of)
-    products = {"renders": rows, "noise": _noise_rows(results), "factors": _factor_rows(results),
-                "agreement": _agreement_rows(results),
+    products = {"renders": rows, "noise": noise.rows(folder_of, "measured"),
+                "factors": _factor_rows(results), "agreement": _agreement_rows(results),
                 "aims": [{"database": database, "median": of}
                          for database, of in setting.manifest["aims"].items()]}
     for scene in dict.fromkeys(row["scene"] for row in rows):
@@ -444,21 +380,6 @@ def _disagree_table(rows):
         ["material", "database", "PSNR dB by `trilobe score`", "in the renderer"],
         [[row["material"], row["database"], f"{row[column]:.1f}", f"{row['psnr_db']:.1f}"]
          for row in known[:10]])
-
-
-def _noise_table(rows):
-    lines = []
-    for (scene, fit), of in tables.groups(rows, "scene", "fit").items():
-        below = [row["difference_noise_db"] - row["psnr_db"] for row in of]
-        lines.append([scene, fit, str(len(of)),
-                      tables.quartiles([row["noise_db"] for row in of], ".1f"),
-                      tables.quartiles([row["difference_noise_db"] for row in of], ".1f"),
-                      f"{min(below):.1f}",
-                      f"{max(abs(row['psnr_db'] - row['again_psnr_db']) for row in of):.2f}"])
-    return tables.markdown(["scene", "fit", "n", "two pictures of a measurement, dB apart",
-                            "two pictures of a difference, dB apart",
-                            "least that this is below the difference, dB",
-                            "most that a PSNR differs, dB"], lines)
 
 
 def _agreement_table(rows):
@@ -558,7 +479,7 @@ def draw(drawn, _):
                 "against.md": _against_table(rows), "rank.md": _rank_table(rows),
                 "disagree.md": _disagree_table(rows), "materials.md": _materials_table(rows)}
     if drawn.get("noise"):
-        products["noise.md"] = _noise_table(drawn["noise"])
+        products["noise.md"] = noise.table(drawn["noise"], "a measurement")
     if drawn.get("agreement"):
         products["agreement.md"] = _agreement_table(drawn["agreement"])
     if drawn.get("factors"):

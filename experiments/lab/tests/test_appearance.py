@@ -1,29 +1,11 @@
 """The pictures of the experiment appearance: paths of light, tables, and how pictures compare."""
-import importlib.machinery
-import importlib.util
-import pathlib
-import sys
 import unittest
 
 import numpy
 
 from lab import merl
-from lab.tests import FolderTest
-
-HERE = pathlib.Path(__file__).resolve().parents[2] / "appearance"
-
-
-def load(name):
-    """A program or module of the experiment, as a module."""
-    sys.path.insert(0, str(HERE))
-    try:
-        loader = importlib.machinery.SourceFileLoader(f"appearance_{name}", str(HERE / name))
-        module = importlib.util.module_from_spec(
-            importlib.util.spec_from_loader(loader.name, loader))
-        loader.exec_module(module)
-    finally:
-        sys.path.remove(str(HERE))
-    return module
+from lab.tests import FolderTest, load
+from renderer import pictures, scene
 
 
 class PathsTest(FolderTest):
@@ -41,13 +23,13 @@ class PathsTest(FolderTest):
         # Another frame, so that nothing hangs on z or x.
         turn = numpy.linalg.qr(numpy.random.default_rng(1).normal(size=(3, 3)))[0]
         turn *= numpy.linalg.det(turn)
-        found = load("scene.py").coordinates(turn @ [0, 0, 1], wi @ turn.T, wo @ turn.T)
+        found = scene.coordinates(turn @ [0, 0, 1], wi @ turn.T, wo @ turn.T)
         expected = numpy.stack(numpy.meshgrid(*(numpy.arange(n)[::step] for n, step in zip(
             merl.SHAPE, (7, 5, 11))), indexing="ij"), axis=-1).reshape(-1, 3)
         numpy.testing.assert_allclose(found, expected, atol=1e-6)
 
     def test_an_even_sky_lights_all_normals_alike(self):
-        paths = load("light_paths")
+        paths = load("renderer", "light_paths")
         n = numpy.random.default_rng(2).normal(size=(50, 3))
         n /= numpy.linalg.norm(n, axis=1)[:, None]
         wo = n + 0.8 * numpy.roll(n, 1, axis=1)
@@ -60,7 +42,7 @@ class PathsTest(FolderTest):
         numpy.testing.assert_allclose(light.sum(axis=1)[lit], numpy.pi, rtol=0.01)
 
     def test_draws_meet_what_is_bright(self):
-        paths = load("light_paths")
+        paths = load("renderer", "light_paths")
         environment = paths.Environment(paths.sky())
         directions = environment.draw(*paths._even(0, 20000).T)
         radiance, density = environment.radiance_and_density(directions)
@@ -76,7 +58,7 @@ class PathsTest(FolderTest):
                                       (exact * cell[..., None]).sum(axis=(0, 1)), rtol=5e-3)
 
     def test_a_direction_that_is_too_long_by_rounding_is_one_all_the_same(self):
-        paths = load("light_paths")
+        paths = load("renderer", "light_paths")
         up = numpy.array([[0.0, 1 + 1e-12, 0.0]])
         for of in paths.Environment(paths.sky()).radiance_and_density(up):
             self.assertTrue(numpy.isfinite(of).all() and (of > 0).all())
@@ -100,7 +82,7 @@ class TablesTest(FolderTest):
         above = numpy.minimum(*merl.cosines()) > 0
         measured = numpy.where(above, numpy.arange(180), -1.0)[..., None] * numpy.ones(3)
         measured[20, 30] = -1
-        rows = load("bins.py").rows(measured, [numpy.full((*merl.SHAPE, 3), 7.0)])
+        rows = load("appearance", "bins.py").rows(measured, [numpy.full((*merl.SHAPE, 3), 7.0)])
         rows = rows.reshape(*merl.SHAPE, 7)
         self.assertEqual(rows[20, 30].max(), 0)
         self.assertFalse(above[60, 60, 0])
@@ -109,7 +91,7 @@ class TablesTest(FolderTest):
         numpy.testing.assert_array_equal(rows[10, 10, 50], [50] * 3 + [7] * 3 + [1])
 
     def test_bivariate_is_exact_where_phi_does_not_matter_and_else_a_mean(self):
-        bivariate = load("bivariate").bivariate
+        bivariate = load("appearance", "bivariate").bivariate
         table = numpy.random.default_rng(4).random((90, 90, 1, 3)) * numpy.ones((1, 1, 180, 1))
         table[numpy.minimum(*merl.cosines()) <= 0] = -1
         found = bivariate(table)
@@ -125,7 +107,7 @@ class TablesTest(FolderTest):
         (self.folder / "x.fit").write_text(
             "# none\npaint = Aggregate(Lambertian(albedo = [0.1, 0.2, 0.3]), "
             "NganWard(albedo = [0.03, 0.02, 1e-2], roughness = 0.2))\n")
-        table = load("published_table").table(self.folder / "x.fit", "paint")
+        table = load("appearance", "published_table").table(self.folder / "x.fit", "paint")
         h, d, p = 20, 15, 40
         cos_i, cos_o = (of[h, d, p] for of in merl.cosines())
         tan = numpy.tan(merl.angles()[0][h, d, p])
@@ -137,7 +119,6 @@ class TablesTest(FolderTest):
 
 class PicturesTest(FolderTest):
     def test_measures_of_a_known_difference(self):
-        pictures = load("pictures.py")
         measured = numpy.full((4, 4, 3), 0.7)
         counts = numpy.ones((4, 4), bool)
         counts[0] = False
@@ -154,14 +135,15 @@ class PicturesTest(FolderTest):
 
     def test_pictures_of_a_matt_sphere(self):
         """The whole way: paths, tables, pictures, under a sky that fades towards the ground."""
-        paths = load("light_paths")
-        options = load("scene.py").parser("").parse_args(["--size=16x16"])
-        options.positions, options.lights = 4, 64
+        paths = load("renderer", "light_paths")
+        options = scene.parser("").parse_args(["--size=16x16"])
+        options.positions, options.lights, options.directions = 4, 64, False
         matt = numpy.full((*merl.SHAPE, 3), 0.5 / numpy.pi)
         matt[numpy.minimum(*merl.cosines()) <= 0] = -1
         half = numpy.where(matt > 0, matt / 2, -1)
         found = paths.paths(options)
-        (measured, fitted), share = load("render").render(found, load("bins.py").rows(matt, [half]))
+        rows = load("appearance", "bins.py").rows(matt, [half])
+        (measured, fitted), share = load("appearance", "render").render(found, rows)
         numpy.testing.assert_allclose(fitted, measured / 2, rtol=1e-5)
         self.assertEqual(share[0, 0], -1)
         numpy.testing.assert_allclose(share[8, 8], 1, rtol=1e-5)

@@ -41,10 +41,11 @@ def mitsuba():
     return module
 
 
-def shape(options):
+def shape(mi, options):
     """The shape, for mitsuba.load_dict."""
     if options.shape == "sphere":
-        return {"type": "sphere"}
+        # Its poles, which are Mitsuba's +-z, up and down: x along the parallels of our world.
+        return {"type": "sphere", "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], -90)}
     return {"type": "obj", "filename": options.shape}
 
 
@@ -80,3 +81,28 @@ def coordinates(n, wi, wo):
                                         cos_h * cos_d - (wi * n).sum(-1))) % 180
     return numpy.stack([numpy.sqrt(90 * theta_h) - 0.5, numpy.degrees(numpy.arccos(cos_d)) - 0.5,
                         phi_d - 0.5], axis=-1)
+
+
+def picture(mi, options, bsdf, seed):
+    """Radiance of the object by Mitsuba's own integrator, from options.samples paths a pixel that
+    are reflected once. [height][width][3]"""
+    eye, up = mi.ScalarPoint3f(options.eye), mi.ScalarVector3f(0, 1, 0)
+    of = mi.load_dict({
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": 2, "hide_emitters": True},
+        "sensor": {"type": "perspective", "fov": options.view, "fov_axis": "x",
+                   "to_world": mi.ScalarTransform4f().look_at(
+                       origin=eye, target=mi.ScalarPoint3f(options.target), up=up),
+                   "film": {"type": "hdrfilm", "width": options.size[0],
+                            "height": options.size[1], "pixel_format": "rgb",
+                            "component_format": "float32", "rfilter": {"type": "box"}},
+                   "sampler": {"type": "independent"}},
+        "light": {"type": "envmap", "filename": options.probe,
+                  "to_world": mi.ScalarTransform4f().rotate([0, 1, 0], 180)},
+        "shape": {**shape(mi, options), "bsdf": bsdf}})
+    # In parts: a part's paths are in memory at a time.
+    parts = max(1, options.samples * options.size[0] * options.size[1] // 2 ** 22)
+    total = sum(numpy.array(of.integrator().render(of, spp=options.samples // parts,
+                                                   seed=1000 * seed + part))
+                for part in range(parts))
+    return total / parts

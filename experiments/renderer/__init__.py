@@ -1,0 +1,1 @@
+"""What experiments that make pictures share: scenes, paths of light, Mitsuba, pictures."""
