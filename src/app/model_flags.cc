@@ -25,10 +25,10 @@ DEFINE_string(
 DEFINE_int32(f_bins, 0,
              "of an anisotropic model, bins of F over theta_d, from 4; by default 6, with "
              "--model=anisotropic 90");
-DEFINE_string(g_nodes, "",
-              "of an anisotropic model, nodes of G: theta by phi, at even steps; by default 6x24, "
-              "or fewer phi "
-              "where the data have fewer; with --model=anisotropic 6x48");
+DEFINE_string(
+    g_nodes, "",
+    "of an anisotropic model, nodes of G: theta by phi, at even steps; by default 6x24, "
+    "or fewer phi where the data have fewer, and the horizon; with --model=anisotropic 6x48");
 DEFINE_double(
     guide, 1,
     "of an anisotropic model: how much a small model, fitted first, counts between the measured "
@@ -56,22 +56,13 @@ Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   return axis;
 }
 
-// What the flag says, or by default `rings` by as many phi as follow from those of the data.
-std::string NodesOr(const std::string& given, const char* rings, int phis) {
-  if (!given.empty()) return given;
-  if (FLAGS_model == "anisotropic") return "6x48";
-  std::string nodes(rings);
-  return nodes.append("x").append(std::to_string(phis));
-}
-
-ModelSpec AnisotropicSpec(const HemisphereGrid& data) {
-  ModelSpec spec = ModelSpec::Anisotropic(FLAGS_lobes);
-  spec.d_axis =
-      ParseNodes("d_nodes", NodesOr(FLAGS_d_nodes, "12r", std::clamp(data.phis, 4, 36)), true);
-  spec.g_axis =
-      ParseNodes("g_nodes", NodesOr(FLAGS_g_nodes, "6", std::clamp(data.phis / 2, 4, 24)), false);
-  const bool as_published = FLAGS_model == "anisotropic";
-  spec.f_axis.size = !IsDefault("f_bins") ? FLAGS_f_bins : as_published ? 90 : 6;
+ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
+  ModelSpec spec = FLAGS_model == "anisotropic"
+                       ? ModelSpec::Anisotropic(FLAGS_lobes)
+                       : ModelSpec::AnisotropicFor(FLAGS_lobes, data.phis, max_theta);
+  if (!FLAGS_d_nodes.empty()) spec.d_axis = ParseNodes("d_nodes", FLAGS_d_nodes, true);
+  if (!FLAGS_g_nodes.empty()) spec.g_axis = ParseNodes("g_nodes", FLAGS_g_nodes, false);
+  if (!IsDefault("f_bins")) spec.f_axis.size = FLAGS_f_bins;
   CheckSpec(spec);
   return spec;
 }
@@ -106,7 +97,7 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
   const bool anisotropic =
       FLAGS_model == "anisotropic" || (FLAGS_model == "shared" && measurement.anisotropic);
   if (!anisotropic) return IsotropicSpec(measurement.samples.grid);
-  return AnisotropicSpec(GridOf(measurement).value_or(HemisphereGrid()));
+  return AnisotropicSpec(GridOf(measurement).value_or(HemisphereGrid()), measurement.max_theta);
 }
 
 void CheckModelFlags() {
@@ -117,7 +108,7 @@ void CheckModelFlags() {
   }
   if (!(FLAGS_guide >= 0 && FLAGS_guide <= 1e6)) throw Error("--guide must be from 0 to 1e6");
   if (FLAGS_model == "anisotropic" || FLAGS_model == "shared") {
-    AnisotropicSpec({});
+    AnisotropicSpec({}, kPi / 2);
   } else {
     IsotropicSpec({});
   }

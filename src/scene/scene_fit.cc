@@ -218,7 +218,8 @@ class MaterialFitter {
       const ModelSpec spec =
           measured.anisotropic
               ? ModelSpec::AnisotropicFor(settings_.lobes,
-                                          GridOf(measured).value_or(HemisphereGrid()).phis)
+                                          GridOf(measured).value_or(HemisphereGrid()).phis,
+                                          measured.max_theta)
               : ModelSpec::SharedFactors(settings_.lobes, samples.grid);
       if (material_.reductions.samples) samples = UsedSamples(samples, material_.directions);
       objective_.emplace(InChannels(std::move(samples), material_.channels), spec,
