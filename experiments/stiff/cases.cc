@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
+#include <utility>
 
+#include "experiments/stiff/anisotropic_cases.h"
+#include "experiments/stiff/material.h"
 #include "tests/test_util.h"
 #include "trilobe/base/named.h"
 #include "trilobe/solvers/initial_model.h"
@@ -35,23 +39,12 @@ double Ggx(double theta_h, double alpha) {
   return alpha * alpha / (kPi * t * t);
 }
 
-double Schlick(double theta_d, double f0) {
-  return f0 + (1 - f0) * std::pow(1 - std::cos(theta_d), 5);
-}
-
-double Shadowing(double theta, double strength) {
-  return 1 / (1 + strength * std::tan(theta) * std::tan(theta) / 10);
-}
-
 // Lobes from narrow to wide, each with its own colour.
 FactorModel Material(int lobes, const MerlGrid& grid = kGrid) {
   constexpr double kAlpha[] = {0.12, 0.3, 0.7}, kShadowing[] = {0.5, 1.5, 4};
-  constexpr double kF0[kChannels] = {0.9, 0.5, 0.3};
-  constexpr double kWeight[][kChannels] = {{0.3, 0.25, 0.2}, {0.4, 0.2, 0.5}, {0.2, 0.6, 0.7}};
-  constexpr double kJitter = 0.1;
   Random random(1);
   FactorModel model(ModelSpec::SharedFactors(lobes, grid));
-  std::ranges::copy(Rgb{0.05, 0.08, 0.11}, model.d().begin());
+  std::ranges::copy(kDiffuse, model.d().begin());
   for (int m = 0; m < lobes; ++m) {
     std::ranges::copy(kWeight[m], model.s(m).begin());
     SetTable(Factor::kD, m, kJitter, &random, &model, Ggx, kAlpha[m]);
@@ -85,26 +78,9 @@ StiffProblem Measure(const FactorModel& truth, const MerlGrid& grid = kGrid) {
   return problem;
 }
 
-template <typename Change>  // double(double)
-StiffProblem Changed(StiffProblem problem, Change change) {
-  for (Rgb& rho : problem.samples.rho) {
-    for (double& value : rho) value = change(value);
-  }
-  return problem;
-}
-
 StiffProblem Weighted(StiffProblem problem, const std::string& weighting) {
   problem.weighting = weighting;
   return problem;
-}
-
-// Log-normal, of this relative standard deviation and mean 1.
-StiffProblem Noisy(StiffProblem problem, double noise) {
-  Random random(2);
-  const double sigma = std::sqrt(std::log1p(noise * noise));
-  return Changed(std::move(problem), [&](double rho) {
-    return rho * random.LogNormal(sigma) * std::exp(-sigma * sigma / 2);
-  });
 }
 
 template <typename Predicate>  // bool(int bin)
@@ -315,10 +291,8 @@ StiffProblem FloatStorage() {
                  [](double rho) { return static_cast<double>(static_cast<float>(rho)); });
 }
 
-}  // namespace
-
-const std::vector<StiffCase>& StiffCases() {
-  static const std::vector<StiffCase> cases = {
+std::vector<StiffCase> IsotropicCases() {
+  return {
       {"regular", "two lobes without error: nothing is hard", Regular},
       {"regular_three", "three lobes, 2 % noise: nothing is hard", RegularThree},
       {"mirror_delta", "a lobe that fills one bin of D, the others 0", MirrorDelta},
@@ -373,6 +347,16 @@ const std::vector<StiffCase>& StiffCases() {
       {"denormal_tail", "the last bins of D below 1e-308", DenormalTail},
       {"float_storage", "two lobes without error, stored in single precision", FloatStorage},
   };
+}
+
+}  // namespace
+
+const std::vector<StiffCase>& StiffCases() {
+  static const std::vector<StiffCase> cases = [] {
+    std::vector<StiffCase> all = IsotropicCases();
+    std::ranges::move(AnisotropicCases(), std::back_inserter(all));
+    return all;
+  }();
   return cases;
 }
 

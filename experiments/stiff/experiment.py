@@ -35,7 +35,7 @@ def tabulate(_, results):
             rows.append(row)
     names = {result.labels["case"] for result in results}
     solvers = list(dict.fromkeys(row["solver"] for row in rows))
-    rows += [{"case": result.labels["case"], "description": "", "solver": solver,
+    rows += [{"case": result.labels["case"], "description": "", "model": "", "solver": solver,
               "error": "missing"} for result in results if not result.folder for solver in solvers]
     answers = []
     for of in _certificates():
@@ -102,24 +102,24 @@ def _matrix(rows, answers, column, title):
 def draw(drawn, _):
     rows, answers = drawn["results"], drawn["answers"]
     summary = []
-    for solver, of in tables.groups(rows, "solver").items():
+    for (model, solver), of in tables.groups(rows, "model", "solver").items():
         able = [row for row in of if not row.get("error")]
         if not able:
-            summary.append([solver, f"0 of {len(of)}"] + [""] * 8)
+            summary.append([model, solver, f"0 of {len(of)}"] + [""] * 9)
             continue
         digits = sorted(row["digits_objective"] for row in able)
         fitted = [row["digits_tables"] for row in able
                   if next(a for a in answers if a["case"] == row["case"])["determined"]]
         found = sum(row["end"] == "certified" for row in able)
         summary.append([
-            solver, f"{len(able)} of {len(of)}", str(found),
+            model, solver, f"{len(able)} of {len(of)}", str(found),
             str(sum(row["end"] == "other" for row in able)), f"{statistics.median(digits):.1f}",
             f"{digits[0]:.1f}", f"{statistics.median(fitted):.1f}" if fitted else "–",
             str(sum(str(row["valid"]) != "True" for row in able)),
             str(sum(str(row["rise_over_start"]) == "True" for row in able)),
             f"{max(row['worst_rise'] for row in able):.0e}",
             f"{sum(row['seconds'] for row in able):.1f}"])
-    header = ["solver", "cases", "at the certified E", "at another minimum",
+    header = ["model", "solver", "cases", "at the certified E", "at another minimum",
               "digits of E, median", "worst", "digits of tables, median", "not a number",
               "above the start", "worst rise in one iteration", "seconds, all"]
     certified = [[answer["case"], answer["description"] or "", str(answer["samples"]),

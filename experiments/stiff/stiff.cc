@@ -71,8 +71,10 @@ Json Run(const StiffCase& stiff_case, const SolverEntry& solver, const Certifica
   options.max_iterations = FLAGS_max_iterations;
   options.relative_decrease_tolerance = 0;
   options.optimality_tolerance = 0;
-  Json result = {
-      {"case", stiff_case.name}, {"description", stiff_case.description}, {"solver", solver.name}};
+  Json result = {{"case", stiff_case.name},
+                 {"description", stiff_case.description},
+                 {"model", problem.spec.anisotropic() ? "anisotropic" : "isotropic"},
+                 {"solver", solver.name}};
   try {
     const SolverSummary summary = solver.make()->Solve(objective, options, &model);
     const double E = summary.final_objective;

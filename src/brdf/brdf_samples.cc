@@ -135,6 +135,11 @@ double BrdfSamples::SolidAngle(int j) const {
   return grid.SolidAngle(row / grid.theta_d, row % grid.theta_d);
 }
 
+Cosines BrdfSamples::CosinesOf(int j) const {
+  if (directions.empty()) return ToCosines(Angles(j));
+  return {std::cos(directions[j].theta_i), std::cos(directions[j].theta_o)};
+}
+
 BrdfSamples ValidSamples(const BrdfTable& table) {
   BrdfSamples samples{table.source, table.grid, {}, {}, {}};
   const std::vector<bool> valid = ValidBins(table);

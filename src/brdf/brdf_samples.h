@@ -31,6 +31,8 @@ struct BrdfSamples {
   bool on_grid() const { return angles.empty(); }
   double Multiplicity(int j) const { return multiplicity.empty() ? 1 : multiplicity[j]; }
   HalfDiffAngles Angles(int j) const { return on_grid() ? grid.Center(bins[j]) : angles[j]; }
+  // Of wi and wo in this order, where the directions are known: `angles` may exchange them.
+  Cosines CosinesOf(int j) const;
   // The measure of the pairs of directions that a sample stands for, in some unit; 1 where
   // scattered.
   double SolidAngle(int j) const;

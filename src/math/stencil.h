@@ -29,6 +29,10 @@ struct Stencil {
   }
 };
 
+// What is nearer to an entry than this, in steps from it to the next, stands at it: else rounding
+// would have it read the next one, too.
+inline constexpr double kAtEntry = 1e-9;
+
 // A place between two neighbours: `t` in [0, 1) of the way from the lower to the upper.
 struct Between {
   int lower = 0, upper = 0;
@@ -42,7 +46,8 @@ Between OnCircle(double radians, int count);
 Stencil PointStencil(int index);
 
 // Linear between the centres of `bins` unit bins (centre of bin i at i + 1/2), constant beyond the
-// outer centres. `coordinate` is in [0, bins], bins >= 2. Throws Error where it is not a number.
+// outer centres; within kAtEntry of a centre at it. `coordinate` is in [0, bins], bins >= 2. Throws
+// Error where it is not a number.
 Stencil LinearStencil(double coordinate, int bins);
 
 }  // namespace trilobe

@@ -14,12 +14,10 @@
 namespace trilobe {
 namespace {
 
-constexpr double kAtNode = 1e-9;
-
 // What is next to a node stands at it.
 Between Snapped(Between at) {
-  if (at.t > 1 - kAtNode) return {at.upper, at.upper, 0};
-  return at.t < kAtNode ? Between{at.lower, at.lower, 0} : at;
+  if (at.t > 1 - kAtEntry) return {at.upper, at.upper, 0};
+  return at.t < kAtEntry ? Between{at.lower, at.lower, 0} : at;
 }
 
 Between LocateTheta(const std::vector<double>& nodes, double degrees) {

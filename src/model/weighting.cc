@@ -175,7 +175,7 @@ double MeanReflectance(const BrdfSamples& samples) {
   const int stride = std::max(1, samples.size() / kSamplesLookedAt) | 1;
   double light = 0, reflected = 0;
   for (int j = 0; j < samples.size(); j += stride) {
-    const Cosines cosines = ToCosines(samples.Angles(j));
+    const Cosines cosines = samples.CosinesOf(j);
     const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
     light += through;
     reflected += through * Mean(samples.rho[j]);

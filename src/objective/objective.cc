@@ -171,7 +171,7 @@ struct Objective::Prepared {
                       : spec.anisotropic() ? ScatteredStencils(spec, samples.directions[j])
                                            : ScatteredStencils(spec, angles);
     sample.rho = samples.rho[j];
-    sample.weight = weighting({sample.rho, ToCosines(angles), samples.SolidAngle(j)});
+    sample.weight = weighting({sample.rho, samples.CosinesOf(j), samples.SolidAngle(j)});
     for (double& w : sample.weight) w *= samples.Multiplicity(j);
     return sample;
   }

@@ -19,7 +19,7 @@ BrdfSamples Reweighted(const Objective& objective, const FactorModel& model, dou
   for (int j = 0; j < samples.size(); ++j) {
     // In units of the level, where the weighting is. Without the solid angle, which says how often
     // a sample counts and not how far off it is.
-    const Rgb w = objective.weighting()({samples.rho[j], ToCosines(samples.Angles(j))});
+    const Rgb w = objective.weighting()({samples.rho[j], samples.CosinesOf(j)});
     double square = 0;
     for (int c = 0; c < kChannels; ++c) {
       const double difference = fitted[j][c] - samples.rho[j][c];

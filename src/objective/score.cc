@@ -52,7 +52,7 @@ Sums SumRange(const Objective& objective, const std::vector<Rgb>& fitted, int be
   Sums sums;
   for (int j = begin; j < end; ++j) {
     const HalfDiffAngles angles = samples.Angles(j);
-    const Cosines cosines = ToCosines(angles);
+    const Cosines cosines = samples.CosinesOf(j);
     const double cos_i = cosines.i;
     const Rgb weights = objective.weighting()({samples.rho[j], cosines, samples.SolidAngle(j)});
     for (int c = 0; c < kChannels; ++c) {

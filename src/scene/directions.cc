@@ -44,7 +44,7 @@ Selection Select(const BrdfSamples& samples, const DirectionRanges& ranges) {
     return range.min <= theta && theta <= range.max;
   };
   return Where(samples, [&](int j) {
-    const Cosines cosines = ToCosines(samples.Angles(j));
+    const Cosines cosines = samples.CosinesOf(j);
     const double i = std::acos(cosines.i), o = std::acos(cosines.o);
     return (in(ranges.theta_i, i) && in(ranges.theta_o, o)) ||
            (in(ranges.theta_i, o) && in(ranges.theta_o, i));

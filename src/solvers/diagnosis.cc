@@ -81,10 +81,54 @@ Diagnosis Diagnose(const Objective& objective, const FactorModel& model) {
   return diagnosis;
 }
 
-std::optional<std::string> ConditionWarning(const Diagnosis& diagnosis) {
+int UndeterminedByThetaD(const Objective& objective) {
+  const FoldedSamples* const samples = objective.folded_samples();
+  const ModelSpec& spec = objective.spec();
+  if (samples == nullptr) return 0;  // every bin of F has its own samples
+  const FoldedSamples::OfReading& F = samples->of(Reading::kF);
+  const int bins = spec.table_size(Factor::kF);
+  const double eps = std::numeric_limits<double>::epsilon();
+  int undetermined = 0;
+  for (int t = 0; t < spec.num_tables(Factor::kF); ++t) {
+    // A table's readings as rows, and their products, since only the rank counts.
+    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(bins, bins);
+    const auto [begin, end] = spec.channels(Factor::kF, t);
+    for (int j = 0; j < samples->size(); ++j) {
+      double w = 0;
+      for (int c = begin; c < end; ++c) w += samples->weight[c][j];
+      if (!(w > 0)) continue;
+      const Cell& cell = samples->cells_of(Factor::kF)[F.cell[j]];
+      for (int a = 0; a < cell.size; ++a) {
+        for (int b = 0; b < cell.size; ++b) {
+          products(cell.entry[a], cell.entry[b]) += w * F.weight[a][j] * F.weight[b][j];
+        }
+      }
+    }
+    std::vector<int> read;
+    for (int k = 0; k < bins; ++k) {
+      if (products(k, k) > 0) read.push_back(k);
+    }
+    if (read.empty()) continue;
+    const Eigen::VectorXd scale = products.diagonal()(read).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled =
+        scale.asDiagonal() * products(read, read).eval() * scale.asDiagonal();
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    const double zero = eps * static_cast<double>(read.size() + 1) * values(values.size() - 1);
+    undetermined += static_cast<int>((values.array() <= zero).count());
+  }
+  return undetermined;
+}
+
+std::optional<std::string> ConditionWarning(const Objective& objective,
+                                            const Diagnosis& diagnosis) {
   constexpr double kMargin = 10;
   std::ostringstream out;
   out.precision(2);
+  const int of_F = diagnosis.unresolved > 0
+                       ? std::min(diagnosis.unresolved, UndeterminedByThetaD(objective))
+                       : 0;
   if (diagnosis.unresolved > 0) {
     out << "in " << diagnosis.unresolved
         << " of the fit's directions, those of scale between factors not counted, a step's normal"
@@ -98,8 +142,15 @@ std::optional<std::string> ConditionWarning(const Diagnosis& diagnosis) {
   } else {
     return std::nullopt;
   }
-  out << ": there the damping and the starting point decide, not the data; fit fewer lobes, or a"
-         " coarser grid by solver lm_plain, which works by QR where J is small";
+  out << ": there the damping and the starting point decide, not the data; ";
+  if (of_F > 0) {
+    out << of_F << " of them are bins of F beyond what the data's theta_d can tell: fit fewer bins";
+  }
+  if (of_F > 0 && of_F < diagnosis.unresolved) out << "; ";
+  if (of_F == 0 || of_F < diagnosis.unresolved) {
+    out << "fit fewer lobes, or a coarser grid by solver lm_plain, which works by QR where J is"
+           " small";
+  }
   return out.str();
 }
 

@@ -19,8 +19,13 @@ double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double>
 Diagnosis Diagnose(const Objective& objective, const FactorModel& model);
 
 // A sentence for the user where directions are so weak, within a factor of 10 of rank_tolerance or
-// below it, that normal equations do not determine them (docs/solvers.md).
-std::optional<std::string> ConditionWarning(const Diagnosis& diagnosis);
+// below it, that normal equations do not determine them (docs/solvers.md); with the reason, where
+// that is too many bins of F.
+std::optional<std::string> ConditionWarning(const Objective& objective, const Diagnosis& diagnosis);
+
+// How many directions of the F tables change no value of the data whatever D and G are: of F's bins
+// that scattered samples read, those beyond what the samples' theta_d can tell. 0 on a grid.
+int UndeterminedByThetaD(const Objective& objective);
 
 }  // namespace trilobe
 

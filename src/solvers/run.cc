@@ -116,7 +116,7 @@ SolverSummary Run::Finish() {
   if (summary_.used.diagnose) {
     const ScopedTimer timer = Time(&PhaseSeconds::diagnosing);
     summary_.diagnosis = Diagnose(objective_, *model_);
-    if (auto warning = ConditionWarning(*summary_.diagnosis)) {
+    if (auto warning = ConditionWarning(objective_, *summary_.diagnosis)) {
       summary_.notes.push_back(*std::move(warning));
     }
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/stiff/agreement.h"
+#include "experiments/stiff/anisotropic_cases.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
@@ -62,8 +63,10 @@ TEST(CompareTables, LobesHaveNoOrder) {
 }
 
 // Central differences of E / 2, whose own error is about h^2 = 1e-24 and eps / h^2 = 1e-26.
-TEST(ReferenceProblem, DerivativesAreThoseOfItsValue) {
-  const StiffProblem of = FindStiffCase("lost_99_random").make();
+class ReferenceDerivatives : public testing::TestWithParam<std::string> {};
+
+TEST_P(ReferenceDerivatives, AreThoseOfItsValue) {
+  const StiffProblem of = FindStiffCase(GetParam()).make();
   const ReferenceProblem<Big> problem(of.samples, of.spec, of.weighting);
   VectorOf<Big> x = ToVector<Big>(RandomModel(of.spec, 3));
   const Derivatives<Big> at = problem.Evaluate(x);
@@ -90,6 +93,9 @@ TEST(ReferenceProblem, DerivativesAreThoseOfItsValue) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Cases, ReferenceDerivatives,
+                         testing::Values("lost_99_random", "one_azimuth"));
 
 class Stiff : public testing::TestWithParam<std::string> {};
 
@@ -145,12 +151,24 @@ INSTANTIATE_TEST_SUITE_P(Cases, Stiff, testing::ValuesIn(CaseNames()), [](const 
 });
 
 TEST(Certify, FindsTheAnswerAgain) {
-  for (const char* name : {"black", "weight_decades"}) {
+  for (const char* name : {"black", "weight_decades", "one_azimuth"}) {
     const Certificate right = CertificateOf(name), again = Certify(FindStiffCase(name), 0);
     EXPECT_NEAR(again.objective, right.objective,
                 1e-12 * right.objective + 1e-27 * right.measured_energy)
         << name;
     EXPECT_EQ(again.rank, right.rank) << name;
+  }
+}
+
+// Turned data have the turned answer, with the same E.
+TEST(Turned, HaveTheTurnedAnswer) {
+  for (const auto& [name, of, nodes] : Twins()) {
+    const Certificate &turned = CertificateOf(name), &right = CertificateOf(of);
+    EXPECT_NEAR(turned.objective / right.objective, 1, 1e-12) << name;
+    EXPECT_EQ(turned.undetermined.size(), right.undetermined.size()) << name;
+    EXPECT_GT(CompareTables(turned.model, Turned(right.model, nodes), turned.Determined()).tables,
+              9)
+        << name;
   }
 }
 

@@ -24,6 +24,17 @@ TEST(Stencil, LinearIsExactAtCentresAndLinearBetween) {
   EXPECT_DOUBLE_EQ(LinearStencil(4.25, 5)(kTable), 5.5);  // three quarters from 10 to 4
 }
 
+TEST(Stencil, LinearReadsOneEntryNextToItsCentre) {
+  for (int k = 1; k < 4; ++k) {
+    for (const double x : {k + 0.5 - 1e-15, k + 0.5 + 1e-15}) {
+      const Stencil stencil = LinearStencil(x, 5);
+      EXPECT_EQ(stencil.WeightOf(k), 1);
+      EXPECT_EQ(stencil.WeightOf(k - 1), 0);
+      EXPECT_EQ(stencil.WeightOf(k + 1), 0);
+    }
+  }
+}
+
 TEST(Stencil, LinearIsConstantBeyondTheOuterCentres) {
   for (const double x : {0.0, 0.25, 0.5}) {
     EXPECT_EQ(LinearStencil(x, 5)(kTable), 1);

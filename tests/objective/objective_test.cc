@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
@@ -52,6 +53,17 @@ TEST(Objective, SamplesCarryTheirWeights) {
       EXPECT_NEAR(objective.weighted_samples()[j].weight[c], slope * slope, 1e-12 * slope * slope);
       EXPECT_EQ(objective.weighted_samples()[j].rho[c], samples.rho[j][c]);
     }
+  }
+}
+
+// Half-vector coordinates exchange wi and wo where phi_d is beyond 180 degrees.
+TEST(Objective, WeightsAreOfTheIncidentDirection) {
+  const ModelSpec spec = ModelSpec::Anisotropic(1);
+  const BrdfSamples samples = PolarSamples(RandomModel(spec, 5, 0.1), 5, 8);
+  const Objective objective(samples, spec, FindWeighting("cosine"));
+  for (int j = 0; j < samples.size(); ++j) {
+    const double cos_i = std::cos(samples.directions[j].theta_i);
+    ASSERT_NEAR(objective.Sample(j).weight[0], cos_i * cos_i, 1e-12) << j;
   }
 }
 

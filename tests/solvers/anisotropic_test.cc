@@ -10,6 +10,7 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"
@@ -105,6 +106,29 @@ TEST(Anisotropic, EverySolverFits) {
     const SolverSummary summary = solver.make()->Solve(objective, options, &model);
     EXPECT_LT(summary.final_objective, (kSanitized ? 3 : 1.25) * floor) << solver.name;
     EXPECT_NEAR(objective.Value(model) / summary.final_objective, 1, 1e-9) << solver.name;
+  }
+}
+
+// Directions 15 degrees apart have few theta_d: with many bins of F the data do not tell neighbours
+// apart, with few they do.
+TEST(Anisotropic, SaysWhichBinsOfFTheDataLeaveOpen) {
+  for (const int bins : {6, 90}) {
+    ModelSpec spec = SmallSpec(1);
+    spec.f_axis.size = bins;
+    const Objective objective(PolarSamples(Cloth(spec), 4, 6, 0.1), spec,
+                              FindWeighting("appearance"));
+    const int left_open = UndeterminedByThetaD(objective);
+    EXPECT_EQ(left_open > 0, bins == 90);
+    FactorModel model = FindInitialModel("analytic").make(objective, 1);
+    const SolverSummary summary =
+        MakeSolver("newton")->Solve(objective, {.max_iterations = 3}, &model);
+    EXPECT_GE(summary.diagnosis->unresolved, left_open);
+    const std::string reason = std::to_string(left_open) +
+                               " of them are bins of F beyond what the data's theta_d can tell";
+    const bool said = std::ranges::any_of(summary.notes, [&](const std::string& note) {
+      return note.find(reason) != std::string::npos;
+    });
+    EXPECT_EQ(said, bins == 90) << summary.FullReport();
   }
 }
 
