@@ -70,7 +70,7 @@ FactorModel StartFromFile() {
   if (ModelIsGiven()) {
     throw Error(FLAGS_init +
                 " brings its own lobes and tables; leave out --model, --lobes, --d_nodes, "
-                "--f_bins and --g_nodes");
+                "--f_bins, --g_nodes and --nodes");
   }
   return model;
 }
@@ -117,6 +117,7 @@ FitSettings SettingsFromFlags() {
                      .max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0,
                      .appearance = AppearanceOptionsFromFlags()};
   settings.spec = SpecFromFlags;
+  settings.nodes = NodeLadderFromFlags;
   settings.guide = GuideFromFlags();
   CheckModelFlags();
   SolverOptionsFromFlags(*settings.solver, ModelSpec());
@@ -182,8 +183,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init", "model", "d_nodes", "f_bins", "g_nodes", "guide", "max_numbers", "robust", "probe",
-        "course", "reconstruction", "plots", "diagnose", "shard"}) {
+       {"init", "model", "d_nodes", "f_bins", "g_nodes", "nodes", "guide", "max_numbers", "robust",
+        "probe", "course", "reconstruction", "plots", "diagnose", "shard"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

@@ -62,6 +62,33 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
   return array;
 }
 
+Json ToJson(const NodeChoice& choice) {
+  Json tried = Json::array();
+  for (const NodeCandidate& candidate : choice.tried) {
+    tried.push_back({{"name", candidate.name},
+                     {"parameters", candidate.spec.num_parameters()},
+                     {"relative_objective", candidate.error},
+                     {"seconds", candidate.seconds}});
+  }
+  return {{"chosen", choice.tried[choice.chosen].name},
+          {"held_out_samples", choice.held_out},
+          {"tried", tried}};
+}
+
+// What was chosen, and what it was chosen from.
+std::string Describe(const NodeChoice& choice) {
+  const NodeCandidate& chosen = choice.tried[choice.chosen];
+  std::string text = "nodes        chosen by error on held-out directions: " + chosen.name +
+                     " (E held out " + Text(100 * chosen.error, 3) + " % of a black model's";
+  const char* before = "; others: ";
+  for (const NodeCandidate& candidate : choice.tried) {
+    if (candidate.name == chosen.name) continue;
+    text += before + candidate.name + " " + Text(100 * candidate.error, 3) + " %";
+    before = "; ";
+  }
+  return text + ")\n";
+}
+
 std::string Describe(const FitReport::Guide& guide) {
   return "guide        a small model, fitted first, speaks for " + std::to_string(guide.samples) +
          " directions between the measured ones, of weight " + Text(guide.weight) +
@@ -118,6 +145,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"parameters", report.spec.num_parameters()},
           {"stored_numbers", report.stored_parameters},
           {"candidates", ToJson(report.finished.candidates)},
+          {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
           {"guide", report.guide
                         ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
                         : Json()},
@@ -147,6 +175,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
            {{"read", seconds.read},
             {"prepare", seconds.prepare},
             {"init", seconds.init},
+            {"nodes", seconds.nodes},
             {"solve", seconds.solve},
             {"finish", seconds.finish},
             {"score", seconds.score}}},
@@ -174,6 +203,7 @@ void Print(const FitReport& report) {
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
+            << (report.nodes ? Describe(*report.nodes) : "")
             << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
             << (report.appearance
                     ? Describe(*report.appearance)
@@ -186,7 +216,8 @@ void Print(const FitReport& report) {
                     : "")
             << "light        " << Describe(report.light) << "\n"
             << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
-            << " prepare, " << Text(seconds.init, 3) << " init, " << Text(seconds.solve, 3)
+            << " prepare, " << Text(seconds.init, 3) << " init, "
+            << (report.nodes ? Text(seconds.nodes, 3) + " nodes, " : "") << Text(seconds.solve, 3)
             << " solve, " << Text(seconds.finish, 3) << " finish, " << Text(seconds.score, 3)
             << " score\n";
   if (report.peak_memory) {

@@ -14,6 +14,7 @@
 #include "trilobe/model/model_spec.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/model_choice.h"
+#include "trilobe/solvers/node_choice.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -22,7 +23,7 @@ namespace trilobe {
 struct FitReport {
   // Where the time of the program went [s]; summary.phases tells more of `solve`.
   struct Seconds {
-    double read = 0, prepare = 0, init = 0, solve = 0, finish = 0, score = 0;
+    double read = 0, prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
   };
 
   FitInfo fit;
@@ -34,6 +35,7 @@ struct FitReport {
   int64_t seed = 0;
   BinCounts bins;  // of the source: how many were left out, and why
   SolverSummary summary;
+  std::optional<NodeChoice> nodes;  // of those of D and G, where it was asked for
   // Samples that joined the data for the solver, whose E counts them (WithGuide).
   struct Guide {
     double weight = 0;

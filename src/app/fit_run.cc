@@ -158,7 +158,9 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   }
   BrdfSamples samples = SamplesOf(measured);
   report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured);
-  const Objective objective(std::move(samples), report.spec, settings.weighting, num_threads);
+  const std::vector<NodeCandidate> ladder =
+      settings.start_model ? std::vector<NodeCandidate>() : settings.nodes(report.spec, measured);
+  Objective objective(std::move(samples), report.spec, settings.weighting, num_threads);
   const auto interrupted = [] { return InterruptGuard::signal() != 0; };
   report.seconds.prepare = stopwatch.Lap();
   FactorModel model = settings.start_model
@@ -171,6 +173,21 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   on_begin();
   std::optional<UnsavedModel> unsaved;
   if (folder != nullptr) unsaved.emplace();
+  if (!ladder.empty()) {
+    report.nodes = ChooseNodes(objective, ladder,
+                               {.seed = static_cast<uint64_t>(settings.seed),
+                                .guide = settings.guide,
+                                .on_iteration =
+                                    [&](const IterationRecord& record, const FactorModel&) {
+                                      on_iteration(record);
+                                      return true;
+                                    },
+                                .stop = interrupted});
+    report.spec = report.nodes->tried[report.nodes->chosen].spec;
+    objective = Objective(objective, report.spec);
+    model = settings.start->make(objective, static_cast<uint64_t>(settings.seed));
+    report.seconds.nodes = stopwatch.Lap();
+  }
   Course course;
   SolverOptions options = settings.options(report.spec);
   options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {

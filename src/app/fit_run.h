@@ -17,6 +17,7 @@
 #include "trilobe/model/weighting.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/node_choice.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -30,6 +31,8 @@ struct FitSettings {
   const InitialModel* start = nullptr;  // or else:
   std::optional<FactorModel> start_model;
   std::function<ModelSpec(const Measurement&)> spec;
+  // To choose from by the error on held-out directions; empty to keep those of `spec`.
+  std::function<std::vector<NodeCandidate>(const ModelSpec&, const Measurement&)> nodes;
   double guide = 0;  // GuideOptions::weight, of anisotropic models
   SourceOptions source;
   FinishOptions finish;

@@ -29,6 +29,11 @@ DEFINE_string(
     g_nodes, "",
     "of an anisotropic model, nodes of G: theta by phi, at even steps; by default 6x24, "
     "or fewer phi where the data have fewer, and the horizon; with --model=anisotropic 6x48");
+DEFINE_string(
+    nodes, "given",
+    "of an anisotropic model: given (by --d_nodes and --g_nodes, or by default); held_out: those "
+    "of D and G, from coarse to fine, with the least error on directions that are held out "
+    "(docs/anisotropic.md)");
 DEFINE_double(
     guide, 1,
     "of an anisotropic model: how much a small model, fitted first, counts between the measured "
@@ -68,7 +73,7 @@ ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
 }
 
 ModelSpec IsotropicSpec(const MerlGrid& grid) {
-  for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "guide"}) {
+  for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "nodes", "guide"}) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
   }
   if (FLAGS_model == "independent") {
@@ -106,6 +111,14 @@ void CheckModelFlags() {
     throw Error("unknown model '" + FLAGS_model +
                 "'; known: shared, isotropic, anisotropic, independent, auto");
   }
+  if (FLAGS_nodes != "given" && FLAGS_nodes != "held_out") {
+    throw Error("unknown --nodes=" + FLAGS_nodes + "; known: given, held_out");
+  }
+  for (const char* const flag : {"d_nodes", "g_nodes"}) {
+    if (FLAGS_nodes == "held_out" && !IsDefault(flag)) {
+      throw Error("--nodes=held_out chooses the nodes; leave out --" + std::string(flag));
+    }
+  }
   if (!(FLAGS_guide >= 0 && FLAGS_guide <= 1e6)) throw Error("--guide must be from 0 to 1e6");
   if (FLAGS_model == "anisotropic" || FLAGS_model == "shared") {
     AnisotropicSpec({}, kPi / 2);
@@ -121,7 +134,20 @@ bool ModelIsGiven() {
 
 bool ChoosesModel() { return FLAGS_model == "auto"; }
 
-std::vector<std::string> ModelFlags() { return {"model", "lobes", "d_nodes", "f_bins", "g_nodes"}; }
+std::vector<NodeCandidate> NodeLadderFromFlags(const ModelSpec& spec,
+                                               const Measurement& measurement) {
+  if (FLAGS_nodes != "held_out") return {};
+  if (!spec.anisotropic()) {
+    throw Error(measurement.source + ": --nodes=held_out is for anisotropic models, and this is " +
+                "to have an isotropic one");
+  }
+  const HemisphereGrid data = GridOf(measurement).value_or(HemisphereGrid());
+  return NodeLadder(spec, data.thetas, data.phis);
+}
+
+std::vector<std::string> ModelFlags() {
+  return {"model", "lobes", "d_nodes", "f_bins", "g_nodes", "nodes"};
+}
 
 double GuideFromFlags() {
   return FLAGS_model == "anisotropic" && IsDefault("guide") ? 0 : FLAGS_guide;

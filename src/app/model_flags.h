@@ -6,6 +6,7 @@
 
 #include "trilobe/io/measurement.h"
 #include "trilobe/model/model_spec.h"
+#include "trilobe/solvers/node_choice.h"
 
 namespace trilobe {
 
@@ -14,6 +15,11 @@ namespace trilobe {
 // one, on nodes that the data can tell apart. Throws Error for flags that contradict each other or
 // the measurement.
 ModelSpec SpecFromFlags(const Measurement& measurement);
+
+// Nodes to choose from for this model, as --nodes asks for; empty if it does not. Throws Error for
+// an isotropic one.
+std::vector<NodeCandidate> NodeLadderFromFlags(const ModelSpec& spec,
+                                               const Measurement& measurement);
 
 // Throws Error for what no measurement could mend.
 void CheckModelFlags();

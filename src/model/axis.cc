@@ -68,6 +68,14 @@ Axis Axis::EvenPolar(int thetas, Steps steps, int phi_nodes) {
   return Polar(std::move(nodes), phi_nodes);
 }
 
+Axis Axis::ToHorizon() const {
+  std::vector<double> nodes = theta;
+  nodes.push_back(kHorizon);
+  return Polar(std::move(nodes), phi_nodes);
+}
+
+bool Axis::reaches_horizon() const { return polar() && theta.back() >= kHorizon; }
+
 Axis Axis::Utia() { return EvenPolar(6, Steps::kOfTheta, 48); }
 
 Stencil Axis::At(double theta_radians, double phi_radians) const {

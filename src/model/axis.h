@@ -32,6 +32,9 @@ struct Axis {
   static Axis Utia();
 
   bool polar() const { return rule == Rule::kPolar; }
+  // A polar axis with one more ring, at 89.9 degrees; and whether its last is there.
+  Axis ToHorizon() const;
+  bool reaches_horizon() const;
 
   // The entries that a direction reads, with their weights; angles in radians. Constant beyond the
   // first and the last, periodic in phi, which the others but kPolar do not look at. What is within

@@ -1,8 +1,6 @@
 #include "trilobe/model/model_spec.h"
 
 #include <algorithm>
-#include <utility>
-#include <vector>
 
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/directions.h"
@@ -41,11 +39,9 @@ ModelSpec ModelSpec::AnisotropicFor(int lobes, int data_phis, double data_max_th
   spec.d_axis = Axis::EvenPolar(12, Axis::Steps::kOfRoot, std::clamp(data_phis, 4, 36));
   spec.f_axis.size = 6;
   spec.g_axis = Axis::EvenPolar(6, Axis::Steps::kOfTheta, std::clamp(data_phis / 2, 4, 24));
-  constexpr double kHorizon = 89.9, kRounding = 1e-6;  // [degrees]
+  constexpr double kRounding = 1e-6;  // [degrees]
   if (RadiansToDegrees(data_max_theta) <= spec.g_axis.theta.back() + kRounding) {
-    std::vector<double> theta = spec.g_axis.theta;
-    theta.push_back(kHorizon);
-    spec.g_axis = Axis::Polar(std::move(theta), spec.g_axis.phi_nodes);
+    spec.g_axis = spec.g_axis.ToHorizon();
   }
   return spec;
 }

@@ -157,5 +157,45 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
   EXPECT_THAT(compare.out, HasSubstr("curtain"));
 }
 
+// The report says what was tried; the model has the nodes that were chosen.
+TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
+  const std::vector<std::string> command = {
+      "fit", kVelvet, "--lobes=1", "--solver=awls", "--nodes=held_out", "--max_iterations=2"};
+  const auto fit_into = [&](const std::string& name, const char* threads) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--out=" + In(name), threads});
+    const ProgramResult fit = RunProgram(arguments);
+    EXPECT_EQ(fit.status, 0) << fit.err;
+    EXPECT_THAT(fit.out, HasSubstr("nodes        chosen by error on held-out directions: D "));
+    return Parse(Contents(In(name + "/report.json")));
+  };
+  const json one = fit_into("chosen1", "--threads=1"), three = fit_into("chosen3", "--threads=3");
+  const json& tried = one["nodes"]["tried"];
+  ASSERT_GE(tried.size(), 2U);
+  EXPECT_EQ(tried[0]["name"], "D 8rx12, G 6x6");
+  EXPECT_EQ(one["nodes"]["chosen"], three["nodes"]["chosen"]);
+  EXPECT_EQ(one["objective"], three["objective"]);
+  size_t chosen = 0;
+  while (chosen < tried.size() && tried[chosen]["name"] != one["nodes"]["chosen"]) ++chosen;
+  ASSERT_LT(chosen, tried.size());
+  for (const json& candidate : tried) {
+    EXPECT_LE(tried[chosen]["relative_objective"],
+              1.02 * candidate["relative_objective"].get<double>());
+  }
+  const json model = Parse(Contents(In("chosen1/model.json")));
+  EXPECT_EQ(model["theta_nodes"]["D"].size(), 8 + 4 * chosen);
+  EXPECT_TRUE(Parse(Contents(In("fit/report.json")))["nodes"].is_null());
+}
+
+TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
+  ExpectRefusal({"fit", kVelvet, "--nodes=all"}, "known: given, held_out");
+  ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--d_nodes=4x12"}, "leave out --d_nodes");
+  ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--model=isotropic"},
+                "--nodes is for anisotropic models");
+  ExpectRefusal({"fit", "synth:plastic", "--nodes=held_out"}, "--nodes is for anisotropic models");
+  ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--init=" + In("fit/model.json")},
+                "brings its own lobes and tables");
+}
+
 }  // namespace
 }  // namespace trilobe

@@ -255,5 +255,34 @@ TEST(Anisotropic, ThinnedSamplesStillTouchEveryNode) {
   }
 }
 
+// Where no sample reads the horizon, the canonical form continues G / cos theta to it.
+TEST(Anisotropic, GContinuesToTheHorizon) {
+  const double end = DegreesToRadians(75);
+  const ModelSpec spec = ModelSpec::AnisotropicFor(1, 8, end);
+  ASSERT_TRUE(spec.g_axis.reaches_horizon());
+  EXPECT_FALSE(ModelSpec::AnisotropicFor(1, 8, DegreesToRadians(80)).g_axis.reaches_horizon());
+  EXPECT_FALSE(ModelSpec::Anisotropic(1).g_axis.reaches_horizon());
+  FactorModel model(spec);
+  for (double& x : model.parameters()) x = 1;
+  std::vector<double> coverage(spec.num_parameters(), 1);
+  const int phis = spec.g_axis.phi_nodes, rings = spec.g_axis.size / phis;
+  const int begin = model.TableOffset(Factor::kG, 0);
+  for (int b = 0; b < phis; ++b) {
+    coverage[begin + (rings - 1) * phis + b] = 0;
+    model.parameters()[begin + (rings - 2) * phis + b] = 0.1 * (1 + b);
+  }
+  Canonicalize(coverage, &model);
+  const std::span<const double> G = model.G(0, 0);
+  for (int b = 0; b < phis; ++b) {
+    const double phi = spec.g_axis.Phi(b);
+    const double at_end = spec.g_axis.At(end, phi)(G) / std::cos(end);
+    for (const double degrees : {80.0, 85.0, 89.0}) {
+      const double theta = DegreesToRadians(degrees);
+      EXPECT_NEAR(spec.g_axis.At(theta, phi)(G) / std::cos(theta), at_end, 0.02 * at_end)
+          << degrees << " " << b;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace trilobe
