@@ -14,6 +14,8 @@
 namespace trilobe {
 namespace {
 
+constexpr double kHorizon = 89.9;  // [degrees]; nodes are above the surface
+
 // What is next to a node stands at it.
 Between Snapped(Between at) {
   if (at.t > 1 - kAtEntry) return {at.upper, at.upper, 0};
