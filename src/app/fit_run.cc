@@ -185,7 +185,9 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                                 .stop = interrupted});
     report.spec = report.nodes->tried[report.nodes->chosen].spec;
     objective = Objective(objective, report.spec);
-    model = settings.start->make(objective, static_cast<uint64_t>(settings.seed));
+    model = interrupted()
+                ? report.nodes->model  // better than a starting point that no solver will improve
+                : settings.start->make(objective, static_cast<uint64_t>(settings.seed));
     report.seconds.nodes = stopwatch.Lap();
   }
   Course course;

@@ -100,9 +100,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   if (options.guide > 0) {
     fitted = objective_of(WithGuide(fitted, {.weight = options.guide, .stop = options.stop}));
   }
-  NodeChoice choice;
-  choice.held_out = judge.samples().size();
   std::optional<FactorModel> model;
+  NodeChoice choice = {.model = FactorModel(ladder[0].spec), .held_out = judge.samples().size()};
   for (const NodeCandidate& rung : ladder) {
     const Stopwatch of_this;
     const Objective objective(fitted, rung.spec);
@@ -128,6 +127,7 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
       break;
     }
     choice.chosen = last;
+    choice.model = *model;
     if (summary.stop_reason == StopReason::kInterrupted) break;
   }
   choice.seconds = since.Seconds();

@@ -42,10 +42,11 @@ struct NodeChoiceOptions {
 };
 
 struct NodeChoice {
-  std::vector<NodeCandidate> tried;  // from the first of the ladder on
-  int chosen = 0;                    // which of them
-  int held_out = 0;                  // samples
-  double seconds = 0;                // of all
+  FactorModel model;                      // the chosen one, as fitted to what was not held out
+  std::vector<NodeCandidate> tried = {};  // from the first of the ladder on
+  int chosen = 0;                         // which of them
+  int held_out = 0;                       // samples
+  double seconds = 0;                     // of all
 };
 
 // Climbs the ladder as long as the error on held-out pairs of directions falls, each time by 1 % or

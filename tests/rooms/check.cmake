@@ -40,6 +40,7 @@ expect_failure(rooms.txt "extra: model" "rooms.txt: extra sees model, which is n
 expect_failure(rooms.txt "extra:\nother: extra"
                "rooms.txt: no file of other includes a header of extra")
 execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1)
 file(MAKE_DIRECTORY ${scratch_dir}/src/attic)
 file(WRITE ${scratch_dir}/src/attic/old.h "")
 execute_process(COMMAND ${build} RESULT_VARIABLE status ERROR_VARIABLE out OUTPUT_VARIABLE out)

@@ -136,6 +136,9 @@ TEST(ChooseNodes, StopsWithWhatItHas) {
               }});
   EXPECT_EQ(later.tried.size(), 2U);
   EXPECT_EQ(later.chosen, 0);
+  EXPECT_EQ(later.model.spec(), coarse);
+  const Objective all(OfModel(Nested()[2].spec), coarse, Weightings().front());
+  EXPECT_LT(all.Value(later.model), 0.5 * all.MeasuredEnergy());
 }
 
 TEST(ChooseNodes, AsksForALadderAndEnoughSamples) {
