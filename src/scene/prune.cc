@@ -35,8 +35,8 @@ std::string LobesText(int lobes) {
 // The first shape that changes no parameter.
 void ShareWhatIsEqual(Pruning* pruning) {
   const PruneState& state = pruning->state();
-  for (const Shape& shape : ShapesWithin(state.spec(), state.layout, pruning->options().colour,
-                                         pruning->options().shadowing)) {
+  for (const ModelShape& shape : ShapesWithin(state.spec(), state.layout, pruning->options().colour,
+                                              pruning->options().shadowing)) {
     if (shape.constant_G || shape.name.empty()) continue;
     const Reduction sharing = Reduction::BySharing(state.spec(), shape.spec);
     const Reduction reduction =
@@ -204,19 +204,6 @@ void MeetParameters(Pruning* pruning) {
   }
 }
 
-PrunedModel Finish(const Pruning& pruning) {
-  const PruneState& state = pruning.state();
-  PrunedModel result{.model = state.model,
-                     .layout = state.layout,
-                     .decisions = pruning.decisions(),
-                     .num_parameters = state.num_parameters()};
-  // The layout knows lobes by their places.
-  Canonicalize(state.objective->coverage(), &result.model, LobeOrder::kAsTheyAre);
-  ExpandStored(result.layout, &result.model);
-  result.E = state.objective->Value(result.model);
-  return result;
-}
-
 }  // namespace
 
 PrunedModel Prune(const Objective& objective, const FactorModel& full,
@@ -230,7 +217,8 @@ PrunedModel Prune(const Objective& objective, const FactorModel& full,
   } else if (pruning.may_rise()) {
     SpendBudget(&pruning);
   }
-  return Finish(pruning);
+  // The layout knows lobes by their places.
+  return pruning.Result(LobeOrder::kAsTheyAre);
 }
 
 }  // namespace trilobe

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/gauge.h"
 #include "trilobe/model/with_axes.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/lobe_search.h"
@@ -227,17 +226,6 @@ Candidate Isotropic(const FactorModel& model, const Objective& guided) {
            FindInitialModel("analytic").make(Objective(guided, spec), 0)}};
 }
 
-PrunedModel Finish(const Pruning& pruning) {
-  const PruneState& state = pruning.state();
-  PrunedModel result{.model = state.model,
-                     .layout = state.layout,
-                     .decisions = pruning.decisions(),
-                     .num_parameters = state.num_parameters()};
-  Canonicalize(state.objective->coverage(), &result.model);
-  result.E = state.objective->Value(result.model);
-  return result;
-}
-
 // Prune, within what is left of the budget.
 PrunedModel PruneFurther(const Pruning& pruning, PruneOptions options) {
   const PruneState& state = pruning.state();
@@ -264,7 +252,7 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& guided,
   if (!pruning.Keeps(pruning.state())) {
     pruning.Record("nothing left out", pruning.state(), false,
                    "the budget asks for a lower E than was found");
-    return Finish(pruning);
+    return pruning.Result(LobeOrder::kByLight);
   }
   if (pruning.by_parameters()) {
     search.ReduceTo(options.max_parameters);
@@ -277,7 +265,7 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& guided,
     }
     search.ReduceWhatThereIs();
   }
-  return Finish(pruning);
+  return pruning.Result(LobeOrder::kByLight);
 }
 
 }  // namespace trilobe

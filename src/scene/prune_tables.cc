@@ -75,7 +75,7 @@ bool WithinBudget(const Pruning& pruning, const PruneState& to) {
 
 // A shape, with the parameters that would be best by the quadratic.
 struct ShapeOption {
-  Shape shape;
+  ModelShape shape;
   TableLayout layout;
   FactorModel model;
   double E = 0;            // once nodes are given up too, predicted
@@ -83,7 +83,7 @@ struct ShapeOption {
 };
 
 // What a shape promises; nothing if it is beyond the budget.
-std::optional<ShapeOption> Promise(const Pruning& pruning, const Shape& shape,
+std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& shape,
                                    const QuadraticModel& at) {
   const PruneState& state = pruning.state();
   const std::span<const double> x = state.model.parameters();
@@ -157,8 +157,8 @@ int CountWithin(const std::vector<Elimination>& order, double rise) {
 void ChooseShape(Pruning* pruning) {
   const PruneOptions& limits = pruning->options();
   std::vector<ShapeOption> options;
-  for (const Shape& shape : ShapesWithin(pruning->state().spec(), pruning->state().layout,
-                                         limits.colour, limits.shadowing)) {
+  for (const ModelShape& shape : ShapesWithin(pruning->state().spec(), pruning->state().layout,
+                                              limits.colour, limits.shadowing)) {
     // The shape as it is has the most parameters, and comes last.
     if (shape.name.empty() && options.empty()) return;
     if (auto option = Promise(*pruning, shape, pruning->Linearized())) {

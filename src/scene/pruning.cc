@@ -99,6 +99,17 @@ bool Pruning::Decide(std::string what, PruneState to, bool taken, std::string wh
   return taken;
 }
 
+PrunedModel Pruning::Result(LobeOrder order) const {
+  PrunedModel result{.model = state_.model,
+                     .layout = state_.layout,
+                     .decisions = decisions_,
+                     .num_parameters = state_.num_parameters()};
+  Canonicalize(state_.objective->coverage(), &result.model, order);
+  ExpandStored(result.layout, &result.model);
+  result.E = state_.objective->Value(result.model);
+  return result;
+}
+
 void Pruning::Withdraw(size_t begin, size_t end, const std::string& why) {
   for (size_t k = begin; k < end; ++k) {
     if (decisions_[k].taken) decisions_[k].why += "; " + why;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/gauge.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/objective/quadratic_model.h"
@@ -67,6 +68,8 @@ class Pruning {
   // Records it, and goes on from there if it is taken; returns whether.
   bool Decide(std::string what, PruneState to, bool taken, std::string why);
   const std::vector<PruneDecision>& decisions() const { return decisions_; }
+  // The state's model in canonical form, and how it came about.
+  PrunedModel Result(LobeOrder order) const;
   // Decisions that led to nothing better.
   void Withdraw(size_t begin, size_t end, const std::string& why);
 

@@ -5,7 +5,7 @@
 
 namespace trilobe {
 
-TableLayout LayoutOf(const Shape& shape, TableLayout layout) {
+TableLayout LayoutOf(const ModelShape& shape, TableLayout layout) {
   layout.coloured_d = shape.coloured_d;
   layout.coloured_s = shape.coloured_s;
   if (shape.constant_G) {
@@ -14,19 +14,19 @@ TableLayout LayoutOf(const Shape& shape, TableLayout layout) {
   return layout;
 }
 
-std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
-                                bool shadowing) {
-  const Shape own{
+std::vector<ModelShape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
+                                     bool shadowing) {
+  const ModelShape own{
       .name = "", .spec = spec, .coloured_d = layout.coloured_d, .coloured_s = layout.coloured_s};
-  std::vector<Shape> shapes = {own};
-  const auto add = [&](Shape shape, const Shape& of, const std::string& name) {
+  std::vector<ModelShape> shapes = {own};
+  const auto add = [&](ModelShape shape, const ModelShape& of, const std::string& name) {
     const bool changes = shape.spec != of.spec || shape.coloured_d != of.coloured_d ||
                          shape.coloured_s != of.coloured_s || shape.constant_G;
     shape.name = of.name + (of.name.empty() ? "" : ", ") + name;
     if (changes) shapes.push_back(std::move(shape));
   };
   if (colour) {
-    Shape shape = own;
+    ModelShape shape = own;
     if (spec.lobes > 0) {
       shape.spec.D.per_channel = shape.spec.F.per_channel = false;
       if (shadowing) shape.spec.G.per_channel = false;
@@ -39,8 +39,8 @@ std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout
     add(shape, own, "one channel for all");
   }
   if (shadowing && spec.lobes > 0) {
-    for (const Shape& of : std::vector<Shape>(shapes)) {
-      Shape shape = of;
+    for (const ModelShape& of : std::vector<ModelShape>(shapes)) {
+      ModelShape shape = of;
       shape.spec.G.per_lobe = false;
       if (spec.lobes > 1) add(shape, of, "G shared by the lobes");
       shape.spec.G.per_channel = false;
@@ -48,7 +48,7 @@ std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout
       add(shape, of, "G constant");
     }
   }
-  std::ranges::stable_sort(shapes, {}, [](const Shape& shape) {
+  std::ranges::stable_sort(shapes, {}, [](const ModelShape& shape) {
     return LayoutOf(shape, TableLayout::Full(shape.spec)).num_parameters(shape.spec);
   });
   return shapes;

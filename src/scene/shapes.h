@@ -10,7 +10,7 @@
 namespace trilobe {
 
 // What lobes and channels share, whatever nodes the tables have.
-struct Shape {
+struct ModelShape {
   std::string name;  // what is shared that was not; empty for a model's own shape
   ModelSpec spec;
   bool coloured_d = true, coloured_s = true;
@@ -18,12 +18,12 @@ struct Shape {
 };
 
 // The layout with the shape's colour, and its G.
-TableLayout LayoutOf(const Shape& shape, TableLayout layout);
+TableLayout LayoutOf(const ModelShape& shape, TableLayout layout);
 
 // The model's own shape, and those that share more of what may be shared; the one with the fewest
 // parameters first.
-std::vector<Shape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
-                                bool shadowing);
+std::vector<ModelShape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
+                                     bool shadowing);
 
 }  // namespace trilobe
 
