@@ -11,8 +11,10 @@
 namespace trilobe {
 namespace {
 
+// Against the mean, which is rounded to 0 where one is 0 and the other the least number there is.
 double RelativeDifference(double a, double b) {
-  return a == b ? 0 : std::abs(a - b) / (a / 2 + b / 2);
+  const double mean = a / 2 + b / 2;
+  return a == b ? 0 : mean > 0 ? std::abs(a - b) / mean : 2;
 }
 
 double Percentile(std::vector<double>* values, double fraction) {

@@ -146,7 +146,7 @@ void SampleEquations::GatherBlocks(Kind kind, int first_entry, int last_entry,
       return blocks + (static_cast<size_t>(e_of) * rows.entries + e) * block;
     };
     for (int e = 0; e < of.entries; ++e) {
-      const int* const columns = &of.parameter[e * of.tables];
+      const int* const columns = of.parameter.data() + static_cast<ptrdiff_t>(e) * of.tables;
       for (int entry = first_entry; entry < last_entry; ++entry) {
         const double* const from = at(e, entry);
         const double* const mirrored = own ? at(entry, e) : nullptr;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace trilobe {
@@ -122,6 +123,17 @@ TEST(ReciprocityErrorTest, ComparesSwappedDirections) {
   const auto measured = [](const DirectionPair& pair) { return pair.wi[0] <= pair.wo[0]; };
   EXPECT_LT(ReciprocityError(lopsided, kGrid, 2, measured).pairs, none.pairs / 2);
   EXPECT_EQ(ReciprocityError(lopsided, kGrid, 2, measured).median, 0);
+}
+
+TEST(ErrorOfPairsTest, IsFiniteForTheSmallestAndLargestValues) {
+  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const std::vector<std::pair<Rgb, Rgb>> pairs = {{{kLeast, 0, kMost}, {0, kMost, kMost}},
+                                                  {{0, kLeast, kMost}, {kLeast, 0, kMost / 2}}};
+  const PairError error = ErrorOfPairs(pairs);
+  EXPECT_EQ(error.pairs, 2);
+  EXPECT_EQ(error.median, 2);
+  EXPECT_EQ(error.percentile_95, 2);
 }
 
 }  // namespace
