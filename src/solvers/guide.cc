@@ -66,8 +66,9 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (measured.directions.empty()) {
     throw Error(measured.source + ": a guide needs samples with their directions");
   }
-  if (!(options.weight > 0))
+  if (!(options.weight > 0)) {
     throw Error(measured.source + ": the weight of a guide must be above 0");
+  }
   BrdfSamples guide;
   guide.source = measured.source;
   guide.grid = measured.grid;
