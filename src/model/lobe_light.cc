@@ -127,9 +127,13 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
   };
   double all = 0;
   std::vector<Cells::Pair> pairs;
+  int pairs_ring = -1;
   for (int h = 0; h < spec.d_axis.size; ++h) {
-    if (!spec.d_axis.polar() || h % spec.d_axis.phi_nodes == 0) pairs = cells.PairsAt(h);
     if (!observed(Factor::kD, h)) continue;
+    if (const int ring = h / spec.d_axis.phi_nodes; ring != pairs_ring) {
+      pairs = cells.PairsAt(h);
+      pairs_ring = ring;
+    }
     for (const Cells::Pair& pair : pairs) {
       if (!observed(Factor::kF, pair.d)) continue;
       const auto [G_i, G_o] = cells.ReadG(h, pair);

@@ -1,13 +1,11 @@
 #include "trilobe/scene/prune.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobes.h"
 #include "trilobe/objective/score.h"
@@ -27,10 +25,6 @@ constexpr double kDear = 0.5;
 // Towards a limit of PSNR: so often, and by this factor, the rise of E that is allowed grows.
 constexpr int kStretches = 4;
 constexpr double kStretch = 3;
-
-std::string LobesText(int lobes) {
-  return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
-}
 
 // The first shape that changes no parameter.
 void ShareWhatIsEqual(Pruning* pruning) {

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/error.h"
 #include "trilobe/model/with_axes.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/lobe_search.h"
@@ -49,36 +48,35 @@ std::string NodesText(const Axis& axis) {
   return std::to_string(axis.theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes";
 }
 
-// On an axis of D or G with this share of the phi: an even number, as most materials look the same
-// turned by 180 degrees.
-std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, double share) {
+// With D or G on another axis.
+Candidate OnAxis(const FactorModel& model, Factor factor, Axis axis) {
   ModelSpec spec = model.spec();
-  Axis& axis = factor == Factor::kD ? spec.d_axis : spec.g_axis;
-  const int fewer = std::max(2 * static_cast<int>(share * axis.phi_nodes / 2), kFewestPhi);
-  if (fewer >= axis.phi_nodes) return std::nullopt;
-  const std::string before = NodesText(axis);
-  axis = Axis::Polar(axis.theta, fewer);
-  return Candidate{
-      std::string(FactorName(factor)) + " on " + NodesText(axis) + " instead of " + before,
-      {WithAxes(model, spec)}};
+  const std::string what = std::string(FactorName(factor)) + " on " + NodesText(axis) +
+                           " instead of " + NodesText(spec.axis(factor));
+  (factor == Factor::kD ? spec.d_axis : spec.g_axis) = std::move(axis);
+  return {what, {WithAxes(model, spec)}};
 }
 
-// On an axis without every sixth theta, ends apart.
+// With this share of the phi of D or G: an even number, as most materials look the same turned by
+// 180 degrees.
+std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, double share) {
+  const Axis& axis = model.spec().axis(factor);
+  const int fewer = std::max(2 * static_cast<int>(share * axis.phi_nodes / 2), kFewestPhi);
+  if (fewer >= axis.phi_nodes) return std::nullopt;
+  return OnAxis(model, factor, Axis::Polar(axis.theta, fewer));
+}
+
+// Without every sixth theta of D or G, ends apart.
 std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor) {
-  ModelSpec spec = model.spec();
-  Axis& axis = factor == Factor::kD ? spec.d_axis : spec.g_axis;
+  const Axis& axis = model.spec().axis(factor);
   const int rings = static_cast<int>(axis.theta.size());
   const int fewer = std::max(5 * rings / 6, kFewestTheta);
   if (fewer >= rings) return std::nullopt;
-  const std::string before = NodesText(axis);
   std::vector<double> theta;
   for (int a = 0; a < fewer; ++a) {
     theta.push_back(axis.theta[(a * (rings - 1) + (fewer - 1) / 2) / (fewer - 1)]);
   }
-  axis = Axis::Polar(std::move(theta), axis.phi_nodes);
-  return Candidate{
-      std::string(FactorName(factor)) + " on " + NodesText(axis) + " instead of " + before,
-      {WithAxes(model, spec)}};
+  return OnAxis(model, factor, Axis::Polar(std::move(theta), axis.phi_nodes));
 }
 
 Candidate Sharing(const FactorModel& model, const ModelSpec& fewer, const std::string& what) {
@@ -105,8 +103,7 @@ std::optional<Candidate> WithOneG(const FactorModel& model) {
 std::optional<Candidate> WithFewerLobes(const FactorModel& model) {
   const int lobes = model.spec().lobes;
   if (lobes < 2) return std::nullopt;
-  return Candidate{std::to_string(lobes - 1) + (lobes == 2 ? " lobe" : " lobes") + " instead of " +
-                       std::to_string(lobes),
+  return Candidate{LobesText(lobes - 1) + " instead of " + LobesText(lobes),
                    WithOneLobeLess(model)};
 }
 

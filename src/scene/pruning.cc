@@ -17,6 +17,10 @@ constexpr double kRounding = 1e-12;  // of E
 
 }  // namespace
 
+std::string LobesText(int lobes) {
+  return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
+}
+
 Pruning::Pruning(const Objective& objective, const FactorModel& full, const PruneOptions& options)
     : objective_(objective),
       options_(options),

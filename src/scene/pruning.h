@@ -20,6 +20,9 @@ namespace trilobe {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// "no lobe", "one lobe", "2 lobes".
+std::string LobesText(int lobes);
+
 // A model on the way from the full to the pruned one, with its own objective.
 struct PruneState {
   std::shared_ptr<const Objective> objective;

@@ -93,6 +93,8 @@ TEST(NodeLadder, ClimbsAsFarAsTheDataDo) {
     }
     return names;
   };
+  const ModelSpec by_default = ModelSpec::AnisotropicFor(3, 48, DegreesToRadians(75));
+  EXPECT_EQ(NodeLadder(by_default, 6, 48)[1].spec, by_default);
   EXPECT_THAT(names_for(6, 48),
               ElementsAre("D 8rx24, G 6x16", "D 12rx36, G 6x24", "D 16rx48, G 6x24",
                           "D 20rx48, G 6x24", "D 24rx48, G 6x24"));
