@@ -29,7 +29,7 @@ FactorModel FitGuide(const Objective& data, const std::function<bool()>& stop) {
   SolverOptions options;
   options.diagnose = false;
   options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
-  MakeSolver("auto")->Solve(objective, options, &model);
+  MakeSolver("varpro")->Solve(objective, options, &model);
   return model;
 }
 

@@ -19,6 +19,8 @@ namespace {
 // As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
 // takes, however few its samples, rules the time.
 constexpr StartRace::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
+// Where a step costs more by its parameters than by its samples, fewer do.
+constexpr StartRace::Thinning kThinnedMore{.samples_per_parameter = 6, .max_stride = 24};
 constexpr StartRace::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
 
 // A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
@@ -161,7 +163,7 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
                               .objective = better ? stepper->E() : run->best_objective()});
   };
   {
-    StartRace race(objective, kThinned, stop);
+    StartRace race(objective, objective.spec().anisotropic() ? kThinnedMore : kThinned, stop);
     Starts starts(objective, given, run->options().seed, &race, stop);
     for (const Leg& leg : legs) {
       starts.EnterUpTo(leg.starts);
@@ -207,12 +209,11 @@ class Auto : public Solver {
             {.starts = 7, .tries = 100, .keep = 1}};
   }
 
-  // A step of some two thousand parameters costs ten times as much, and the data are not so dense
-  // that much could be left out.
+  // A step of some two thousand parameters costs ten times as much.
   static std::vector<Leg> FewLegs() {
     return {{.starts = 2, .tries = 4, .keep = 2},
-            {.starts = 5, .tries = 8, .keep = 2},
-            {.starts = 5, .tries = 20, .keep = 1}};
+            {.starts = 5, .tries = 6, .keep = 2},
+            {.starts = 5, .tries = 12, .keep = 1}};
   }
 
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
