@@ -199,7 +199,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   };
   SolverSummary& summary = report.summary;
   std::optional<Objective> guided;
-  if (report.spec.anisotropic() && settings.guide > 0) {
+  if ((report.spec.anisotropic() || measured.anisotropic) && settings.guide > 0) {
     guided.emplace(WithGuide(objective, {.weight = settings.guide, .stop = interrupted}),
                    report.spec, settings.weighting, num_threads);
     report.guide = {settings.guide, guided->samples().size() - objective.samples().size()};
@@ -222,7 +222,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   finish.appearance.num_threads = num_threads;
   finish.stop = interrupted;
   FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
-  if (report.spec.anisotropic()) {  // the guide has done its work
+  if (guided || report.spec.anisotropic()) {  // data alone, in the file's bins
     fit.model = InForm(in_file, fit.model);
     fit.objective = in_file;
   }

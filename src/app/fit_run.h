@@ -33,7 +33,7 @@ struct FitSettings {
   std::function<ModelSpec(const Measurement&)> spec;
   // To choose from by the error on held-out directions; empty to keep those of `spec`.
   std::function<std::vector<NodeCandidate>(const ModelSpec&, const Measurement&)> nodes;
-  double guide = 0;  // GuideOptions::weight, of anisotropic models
+  double guide = 0;  // GuideOptions::weight, where several azimuths were measured
   SourceOptions source;
   FinishOptions finish;
   int64_t seed = 0;

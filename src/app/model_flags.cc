@@ -36,8 +36,9 @@ DEFINE_string(
     "(docs/anisotropic.md)");
 DEFINE_double(
     guide, 1,
-    "of an anisotropic model: how much a small model, fitted first, counts between the measured "
-    "directions (docs/anisotropic.md); 0: not at all, the default with --model=anisotropic");
+    "where several azimuths were measured: how much a small model, fitted first, counts between "
+    "the measured directions (docs/anisotropic.md); 0: not at all, the default with "
+    "--model=anisotropic");
 
 namespace trilobe {
 namespace {
@@ -73,7 +74,7 @@ ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
 }
 
 ModelSpec IsotropicSpec(const MerlGrid& grid) {
-  for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "nodes", "guide"}) {
+  for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "nodes"}) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
   }
   if (FLAGS_model == "independent") {
@@ -87,6 +88,10 @@ ModelSpec IsotropicSpec(const MerlGrid& grid) {
   return spec;
 }
 
+void CheckNoGuide() {
+  if (!IsDefault("guide")) throw Error("--guide is for data with several azimuths");
+}
+
 }  // namespace
 
 ModelSpec SpecFromFlags(const Measurement& measurement) {
@@ -97,10 +102,12 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
                   " knows no azimuths; an anisotropic model needs scattered samples with several "
                   "phi_i");
     }
+    CheckNoGuide();
     return IsotropicSpec(measurement.table->grid);
   }
   const bool anisotropic =
       FLAGS_model == "anisotropic" || (FLAGS_model == "shared" && measurement.anisotropic);
+  if (!anisotropic && !measurement.anisotropic) CheckNoGuide();
   if (!anisotropic) return IsotropicSpec(measurement.samples.grid);
   return AnisotropicSpec(GridOf(measurement).value_or(HemisphereGrid()), measurement.max_theta);
 }

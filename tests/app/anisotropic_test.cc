@@ -99,6 +99,21 @@ TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   EXPECT_GT(anisotropic["appearance"]["psnr_db"], report["appearance"]["psnr_db"]);
 }
 
+// Ninety bins of G where six theta were measured: what is between them is the guide's.
+TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
+  const auto psnr_from_formula = [&](const char* guide) {
+    const ProgramResult fit =
+        RunProgram({"fit", "synth:linen@6x12", "--model=isotropic", "--lobes=1", "--solver=varpro",
+                    guide, "--out=" + In("guided")});
+    EXPECT_EQ(fit.status, 0) << fit.err;
+    return Parse(Contents(
+        In("guided/report.json")))["appearance"]["from_formula"]["fitted"]["psnr_db"]
+        .get<double>();
+  };
+  EXPECT_GT(psnr_from_formula("--guide=1"), psnr_from_formula("--guide=0") + 6);
+  ExpectRefusal({"fit", "synth:plastic", "--guide=2"}, "--guide is for data with several azimuths");
+}
+
 TEST_F(AnisotropicCommands, InfoGivesNodesAndAlbedosAlongAndAcross) {
   const std::string model = In("fit/model.json");
   const ProgramResult text = RunProgram({"info", model});
