@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "trilobe/io/file.h"
+#include "trilobe/model/with_axes.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe {
@@ -35,7 +36,7 @@ void Course::Write(const std::string& path, const Objective& objective) const {
     out << "iteration,seconds,objective,psnr_db,rmse,mean_relative_error,mean_log_error\n"
         << std::setprecision(std::numeric_limits<double>::max_digits10);
     for (const auto& [record, model] : points) {
-      const ScoreReport score = ScoreModel(objective, model);
+      const ScoreReport score = ScoreModel(objective, WithAxes(model, objective.spec()));
       out << record.iteration << ',' << record.seconds << ',' << score.objective << ','
           << score.psnr_db << ',' << score.rmse << ',' << score.mean_relative_error << ','
           << score.mean_log_error << '\n';

@@ -18,24 +18,36 @@ namespace trilobe {
 namespace {
 
 constexpr int kDataPerSample = 6;  // samples of the data for one of the guide
+// Where these are fewer than kFew for each of the model's parameters, there are kEnough for each,
+// which then count less: few data leave many parameters to the guide.
+constexpr int kFew = 3, kEnough = 6;
+// Of few data, too, it says no more than so many times the largest value.
+constexpr double kMaxOfLargest = 2;
+// With fewer samples than so many for each parameter of a guide it needs one itself, on fewer
+// nodes.
+constexpr int kSamplesPerParameter = 5;
 
-FactorModel FitGuide(const Objective& data, const std::function<bool()>& stop) {
-  ModelSpec spec = ModelSpec::Anisotropic(std::min(data.spec().lobes, 1));
-  spec.d_axis = Axis::EvenPolar(12, Axis::Steps::kOfRoot, 24);
-  spec.f_axis.size = 6;
-  spec.g_axis = Axis::EvenPolar(6, Axis::Steps::kOfTheta, 8);
-  const Objective objective(data, spec);
-  FactorModel model = FindInitialModel("moments").make(objective, 0);
-  SolverOptions options;
-  options.diagnose = false;
-  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
-  MakeSolver("varpro")->Solve(objective, options, &model);
-  return model;
+// One lobe; from fine to coarse.
+constexpr int kNumGuides = 4;
+ModelSpec GuideSpec(int number) {
+  struct Size {
+    int d_theta, d_phi, f, g_theta, g_phi;
+  };
+  constexpr Size kSizes[kNumGuides] = {
+      {12, 24, 6, 6, 8}, {8, 12, 4, 4, 4}, {6, 6, 4, 3, 2}, {6, 2, 4, 3, 2}};
+  const Size& size = kSizes[number];
+  ModelSpec spec = ModelSpec::Anisotropic(1);
+  spec.d_axis = Axis::EvenPolar(size.d_theta, Axis::Steps::kOfRoot, size.d_phi);
+  spec.f_axis.size = size.f;
+  spec.g_axis = Axis::EvenPolar(size.g_theta, Axis::Steps::kOfTheta, size.g_phi);
+  return spec;
 }
 
 // Where the guide speaks: half vectors spaced as a highlight asks for, by the root of theta_h, and
-// wi over the hemisphere, by Halton's sequence, as far from the normal as the data are.
-std::vector<SphericalAngles> PairsBetween(const BrdfSamples& data, size_t count) {
+// wi over the hemisphere, by Halton's sequence, as far from the normal as the data are. Few data
+// leave all to it, retroreflection near the horizon as well, where hardly any of these are: half of
+// the pairs are then about half vectors spread evenly in theta_h.
+std::vector<SphericalAngles> PairsBetween(const BrdfSamples& data, size_t count, bool few) {
   double max_theta = 0;
   for (const SphericalAngles& at : data.directions) {
     max_theta = std::max({max_theta, at.theta_i, at.theta_o});
@@ -47,16 +59,85 @@ std::vector<SphericalAngles> PairsBetween(const BrdfSamples& data, size_t count)
   for (size_t k = 0; k < tries && pairs.size() < count; ++k) {
     double u[4];
     gsl_qrng_get(halton.get(), u);
-    const auto [wi, h] = ToDirections(
-        SphericalAngles{max_theta * u[0], 2 * kPi * u[1], max_theta * u[2] * u[2], 2 * kPi * u[3]});
-    const double cosine = Dot(wi, h);
-    Direction wo;
-    for (int c = 0; c < 3; ++c) wo[c] = 2 * cosine * h[c] - wi[c];
-    if (!(cosine > 0 && wo[2] > 0)) continue;
-    const SphericalAngles at = ToSphericalAngles({wi, wo});
-    if (at.theta_o <= max_theta) pairs.push_back(at);
+    SphericalAngles at;
+    if (!few || k % 2 == 0) {
+      const auto [wi, h] = ToDirections(SphericalAngles{max_theta * u[0], 2 * kPi * u[1],
+                                                        max_theta * u[2] * u[2], 2 * kPi * u[3]});
+      const double cosine = Dot(wi, h);
+      Direction wo;
+      for (int c = 0; c < 3; ++c) wo[c] = 2 * cosine * h[c] - wi[c];
+      if (!(cosine > 0 && wo[2] > 0)) continue;
+      at = ToSphericalAngles({wi, wo});
+    } else {
+      at = ToSphericalAngles(
+          ToDirections(HalfDiffAngles{max_theta * u[2], max_theta * u[0] * u[0], kPi * u[1]}));
+      at.phi_i += 2 * kPi * u[3];
+      at.phi_o += 2 * kPi * u[3];
+    }
+    if (std::max(at.theta_i, at.theta_o) <= max_theta) pairs.push_back(at);
   }
   return pairs;
+}
+
+// In each channel, to so many times the largest of the data.
+void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) {
+  for (int c = 0; c < 3; ++c) {
+    double largest = 0;
+    for (const Rgb& value : data) largest = std::max(largest, value[c]);
+    for (Rgb& value : *rho) value[c] = std::min(value[c], times * largest);
+  }
+}
+
+// The data and what this model says between them.
+BrdfSamples WithSamplesOf(const FactorModel& model, const BrdfSamples& data, int num_parameters,
+                          const GuideOptions& options, int num_threads) {
+  const double share = static_cast<double>(data.rho.size()) / kDataPerSample;
+  const bool few = share < kFew * num_parameters;
+  const size_t count =
+      few ? static_cast<size_t>(kEnough * num_parameters) : static_cast<size_t>(share);
+  const double weight = few ? options.weight * share / static_cast<double>(count) : options.weight;
+  BrdfSamples said;
+  said.source = data.source;
+  said.grid = data.grid;
+  said.directions = PairsBetween(data, count, few);
+  if (said.directions.empty()) return data;
+  for (const SphericalAngles& at : said.directions) {
+    said.angles.push_back(ToHalfDiff(ToDirections(at)));
+  }
+  said.rho.assign(said.directions.size(), {});
+  said.rho = EvaluateSamples(model, said, num_threads);
+  if (few) LimitTo(kMaxOfLargest, data.rho, &said.rho);
+
+  BrdfSamples both = data;
+  if (both.multiplicity.empty()) both.multiplicity.assign(data.rho.size(), 1);
+  both.multiplicity.resize(data.rho.size() + said.rho.size(), weight);
+  const auto append = [](const auto& from, auto* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(said.angles, &both.angles);
+  append(said.directions, &both.directions);
+  append(said.rho, &both.rho);
+  return both;
+}
+
+FactorModel FitGuide(int number, const BrdfSamples& data, int lobes, const Weighting& weighting,
+                     int num_threads, const std::function<bool()>& stop) {
+  ModelSpec spec = GuideSpec(number);
+  spec.lobes = lobes;
+  const int n = spec.num_parameters();
+  const bool few = data.rho.size() < static_cast<size_t>(kSamplesPerParameter * n);
+  const Objective objective(
+      few && number + 1 < kNumGuides
+          ? WithSamplesOf(FitGuide(number + 1, data, lobes, weighting, num_threads, stop), data, n,
+                          {}, num_threads)
+          : data,
+      spec, weighting, num_threads);
+  FactorModel model = FindInitialModel("moments").make(objective, 0);
+  SolverOptions options;
+  options.diagnose = false;
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  MakeSolver("varpro")->Solve(objective, options, &model);
+  return model;
 }
 
 }  // namespace
@@ -69,27 +150,9 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (!(options.weight > 0)) {
     throw Error(measured.source + ": the weight of a guide must be above 0");
   }
-  BrdfSamples guide;
-  guide.source = measured.source;
-  guide.grid = measured.grid;
-  guide.directions = PairsBetween(measured, measured.rho.size() / kDataPerSample);
-  if (guide.directions.empty()) return measured;
-  for (const SphericalAngles& at : guide.directions) {
-    guide.angles.push_back(ToHalfDiff(ToDirections(at)));
-  }
-  guide.rho.assign(guide.directions.size(), {});
-  guide.rho = EvaluateSamples(FitGuide(data, options.stop), guide, data.num_threads());
-
-  BrdfSamples both = measured;
-  if (both.multiplicity.empty()) both.multiplicity.assign(measured.rho.size(), 1);
-  both.multiplicity.resize(measured.rho.size() + guide.rho.size(), options.weight);
-  const auto append = [](const auto& from, auto* to) {
-    to->insert(to->end(), from.begin(), from.end());
-  };
-  append(guide.angles, &both.angles);
-  append(guide.directions, &both.directions);
-  append(guide.rho, &both.rho);
-  return both;
+  const int lobes = std::min(data.spec().lobes, 1), threads = data.num_threads();
+  return WithSamplesOf(FitGuide(0, measured, lobes, data.weighting(), threads, options.stop),
+                       measured, data.spec().num_parameters(), options, threads);
 }
 
 }  // namespace trilobe

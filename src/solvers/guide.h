@@ -16,13 +16,14 @@ namespace trilobe {
 // a model of too few numbers for that, one lobe on few nodes, fitted first; samples of it between
 // the measured ones then join the data, and any solver fits both.
 struct GuideOptions {
-  double weight = 1;  // > 0: the multiplicity of each of the guide's samples
+  double weight = 1;  // > 0: the multiplicity of each of the guide's samples, one for six measured
   std::function<bool()> stop = [] { return false; };  // ends the fit of the guide early
 };
 
 // The objective's samples and the guide's, one for six of them, with the objective's number of
-// threads; deterministic. Throws Error for samples without directions,
-// and for another weight.
+// threads; deterministic. Where that is less than three for each of the objective's parameters,
+// there are six for each, which together count as much, and the guide is fitted with a smaller one.
+// Throws Error for samples without directions, and for another weight.
 BrdfSamples WithGuide(const Objective& data, const GuideOptions& options);
 
 }  // namespace trilobe

@@ -114,6 +114,14 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
   ExpectRefusal({"fit", "synth:plastic", "--guide=2"}, "--guide is for data with several azimuths");
 }
 
+// The solver's models have fewer bins of F than the file's.
+TEST_F(AnisotropicCommands, FitWritesItsCourse) {
+  const ProgramResult fit = RunProgram({"fit", "synth:linen@4x12", "--lobes=1", "--course",
+                                        "--max_iterations=3", "--out=" + In("course")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(Contents(In("course/course.csv")), StartsWith("iteration,seconds,objective,"));
+}
+
 TEST_F(AnisotropicCommands, InfoGivesNodesAndAlbedosAlongAndAcross) {
   const std::string model = In("fit/model.json");
   const ProgramResult text = RunProgram({"info", model});

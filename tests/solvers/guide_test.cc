@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "trilobe/base/error.h"
@@ -88,6 +91,41 @@ TEST(Guide, KeepsAFitRightBetweenTheSamples) {
   const double guided = ErrorOfFit(WithGuide(objective, {}), 6);
   EXPECT_LT(guided, 0.15);
   EXPECT_LT(2 * guided, ErrorOfFit(data, 90));
+}
+
+// Far fewer values than parameters: what they do not tell is the guide's, not a wild guess.
+TEST(Guide, KeepsAFitOfFewScatteredSamplesTame) {
+  constexpr int kFew = 250;
+  const BrdfSamples all = SamplesOf(SynthesizeSamples(FindSynthMaterial("velvet"), 0, 1, kGrid));
+  std::vector<int> numbers(all.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  std::mt19937 random(1);
+  for (int j = 0; j < kFew; ++j)
+    std::swap(numbers[j], numbers[j + random() % (numbers.size() - j)]);
+  const std::vector<int> few(numbers.begin(), numbers.begin() + kFew);
+  const std::vector<int> others(numbers.begin() + kFew, numbers.end());
+  const BrdfSamples data = Selected(all, few), held_out = Selected(all, others);
+  const ModelSpec spec = ModelSpec::AnisotropicFor(3, 16, DegreesToRadians(75));
+  ASSERT_LT(3 * data.size(), spec.num_parameters());
+  const Objective unseen(held_out, spec, Weightings().front());
+  const auto error = [&](const BrdfSamples& samples) {
+    const Objective objective(samples, spec, Weightings().front(), 2);
+    FactorModel model = FindInitialModel("moments").make(objective, 1);
+    SolverOptions options;
+    options.max_iterations = 20;
+    options.diagnose = false;
+    MakeSolver("varpro")->Solve(objective, options, &model);
+    return unseen.Value(model) / unseen.MeasuredEnergy();
+  };
+  const Objective objective(data, spec, Weightings().front(), 2);
+  const BrdfSamples guided = WithGuide(objective, {});
+  EXPECT_GE(guided.size() - data.size(), 6 * spec.num_parameters());
+  double weight = 0;
+  for (int j = data.size(); j < guided.size(); ++j) weight += guided.Multiplicity(j);
+  EXPECT_NEAR(weight, data.size() / 6.0, 1e-9);
+  const double with = error(guided), without = error(data);
+  EXPECT_LT(with, 5);
+  EXPECT_LT(1000 * with, without);
 }
 
 TEST(Guide, NeedsDirections) {
