@@ -93,6 +93,15 @@ class MainTest(FolderTest):
             main.publish(experiment, out)  # what has failed shows in the tables
         self.assertTrue((experiment.published() / "results.csv").exists())
 
+    def test_the_anisotropic_form_is_published_beside_the_full_one(self):
+        (self.folder / "x" / "manifest.json").write_text(
+            MANIFEST.replace('"quick"', '"anisotropic": {"sources": ["synth:velvet"]}, "quick"'))
+        self.run_it("--anisotropic", "--publish")
+        experiment = Experiment("x", self.module)
+        self.assertTrue((experiment.published("anisotropic") / "results.csv").exists())
+        self.assertFalse(experiment.published().exists())
+        self.assertTrue((self.folder / "out" / "x-anisotropic" / "results.csv").exists())
+
     def test_bulk_is_not_published(self):
         self.module.tabulate = lambda _, results: {
             "small": [{"n": n} for n in range(main.PUBLISHED_ROWS)],
