@@ -9,6 +9,8 @@
 
 #include "experiments/program.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/io/measurement.h"
 #include "trilobe/io/source.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/solvers/initial_model.h"
@@ -16,7 +18,10 @@
 #include "trilobe/solvers/solver.h"
 
 DEFINE_string(solver, "awls", "a solver that moves single elements, or blocks of them");
-DEFINE_int32(stride, 30, "of each (theta_h, theta_d) every stride-th phi_d is kept");
+DEFINE_int32(
+    stride, 30,
+    "of each (theta_h, theta_d) every stride-th phi_d is kept; of samples on no grid every "
+    "stride-th");
 DEFINE_int32(sweeps, 30, "sweeps to look at");
 DEFINE_double(noise, 0.02, "relative noise of synth: sources");
 DEFINE_string(weighting, "compressive", "weights of the objective");
@@ -43,8 +48,11 @@ struct Rises {
 int Main(const std::string& source) {
   const SourceOptions reading = {
       .noise = FLAGS_noise, .max_angle_deg = FLAGS_max_angle, .extrapolated = FLAGS_extrapolated};
-  const BrdfSamples samples = Thinned(ValidSamples(LoadSource(source, reading)), FLAGS_stride);
-  const Objective objective(samples, ModelSpec::SharedFactors(3), FindWeighting(FLAGS_weighting));
+  const Measurement measured = LoadMeasurement(source, reading);
+  const BrdfSamples samples = Thinned(SamplesOf(measured), FLAGS_stride);
+  const ModelSpec spec =
+      measured.anisotropic ? ModelSpec::Anisotropic(3) : ModelSpec::SharedFactors(3);
+  const Objective objective(samples, spec, FindWeighting(FLAGS_weighting));
   const double floor = ExactObjective(objective);  // below it E says nothing
 
   FactorModel model = InitialModels().front().make(objective, 1);

@@ -24,11 +24,15 @@ class Setting:
     """What one run is asked to do."""
 
     name: str
-    quick: bool
+    form: str  # "full", or one of manifest.FORMS
     manifest: dict  # of the form that runs, with the changes that were asked for
     sources: list  # [Source], those given or else the manifest's, before any choice among them
     build: pathlib.Path
     main_program: pathlib.Path
+
+    @property
+    def quick(self):
+        return self.form == "quick"
 
     def program(self, name="trilobe"):
         """The program `trilobe`, or one that experiments/CMakeLists.txt builds."""
@@ -86,17 +90,16 @@ class Experiment:
     def page(self):
         return self.folder / "README.md"
 
-    @property
-    def published(self):
+    def published(self, form="full"):
         """Where the tables and pictures of the run lie that the page quotes."""
-        return self.folder / "results"
+        return self.folder / ("results" if form == "full" else f"results_{form}")
 
     @property
     def title(self):
         return self.page.read_text().splitlines()[0].removeprefix("# ")
 
-    def settings(self, quick, changes=()):
-        return manifest.load(self.folder / "manifest.json", quick, changes)
+    def settings(self, form="full", changes=()):
+        return manifest.load(self.folder / "manifest.json", form, changes)
 
 
 def names():

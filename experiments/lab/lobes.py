@@ -19,11 +19,23 @@ def _solid_angles(bins):
     return math.pi * numpy.diff(numpy.sin(_edges(bins)) ** 2)
 
 
+def _solid_angles_of_nodes(thetas, phis):
+    """Projected solid angles nearest to the nodes of D over theta_h (degrees, from 0) and so many
+    phi_h. [len(thetas) phis]; the pole, whose entries are one, has its own at the first of them."""
+    middles = numpy.radians((numpy.array(thetas[1:]) + thetas[:-1]) / 2)
+    rings = math.pi * numpy.diff(numpy.sin([0, *middles, math.pi / 2]) ** 2)
+    angles = numpy.repeat(rings / phis, phis)
+    angles[:phis] = 0
+    angles[0] = rings[0]
+    return angles
+
+
 class Model:
     """A model file of the paper's sharing (docs/file-formats.md).
 
     d [3], s [lobes][3], D [lobes][bins], F [3][bins], G [lobes][nodes]; observed: the same names,
-    True where data touch the entry.
+    True where data touch the entry. D and G of an anisotropic model have their phi one after the
+    other for each theta. solid_angles: projected, of the entries of D. [bins]
     """
 
     def __init__(self, content):
@@ -33,6 +45,8 @@ class Model:
         self.observed = {}
         for factor in "DFG":
             table = numpy.array(content[factor], dtype=float)
+            if factor != "F" and table.ndim == 3:  # [lobes][theta][phi]
+                table = table.reshape(len(table), -1)
             if table.ndim != 2 or len(table) != (CHANNELS if factor == "F" else self.lobes):
                 raise ValueError(f"{factor}: D and G must have a table a lobe, F one a channel")
             observed = numpy.ones(table.shape, dtype=bool)
@@ -40,6 +54,9 @@ class Model:
                 of[unobserved] = False
             setattr(self, factor, table)
             self.observed[factor] = observed
+        self.solid_angles = (
+            _solid_angles_of_nodes(content["theta_nodes"]["D"], len(content["phi_nodes"]["D"]))
+            if content.get("kind") == "anisotropic" else _solid_angles(self.D.shape[1]))
 
     @staticmethod
     def read(path):
@@ -60,10 +77,9 @@ def scores(a, b):
     or if one has vanished. Entries that no data touch in either model do not count.
     """
     result = numpy.zeros((a.lobes, b.lobes))
-    solid_angles = _solid_angles(a.D.shape[1])
     for m, n in itertools.product(range(a.lobes), range(b.lobes)):
         result[m, n] = (congruence(a.D[m], b.D[n],
-                                   solid_angles * (a.observed["D"][m] & b.observed["D"][n]))
+                                   a.solid_angles * (a.observed["D"][m] & b.observed["D"][n]))
                         * congruence(a.G[m], b.G[n], a.observed["G"][m] & b.observed["G"][n])
                         * congruence(a.s[m], b.s[n]))
     return result

@@ -37,7 +37,10 @@ def parse(arguments):
     parser.add_argument("name", metavar="NAME|list|report")
     parser.add_argument("sources", nargs="*", metavar="SOURCE",
                         help="BRDF files, folders of them, synth:NAME; default: the manifest's")
-    parser.add_argument("--quick", action="store_true", help="the form of a few seconds")
+    parser.add_argument("--quick", action="store_const", const="quick", dest="form", default="full",
+                        help="the form of a few seconds")
+    parser.add_argument("--anisotropic", action="store_const", const="anisotropic", dest="form",
+                        help="the form of anisotropic materials, where an experiment has one")
     parser.add_argument("--out", type=pathlib.Path, help="default: out/experiments, with --quick "
                         "out/experiments-quick")
     parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path("build/release"),
@@ -62,7 +65,8 @@ def parse(arguments):
                         f"{PUBLISHED_ROWS} rows, into experiments/NAME/results")
     options = parser.parse_intermixed_args(arguments)
     if options.out is None:
-        options.out = pathlib.Path("out/experiments-quick" if options.quick else "out/experiments")
+        options.out = pathlib.Path("out/experiments-quick" if options.form == "quick"
+                                   else "out/experiments")
     return options
 
 
@@ -76,7 +80,7 @@ def shard(text):
 
 def setting_of(experiment, options):
     """What this command line asks for."""
-    settings = experiment.settings(options.quick, options.set)
+    settings = experiment.settings(options.form, options.set)
     if "runs" not in settings and (options.solvers or options.threads):
         raise UsageError(f"{experiment.name} takes no --solvers and no --threads")
     runs = fits.checked(settings.get("runs", []))
@@ -92,7 +96,7 @@ def setting_of(experiment, options):
     places = options.sources or settings.get("sources", [])
     if not places and settings.get("needs_sources", True):
         raise UsageError("give BRDF files or folders of them, or --quick")
-    return Setting(name=experiment.name, quick=options.quick, manifest=settings,
+    return Setting(name=experiment.name, form=options.form, manifest=settings,
                    sources=materials.find(places), build=options.build,
                    main_program=(options.program or options.build / "bin" / "trilobe").resolve())
 
@@ -142,18 +146,19 @@ def bulk(folder):
             if len(tables.read(path)) > PUBLISHED_ROWS]
 
 
-def publish(experiment, folder):
+def publish(experiment, folder, form="full"):
     """Copies a run's pictures and small tables to where the page looks for them."""
     units = json.loads((folder / "manifest.json").read_text())["units"]
     if left := units["all"] - units["made"] - units["failed"]:
         raise UsageError(f"{left} units have not been tried yet; publish when they are")
     kept = bulk(folder)
-    _fill(experiment.published, lambda part: shutil.copytree(
+    published = experiment.published(form)
+    _fill(published, lambda part: shutil.copytree(
         folder, part, ignore=shutil.ignore_patterns(*(path.name for path in kept))))
     for path in kept:
         print(f"not copied, more than {PUBLISHED_ROWS} rows: {path}")
-    size = sum(path.stat().st_size for path in experiment.published.rglob("*") if path.is_file())
-    print(f"copied to {experiment.published}: {size / 1e6:.2f} MB")
+    size = sum(path.stat().st_size for path in published.rglob("*") if path.is_file())
+    print(f"copied to {published}: {size / 1e6:.2f} MB")
 
 
 def _units(experiment, setting):
@@ -175,11 +180,16 @@ def _one_each(experiment, units):
                              f"{', '.join(given)}")
 
 
+def of_form(name, form):
+    """The folder in OUT of a form's tables: the anisotropic one's is beside the full one's."""
+    return f"{name}-anisotropic" if form == "anisotropic" else name
+
+
 def run(experiment, options):
     """Runs one experiment; returns the exit status."""
-    folder = options.out / experiment.name
-    if options.publish and options.quick:
-        raise UsageError("the page shows the full form; publish without --quick")
+    folder = options.out / of_form(experiment.name, options.form)
+    if options.publish and options.form == "quick":
+        raise UsageError("the page shows no quick form; publish without --quick")
     failures = []
     if options.draw:
         if not folder.is_dir():
@@ -219,7 +229,7 @@ def run(experiment, options):
         _fill(folder, fill)
     print(f"wrote {folder}")
     if options.publish:
-        publish(experiment, folder)
+        publish(experiment, folder, options.form)
     return SOME_FAILED if failures else 0
 
 
@@ -227,17 +237,16 @@ def list_experiments():
     """A line or two for each."""
     for name in experiments.names():
         experiment = experiments.load(name)
-        print(f"{name}\n    {experiment.settings(quick=False)['question']}")
+        print(f"{name}\n    {experiment.settings()['question']}")
 
 
 def write_report(options):
     """Takes what was run last into --out, or else what is published."""
     from lab import report
 
-    def results_of(experiment):
-        here = options.out / experiment.name
-        return here if here.is_dir() else (experiment.published if experiment.published.is_dir()
-                                           else None)
+    def results_of(experiment, form="full"):
+        here, published = options.out / of_form(experiment.name, form), experiment.published(form)
+        return here if here.is_dir() else published if published.is_dir() else None
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "report.html"
     everything = [experiments.load(name) for name in experiments.names()]

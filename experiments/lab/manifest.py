@@ -1,7 +1,8 @@
 """Manifests: what an experiment measures, and what a run of it was made with.
 
 `experiments/NAME/manifest.json` holds the full form; its member `quick` replaces members of it for
-the quick form. A run leaves a copy of what it used in its own folder, with machine, versions and
+the quick form, and its member `anisotropic`, where it has one, for that of anisotropic materials.
+A run leaves a copy of what it used in its own folder, with machine, versions and
 time.
 """
 import datetime
@@ -11,12 +12,17 @@ import pathlib
 from lab import UsageError, machine
 
 
-def load(path, quick, changes=()):
-    """The settings of one form, with changes ("flags.max_seconds=5", "runs.0.every=1"; values are
-    JSON, or else text)."""
+FORMS = ("quick", "anisotropic")  # beside the full one
+
+
+def load(path, form="full", changes=()):
+    """The settings of one form, "full" or one of FORMS, with changes
+    ("flags.max_seconds=5", "runs.0.every=1"; values are JSON, or else text)."""
     full = json.loads(path.read_text())
-    replaced = full.pop("quick")
-    settings = {**full, **replaced} if quick else full
+    replaced = {name: full.pop(name) for name in FORMS if name in full}
+    if form != "full" and form not in replaced:
+        raise UsageError(f"{path} has no form \"{form}\"")
+    settings = {**full, **replaced.get(form, {})}
     for change in changes:
         place, equals, value = change.partition("=")
         *parents, last = place.split(".")
@@ -54,7 +60,7 @@ def write_run(path, setting, store, units, build):
     programs = sorted({(pathlib.PurePath(record["command"][0]).name, record["program_sha256"],
                         record.get("revision")) for record in records}, key=str)
     run = {"experiment": setting.name,
-           "form": "quick" if setting.quick else "full",
+           "form": setting.form,
            "settings": _without_folders(setting.manifest),
            "sources": [source.name for source in setting.sources],
            "units": {"all": len(units), "made": len(records), "failed": failed},

@@ -26,7 +26,7 @@ details { margin: 1rem 0; }
 .missing { color: #D55E00; }
 """
 
-_LINK_ALONE = re.compile(r"^(!?)\[([^\]]*)\]\(results/([^)\s]+)\)$", re.MULTILINE)
+_LINK_ALONE = re.compile(r"^(!?)\[([^\]]*)\]\(results(_anisotropic)?/([^)\s]+)\)$", re.MULTILINE)
 _IMAGE = re.compile(r'<img alt="([^"]*)" src="([^"]+)"\s*/?>')
 
 
@@ -52,12 +52,14 @@ def _inline(text):
     return markdown.markdown(text).removeprefix("<p>").removesuffix("</p>")
 
 
-def _inlined(page, results):
-    """The page with each link that stands alone in its line and leads into results/ replaced by
-    what it leads to: a picture with its caption, a table, a text."""
+def _inlined(page, results, anisotropic):
+    """The page with each link that stands alone in its line and leads into results/ or
+    results_anisotropic/ replaced by what it leads to: a picture with its caption, a table, a text.
+    """
     def content(match):
-        picture, caption, name = match.groups()
-        path = results / name if results else None
+        picture, caption, form, name = match.groups()
+        folder = anisotropic if form else results
+        path = folder / name if folder else None
         if path is None or not path.exists():
             return f'<p class="missing">Not there yet: {_inline(caption)}</p>'
         if picture:
@@ -78,8 +80,8 @@ def _embed_images(text, folder):
     return _IMAGE.sub(embedded, text)
 
 
-def _section(experiment, results):
-    page = _inlined(experiment.page.read_text(), results)
+def _section(experiment, results, anisotropic):
+    page = _inlined(experiment.page.read_text(), results, anisotropic)
     body = markdown.markdown(page, extensions=["tables", "fenced_code"])
     body = _embed_images(body, results)
     body = re.sub(r'<a href="(?![a-z]+:|#)[^"]*">(.*?)</a>', r"\1", body)  # other pages: not here
@@ -104,10 +106,12 @@ def in_order(experiments, index):
 
 
 def write(path, experiments, results_of):
-    """Writes the page. results_of(experiment): the folder of its tables and pictures, or None."""
+    """Writes the page. results_of(experiment, form): the folder of tables and pictures of
+    a form, or None."""
     contents = "".join(f'<li><a href="#{e.name}">{html.escape(e.title)}</a></li>'
                        for e in experiments)
-    sections = "\n".join(_section(e, results_of(e)) for e in experiments)
+    sections = "\n".join(_section(e, results_of(e, "full"), results_of(e, "anisotropic"))
+                         for e in experiments)
     part = path.with_name(f".{path.name}.part")
     part.write_text(
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"/><title>Experiments with '

@@ -21,6 +21,8 @@ STABLE = 0.9  # of a material's runs agree
 def _noisy_fits(setting):
     """Fits to noisy copies, and the fit without noise that they are compared with."""
     asked = setting.manifest["noise"]
+    if asked is None:
+        return []
     flags = {**setting.manifest["flags"], **asked["flags"]}
     units = []
     for source in setting.every(asked.get("every", 1)):
@@ -58,6 +60,11 @@ def units(setting):
 # --- tables ---------------------------------------------------------------------------------------
 
 
+def _reported_albedos(light):
+    """As lobes.albedos, from the member "light" of a report."""
+    return numpy.array([numpy.mean(part["albedo"]) for part in (*light["lobes"], light["diffuse"])])
+
+
 class _Run:
     """A fit, its model and its lobes' albedos."""
 
@@ -68,7 +75,8 @@ class _Run:
         self.report = fit.report
         self.seconds = fit.taken("read", "prepare", "init", "solve")
         self.model = lobes.Model.read(result.folder / "model.json")
-        self.albedos = lobes.albedos(self.model)
+        self.albedos = (lobes.albedos(self.model) if self.report["model"] != "anisotropic"
+                        else _reported_albedos(self.report["light"]))
         self.order = None  # its lobes in the order of the reference's
 
     @property
@@ -290,6 +298,7 @@ def _stability_figure(rows):
     """A line a material: the least match and E of each run of the solver shown, and noise."""
     from lab import plots
     kinds = {"starts": (plots.BLUE, "another seed"), "noise": (plots.ORANGE, "noise")}
+    kinds = {kind: of for kind, of in kinds.items() if any(row["run"] == kind for row in rows)}
     by_material = tables.groups([row for row in rows if not row["reference"]], "material")
     names = sorted(by_material, key=lambda name: stats.median(
         [row["least_match"] for row in by_material[name]]))

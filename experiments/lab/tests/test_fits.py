@@ -20,7 +20,7 @@ class FitsTest(FolderTest):
         (self.folder / "trilobe").touch()
 
     def setting(self, runs, **more):
-        return Setting("x", False, {"runs": runs, **more}, [Source("a", "a"), Source("b", "b")],
+        return Setting("x", "full", {"runs": runs, **more}, [Source("a", "a"), Source("b", "b")],
                        self.folder, self.folder / "trilobe")
 
     def test_plan_is_every_combination_once(self):

@@ -59,6 +59,24 @@ class MatchTest(unittest.TestCase):
         self.assertEqual(lobes.scores(model, model)[1, 1], 0)
         self.assertEqual(lobes.likest_pair(model), 0)
 
+    def test_lobes_of_anisotropic_models(self):
+        random = numpy.random.default_rng(2)
+        a = content(3)
+        a.update(kind="anisotropic", D=random.random((3, 4, 6)).tolist(),
+                 G=random.random((3, 3, 6)).tolist(), theta_nodes={"D": [0, 10, 40, 90]},
+                 phi_nodes={"D": [0, 60, 120, 180, 240, 300]})
+        model = lobes.Model(a)
+        self.assertEqual((model.D.shape, model.G.shape), ((3, 24), (3, 18)))
+        # The upper hemisphere's, each to one node; that of the pole to the first entry.
+        self.assertAlmostEqual(model.solid_angles.sum(), math.pi)
+        self.assertAlmostEqual(model.solid_angles[0], math.pi * math.sin(math.radians(5)) ** 2)
+        self.assertTrue((model.solid_angles[1:6] == 0).all())
+        turned = {**a, **{name: [a[name][m] for m in (2, 0, 1)] for name in ("s", "D", "G")}}
+        self.assertEqual(lobes.assign(lobes.scores(lobes.Model(turned), model)), (2, 0, 1))
+        turned["D"] = numpy.roll(turned["D"], 3, axis=2).tolist()  # by 180 degrees: other lobes
+        self.assertLess(max(lobes.scores(lobes.Model(turned), model)[k, m]
+                            for k, m in enumerate((2, 0, 1))), 0.95)
+
     def test_copies_are_found(self):
         a = content(3)
         for name in ("s", "D", "G"):

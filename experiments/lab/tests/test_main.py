@@ -81,7 +81,7 @@ class MainTest(FolderTest):
         self.assertEqual([row["there"] for row in self.table()], [1, 1])
 
     def test_only_a_full_run_is_published_whole(self):
-        with self.assertRaisesRegex(UsageError, "full form"):
+        with self.assertRaisesRegex(UsageError, "no quick form"):
             self.run_it("--publish")
         experiment, out = Experiment("x", self.module), self.folder / "out" / "x"
         self.run_it("--no-run")
@@ -91,7 +91,16 @@ class MainTest(FolderTest):
         self.run_it()
         with contextlib.redirect_stdout(io.StringIO()):
             main.publish(experiment, out)  # what has failed shows in the tables
-        self.assertTrue((experiment.published / "results.csv").exists())
+        self.assertTrue((experiment.published() / "results.csv").exists())
+
+    def test_the_anisotropic_form_is_published_beside_the_full_one(self):
+        (self.folder / "x" / "manifest.json").write_text(
+            MANIFEST.replace('"quick"', '"anisotropic": {"sources": ["synth:velvet"]}, "quick"'))
+        self.run_it("--anisotropic", "--publish")
+        experiment = Experiment("x", self.module)
+        self.assertTrue((experiment.published("anisotropic") / "results.csv").exists())
+        self.assertFalse(experiment.published().exists())
+        self.assertTrue((self.folder / "out" / "x-anisotropic" / "results.csv").exists())
 
     def test_bulk_is_not_published(self):
         self.module.tabulate = lambda _, results: {
@@ -104,18 +113,18 @@ class MainTest(FolderTest):
         self.assertIn(f"not copied, more than {main.PUBLISHED_ROWS} rows: {out / 'bulk.csv'}",
                       said.getvalue())
         self.assertTrue((out / "bulk.csv").exists())
-        self.assertEqual({path.name for path in experiment.published.iterdir()},
+        self.assertEqual({path.name for path in experiment.published().iterdir()},
                          {"small.csv", "text.md", "manifest.json"})
 
     def test_what_is_published_is_small_and_has_no_bulk(self):
         lines = 0
-        for path in sorted(PUBLISHED.glob("*/results/*")):
+        for path in sorted(PUBLISHED.glob("*/results*/*")):
             with self.subTest(path=path):
                 self.assertIn(path.suffix, {".json", ".csv", ".md", ".png", ".jpg"})
                 self.assertLess(path.stat().st_size, 500_000)
             if path.suffix in {".json", ".csv", ".md"}:
                 lines += path.read_text().count("\n")
-        self.assertEqual([main.bulk(folder) for folder in PUBLISHED.glob("*/results")
+        self.assertEqual([main.bulk(folder) for folder in PUBLISHED.glob("*/results*")
                           if main.bulk(folder)], [])
         self.assertLess(lines, 15_000)
 

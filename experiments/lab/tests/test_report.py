@@ -32,9 +32,10 @@ class ReportTest(FolderTest):
         self.experiment = types.SimpleNamespace(name="a", title="A question?",
                                                 page=self.folder / "page.md")
 
-    def written(self, results):
+    def written(self, results, anisotropic=None):
         path = self.folder / "report.html"
-        report.write(path, [self.experiment], lambda _: results)
+        folders = {"full": results, "anisotropic": anisotropic}
+        report.write(path, [self.experiment], lambda _, form: folders[form])
         return path.read_text()
 
     def test_holds_pictures_tables_and_texts(self):
@@ -47,6 +48,17 @@ class ReportTest(FolderTest):
         self.assertIn("<td>1.25</td>", page)
         self.assertIn("Not there yet: Another picture", page)
         self.assertNotIn("README.md", page)  # nothing outside of the file
+
+    def test_holds_the_results_of_both_forms(self):
+        self.experiment.page.write_text("# A\n\n[A text](results/t.md)\n\n"
+                                        "[Another](results_anisotropic/t.md)\n")
+        other = self.folder / "results_anisotropic"
+        other.mkdir()
+        (other / "t.md").write_text("Of the other form")
+        page = self.written(self.results, other)
+        self.assertIn("Text with", page)
+        self.assertIn("Of the other form", page)
+        self.assertEqual(self.written(self.results).count("Not there yet"), 1)
 
     def test_without_results_everything_is_missing(self):
         self.assertEqual(self.written(None).count("Not there yet"), 4)

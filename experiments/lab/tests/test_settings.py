@@ -35,19 +35,27 @@ class SettingsTest(FolderTest):
     def test_manifest_forms_and_changes(self):
         path = self.folder / "manifest.json"
         path.write_text(json.dumps({"question": "?", "limits": {"s": 9}, "starts": ["x"],
-                                    "runs": [{"every": 4}], "quick": {"limits": {"s": 1}}}))
-        self.assertEqual(manifest.load(path, quick=False)["limits"], {"s": 9})
-        self.assertEqual(manifest.load(path, quick=True)["limits"], {"s": 1})
-        changed = manifest.load(path, False, ["limits.s=2.5", 'starts=["y"]', "question=why",
+                                    "runs": [{"every": 4}], "quick": {"limits": {"s": 1}},
+                                    "anisotropic": {"limits": {"s": 2}}}))
+        self.assertEqual(manifest.load(path, "full")["limits"], {"s": 9})
+        self.assertEqual(manifest.load(path, "quick")["limits"], {"s": 1})
+        self.assertEqual(manifest.load(path, "anisotropic")["limits"], {"s": 2})
+        changed = manifest.load(path, "full", ["limits.s=2.5", 'starts=["y"]', "question=why",
                                               "runs.0.every=1"])
         self.assertEqual(changed, {"question": "why", "limits": {"s": 2.5}, "starts": ["y"],
                                    "runs": [{"every": 1}]})
         for wrong in ("limits.s", "unknown=1", "starts.s=1", "runs.1.every=1", "question.s.t=1"):
             with self.assertRaisesRegex(UsageError, "--set="):
-                manifest.load(path, False, [wrong])
+                manifest.load(path, "full", [wrong])
+
+    def test_a_form_that_a_manifest_lacks_is_refused(self):
+        path = self.folder / "manifest.json"
+        path.write_text(json.dumps({"question": "?", "quick": {}}))
+        with self.assertRaisesRegex(UsageError, "no form \"anisotropic\""):
+            manifest.load(path, "anisotropic")
 
     def test_solvers_and_threads_of_the_command_line(self):
-        experiment = types.SimpleNamespace(name="x", settings=lambda quick, changes: {
+        experiment = types.SimpleNamespace(name="x", settings=lambda form, changes: {
             "solvers": {"auto": {}, "awls": {}, "mine": {}}, "sources": ["synth:plastic"],
             "runs": [{"solvers": ["auto", "awls"]}, {"solvers": ["awls"]}]})
         setting = main.setting_of(experiment, main.parse(
@@ -55,7 +63,7 @@ class SettingsTest(FolderTest):
         self.assertEqual(setting.manifest["runs"],
                          [{"solvers": ["auto", "mine"], "threads": [1, 2]},
                           {"solvers": [], "threads": [1, 2]}])
-        experiment.settings = lambda quick, changes: {"sources": ["synth:plastic"]}
+        experiment.settings = lambda form, changes: {"sources": ["synth:plastic"]}
         with self.assertRaisesRegex(UsageError, "x takes no --solvers"):
             main.setting_of(experiment, main.parse(["x", "--solvers=auto"]))
         with self.assertRaisesRegex(UsageError, "no program"):
@@ -63,7 +71,7 @@ class SettingsTest(FolderTest):
 
     def test_a_place_may_be_anywhere_but_must_be_there(self):
         (self.folder / "probe.hdr").touch()
-        setting = Setting("x", False, {"probe": f"{self.folder}/../{self.folder.name}/probe.hdr",
+        setting = Setting("x", "full", {"probe": f"{self.folder}/../{self.folder.name}/probe.hdr",
                                        "peers": None, "none": "none/of/it"}, [], None, None)
         self.assertEqual(setting.place("probe"), (self.folder / "probe.hdr").resolve())
         self.assertIsNone(setting.place("peers"))
