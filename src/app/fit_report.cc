@@ -91,7 +91,7 @@ std::string Describe(const NodeChoice& choice) {
 
 std::string Describe(const FitReport::Guide& guide) {
   return "guide        a small model, fitted first, speaks for " + std::to_string(guide.samples) +
-         " directions between the measured ones, of weight " + Text(guide.weight) +
+         " directions between the measured ones, each of weight " + Text(guide.weight) +
          "; the solver's E counts them, all that follows does not\n";
 }
 

@@ -202,7 +202,10 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if ((report.spec.anisotropic() || measured.anisotropic) && settings.guide > 0) {
     guided.emplace(WithGuide(objective, {.weight = settings.guide, .stop = interrupted}),
                    report.spec, settings.weighting, num_threads);
-    report.guide = {settings.guide, guided->samples().size() - objective.samples().size()};
+    const BrdfSamples& both = guided->samples();
+    if (both.size() > objective.samples().size()) {
+      report.guide = {both.multiplicity.back(), both.size() - objective.samples().size()};
+    }
   }
   const Objective& solved = guided ? *guided : objective;
   summary = settings.solver->make()->Solve(solved, options, &model);
