@@ -88,26 +88,23 @@ ModelSpec IsotropicSpec(const MerlGrid& grid) {
   return spec;
 }
 
-void CheckNoGuide() {
-  if (!IsDefault("guide")) throw Error("--guide is for data with several azimuths");
-}
-
 }  // namespace
 
 ModelSpec SpecFromFlags(const Measurement& measurement) {
   CheckModelFlags();
+  if (!IsDefault("guide") && FLAGS_model != "anisotropic" && !measurement.anisotropic) {
+    throw Error("--guide is for data with several azimuths");
+  }
   if (measurement.table) {
     if (FLAGS_model == "anisotropic") {
       throw Error(measurement.source + ": a " + measurement.kind +
                   " knows no azimuths; an anisotropic model needs scattered samples with several "
                   "phi_i");
     }
-    CheckNoGuide();
     return IsotropicSpec(measurement.table->grid);
   }
   const bool anisotropic =
       FLAGS_model == "anisotropic" || (FLAGS_model == "shared" && measurement.anisotropic);
-  if (!anisotropic && !measurement.anisotropic) CheckNoGuide();
   if (!anisotropic) return IsotropicSpec(measurement.samples.grid);
   return AnisotropicSpec(GridOf(measurement).value_or(HemisphereGrid()), measurement.max_theta);
 }

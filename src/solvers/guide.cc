@@ -27,16 +27,16 @@ constexpr double kMaxOfLargest = 2;
 // nodes.
 constexpr int kSamplesPerParameter = 5;
 
-// One lobe; from fine to coarse.
+// One lobe, or none for models without; from fine to coarse.
 constexpr int kNumGuides = 4;
-ModelSpec GuideSpec(int number) {
+ModelSpec GuideSpec(int number, int lobes) {
   struct Size {
     int d_theta, d_phi, f, g_theta, g_phi;
   };
   constexpr Size kSizes[kNumGuides] = {
       {12, 24, 6, 6, 8}, {8, 12, 4, 4, 4}, {6, 6, 4, 3, 2}, {6, 2, 4, 3, 2}};
   const Size& size = kSizes[number];
-  ModelSpec spec = ModelSpec::Anisotropic(1);
+  ModelSpec spec = ModelSpec::Anisotropic(std::min(lobes, 1));
   spec.d_axis = Axis::EvenPolar(size.d_theta, Axis::Steps::kOfRoot, size.d_phi);
   spec.f_axis.size = size.f;
   spec.g_axis = Axis::EvenPolar(size.g_theta, Axis::Steps::kOfTheta, size.g_phi);
@@ -88,29 +88,31 @@ void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) 
   }
 }
 
-// The data and what this model says between them.
-BrdfSamples WithSamplesOf(const FactorModel& model, const BrdfSamples& data, int num_parameters,
-                          const GuideOptions& options, int num_threads) {
-  const double share = static_cast<double>(data.rho.size()) / kDataPerSample;
+// The data and what `guide` says between them, enough for a model of so many parameters.
+BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int num_parameters,
+                          double weight) {
+  const BrdfSamples& measured = data.samples();
+  const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
   const bool few = share < kFew * num_parameters;
-  const size_t count =
-      few ? static_cast<size_t>(kEnough * num_parameters) : static_cast<size_t>(share);
-  const double weight = few ? options.weight * share / static_cast<double>(count) : options.weight;
+  const auto count = static_cast<size_t>(few ? kEnough * num_parameters : share);
   BrdfSamples said;
-  said.source = data.source;
-  said.grid = data.grid;
-  said.directions = PairsBetween(data, count, few);
-  if (said.directions.empty()) return data;
+  said.source = measured.source;
+  said.grid = measured.grid;
+  said.directions = PairsBetween(measured, count, few);
+  if (said.directions.empty()) return measured;
   for (const SphericalAngles& at : said.directions) {
     said.angles.push_back(ToHalfDiff(ToDirections(at)));
   }
   said.rho.assign(said.directions.size(), {});
-  said.rho = EvaluateSamples(model, said, num_threads);
-  if (few) LimitTo(kMaxOfLargest, data.rho, &said.rho);
+  said.rho = EvaluateSamples(guide, said, data.num_threads());
+  if (few) {
+    LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+    weight *= share / static_cast<double>(count);
+  }
 
-  BrdfSamples both = data;
-  if (both.multiplicity.empty()) both.multiplicity.assign(data.rho.size(), 1);
-  both.multiplicity.resize(data.rho.size() + said.rho.size(), weight);
+  BrdfSamples both = measured;
+  if (both.multiplicity.empty()) both.multiplicity.assign(measured.rho.size(), 1);
+  both.multiplicity.resize(measured.rho.size() + said.rho.size(), weight);
   const auto append = [](const auto& from, auto* to) {
     to->insert(to->end(), from.begin(), from.end());
   };
@@ -120,18 +122,15 @@ BrdfSamples WithSamplesOf(const FactorModel& model, const BrdfSamples& data, int
   return both;
 }
 
-FactorModel FitGuide(int number, const BrdfSamples& data, int lobes, const Weighting& weighting,
-                     int num_threads, const std::function<bool()>& stop) {
-  ModelSpec spec = GuideSpec(number);
-  spec.lobes = lobes;
+// The guide of this number, from 0 (the finest), itself guided by the next where data are few.
+FactorModel FitGuide(int number, const Objective& data, const std::function<bool()>& stop) {
+  const ModelSpec spec = GuideSpec(number, data.spec().lobes);
   const int n = spec.num_parameters();
-  const bool few = data.rho.size() < static_cast<size_t>(kSamplesPerParameter * n);
-  const Objective objective(
-      few && number + 1 < kNumGuides
-          ? WithSamplesOf(FitGuide(number + 1, data, lobes, weighting, num_threads, stop), data, n,
-                          {}, num_threads)
-          : data,
-      spec, weighting, num_threads);
+  const bool guided = data.samples().size() < kSamplesPerParameter * n && number + 1 < kNumGuides;
+  const Objective objective =
+      guided ? Objective(WithSamplesOf(FitGuide(number + 1, data, stop), data, n, /*weight=*/1),
+                         spec, data.weighting(), data.num_threads())
+             : Objective(data, spec);
   FactorModel model = FindInitialModel("moments").make(objective, 0);
   SolverOptions options;
   options.diagnose = false;
@@ -150,9 +149,8 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (!(options.weight > 0)) {
     throw Error(measured.source + ": the weight of a guide must be above 0");
   }
-  const int lobes = std::min(data.spec().lobes, 1), threads = data.num_threads();
-  return WithSamplesOf(FitGuide(0, measured, lobes, data.weighting(), threads, options.stop),
-                       measured, data.spec().num_parameters(), options, threads);
+  return WithSamplesOf(FitGuide(0, data, options.stop), data, data.spec().num_parameters(),
+                       options.weight);
 }
 
 }  // namespace trilobe

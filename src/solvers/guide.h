@@ -16,7 +16,7 @@ namespace trilobe {
 // a model of too few numbers for that, one lobe on few nodes, fitted first; samples of it between
 // the measured ones then join the data, and any solver fits both.
 struct GuideOptions {
-  double weight = 1;  // > 0: the multiplicity of each of the guide's samples, one for six measured
+  double weight = 1;  // > 0: what a sample of the guide counts, where there is one for six measured
   std::function<bool()> stop = [] { return false; };  // ends the fit of the guide early
 };
 
