@@ -4,7 +4,12 @@
 
 log_dir=build/log
 
-step() { printf '==> %s\n' "$*"; }
+# step WHAT: says what comes next, and how long the script that was called first has run [min:s].
+export TRILOBE_STARTED=${TRILOBE_STARTED-$EPOCHSECONDS}
+step() {
+  local seconds=$((EPOCHSECONDS - TRILOBE_STARTED))
+  printf '==> [%d:%02d] %s\n' $((seconds / 60)) $((seconds % 60)) "$*"
+}
 
 die() {
   printf 'error: %s\n' "$*" >&2

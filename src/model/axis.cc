@@ -14,7 +14,9 @@
 namespace trilobe {
 namespace {
 
-constexpr double kHorizon = 89.9;  // [degrees]; nodes are above the surface
+// [degrees] G / cos theta may turn before the second, which stands for the horizon: nodes are above
+// the surface.
+constexpr double kTowardsHorizon[] = {84, 89.9};
 
 // What is next to a node stands at it.
 Between Snapped(Between at) {
@@ -72,11 +74,11 @@ Axis Axis::EvenPolar(int thetas, Steps steps, int phi_nodes) {
 
 Axis Axis::ToHorizon() const {
   std::vector<double> nodes = theta;
-  nodes.push_back(kHorizon);
+  nodes.insert(nodes.end(), std::begin(kTowardsHorizon), std::end(kTowardsHorizon));
   return Polar(std::move(nodes), phi_nodes);
 }
 
-bool Axis::reaches_horizon() const { return polar() && theta.back() >= kHorizon; }
+bool Axis::reaches_horizon() const { return polar() && theta.back() >= kTowardsHorizon[1]; }
 
 Axis Axis::Utia() { return EvenPolar(6, Steps::kOfTheta, 48); }
 

@@ -32,7 +32,8 @@ struct Axis {
   static Axis Utia();
 
   bool polar() const { return rule == Rule::kPolar; }
-  // A polar axis with one more ring, at 89.9 degrees; and whether its last is there.
+  // A polar axis that ends at 75 degrees, with two more rings, at 84 and 89.9; and whether its last
+  // is there.
   Axis ToHorizon() const;
   bool reaches_horizon() const;
 

@@ -96,11 +96,34 @@ void FillUnobserved(const Axis& axis, std::span<const double> coverage, size_t l
   }
 }
 
+// Continues q = G / cos theta beyond the last ring with an observed node: 1 / q is linear in
+// cos theta through the last two rings, as it nearly is for GGX, where
+// 2 / q = cos theta + sqrt(cos^2 theta + alpha^2 sin^2 theta) (Walter et al. 2007, eq. 34). At most
+// kMost times as large as where the data end, at least a kMost-th.
+void ContinueRings(const Axis& axis, std::span<const double> coverage, std::span<double> q) {
+  constexpr double kMost = 3;
+  const int columns = axis.phi_nodes;
+  const auto observed = std::ranges::find_if(coverage.rbegin(), coverage.rend(),
+                                             [](double weight) { return weight > 0; });
+  const int last = static_cast<int>(coverage.rend() - observed - 1) / columns;
+  if (last < 1) return;
+  const auto cosine = [&](int ring) { return std::cos(axis.Theta(ring * columns)); };
+  const double step = cosine(last - 1) - cosine(last);
+  for (int k = (last + 1) * columns; k < axis.size; ++k) {
+    const int at = last * columns + k % columns, before = at - columns;
+    // q(last) / q, which is 1 at `last` and q(last) / q(before) at the ring before it.
+    const double t = (cosine(last) - cosine(k / columns)) / step;
+    const double inverse = q[before] > 0 ? 1 - t * (q[at] / q[before] - 1) : 0;
+    q[k] = q[at] / std::clamp(inverse, 1 / kMost, kMost);
+  }
+}
+
 // Fills the unobserved nodes of G from G / cos theta of the observed ones.
 void ContinueShadowing(const Axis& axis, std::span<const double> coverage, std::span<double> G) {
   std::vector<double> ratio(G.begin(), G.end());
   for (int k = 0; k < axis.size; ++k) ratio[k] /= std::cos(axis.Theta(k));
   FillUnobserved(axis, coverage, kLookedAt, ratio);
+  if (axis.polar()) ContinueRings(axis, coverage, ratio);
   for (int k = 0; k < axis.size; ++k) {
     if (!(coverage[k] > 0)) G[k] = ratio[k] * std::cos(axis.Theta(k));
   }

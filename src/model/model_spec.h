@@ -42,8 +42,8 @@ struct ModelSpec {
   static ModelSpec Anisotropic(int lobes);
   // The same on the nodes that proved right between samples and beyond them (docs/anisotropic.md),
   // for data with so many phi: D on 12 theta by 36 phi at most, F in 6 bins, G on 6 by 24 at most
-  // and, where the data end at the last of these, a ring at the horizon. No sample reads that one,
-  // so that canonical forms (gauge.h) give it the G / cos theta of the ring before.
+  // and, where the data end at the last of these, two rings towards the horizon. No sample reads
+  // these, so that canonical forms (gauge.h) continue G to them.
   static ModelSpec AnisotropicFor(int lobes, int data_phis, double data_max_theta);
   // One lobe, nothing shared between channels (Bagher et al. 2016): 816 parameters.
   static ModelSpec IndependentG(const MerlGrid& grid = {});

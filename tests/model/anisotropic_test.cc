@@ -255,7 +255,8 @@ TEST(Anisotropic, ThinnedSamplesStillTouchEveryNode) {
   }
 }
 
-// Where no sample reads the horizon, the canonical form continues G / cos theta to it.
+// Where no sample reads the horizon, the canonical form continues cos theta / G to it, linearly in
+// cos theta, up to three times as far as it is or as low.
 TEST(Anisotropic, GContinuesToTheHorizon) {
   const double end = DegreesToRadians(75);
   const ModelSpec spec = ModelSpec::AnisotropicFor(1, 8, end);
@@ -267,19 +268,34 @@ TEST(Anisotropic, GContinuesToTheHorizon) {
   std::vector<double> coverage(spec.num_parameters(), 1);
   const int phis = spec.g_axis.phi_nodes, rings = spec.g_axis.size / phis;
   const int begin = model.TableOffset(Factor::kG, 0);
+  // G / cos theta grows, falls and stays from the ring before the last on; at last it leaps.
+  ASSERT_EQ(phis, 4);
+  constexpr double kGrowth[] = {1.5, 0.5, 1, 100};
+  const double before = DegreesToRadians(60);
   for (int b = 0; b < phis; ++b) {
-    coverage[begin + (rings - 1) * phis + b] = 0;
-    model.parameters()[begin + (rings - 2) * phis + b] = 0.1 * (1 + b);
+    for (const int ring : {rings - 2, rings - 1}) coverage[begin + ring * phis + b] = 0;
+    double* const G = model.parameters().data() + begin;
+    G[(rings - 3) * phis + b] =
+        G[(rings - 4) * phis + b] / std::cos(before) * std::cos(end) * kGrowth[b];
   }
   Canonicalize(coverage, &model);
   const std::span<const double> G = model.G(0, 0);
   for (int b = 0; b < phis; ++b) {
-    const double phi = spec.g_axis.Phi(b);
-    const double at_end = spec.g_axis.At(end, phi)(G) / std::cos(end);
-    for (const double degrees : {80.0, 85.0, 89.0}) {
+    const auto ratio = [&](double theta) {
+      return spec.g_axis.At(theta, spec.g_axis.Phi(b))(G) / std::cos(theta);
+    };
+    for (const double degrees : {84.0, 89.9}) {
       const double theta = DegreesToRadians(degrees);
-      EXPECT_NEAR(spec.g_axis.At(theta, phi)(G) / std::cos(theta), at_end, 0.02 * at_end)
-          << degrees << " " << b;
+      const double slope = (1 / ratio(before) - 1 / ratio(end)) / (std::cos(before) - std::cos(end));
+      const double linear = 1 / ratio(end) + slope * (std::cos(theta) - std::cos(end));
+      const double bounded = std::clamp(linear * ratio(end), 1.0 / 3, 3.0) / ratio(end);
+      EXPECT_NEAR(ratio(theta) * bounded, 1, 1e-9) << degrees << " " << b;
+    }
+    // Between these rings as well no BRDF runs away.
+    for (double degrees = 75; degrees < 89.9; ++degrees) {
+      const double growth = ratio(DegreesToRadians(degrees)) / ratio(end);
+      EXPECT_GT(growth, 0.3) << degrees << " " << b;
+      EXPECT_LT(growth, 3.2) << degrees << " " << b;
     }
   }
 }
