@@ -80,6 +80,12 @@ Axis Axis::ToHorizon() const {
 
 bool Axis::reaches_horizon() const { return polar() && theta.back() >= kTowardsHorizon[1]; }
 
+Axis Axis::WithoutHorizon() const {
+  if (!reaches_horizon()) return *this;
+  const auto end = std::ranges::lower_bound(theta, kTowardsHorizon[0]);
+  return Polar({theta.begin(), end}, phi_nodes);
+}
+
 Axis Axis::Utia() { return EvenPolar(6, Steps::kOfTheta, 48); }
 
 Stencil Axis::At(double theta_radians, double phi_radians) const {

@@ -32,10 +32,11 @@ struct Axis {
   static Axis Utia();
 
   bool polar() const { return rule == Rule::kPolar; }
-  // A polar axis that ends at 75 degrees, with two more rings, at 84 and 89.9; and whether its last
-  // is there.
+  // A polar axis that ends at 75 degrees, with two more rings, at 84 and 89.9; whether its last is
+  // there; and the axis without these two.
   Axis ToHorizon() const;
   bool reaches_horizon() const;
+  Axis WithoutHorizon() const;
 
   // The entries that a direction reads, with their weights; angles in radians. Constant beyond the
   // first and the last, periodic in phi, which the others but kPolar do not look at. What is within

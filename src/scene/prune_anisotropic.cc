@@ -66,9 +66,10 @@ std::optional<Candidate> WithFewerPhi(const FactorModel& model, Factor factor, d
   return OnAxis(model, factor, Axis::Polar(axis.theta, fewer));
 }
 
-// Without every sixth theta of D or G, ends apart.
+// Without every sixth theta of D or G, ends apart, and those towards the horizon.
 std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor) {
-  const Axis& axis = model.spec().axis(factor);
+  const Axis& all = model.spec().axis(factor);
+  const Axis axis = all.WithoutHorizon();
   const int rings = static_cast<int>(axis.theta.size());
   const int fewer = std::max(5 * rings / 6, kFewestTheta);
   if (fewer >= rings) return std::nullopt;
@@ -76,7 +77,8 @@ std::optional<Candidate> WithFewerTheta(const FactorModel& model, Factor factor)
   for (int a = 0; a < fewer; ++a) {
     theta.push_back(axis.theta[(a * (rings - 1) + (fewer - 1) / 2) / (fewer - 1)]);
   }
-  return OnAxis(model, factor, Axis::Polar(std::move(theta), axis.phi_nodes));
+  const Axis thinned = Axis::Polar(std::move(theta), axis.phi_nodes);
+  return OnAxis(model, factor, all.reaches_horizon() ? thinned.ToHorizon() : thinned);
 }
 
 Candidate Sharing(const FactorModel& model, const ModelSpec& fewer, const std::string& what) {

@@ -116,6 +116,20 @@ TEST(PruneAnisotropic, LeavesOutPhiThatAreNotNeeded) {
   EXPECT_FALSE(Took(pruned.model, "isotropic instead"));
 }
 
+// Rings that no sample reads are not what G needs least: without them rims are wrong.
+TEST(PruneAnisotropic, KeepsTheRingsTowardsTheHorizon) {
+  const FactorModel material = Material(1, 8, 3);
+  ModelSpec spec = material.spec();
+  spec.g_axis = Axis::EvenPolar(6, Axis::Steps::kOfTheta, 4).ToHorizon();
+  const Pruned pruned = PruneFitOf(material, WithAxes(material, spec),
+                                   {.max_relative_rise = 0.5, .lobes = false, .tables = false});
+  const Axis& axis = pruned.model.model.spec().g_axis;
+  EXPECT_LT(axis.theta.size(), spec.g_axis.theta.size());
+  EXPECT_TRUE(axis.reaches_horizon());
+  EXPECT_EQ(axis.WithoutHorizon().theta.back(), 75);
+  EXPECT_EQ(axis.WithoutHorizon().ToHorizon(), axis);
+}
+
 TEST(PruneAnisotropic, LeavesOutALobeAndAzimuthsThatDoNothing) {
   FactorModel material = Material(2, 8, 1);  // as long as wide: round
   for (double& s : material.s(1)) s = 0;
