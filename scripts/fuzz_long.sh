@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Fuzzes for long: scripts/fuzz_long.sh [READER|all] [RUNS] lets each fuzzer of the preset `fuzz`, which
-# must have been built, or that of READER alone, run RUNS inputs (10,000,000), in chunks, and prints how
-# far each is. Stopped at any time, it goes on where it was. What it keeps is in build/fuzz/long/READER:
-# progress (a line a chunk: executions, seconds, exit status), corpus, log, and inputs that crash. Take
-# what is new over to the tree by
-#   build/fuzz/fuzz/READER_fuzzer -merge=1 fuzz/corpus/READER build/fuzz/long/READER/corpus
+# Fuzzes for long: scripts/fuzz_long.sh [READER|all] [RUNS] lets each fuzzer of the preset `asan-ubsan`,
+# which must have been built, or that of READER alone, run RUNS inputs (10,000,000), in chunks, and
+# prints how far each is. Stopped at any time, it goes on where it was. What it keeps is in
+# build/asan-ubsan/long/READER: progress (a line a chunk: executions, seconds, exit status), corpus, log,
+# and inputs that crash. Take what is new over to the tree by
+#   build/asan-ubsan/fuzz/READER_fuzzer -merge=1 fuzz/corpus/READER build/asan-ubsan/long/READER/corpus
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -12,7 +12,7 @@ reader=${1:-all}
 runs=${2:-10000000}
 chunk=200000
 max_crashes=10
-root=build/fuzz/long
+root=build/asan-ubsan/long
 
 mapfile -t readers < <(find fuzz/corpus -mindepth 1 -maxdepth 1 -printf '%f\n' | sort)
 [[ $reader == all ]] || readers=("$reader")
@@ -25,7 +25,7 @@ crashes() { find "$root/$1/crashes" -type f | wc -l; }
 run_chunk() {
   local folder=$root/$1 left=$((runs - $(sum "$1" 1))) begin=$EPOCHREALTIME status=0 executions
   ((left > 0 && $(crashes "$1") < max_crashes)) || return
-  "build/fuzz/fuzz/$1_fuzzer" -runs=$((left < chunk ? left : chunk)) -timeout=10 -max_len=16384 \
+  "build/asan-ubsan/fuzz/$1_fuzzer" -runs=$((left < chunk ? left : chunk)) -timeout=10 -max_len=16384 \
     -print_final_stats=1 -artifact_prefix="$folder/crashes/" \
     "$folder/corpus" "fuzz/corpus/$1" >"$folder/log" 2>&1 || status=$?
   executions=$(awk '/^stat::number_of_executed_units:/ { print $2 }' "$folder/log")
