@@ -24,8 +24,8 @@ struct NodeCandidate {
 
 // `spec` on nodes from coarse to fine, for data with so many theta and phi: D from 8r x 24 to
 // 24r x 72, G from 6 x 16 to 10 x 48, no more phi of D than the data have, and half of these of G.
-// The second is what such data get by default. G has a ring at the horizon if that of `spec` has.
-// `error` and `seconds` are 0.
+// The second is what such data get by default. G has rings towards the horizon if that of `spec`
+// has. `error` and `seconds` are 0.
 std::vector<NodeCandidate> NodeLadder(const ModelSpec& spec, int thetas, int phis);
 
 // About every fifth pair of directions, [n] of the samples: whether it is held out. A function of

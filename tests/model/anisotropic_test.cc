@@ -286,7 +286,8 @@ TEST(Anisotropic, GContinuesToTheHorizon) {
     };
     for (const double degrees : {84.0, 89.9}) {
       const double theta = DegreesToRadians(degrees);
-      const double slope = (1 / ratio(before) - 1 / ratio(end)) / (std::cos(before) - std::cos(end));
+      const double slope =
+          (1 / ratio(before) - 1 / ratio(end)) / (std::cos(before) - std::cos(end));
       const double linear = 1 / ratio(end) + slope * (std::cos(theta) - std::cos(end));
       const double bounded = std::clamp(linear * ratio(end), 1.0 / 3, 3.0) / ratio(end);
       EXPECT_NEAR(ratio(theta) * bounded, 1, 1e-9) << degrees << " " << b;
