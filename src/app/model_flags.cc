@@ -73,7 +73,8 @@ ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
   return spec;
 }
 
-ModelSpec IsotropicSpec(const MerlGrid& grid) {
+// Where directions stand on a grid of few theta, `g_nodes` is not 0: then G has so many nodes.
+ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
   for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "nodes"}) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
   }
@@ -81,9 +82,10 @@ ModelSpec IsotropicSpec(const MerlGrid& grid) {
     if (!IsDefault("lobes") && FLAGS_lobes != 1) {
       throw Error("--model=independent has one lobe; leave out --lobes");
     }
-    return ModelSpec::IndependentG(grid);
   }
-  ModelSpec spec = ModelSpec::SharedFactors(FLAGS_lobes, grid);
+  ModelSpec spec = FLAGS_model == "independent" ? ModelSpec::IndependentG(grid)
+                                                : ModelSpec::SharedFactors(FLAGS_lobes, grid);
+  if (g_nodes > 0) spec.g_axis.size = g_nodes;
   CheckSpec(spec);
   return spec;
 }
@@ -105,8 +107,12 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
   }
   const bool anisotropic =
       FLAGS_model == "anisotropic" || (FLAGS_model == "shared" && measurement.anisotropic);
-  if (!anisotropic) return IsotropicSpec(measurement.samples.grid);
-  return AnisotropicSpec(GridOf(measurement).value_or(HemisphereGrid()), measurement.max_theta);
+  const std::optional<HemisphereGrid> grid =
+      measurement.anisotropic ? GridOf(measurement) : std::nullopt;
+  if (anisotropic) {
+    return AnisotropicSpec(grid.value_or(HemisphereGrid()), measurement.max_theta);
+  }
+  return IsotropicSpec(measurement.samples.grid, grid ? Axis::SplineNodesFor(grid->thetas) : 0);
 }
 
 void CheckModelFlags() {

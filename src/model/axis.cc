@@ -88,6 +88,12 @@ Axis Axis::WithoutHorizon() const {
 
 Axis Axis::Utia() { return EvenPolar(6, Steps::kOfTheta, 48); }
 
+int Axis::SplineNodesFor(int data_thetas) {
+  // (k + 1/2) 90 / size = 75 for odd multiples of 3 alone.
+  const int odd = (data_thetas / 2 - 1) / 2 * 2 + 1;
+  return 3 * std::clamp(odd, 3, 29);
+}
+
 Stencil Axis::At(double theta_radians, double phi_radians) const {
   switch (rule) {
     case Rule::kRootTheta:

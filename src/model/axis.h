@@ -31,6 +31,11 @@ struct Axis {
   // The nodes 0, 15, ... 75 degrees by 0, 7.5, ... 352.5 of UTIA's directions (docs/method.md).
   static Axis Utia();
 
+  // How many nodes of kSpline suit data at so few even theta: about three for two theta, as nodes
+  // that stand between these would go where they like. And one at 75 degrees, where such data end,
+  // so that none beyond is read by little.
+  static int SplineNodesFor(int data_thetas);
+
   bool polar() const { return rule == Rule::kPolar; }
   // A polar axis that ends at 75 degrees, with two more rings, at 84 and 89.9; whether its last is
   // there; and the axis without these two.

@@ -99,7 +99,7 @@ TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   EXPECT_GT(anisotropic["appearance"]["psnr_db"], report["appearance"]["psnr_db"]);
 }
 
-// Ninety bins of G where six theta were measured: what is between them is the guide's.
+// Where six theta were measured, what D and F are between them is the guide's.
 TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
   const auto psnr_from_formula = [&](const char* guide) {
     const ProgramResult fit =

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
+#include <utility>
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/math/angles.h"
 
 namespace trilobe {
 namespace {
@@ -101,6 +104,19 @@ TEST(ModelSpec, RefusesWhatIsOutOfRange) {
       ModelSpec spec;
       (spec.*axis).size = bad;
       EXPECT_THROW(CheckSpec(spec), Error);
+    }
+  }
+}
+
+// About three nodes for two theta of the data, and one at 75 degrees.
+TEST(ModelSpec, SplinesForFewThetaHaveANodeWhereDataEnd) {
+  for (const auto& [thetas, nodes] : {std::pair(1, 9), {6, 9}, {12, 15}, {20, 27}, {1000, 87}}) {
+    Axis axis{.rule = Axis::Rule::kSpline, .size = Axis::SplineNodesFor(thetas)};
+    EXPECT_EQ(axis.size, nodes) << thetas;
+    const Stencil stencil = axis.At(DegreesToRadians(75), 0);
+    for (int i = 0; i < stencil.size; ++i) {
+      const bool at_end = std::abs(axis.Theta(stencil.index[i]) - DegreesToRadians(75)) < 1e-9;
+      EXPECT_NEAR(stencil.weight[i], at_end ? 1 : 0, 1e-9) << thetas;
     }
   }
 }
