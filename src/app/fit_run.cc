@@ -2,6 +2,7 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -85,9 +86,11 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
           .run = run};
 }
 
-// Of anisotropic models, F in the 90 bins that all readers of model files know, if those have the
-// centres of its own fewer bins among theirs: the same function.
+// What all readers of model files know: of anisotropic models, F in 90 bins, if those have the
+// centres of its own fewer bins among theirs, which makes it the same function; of isotropic ones,
+// G on as many nodes as F has bins, of which InForm fills those that no data touch.
 ModelSpec WithFileBins(ModelSpec spec) {
+  if (!spec.anisotropic()) spec.g_axis.size = std::max(spec.g_axis.size, spec.f_axis.size);
   constexpr int kFileBins = 90;
   const int bins = spec.f_axis.size;
   if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) {
