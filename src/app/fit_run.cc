@@ -228,7 +228,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   finish.appearance.num_threads = num_threads;
   finish.stop = interrupted;
   FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
-  if (guided || report.spec.anisotropic()) {  // data alone, in the file's bins
+  // Data alone, in the file's bins.
+  if (guided || report.spec.anisotropic() || file_spec != report.spec) {
     fit.model = InForm(in_file, fit.model);
     fit.objective = in_file;
   }
