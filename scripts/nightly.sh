@@ -34,4 +34,4 @@ tests/faults/harness.py --trials="${1:-400}"
 step "Fuzzing each reader"
 scripts/fuzz_long.sh "" "${2:-10000000}"
 
-step "All held in $((SECONDS / 60)) min"
+step "All held"

@@ -90,11 +90,12 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
 // centres of its own fewer bins among theirs, which makes it the same function; of isotropic ones,
 // G on as many nodes as F has bins, of which InForm fills those that no data touch.
 ModelSpec WithFileBins(ModelSpec spec) {
-  if (!spec.anisotropic()) spec.g_axis.size = std::max(spec.g_axis.size, spec.f_axis.size);
-  constexpr int kFileBins = 90;
-  const int bins = spec.f_axis.size;
-  if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) {
-    spec.f_axis.size = kFileBins;
+  int& bins = spec.f_axis.size;
+  if (spec.anisotropic()) {
+    constexpr int kFileBins = 90;
+    if (kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
+  } else {
+    spec.g_axis.size = std::max(spec.g_axis.size, bins);
   }
   return spec;
 }
@@ -229,7 +230,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   finish.stop = interrupted;
   FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
   // Data alone, in the file's bins.
-  if (guided || report.spec.anisotropic() || file_spec != report.spec) {
+  if (guided || file_spec != report.spec) {
     fit.model = InForm(in_file, fit.model);
     fit.objective = in_file;
   }

@@ -78,13 +78,12 @@ ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
   for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "nodes"}) {
     if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
   }
-  if (FLAGS_model == "independent") {
-    if (!IsDefault("lobes") && FLAGS_lobes != 1) {
-      throw Error("--model=independent has one lobe; leave out --lobes");
-    }
+  const bool independent = FLAGS_model == "independent";
+  if (independent && !IsDefault("lobes") && FLAGS_lobes != 1) {
+    throw Error("--model=independent has one lobe; leave out --lobes");
   }
-  ModelSpec spec = FLAGS_model == "independent" ? ModelSpec::IndependentG(grid)
-                                                : ModelSpec::SharedFactors(FLAGS_lobes, grid);
+  ModelSpec spec =
+      independent ? ModelSpec::IndependentG(grid) : ModelSpec::SharedFactors(FLAGS_lobes, grid);
   if (g_nodes > 0) spec.g_axis.size = g_nodes;
   CheckSpec(spec);
   return spec;

@@ -14,8 +14,8 @@
 namespace trilobe {
 namespace {
 
-// [degrees] G / cos theta may turn before the second, which stands for the horizon: nodes are above
-// the surface.
+// [degrees] Nodes are above the surface, so the second stands for the horizon. There G is about 0
+// whatever G / cos theta is, so it takes the first as well to let that grow.
 constexpr double kTowardsHorizon[] = {84, 89.9};
 
 // What is next to a node stands at it.
