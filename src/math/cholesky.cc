@@ -1,12 +1,10 @@
 #include "trilobe/math/cholesky.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cstddef>
-#include <mutex>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/math/openblas.h"
 #include "trilobe/math/triangle.h"
 
 // LAPACK has no C header of its own.
@@ -27,34 +25,6 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
 
 namespace trilobe {
 namespace {
-
-// A function of OpenBLAS, null where BLAS is another one, or lacks it.
-template <typename Function>
-Function* OfOpenBlas(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
-}
-
-// Threads are ours, and bits must not hang on how many OpenBLAS has: one. Before main, since Ceres
-// calls BLAS, too. True where OpenBLAS is built without threads: then it hands the same work space
-// to two callers at once (0.3.21 looks for a free one outside of its lock), whose results are
-// wrong.
-const bool only_one_caller = [] {
-  if (auto* const set = OfOpenBlas<void(int)>("openblas_set_num_threads")) set(1);
-  auto* const parallel = OfOpenBlas<int()>("openblas_get_parallel");
-  return parallel != nullptr && parallel() == 0;
-}();
-
-// To be held while BLAS is called.
-class BlasCall {
- public:
-  BlasCall() {
-    static std::mutex mutex;
-    if (only_one_caller) lock_ = std::unique_lock(mutex);
-  }
-
- private:
-  std::unique_lock<std::mutex> lock_;
-};
 
 void SolveTriangular(const char* trans, int n, const double* L, int columns, double* B) {
   const int stride = std::max(1, n);

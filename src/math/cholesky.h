@@ -4,8 +4,7 @@
 namespace trilobe {
 
 // LAPACK, for matrices of a few hundred rows, and by tiles for some thousand. All are stored column
-// by column. May be called from any number of threads at once. Where BLAS is OpenBLAS, a program
-// that links this has one thread of it (openblas_set_num_threads).
+// by column. May be called from any number of threads at once (math/openblas.h).
 
 // Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; what lies
 // above is neither read nor written. False, and no factor, if it is not positive definite.

@@ -1,16 +1,21 @@
 #include "trilobe/solvers/diagnosis.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <vector>
 
+#include "trilobe/math/eigenvalues.h"
 #include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {
+
+std::vector<double> EigenvaluesOf(const Eigen::MatrixXd& A) {
+  return SymmetricEigenvalues(static_cast<int>(A.rows()), {A.data(), A.data() + A.size()});
+}
 
 // Tables whose scale can move to s: those with a parameter that is not 0 in a column that is not 0.
 int GaugeDimensions(const FactorModel& model, const std::vector<double>& squared_lengths) {
@@ -67,11 +72,10 @@ Diagnosis Diagnose(const Objective& objective, const FactorModel& model) {
   diagnosis.rank_tolerance =
       std::sqrt(std::numeric_limits<double>::epsilon() * static_cast<double>(moving.size() + 1));
   if (moving.empty() || !scaled.allFinite()) return diagnosis;
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
-  const double largest = std::sqrt(values(values.size() - 1));
-  for (int k = 0; k < values.size(); ++k) {
-    const double singular = std::sqrt(std::max(0.0, values(k)));
+  const std::vector<double> values = EigenvaluesOf(scaled);
+  const double largest = std::sqrt(values.back());
+  for (const double value : values) {
+    const double singular = std::sqrt(std::max(0.0, value));
     if (singular <= diagnosis.rank_tolerance * largest) continue;
     if (diagnosis.rank++ == 0) diagnosis.condition = largest / singular;
   }
@@ -112,11 +116,9 @@ int UndeterminedByThetaD(const Objective& objective) {
     const Eigen::VectorXd scale = products.diagonal()(read).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled =
         scale.asDiagonal() * products(read, read).eval() * scale.asDiagonal();
-    const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly)
-            .eigenvalues();
-    const double zero = eps * static_cast<double>(read.size() + 1) * values(values.size() - 1);
-    undetermined += static_cast<int>((values.array() <= zero).count());
+    const std::vector<double> values = EigenvaluesOf(scaled);
+    const double zero = eps * static_cast<double>(read.size() + 1) * values.back();
+    undetermined += static_cast<int>(std::ranges::upper_bound(values, zero) - values.begin());
   }
   return undetermined;
 }
