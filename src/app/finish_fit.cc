@@ -45,9 +45,10 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   Canonicalize(objective.coverage(), &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
   if (options.max_parameters > 0 && !options.stop()) {
-    const auto judge = [&](const FactorModel& candidate) {
-      return CompareOnSphere(*measured, ContinuousModel(candidate), options.appearance).psnr_db;
-    };
+    const auto judge =
+        [sphere = SphereJudge(*measured, options.appearance)](const FactorModel& candidate) {
+          return sphere(ContinuousModel(candidate)).psnr_db;
+        };
     ChosenModel chosen = ChooseModel(
         of, fit.model,
         {.max_parameters = options.max_parameters, .judge = judge, .stop = options.stop});

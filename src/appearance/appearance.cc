@@ -249,10 +249,19 @@ ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitte
   return RenderPair(TabulatedBrdf(measured), fitted, MeasuredDirections(measured), options);
 }
 
-SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted,
-                            const AppearanceOptions& options) {
-  const ImagePair pair = RenderMeasuredPair(measured, fitted, options);
-  return CompareSpheres(pair.measured, pair.fitted);
+SphereJudge::SphereJudge(const BrdfTable& measured, const AppearanceOptions& options)
+    : size_(options.size),
+      num_threads_(options.num_threads),
+      lights_(DrawLights(EnvironmentOf(options), options.lights)),
+      counts_(MeasuredDirections(measured)),
+      measured_(Render(Interpolated(TabulatedBrdf(measured)))) {}
+
+SphereError SphereJudge::operator()(const AngularBrdf& fitted) const {
+  return CompareSpheres(measured_, Render(Clamped(fitted)));
+}
+
+RenderedImage SphereJudge::Render(const AngularBrdf& brdf) const {
+  return std::move(RenderSpheres({&brdf, 1}, lights_, size_, counts_, num_threads_)[0]);
 }
 
 ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_APPEARANCE_APPEARANCE_H_
 #define TRILOBE_APPEARANCE_APPEARANCE_H_
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/brdf/channels.h"
+#include "trilobe/brdf/directions.h"
 #include "trilobe/brdf/node_brdf.h"
 
 namespace trilobe {
@@ -82,9 +84,23 @@ AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf
 // Throws Error, which names the source, where a figure overflows.
 void CheckFinite(const AppearanceReport& report, const std::string& source);
 
-// The part of it that says most, for comparing many materials with one measurement.
-SphereError CompareOnSphere(const BrdfTable& measured, const AngularBrdf& fitted,
-                            const AppearanceOptions& options);
+// The part of it that says most, for comparing many materials with one measurement, whose sphere is
+// rendered once.
+class SphereJudge {
+ public:
+  // Throws Error when no bin is valid or the environment is black.
+  SphereJudge(const BrdfTable& measured, const AppearanceOptions& options);
+
+  SphereError operator()(const AngularBrdf& fitted) const;
+
+ private:
+  RenderedImage Render(const AngularBrdf& brdf) const;
+
+  const int size_, num_threads_;
+  const std::vector<Light> lights_;
+  const std::function<bool(const HalfDiffAngles&, const Cosines&)> counts_;
+  const RenderedImage measured_;
+};
 
 // Measured and fitted sphere under an environment: as they are compared, from measured directions
 // alone, and, for pictures, from all.

@@ -1,169 +1,19 @@
 #include "trilobe/scene/node_elimination.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
+#include <vector>
 
-#include "trilobe/math/cholesky.h"
 #include "trilobe/scene/reduced_quadratic.h"
+#include "trilobe/scene/tableau.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/joint/reduction.h"
 
 namespace trilobe {
 namespace {
-
-// A few parameters with a factor each.
-struct Term {
-  int row;
-  double factor;
-};
-struct Constraint {
-  std::array<Term, 3> terms;
-  int size = 0;
-  void Add(int row, double factor) { terms[size++] = {row, factor}; }
-  const Term* begin() const { return terms.data(); }
-  const Term* end() const { return terms.data() + size; }
-};
-
-// The minimum of a quadratic over parameters z >= 0 some of which, Z, are held at 0 while the
-// others, F, are free; and how it answers to constraints. With the matrix A of the quadratic and
-// its gradient q / 2 at the minimum, h = (z_F, -q_Z) and
-//   T_FF = A_FF^-1,  T_FZ = -A_FF^-1 A_FZ,  T_ZZ = -(A_ZZ - A_ZF A_FF^-1 A_FZ),
-// the principal pivot transform of A^-1. The columns of T_FZ are how the free parameters follow one
-// of Z that is let go.
-class Tableau {
- public:
-  // All free. A: positive definite, column by column; it is taken over. Of no use if it is not.
-  Tableau(std::vector<double> A, std::vector<double> z)
-      : stride_(z.size()),
-        size_(static_cast<int>(z.size())),
-        T_(std::move(A)),
-        h_(std::move(z)),
-        free_(stride_, true) {
-    valid_ = FactorCholesky(size_, T_.data());
-    if (valid_) InvertFactored(size_, T_.data());
-  }
-
-  bool valid() const { return valid_; }
-
-  int size() const { return size_; }
-  bool free(int k) const { return free_[k]; }
-  double h(int k) const { return h_[k]; }
-  void Set(int k, double h) { h_[k] = h; }
-
-  // Holds a free parameter at 0, or lets it go; the change of the minimum.
-  double Pivot(int k) {
-    const double pivot = At(k, k), scale = 1 / std::abs(pivot);
-    const double h_k = h_[k];
-    std::vector<double>& t = t_;
-    t.assign(row(k), row(k) + size_);
-    t[k] = 0;
-    AddOuterProduct(-1 / pivot);
-    for (int i = 0; i < size_; ++i) {
-      h_[i] -= t[i] * h_k / pivot;
-      At(i, k) = At(k, i) = t[i] * scale;
-    }
-    At(k, k) = -1 / pivot;
-    h_[k] = h_k * scale;
-    free_[k] = !free_[k];
-    return h_k * h_k / pivot;
-  }
-
-  // By how much the minimum rises if sum factor z = 0 over the terms, the first of which is let go
-  // if it is held.
-  double Rise(const Constraint& c) const {
-    double value = 0, variance = 0;
-    for (const Term& a : c) {
-      if (!free_[a.row]) continue;
-      value += a.factor * h_[a.row];
-      for (const Term& b : c) {
-        if (free_[b.row]) variance += a.factor * b.factor * At(a.row, b.row);
-      }
-    }
-    const int first = c.begin()->row;
-    double release = 0;
-    if (!free_[first]) {
-      // Where it would go below 0 the others of the constraint have to be 0 with it.
-      const double sigma = -At(first, first);
-      double follow = c.begin()->factor;
-      for (const Term& a : c) {
-        if (free_[a.row]) follow += a.factor * At(first, a.row);
-      }
-      value += follow * h_[first] / sigma;
-      variance += follow * follow / sigma;
-      release = h_[first] * h_[first] / sigma;
-      if (!(variance > 0)) return 0;
-      const double held = follow / sigma * (1 / c.begin()->factor);
-      const double z = h_[first] / sigma - held * value / variance;
-      if (z * c.begin()->factor < 0) {
-        double rise = 0;
-        for (const Term& a : c) {
-          if (free_[a.row] && h_[a.row] > 0) rise += h_[a.row] * h_[a.row] / At(a.row, a.row);
-        }
-        return rise;
-      }
-    }
-    return variance > 0 ? value * value / variance - release : 0;
-  }
-
-  // Imposes it, its first parameter being free.
-  void Impose(const Constraint& c) {
-    t_.assign(size_, 0.0);
-    double value = 0, variance = 0;
-    for (const Term& a : c) {
-      if (!free_[a.row]) continue;
-      value += a.factor * h_[a.row];
-      const double* const T_a = row(a.row);
-      for (int i = 0; i < size_; ++i) t_[i] += a.factor * T_a[i];
-    }
-    for (const Term& a : c) {
-      if (free_[a.row]) {
-        variance += a.factor * t_[a.row];
-      } else {
-        t_[a.row] += a.factor;
-      }
-    }
-    if (!(variance > 0)) return;
-    AddOuterProduct(-1 / variance);
-    for (int i = 0; i < size_; ++i) h_[i] -= t_[i] * value / variance;
-  }
-
-  // Forgets a parameter that follows from others. The last one takes its place.
-  void Remove(int k) {
-    const int last = --size_;
-    for (int i = 0; i <= last; ++i) At(k, i) = At(last, i);
-    for (int i = 0; i < last; ++i) At(i, k) = At(i, last);
-    At(k, k) = At(last, last);
-    h_[k] = h_[last];
-    free_[k] = free_[last];
-  }
-
- private:
-  double* row(int i) { return T_.data() + i * stride_; }
-  const double* row(int i) const { return T_.data() + i * stride_; }
-  double& At(int i, int j) { return row(i)[j]; }
-  double At(int i, int j) const { return row(i)[j]; }
-
-  // T += factor t t'.
-  void AddOuterProduct(double factor) {
-    const double* const t = t_.data();
-    for (int i = 0; i < size_; ++i) {
-      const double a = factor * t[i];
-      if (a == 0) continue;
-      double* const to = row(i);
-      for (int j = 0; j < size_; ++j) to[j] += a * t[j];
-    }
-  }
-
-  const size_t stride_;
-  int size_;
-  bool valid_ = false;
-  std::vector<double> T_, h_;
-  std::vector<bool> free_;
-  std::vector<double> t_;
-};
 
 // A stored entry of a table, in the list of those that are left.
 struct Node {

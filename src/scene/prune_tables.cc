@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "trilobe/base/parallel.h"
 #include "trilobe/scene/needed_layout.h"
 #include "trilobe/scene/node_elimination.h"
 #include "trilobe/scene/reduced_quadratic.h"
@@ -156,14 +157,20 @@ int CountWithin(const std::vector<Elimination>& order, double rise) {
 
 void ChooseShape(Pruning* pruning) {
   const PruneOptions& limits = pruning->options();
+  const std::vector<ModelShape> shapes = ShapesWithin(
+      pruning->state().spec(), pruning->state().layout, limits.colour, limits.shadowing);
+  // The shape as it is has the most parameters, and comes last.
+  if (shapes.front().name.empty()) return;
+  const QuadraticModel& at = pruning->Linearized();
+  std::vector<std::optional<ShapeOption>> promised(shapes.size());
+  ParallelFor(static_cast<int>(shapes.size()), pruning->state().objective->num_threads(),
+              [&](int k) { promised[k] = Promise(*pruning, shapes[k], at); });
   std::vector<ShapeOption> options;
-  for (const ModelShape& shape : ShapesWithin(pruning->state().spec(), pruning->state().layout,
-                                              limits.colour, limits.shadowing)) {
-    // The shape as it is has the most parameters, and comes last.
-    if (shape.name.empty() && options.empty()) return;
-    if (auto option = Promise(*pruning, shape, pruning->Linearized())) {
-      options.push_back(*std::move(option));
-    }
+  for (std::optional<ShapeOption>& option : promised) {
+    if (!option) continue;
+    // Where no other is within the budget, it stays.
+    if (option->shape.name.empty() && options.empty()) return;
+    options.push_back(*std::move(option));
   }
   std::ranges::stable_sort(options, [&](const ShapeOption& a, const ShapeOption& b) {
     if (!pruning->by_parameters()) return a.num_parameters < b.num_parameters;
