@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "trilobe/app/interrupt.h"
+#include "trilobe/app/program.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/peak_memory.h"
 #include "trilobe/base/stopwatch.h"
@@ -41,8 +42,6 @@ constexpr const char* kCourseName = "course.csv";
 constexpr const char* kReconstructionName = "reconstruction.binary";
 constexpr const char* kAtNodesName = "reconstruction.bin";
 constexpr const char* kPairName = "pair.png";
-
-std::string Program() { return std::string("trilobe ") + gflags::VersionString(); }
 
 // On a disk that has filled up meanwhile, a model is saved elsewhere rather than lost.
 void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
@@ -81,7 +80,7 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
           .source = source,
           .valid_samples = objective.samples().size(),
           .max_angle = MaxAngleDegrees(measured),
-          .program = Program(),
+          .program = ProgramName(),
           .date = UtcNow(),
           .run = run};
 }
@@ -126,7 +125,7 @@ const std::vector<std::string>& FitFolderMarks() {
 
 std::string FitKey(const FitSettings& settings, const std::string& source,
                    const std::string& bytes) {
-  std::string text = Program() + "\n" + settings.key;
+  std::string text = ProgramName() + "\n" + ProgramBuild() + "\n" + settings.key;
   text += IsSynthetic(source) ? source : ContentHash(bytes);
   return ContentHash(text);
 }

@@ -13,6 +13,7 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/interrupt.h"
+#include "trilobe/app/program.h"
 #include "trilobe/app/progress.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/app/scene_report.h"
@@ -119,7 +120,8 @@ SceneFitSettings SceneSettingsFromFlags() {
                             .seed = source.seed,
                             .max_angle_deg = source.max_angle_deg,
                             .extrapolated = source.extrapolated,
-                            .program = std::string("trilobe ") + gflags::VersionString(),
+                            .program = ProgramName(),
+                            .build = ProgramBuild(),
                             .cache = CacheFromFlags(),
                             .stop = [] { return InterruptGuard::signal() != 0; }};
   settings.options.diagnose = false;  // nobody would see it

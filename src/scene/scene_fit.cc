@@ -159,6 +159,7 @@ class MaterialFitter {
   Key FitKey(const std::string& purpose) const {
     Key key("fit 2, " + purpose);
     key.Add("program", settings_.program);
+    key.Add("build", settings_.build);
     key.Add("source", bytes_hash_);
     if (IsSynthetic(material_.source)) {
       key.Add("noise", settings_.noise);

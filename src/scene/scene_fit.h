@@ -28,7 +28,8 @@ struct SceneFitSettings {
   uint64_t seed = 1;
   double max_angle_deg = 90;  // what counts as measured, as in SourceOptions
   bool extrapolated = false;
-  std::string program;  // "trilobe 0.1.0": fits of another version are not reused
+  std::string program;  // "trilobe 0.1.0", for model files
+  std::string build;    // and which build of it: what another one has fitted is not reused
   FitCache cache;
   // Asked after each iteration, from several threads; true to stop and keep nothing.
   std::function<bool()> stop = [] { return false; };

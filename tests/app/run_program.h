@@ -54,12 +54,13 @@ struct ProgramResult {
 };
 
 // Runs the real program with these arguments, without a shell; each of `environment` ("PATH=") is
-// set for it.
+// set for it. Or a copy of it.
 inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
-                                const std::vector<std::string>& environment = {}) {
+                                const std::vector<std::string>& environment = {},
+                                const std::string& program = TRILOBE_PROGRAM) {
   const TemporaryFolder folder;
   const std::string out = folder / "out", err = folder / "err";
-  std::vector<std::string> words = {TRILOBE_PROGRAM};
+  std::vector<std::string> words = {program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

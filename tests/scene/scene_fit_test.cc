@@ -122,6 +122,9 @@ TEST(FitMaterial, AnythingThatMattersMakesAnotherEntry) {
   settings.program = "newer";
   expect_new(Material("felt"), settings, "program");
   settings = Settings(cache);
+  settings.build = "of other sources";
+  expect_new(Material("felt"), settings, "build");
+  settings = Settings(cache);
   settings.extrapolated = true;
   expect_new(Material("felt"), settings, "extrapolated");
   settings = Settings(cache);

@@ -1,0 +1,40 @@
+#include "trilobe/app/program.h"
+
+#include <dlfcn.h>
+#include <gflags/gflags.h>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/file.h"
+#include "trilobe/scene/fit_cache.h"
+
+namespace trilobe {
+namespace {
+
+std::string BytesOf(const char* path) {
+  try {
+    return ReadFile(path);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::string ProgramName() { return std::string("trilobe ").append(gflags::VersionString()); }
+
+const std::string& ProgramBuild() {
+  static const std::string build = [] {
+    std::string bytes = BytesOf("/proc/self/exe");
+    // Where the library is part of the program, both are one file.
+    Dl_info program{}, library{};
+    if (dladdr(reinterpret_cast<void*>(&ProgramName), &program) != 0 &&
+        dladdr(reinterpret_cast<void*>(&ContentHash), &library) != 0 &&
+        program.dli_fbase != library.dli_fbase) {
+      bytes += BytesOf(library.dli_fname);
+    }
+    return bytes.empty() ? bytes : ContentHash(bytes);
+  }();
+  return build;
+}
+
+}  // namespace trilobe
