@@ -85,17 +85,14 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
           .run = run};
 }
 
-// What all readers of model files know: of anisotropic models, F in 90 bins, if those have the
-// centres of its own fewer bins among theirs, which makes it the same function; of isotropic ones,
-// G on as many nodes as F has bins, of which InForm fills those that no data touch.
+// What all readers of model files know of scattered samples' models: F in 90 bins, if those have
+// the centres of its own fewer bins among theirs, which makes it the same function; of isotropic
+// ones, G on as many nodes as F has bins, of which InForm fills those that no data touch.
 ModelSpec WithFileBins(ModelSpec spec) {
+  constexpr int kFileBins = 90;
   int& bins = spec.f_axis.size;
-  if (spec.anisotropic()) {
-    constexpr int kFileBins = 90;
-    if (kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
-  } else {
-    spec.g_axis.size = std::max(spec.g_axis.size, bins);
-  }
+  if (kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
+  if (!spec.anisotropic()) spec.g_axis.size = std::max(spec.g_axis.size, bins);
   return spec;
 }
 
@@ -202,8 +199,10 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   };
   SolverSummary& summary = report.summary;
   std::optional<Objective> guided;
-  if ((report.spec.anisotropic() || measured.anisotropic) && settings.guide > 0) {
-    guided.emplace(WithGuide(objective, {.weight = settings.guide, .stop = interrupted}),
+  if (table == nullptr && settings.guide > 0) {
+    guided.emplace(WithGuide(objective, {.weight = settings.guide,
+                                         .isotropic = !measured.anisotropic,
+                                         .stop = interrupted}),
                    report.spec, settings.weighting, num_threads);
     const BrdfSamples& both = guided->samples();
     if (both.size() > objective.samples().size()) {
@@ -216,7 +215,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.seconds.solve = stopwatch.Lap();
   report.fit = InfoOf(settings, summary, source, measured, objective,
                       folder == nullptr ? "" : folder->run());
-  const ModelSpec file_spec = WithFileBins(report.spec);
+  const ModelSpec file_spec = table != nullptr ? report.spec : WithFileBins(report.spec);
   const Objective in_file = file_spec == report.spec ? objective : Objective(objective, file_spec);
   // As the solver left it; what follows may take longer than somebody who ends the program waits.
   if (folder != nullptr && InterruptGuard::signal() == 0) {

@@ -36,9 +36,9 @@ DEFINE_string(
     "(docs/anisotropic.md)");
 DEFINE_double(
     guide, 1,
-    "where several azimuths were measured: how much a small model, fitted first, counts between "
-    "the measured directions (docs/anisotropic.md); 0: not at all, the default with "
-    "--model=anisotropic");
+    "of scattered samples: how much a small model, fitted first, counts between the measured "
+    "directions, much less where no azimuths matter (docs/anisotropic.md, "
+    "docs/method.md#samples-on-no-grid); 0: not at all, the default with --model=anisotropic");
 
 namespace trilobe {
 namespace {
@@ -93,10 +93,11 @@ ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
 
 ModelSpec SpecFromFlags(const Measurement& measurement) {
   CheckModelFlags();
-  if (!IsDefault("guide") && FLAGS_model != "anisotropic" && !measurement.anisotropic) {
-    throw Error("--guide is for data with several azimuths");
-  }
   if (measurement.table) {
+    if (!IsDefault("guide")) {
+      throw Error(measurement.source + ": --guide is for scattered samples, and a " +
+                  measurement.kind + " is a table");
+    }
     if (FLAGS_model == "anisotropic") {
       throw Error(measurement.source + ": a " + measurement.kind +
                   " knows no azimuths; an anisotropic model needs scattered samples with several "
@@ -111,7 +112,9 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
   if (anisotropic) {
     return AnisotropicSpec(grid.value_or(HemisphereGrid()), measurement.max_theta);
   }
-  return IsotropicSpec(measurement.samples.grid, grid ? Axis::SplineNodesFor(grid->thetas) : 0);
+  const ModelSpec spec =
+      IsotropicSpec(measurement.samples.grid, grid ? Axis::SplineNodesFor(grid->thetas) : 0);
+  return measurement.anisotropic ? spec : spec.ForScattered(measurement.samples.size());
 }
 
 void CheckModelFlags() {

@@ -46,6 +46,15 @@ ModelSpec ModelSpec::AnisotropicFor(int lobes, int data_phis, double data_max_th
   return spec;
 }
 
+ModelSpec ModelSpec::ForScattered(int num_samples) const {
+  constexpr int kPlenty = 100, kBins = 10, kNodes = 9;
+  ModelSpec spec = *this;
+  if (num_samples >= kPlenty * num_parameters()) return spec;
+  spec.f_axis.size = std::min(f_axis.size, kBins);
+  spec.g_axis.size = std::min(g_axis.size, kNodes);
+  return spec;
+}
+
 ModelSpec ModelSpec::IndependentG(const MerlGrid& grid) {
   ModelSpec spec = SharedFactors(1, grid);
   spec.D = spec.F = spec.G = {.per_lobe = true, .per_channel = true};

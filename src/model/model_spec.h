@@ -45,6 +45,10 @@ struct ModelSpec {
   // and, where the data end at the last of these, two rings towards the horizon. No sample reads
   // these, so that canonical forms (gauge.h) continue G to them.
   static ModelSpec AnisotropicFor(int lobes, int data_phis, double data_max_theta);
+  // An isotropic form for so many scattered samples: F in 10 bins and G on 9 nodes where there are
+  // less than a hundred for each parameter, which then leave bins of F and nodes of G between them
+  // to go where they like.
+  ModelSpec ForScattered(int num_samples) const;
   // One lobe, nothing shared between channels (Bagher et al. 2016): 816 parameters.
   static ModelSpec IndependentG(const MerlGrid& grid = {});
 

@@ -232,10 +232,11 @@ class MaterialFitter {
   // What they are fitted to.
   const Objective& FitObjective() {
     const Objective& measured = MeasuredObjective();
-    if (!measured.spec().anisotropic()) return measured;
+    if (measured.samples().on_grid()) return measured;
     if (!guided_) {
-      guided_.emplace(WithGuide(measured, {.stop = settings_.stop}), measured.spec(),
-                      measured.weighting(), num_threads_);
+      guided_.emplace(WithGuide(measured, {.isotropic = !measured.spec().anisotropic(),
+                                           .stop = settings_.stop}),
+                      measured.spec(), measured.weighting(), num_threads_);
     }
     return *guided_;
   }
@@ -288,7 +289,7 @@ class MaterialFitter {
     const FactorModel& model = full->file.model;
     PrunedModel pruned = model.spec().anisotropic()
                              ? PruneAnisotropic(objective, FitObjective(), model, prune_options)
-                             : Prune(objective, model, prune_options);
+                             : Prune(FitObjective(), model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();

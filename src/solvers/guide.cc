@@ -27,7 +27,24 @@ constexpr double kMaxOfLargest = 2;
 // nodes.
 constexpr int kSamplesPerParameter = 5;
 
+// What a guide without azimuths counts, as a share of what one with azimuths does.
+constexpr double kIsotropicWeight = 0.003;
+
 // One lobe, or none for models without; from fine to coarse.
+constexpr int kNumIsotropicGuides = 3;
+ModelSpec IsotropicGuideSpec(int number, int lobes) {
+  struct Size {
+    int d, f, g;
+  };
+  constexpr Size kSizes[kNumIsotropicGuides] = {{24, 6, 9}, {12, 4, 6}, {8, 4, 4}};
+  const Size& size = kSizes[number];
+  ModelSpec spec = ModelSpec::SharedFactors(std::min(lobes, 1));
+  spec.d_axis.size = size.d;
+  spec.f_axis.size = size.f;
+  spec.g_axis.size = size.g;
+  return spec;
+}
+
 constexpr int kNumGuides = 4;
 ModelSpec GuideSpec(int number, int lobes) {
   struct Size {
@@ -105,6 +122,9 @@ BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int n
   }
   said.rho.assign(said.directions.size(), {});
   said.rho = EvaluateSamples(guide, said, data.num_threads());
+  for (Rgb& value : said.rho) {
+    for (double& x : value) x = std::max(x, 0.0);  // a spline may undershoot
+  }
   if (few) {
     LimitTo(kMaxOfLargest, measured.rho, &said.rho);
     weight *= share / static_cast<double>(count);
@@ -123,18 +143,21 @@ BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int n
 }
 
 // The guide of this number, from 0 (the finest), itself guided by the next where data are few.
-FactorModel FitGuide(int number, const Objective& data, const std::function<bool()>& stop) {
-  const ModelSpec spec = GuideSpec(number, data.spec().lobes);
+FactorModel FitGuide(int number, const Objective& data, const GuideOptions& asked) {
+  const int lobes = data.spec().lobes;
+  const ModelSpec spec =
+      asked.isotropic ? IsotropicGuideSpec(number, lobes) : GuideSpec(number, lobes);
   const int n = spec.num_parameters();
-  const bool guided = data.samples().size() < kSamplesPerParameter * n && number + 1 < kNumGuides;
+  const int count = asked.isotropic ? kNumIsotropicGuides : kNumGuides;
+  const bool guided = data.samples().size() < kSamplesPerParameter * n && number + 1 < count;
   const Objective objective =
-      guided ? Objective(WithSamplesOf(FitGuide(number + 1, data, stop), data, n, /*weight=*/1),
+      guided ? Objective(WithSamplesOf(FitGuide(number + 1, data, asked), data, n, /*weight=*/1),
                          spec, data.weighting(), data.num_threads())
              : Objective(data, spec);
-  FactorModel model = FindInitialModel("moments").make(objective, 0);
+  FactorModel model = FindInitialModel(asked.isotropic ? "analytic" : "moments").make(objective, 0);
   SolverOptions options;
   options.diagnose = false;
-  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !asked.stop(); };
   MakeSolver("varpro")->Solve(objective, options, &model);
   return model;
 }
@@ -149,8 +172,8 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (!(options.weight > 0)) {
     throw Error(measured.source + ": the weight of a guide must be above 0");
   }
-  return WithSamplesOf(FitGuide(0, data, options.stop), data, data.spec().num_parameters(),
-                       options.weight);
+  const double weight = options.weight * (options.isotropic ? kIsotropicWeight : 1);
+  return WithSamplesOf(FitGuide(0, data, options), data, data.spec().num_parameters(), weight);
 }
 
 }  // namespace trilobe

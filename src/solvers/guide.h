@@ -14,9 +14,14 @@ namespace trilobe {
 // product of D, F and G^2 at their own directions only: factors that trade a hundredfold between
 // neighbouring nodes fit them as well as smooth ones do, and shine wrongly in between. The guide is
 // a model of too few numbers for that, one lobe on few nodes, fitted first; samples of it between
-// the measured ones then join the data, and any solver fits both.
+// the measured ones then join the data, and any solver fits both. So it is with scattered samples
+// of isotropic materials. Their tables have no azimuths, so far more of their samples than
+// parameters look alike, and it is enough that the guide tells between what fits them equally well:
+// its weight is small.
 struct GuideOptions {
   double weight = 1;  // > 0: what a sample of the guide counts, where there is one for six measured
+  // The data know no azimuths: so does the guide, and what it says counts a three-hundredth.
+  bool isotropic = false;
   std::function<bool()> stop = [] { return false; };  // ends the fit of the guide early
 };
 

@@ -116,7 +116,7 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
         .get<double>();
   };
   EXPECT_GT(psnr_from_formula("--guide=1"), psnr_from_formula("--guide=0") + 6);
-  ExpectRefusal({"fit", "synth:plastic", "--guide=2"}, "--guide is for data with several azimuths");
+  ExpectRefusal({"fit", "synth:plastic", "--guide=2"}, "--guide is for scattered samples, and a ");
 }
 
 // The solver's models have fewer bins of F than the file's.

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/synth.h"
 #include "trilobe/model/reconstruct.h"
+#include "trilobe/model/with_axes.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
@@ -125,6 +127,47 @@ TEST(Guide, KeepsAFitOfFewScatteredSamplesTame) {
   EXPECT_NEAR(weight, data.size() / 6.0, 1e-9);
   const double with = error(guided), without = error(data);
   EXPECT_LT(with, 5);
+  EXPECT_LT(1000 * with, without);
+}
+
+// 1,500 pairs of directions, as an older gonioreflectometer has them: 822 parameters fit them, and
+// are anything between.
+TEST(Guide, KeepsAnIsotropicFitTameBetweenFewSamples) {
+  const BrdfTable table = Synthesize(FindSynthMaterial("plastic"), 0, 1);
+  const BrdfSamples all = ValidSamples(table);
+  BrdfSamples data;
+  data.source = "few";
+  std::mt19937 random(1);
+  const auto draw = [&](double upto) {
+    return upto * static_cast<double>(random()) / 4294967296.0;
+  };
+  const TabulatedBrdf between(table);
+  while (data.size() < 1500) {
+    const SphericalAngles at{.theta_i = draw(1.4), .theta_o = draw(1.4), .phi_o = draw(2 * kPi)};
+    const HalfDiffAngles angles = ToHalfDiff(ToDirections(at));
+    data.directions.push_back(at);
+    data.angles.push_back(angles);
+    data.rho.push_back(between.Interpolate(angles));
+  }
+  const ModelSpec full = ModelSpec::SharedFactors(3), few = full.ForScattered(data.size());
+  EXPECT_EQ(few.table_size(Factor::kF), 10);
+  EXPECT_EQ(few.table_size(Factor::kG), 9);
+  EXPECT_EQ(full.ForScattered(100 * full.num_parameters()), full);
+  const Objective everywhere(Thinned(all, 20), full, FindWeighting("appearance"), 2);
+  const auto error = [&](const BrdfSamples& samples, const ModelSpec& spec) {
+    const Objective objective(samples, spec, FindWeighting("appearance"), 2);
+    FactorModel model = FindInitialModel("analytic").make(objective, 1);
+    SolverOptions options;
+    options.max_iterations = 30;
+    options.diagnose = false;
+    MakeSolver("varpro")->Solve(objective, options, &model);
+    return everywhere.Value(WithAxes(model, full)) / everywhere.MeasuredEnergy();
+  };
+  const BrdfSamples guided =
+      WithGuide(Objective(data, few, FindWeighting("appearance")), {.isotropic = true});
+  CheckSamples(guided);
+  const double with = error(guided, few), without = error(data, full);
+  EXPECT_LT(with, 0.1);
   EXPECT_LT(1000 * with, without);
 }
 
