@@ -207,7 +207,8 @@ void Print(const FitReport& report) {
             << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
             << (report.appearance
                     ? Describe(*report.appearance)
-                    : "appearance   samples on no grid of directions make no picture\n")
+                    : "appearance   samples on no grid make no picture to compare with; "
+                      "by --plots spheres.png shows the fit alone\n")
             << (report.left_out
                     ? "azimuths     an isotropic model leaves out " +
                           Text(100 * *report.left_out, 3) +

@@ -58,7 +58,8 @@ Command PlotCommand() {
               "Writes PNG pictures into the folder --out, by gnuplot:\n"
               "  factors.png  D, F, G and the coefficients d, s\n"
               "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
-              "  spheres.png  measured, fitted and their difference on a sphere (with SOURCE)\n"
+              "  spheres.png  measured, fitted and their difference on a sphere; without\n"
+              "               SOURCE, or if its samples are on no grid, the model alone\n"
               "  cloth.png    the same on draped cloth (where SOURCE is anisotropic)\n"
               "  trace.png    E over iterations and seconds (with --trace)",
           .flags = WithSourceFlags({"out", "trace", "probe"}),

@@ -257,4 +257,9 @@ void WriteImagePair(const PairPicture& picture, const std::string& path) {
   WritePng(path, 2 * left.width, left.height, pixels);
 }
 
+void WriteImage(const RenderedImage& image, const std::string& path) {
+  const Raster raster = ToneMapped(image, ExposureOf(CompareSpheres(image, image)));
+  WritePng(path, raster.width, raster.height, raster.bytes);
+}
+
 }  // namespace trilobe

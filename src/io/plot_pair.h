@@ -25,6 +25,9 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
 // Writes the two alone, without text.
 void WriteImagePair(const PairPicture& picture, const std::string& path);
 
+// Writes one alone, exposed by itself.
+void WriteImage(const RenderedImage& image, const std::string& path);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_IO_PLOT_PAIR_H_

@@ -35,6 +35,12 @@ void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const st
   DrawImagePair(SphereOf(measured, fitted, options), options, path);
 }
 
+void DrawFittedSphere(const SphericalBrdf& fitted, const std::string& path,
+                      AppearanceOptions options) {
+  options.size = 320;
+  WriteImage(RenderSphere(fitted, options), path);
+}
+
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
                AppearanceOptions options) {
   options.size = 160;

@@ -26,6 +26,8 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
     DrawSlices(table, Reconstruct(file.model, "fit", table.grid, appearance.num_threads),
                add("slices.png"));
     DrawSpheres(table, fitted.angular, add("spheres.png"), appearance);
+  } else {
+    DrawFittedSphere(fitted.spherical, add("spheres.png"), appearance);
   }
   if (!trace.empty()) DrawTrace(trace, file.fit.source, add("trace.png"));
   return paths;

@@ -40,6 +40,10 @@ void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std
 void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
                  AppearanceOptions options);
 
+// The fitted one alone, without text, where no measurement can be shown beside it.
+void DrawFittedSphere(const SphericalBrdf& fitted, const std::string& path,
+                      AppearanceOptions options);
+
 // The same on a draped cloth (ViewCloth), lit along its thread and across it.
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
                AppearanceOptions options);
@@ -78,8 +82,8 @@ struct TradeOff {
 void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 
 // All pictures that the inputs allow, as factors.png, slices.png, spheres.png, cloth.png and
-// trace.png in an existing folder: slices and spheres need measured data, cloth such data at nodes,
-// trace needs records. Returns their paths.
+// trace.png in an existing folder: slices need data at nodes or in a table, cloth such data at
+// nodes, trace needs records; without data spheres.png is of the fit alone. Returns their paths.
 std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,

@@ -47,7 +47,7 @@ ModelSpec ModelSpec::AnisotropicFor(int lobes, int data_phis, double data_max_th
 }
 
 ModelSpec ModelSpec::ForScattered(int num_samples) const {
-  constexpr int kPlenty = 100, kBins = 10, kNodes = 9;
+  constexpr int kPlenty = 200, kBins = 10, kNodes = 9;
   ModelSpec spec = *this;
   if (num_samples >= kPlenty * num_parameters()) return spec;
   spec.f_axis.size = std::min(f_axis.size, kBins);

@@ -46,8 +46,8 @@ struct ModelSpec {
   // these, so that canonical forms (gauge.h) continue G to them.
   static ModelSpec AnisotropicFor(int lobes, int data_phis, double data_max_theta);
   // An isotropic form for so many scattered samples: F in 10 bins and G on 9 nodes where there are
-  // less than a hundred for each parameter, which then leave bins of F and nodes of G between them
-  // to go where they like.
+  // less than two hundred for each parameter, which then leave bins of F and nodes of G between
+  // them to go where they like.
   ModelSpec ForScattered(int num_samples) const;
   // One lobe, nothing shared between channels (Bagher et al. 2016): 816 parameters.
   static ModelSpec IndependentG(const MerlGrid& grid = {});

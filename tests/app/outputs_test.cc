@@ -296,10 +296,10 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
       RunProgram({"fit", csv, "--solver=newton", "--max_iterations=5", "--lobes=1", "--plots",
                   "--reconstruction", "--out=" + out});
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(fit.out, HasSubstr("samples on no grid of directions make no picture"));
-  EXPECT_THAT(Names(out),
-              UnorderedElementsAre("model.json", "trace.csv", "report.json",
-                                   "reconstruction.binary", "factors.png", "trace.png"));
+  EXPECT_THAT(fit.out, HasSubstr("make no picture to compare with; by --plots"));
+  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
+                                               "reconstruction.binary", "factors.png",
+                                               "spheres.png", "trace.png"));
   const nlohmann::json report = Json(out + "/report.json");
   EXPECT_TRUE(report["appearance"].is_null());
   EXPECT_EQ(report["valid_samples"], 175);

@@ -152,7 +152,7 @@ TEST(Guide, KeepsAnIsotropicFitTameBetweenFewSamples) {
   const ModelSpec full = ModelSpec::SharedFactors(3), few = full.ForScattered(data.size());
   EXPECT_EQ(few.table_size(Factor::kF), 10);
   EXPECT_EQ(few.table_size(Factor::kG), 9);
-  EXPECT_EQ(full.ForScattered(100 * full.num_parameters()), full);
+  EXPECT_EQ(full.ForScattered(200 * full.num_parameters()), full);
   const Objective everywhere(Thinned(all, 20), full, FindWeighting("appearance"), 2);
   const auto error = [&](const BrdfSamples& samples, const ModelSpec& spec) {
     const Objective objective(samples, spec, FindWeighting("appearance"), 2);
