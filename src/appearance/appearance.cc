@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "trilobe/appearance/color.h"
+#include "trilobe/appearance/render.h"
 #include "trilobe/appearance/sphere.h"
+#include "trilobe/appearance/view.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/albedo.h"
@@ -262,6 +264,20 @@ SphereError SphereJudge::operator()(const AngularBrdf& fitted) const {
 
 RenderedImage SphereJudge::Render(const AngularBrdf& brdf) const {
   return std::move(RenderSpheres({&brdf, 1}, lights_, size_, counts_, num_threads_)[0]);
+}
+
+RenderedImage RenderSphere(const Material& material, const AppearanceOptions& options) {
+  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
+  if (material.angular) {
+    const Counts everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
+    return std::move(RenderSpheres({&material.angular, 1}, lights, options.size, everything,
+                                   options.num_threads)[0]);
+  }
+  return std::move(Render(
+                       ViewSphere(options.size), {&material.spherical, 1}, lights,
+                       [](const SphericalAngles&) { return true; }, /*whole_too=*/false,
+                       options.num_threads)
+                       .counted[0]);
 }
 
 ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,

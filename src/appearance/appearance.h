@@ -114,7 +114,7 @@ ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
                            const AppearanceOptions& options);
 
 // A material alone on a sphere, from all directions.
-RenderedImage RenderSphere(const SphericalBrdf& brdf, const AppearanceOptions& options);
+RenderedImage RenderSphere(const Material& material, const AppearanceOptions& options);
 
 // The same of a measurement at nodes, on a sphere or on cloth (ViewCloth): what is compared and,
 // if asked for, what pictures show.

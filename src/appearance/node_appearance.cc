@@ -72,14 +72,6 @@ AppearanceReport::FromFormula CompareWithFormula(const NodeBrdf& measured,
 
 }  // namespace
 
-RenderedImage RenderSphere(const SphericalBrdf& brdf, const AppearanceOptions& options) {
-  return Render(
-             ViewSphere(options.size), {&brdf, 1},
-             DrawLights(EnvironmentOf(options), options.lights),
-             [](const SphericalAngles&) { return true; }, /*whole_too=*/false, options.num_threads)
-      .counted[0];
-}
-
 AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf& fitted,
                                    const AppearanceOptions& options, const BrdfFunction& formula) {
   const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};

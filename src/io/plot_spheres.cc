@@ -35,8 +35,7 @@ void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const st
   DrawImagePair(SphereOf(measured, fitted, options), options, path);
 }
 
-void DrawFittedSphere(const SphericalBrdf& fitted, const std::string& path,
-                      AppearanceOptions options) {
+void DrawFittedSphere(const Material& fitted, const std::string& path, AppearanceOptions options) {
   options.size = 320;
   WriteImage(RenderSphere(fitted, options), path);
 }

@@ -27,7 +27,7 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
                add("slices.png"));
     DrawSpheres(table, fitted.angular, add("spheres.png"), appearance);
   } else {
-    DrawFittedSphere(fitted.spherical, add("spheres.png"), appearance);
+    DrawFittedSphere(fitted, add("spheres.png"), appearance);
   }
   if (!trace.empty()) DrawTrace(trace, file.fit.source, add("trace.png"));
   return paths;

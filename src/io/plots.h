@@ -41,8 +41,7 @@ void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const st
                  AppearanceOptions options);
 
 // The fitted one alone, without text, where no measurement can be shown beside it.
-void DrawFittedSphere(const SphericalBrdf& fitted, const std::string& path,
-                      AppearanceOptions options);
+void DrawFittedSphere(const Material& fitted, const std::string& path, AppearanceOptions options);
 
 // The same on a draped cloth (ViewCloth), lit along its thread and across it.
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
