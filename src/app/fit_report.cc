@@ -102,7 +102,7 @@ std::string Describe(const FitReport::Finished& finished) {
     // A fit that was stopped early gains more from the steps of the refit than tying costs.
     text += "data edge    entries read by few samples follow from their neighbours; E " +
             std::string(*finished.tied < 0 ? "fell" : "rose") + " by " +
-            Text(100 * std::abs(*finished.tied), 2) + " %\n";
+            Text(100 * std::abs(*finished.tied), 3) + " %\n";
   }
   for (size_t k = 0; k < finished.candidates.size(); ++k) {
     const ModelCandidate& candidate = finished.candidates[k];

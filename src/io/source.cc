@@ -78,7 +78,7 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
   if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
     found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
-      return format.is_text == is_text && format.ending == ending;
+      return (bytes.empty() || format.is_text == is_text) && format.ending == ending;
     });
     if (found != formats.end()) return *found;
   }
