@@ -272,7 +272,8 @@ TEST_F(GnuplotTest, DrawsDegenerateInput) {
             4U);
   file.model = FactorModel(ModelSpec::IndependentG(grid));
   file.unobserved.assign(file.model.parameters().size(), true);
-  EXPECT_EQ(DrawPictures(file, {}, {}, folder_.string(), Appearance(1)).size(), 1U);
+  EXPECT_EQ(DrawPictures(file, {}, {}, folder_.string(), Appearance(1)).size(),
+            2U);  // and a sphere
   EXPECT_THROW(DrawTrace({}, "", Path("none.png")), Error);
 }
 
