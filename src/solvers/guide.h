@@ -20,7 +20,7 @@ namespace trilobe {
 // its weight is small.
 struct GuideOptions {
   double weight = 1;  // > 0: what a sample of the guide counts, where there is one for six measured
-  // The data know no azimuths: so does the guide, and what it says counts a three-hundredth.
+  // The data know no azimuths, and so the guide knows none; what it says counts 0.003 of that.
   bool isotropic = false;
   std::function<bool()> stop = [] { return false; };  // ends the fit of the guide early
 };
