@@ -14,10 +14,10 @@ namespace trilobe {
 // product of D, F and G^2 at their own directions only: factors that trade a hundredfold between
 // neighbouring nodes fit them as well as smooth ones do, and shine wrongly in between. The guide is
 // a model of too few numbers for that, one lobe on few nodes, fitted first; samples of it between
-// the measured ones then join the data, and any solver fits both. So it is with scattered samples
-// of isotropic materials. Their tables have no azimuths, so far more of their samples than
-// parameters look alike, and it is enough that the guide tells between what fits them equally well:
-// its weight is small.
+// the measured ones then join the data, and any solver fits both. So it is with few scattered
+// samples of an isotropic material. Without azimuths a sample says more about each parameter, and
+// it is enough that the guide decides between what fits the samples equally well: its weight is
+// small.
 struct GuideOptions {
   double weight = 1;  // > 0: what a sample of the guide counts, where there is one for six measured
   // The data know no azimuths, and so the guide knows none; what it says counts 0.003 of that.
