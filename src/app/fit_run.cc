@@ -1,7 +1,5 @@
 #include "trilobe/app/fit_run.h"
 
-#include <gflags/gflags.h>
-
 #include <algorithm>
 #include <exception>
 #include <filesystem>

@@ -133,6 +133,7 @@ BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
 }
 
 using Counts = std::function<bool(const HalfDiffAngles&, const Cosines&)>;
+bool Everything(const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) { return true; }
 
 ImagePair RenderPair(const TabulatedBrdf& measured, const AngularBrdf& fitted, const Counts& counts,
                      const AppearanceOptions& options) {
@@ -148,8 +149,7 @@ ImagePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
                            const AppearanceOptions& options) {
   BrdfTable all = measured;
   all.unmeasured.clear();
-  const Counts everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
-  return RenderPair(TabulatedBrdf(all), fitted, everything, options);
+  return RenderPair(TabulatedBrdf(all), fitted, Everything, options);
 }
 
 }  // namespace
@@ -269,8 +269,7 @@ RenderedImage SphereJudge::Render(const AngularBrdf& brdf) const {
 RenderedImage RenderSphere(const Material& material, const AppearanceOptions& options) {
   const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
   if (material.angular) {
-    const Counts everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
-    return std::move(RenderSpheres({&material.angular, 1}, lights, options.size, everything,
+    return std::move(RenderSpheres({&material.angular, 1}, lights, options.size, Everything,
                                    options.num_threads)[0]);
   }
   return std::move(Render(

@@ -1,7 +1,6 @@
 #include "trilobe/scene/node_elimination.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>

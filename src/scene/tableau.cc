@@ -42,7 +42,7 @@ double Tableau::Pivot(int k) {
   t.resize(size_);
   for (int i = 0; i < size_; ++i) t[i] = At(k, i);
   t[k] = 0;
-  AddOuterProduct(-1 / pivot, t);
+  AddOuterProduct(-1 / pivot);
   for (int i = 0; i < size_; ++i) {
     h_[i] -= t[i] * h_k / pivot;
     T_[i * stride_ + k] = T_[k * stride_ + i] = t[i] * scale;
@@ -107,7 +107,7 @@ void Tableau::Impose(const Constraint& c) {
     }
   }
   if (!(variance > 0)) return;
-  AddOuterProduct(-1 / variance, t_);
+  AddOuterProduct(-1 / variance);
   for (int i = 0; i < size_; ++i) h_[i] -= t_[i] * value / variance;
 }
 
@@ -123,10 +123,10 @@ void Tableau::Remove(int k) {
   free_[k] = free_[last];
 }
 
-void Tableau::AddOuterProduct(double factor, const std::vector<double>& t) {
+void Tableau::AddOuterProduct(double factor) {
   for (int i = 0; i < size_; ++i) {
-    U_[i * kMaxWaiting + waiting_] = t[i];
-    V_[i * kMaxWaiting + waiting_] = factor * t[i];
+    U_[i * kMaxWaiting + waiting_] = t_[i];
+    V_[i * kMaxWaiting + waiting_] = factor * t_[i];
   }
   if (++waiting_ < kMaxWaiting) return;
   std::vector<double> rows(kMaxWaiting * stride_);  // V'

@@ -63,8 +63,8 @@ class Tableau {
     for (int p = 0; p < waiting_; ++p) sum += u[p] * v[p];
     return sum;
   }
-  // T += factor t t'.
-  void AddOuterProduct(double factor, const std::vector<double>& t);
+  // T += factor t_ t_'.
+  void AddOuterProduct(double factor);
 
   const size_t stride_;
   int size_;

@@ -3,7 +3,10 @@
 #include <gsl/gsl_qrng.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -27,37 +30,34 @@ constexpr double kMaxOfLargest = 2;
 // nodes.
 constexpr int kSamplesPerParameter = 5;
 
-// What a guide without azimuths counts, as a share of what one with azimuths does.
-constexpr double kIsotropicWeight = 0.003;
-
-// One lobe, or none for models without; from fine to coarse.
-constexpr int kNumIsotropicGuides = 3;
-ModelSpec IsotropicGuideSpec(int number, int lobes) {
-  struct Size {
-    int d, f, g;
-  };
-  constexpr Size kSizes[kNumIsotropicGuides] = {{24, 6, 9}, {12, 4, 6}, {8, 4, 4}};
-  const Size& size = kSizes[number];
-  ModelSpec spec = ModelSpec::SharedFactors(std::min(lobes, 1));
-  spec.d_axis.size = size.d;
-  spec.f_axis.size = size.f;
-  spec.g_axis.size = size.g;
-  return spec;
-}
-
-constexpr int kNumGuides = 4;
-ModelSpec GuideSpec(int number, int lobes) {
-  struct Size {
-    int d_theta, d_phi, f, g_theta, g_phi;
-  };
-  constexpr Size kSizes[kNumGuides] = {
-      {12, 24, 6, 6, 8}, {8, 12, 4, 4, 4}, {6, 6, 4, 3, 2}, {6, 2, 4, 3, 2}};
-  const Size& size = kSizes[number];
-  ModelSpec spec = ModelSpec::Anisotropic(std::min(lobes, 1));
-  spec.d_axis = Axis::EvenPolar(size.d_theta, Axis::Steps::kOfRoot, size.d_phi);
-  spec.f_axis.size = size.f;
-  spec.g_axis = Axis::EvenPolar(size.g_theta, Axis::Steps::kOfTheta, size.g_phi);
-  return spec;
+// What a guide is where azimuths were measured, and where not.
+struct GuideKind {
+  std::vector<ModelSpec> specs;  // of one lobe, from fine to coarse
+  const char* start;
+  double weight;  // what it counts
+};
+GuideKind KindFor(const GuideOptions& options, int lobes) {
+  lobes = std::min(lobes, 1);  // none for models without
+  GuideKind kind;
+  if (options.isotropic) {
+    kind = {.specs = {}, .start = "analytic", .weight = 0.003 * options.weight};
+    for (const auto& [d, f, g] : {std::array{24, 6, 9}, {12, 4, 6}, {8, 4, 4}}) {
+      ModelSpec& spec = kind.specs.emplace_back(ModelSpec::SharedFactors(lobes));
+      spec.d_axis.size = d;
+      spec.f_axis.size = f;
+      spec.g_axis.size = g;
+    }
+    return kind;
+  }
+  kind = {.specs = {}, .start = "moments", .weight = options.weight};
+  for (const auto& [d_theta, d_phi, f, g_theta, g_phi] :
+       {std::array{12, 24, 6, 6, 8}, {8, 12, 4, 4, 4}, {6, 6, 4, 3, 2}, {6, 2, 4, 3, 2}}) {
+    ModelSpec& spec = kind.specs.emplace_back(ModelSpec::Anisotropic(lobes));
+    spec.d_axis = Axis::EvenPolar(d_theta, Axis::Steps::kOfRoot, d_phi);
+    spec.f_axis.size = f;
+    spec.g_axis = Axis::EvenPolar(g_theta, Axis::Steps::kOfTheta, g_phi);
+  }
+  return kind;
 }
 
 // Where the guide speaks: half vectors spaced as a highlight asks for, by the root of theta_h, and
@@ -143,21 +143,21 @@ BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int n
 }
 
 // The guide of this number, from 0 (the finest), itself guided by the next where data are few.
-FactorModel FitGuide(int number, const Objective& data, const GuideOptions& asked) {
-  const int lobes = data.spec().lobes;
-  const ModelSpec spec =
-      asked.isotropic ? IsotropicGuideSpec(number, lobes) : GuideSpec(number, lobes);
+FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data,
+                     const std::function<bool()>& stop) {
+  const ModelSpec& spec = kind.specs[number];
   const int n = spec.num_parameters();
-  const int count = asked.isotropic ? kNumIsotropicGuides : kNumGuides;
-  const bool guided = data.samples().size() < kSamplesPerParameter * n && number + 1 < count;
+  const bool guided =
+      data.samples().size() < kSamplesPerParameter * n && number + 1 < kind.specs.size();
   const Objective objective =
-      guided ? Objective(WithSamplesOf(FitGuide(number + 1, data, asked), data, n, /*weight=*/1),
+      guided ? Objective(WithSamplesOf(FitGuide(kind, number + 1, data, stop), data, n,
+                                       /*weight=*/1),
                          spec, data.weighting(), data.num_threads())
              : Objective(data, spec);
-  FactorModel model = FindInitialModel(asked.isotropic ? "analytic" : "moments").make(objective, 0);
+  FactorModel model = FindInitialModel(kind.start).make(objective, 0);
   SolverOptions options;
   options.diagnose = false;
-  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !asked.stop(); };
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
   MakeSolver("varpro")->Solve(objective, options, &model);
   return model;
 }
@@ -172,8 +172,9 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (!(options.weight > 0)) {
     throw Error(measured.source + ": the weight of a guide must be above 0");
   }
-  const double weight = options.weight * (options.isotropic ? kIsotropicWeight : 1);
-  return WithSamplesOf(FitGuide(0, data, options), data, data.spec().num_parameters(), weight);
+  const GuideKind kind = KindFor(options, data.spec().lobes);
+  return WithSamplesOf(FitGuide(kind, 0, data, options.stop), data, data.spec().num_parameters(),
+                       kind.weight);
 }
 
 }  // namespace trilobe
