@@ -31,6 +31,9 @@ inline void CheckScattered(const Measurement& measurement) {
   Measurement limited = measurement;
   LimitAngles(1, &limited);
   if (limited.counts.valid + limited.counts.beyond_max_angle != counts.valid) std::abort();
+  Measurement lit = measurement;
+  LeaveOutOwnShadow(&lit);
+  if (lit.counts.valid + lit.counts.below_min_theta_d != counts.valid) std::abort();
 }
 
 }  // namespace trilobe

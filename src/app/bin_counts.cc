@@ -11,7 +11,8 @@ std::vector<LeftOut> ReasonsOf(const BinCounts& counts) {
           {"without a value", "missing", counts.missing},
           {"extrapolated by authors", "extrapolated", counts.extrapolated},
           {"beyond the last theta_i", "beyond_nodes", counts.beyond_nodes},
-          {"beyond --max_angle", "beyond_max_angle", counts.beyond_max_angle}};
+          {"beyond --max_angle", "beyond_max_angle", counts.beyond_max_angle},
+          {"below --min_theta_d", "below_min_theta_d", counts.below_min_theta_d}};
 }
 
 std::string LeftOutText(const BinCounts& counts) {

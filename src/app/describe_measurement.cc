@@ -139,7 +139,8 @@ void DescribeTable(const Measurement& measurement) {
   if (reciprocity) Print("reciprocity error", *reciprocity);
   if (!picture.empty()) PrintLine("written", picture);
   if (albedo) {
-    const bool whole = bins.extrapolated + bins.beyond_nodes + bins.beyond_max_angle == 0;
+    const bool whole =
+        bins.extrapolated + bins.beyond_nodes + bins.beyond_max_angle + bins.below_min_theta_d == 0;
     Print(*albedo, whole ? "directional albedo" : "directional albedo of what was measured");
   }
 }

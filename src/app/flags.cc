@@ -23,6 +23,10 @@ DEFINE_double(missing, 0,
               "to 1: how would a fit do with fewer?");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
+DEFINE_double(min_theta_d, -1,
+              "leave out bins whose theta_d, half the angle between the two directions, is below "
+              "this, in degrees, from 0 to below 90, since a detector there stands in its own "
+              "light; -1: as far as scattered samples show that it did");
 DEFINE_bool(extrapolated, false,
             "of an RGL file, also take what its authors did not measure but extrapolated, and what "
             "lies beyond its last theta_i");
@@ -65,18 +69,24 @@ SourceOptions SourceOptionsFromFlags() {
     throw Error("--max_angle=" + gflags::GetCommandLineFlagInfoOrDie("max_angle").current_value +
                 " is no largest angle; give degrees above 0, up to 90");
   }
+  if (!(FLAGS_min_theta_d == -1 || (FLAGS_min_theta_d >= 0 && FLAGS_min_theta_d < 90))) {
+    throw Error(
+        "--min_theta_d=" + gflags::GetCommandLineFlagInfoOrDie("min_theta_d").current_value +
+        " is no smallest angle; give degrees from 0 to below 90, or -1 to go by the data");
+  }
   return {.noise = FLAGS_noise,
           .missing = FLAGS_missing,
           .seed = static_cast<uint64_t>(FLAGS_seed),
           .num_threads = ThreadsFromFlags(),
           .max_angle_deg = FLAGS_max_angle,
+          .min_theta_d_deg = FLAGS_min_theta_d,
           .extrapolated = FLAGS_extrapolated,
           .radiometry = FLAGS_radiometry};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {
-  for (const char* flag :
-       {"noise", "missing", "seed", "max_angle", "extrapolated", "radiometry", "threads"}) {
+  for (const char* flag : {"noise", "missing", "seed", "max_angle", "min_theta_d", "extrapolated",
+                           "radiometry", "threads"}) {
     others.emplace_back(flag);
   }
   return others;

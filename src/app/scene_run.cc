@@ -94,6 +94,7 @@ std::vector<std::string> SceneFlags() {
           "noise",
           "seed",
           "max_angle",
+          "min_theta_d",
           "extrapolated",
           "cache",
           "nocache"};
@@ -119,6 +120,7 @@ SceneFitSettings SceneSettingsFromFlags() {
                             .noise = source.noise,
                             .seed = source.seed,
                             .max_angle_deg = source.max_angle_deg,
+                            .min_theta_d_deg = source.min_theta_d_deg,
                             .extrapolated = source.extrapolated,
                             .program = ProgramName(),
                             .build = ProgramBuild(),

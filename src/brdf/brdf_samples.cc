@@ -149,12 +149,14 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
     samples.rho.push_back({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
   }
   if (samples.rho.empty()) {
-    throw Error(table.source +
-                ": no valid bin: nowhere are both directions above the surface and all three "
-                "values finite and >= 0" +
-                (table.unmeasured.empty()
-                     ? "; check that the file is a BRDF in MERL layout"
-                     : " where it was measured; --max_angle and --extrapolated say what counts"));
+    throw Error(
+        table.source +
+        ": no valid bin: nowhere are both directions above the surface and all three "
+        "values finite and >= 0" +
+        (table.unmeasured.empty()
+             ? "; check that the file is a BRDF in MERL layout"
+             : " where it was measured; --max_angle, --min_theta_d and --extrapolated say what "
+               "counts"));
   }
   return samples;
 }

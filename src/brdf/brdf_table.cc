@@ -73,4 +73,15 @@ void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
   }
 }
 
+void LimitThetaD(double min_theta_d, BrdfTable* table) {
+  if (!(min_theta_d > 0)) return;
+  const std::vector<bool> above = BinsAboveSurface(table->grid);
+  table->unmeasured.resize(table->grid.size(), Unmeasured::kNo);
+  for (int bin = 0; bin < table->grid.size(); ++bin) {
+    Unmeasured& why = table->unmeasured[bin];
+    const bool below = table->grid.Center(bin).theta_d < min_theta_d;
+    if (above[bin] && below && why == Unmeasured::kNo) why = Unmeasured::kBelowMinThetaD;
+  }
+}
+
 }  // namespace trilobe

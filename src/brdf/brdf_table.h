@@ -22,6 +22,7 @@ enum class Unmeasured : uint8_t {
   kExtrapolated,    // filled by the authors of the file, from other directions
   kBeyondNodes,     // theta_i or theta_o is beyond the last theta_i at which the file has data
   kBeyondMaxAngle,  // theta_i or theta_o is beyond the angle that the user set
+  kBelowMinThetaD,  // theta_d is below the one that the user set
 };
 
 // A measurement in MERL layout. It keeps the numbers as a MERL file stores them, so that reading
@@ -70,6 +71,9 @@ double MaxAngleDegrees(const BrdfTable& table);
 // From now on nothing is measured where theta_i or theta_o, at the centre of a bin above the
 // surface, is beyond `max_theta` >= 0 [rad]. Bins that were not measured before keep their reason.
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table);
+
+// The same where theta_d is below `min_theta_d` [rad].
+void LimitThetaD(double min_theta_d, BrdfTable* table);
 
 }  // namespace trilobe
 

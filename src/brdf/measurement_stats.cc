@@ -70,6 +70,9 @@ BinCounts CountBins(const BrdfTable& table) {
         case Unmeasured::kBeyondMaxAngle:
           ++counts.beyond_max_angle;
           break;
+        case Unmeasured::kBelowMinThetaD:
+          ++counts.below_min_theta_d;
+          break;
       }
     }
   }

@@ -24,6 +24,7 @@ struct BinCounts {
   int extrapolated = 0;
   int beyond_nodes = 0;
   int beyond_max_angle = 0;
+  int below_min_theta_d = 0;
 };
 BinCounts CountBins(const BrdfTable& table);
 

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <utility>
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/counter_random.h"
+#include "trilobe/io/own_shadow.h"
 
 namespace trilobe {
 namespace {
@@ -44,6 +46,8 @@ KeyedSample KeyOf(const SphericalAngles& angles, bool anisotropic, int sample) {
           .sample = sample};
 }
 
+constexpr double kRounding = 1e-9;  // of degrees that became radians: 60 are not beyond 60
+
 // Leaves only these samples, and counts the others as left out for this reason.
 void Keep(const std::vector<int>& kept, int BinCounts::*reason, Measurement* measurement) {
   const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
@@ -61,7 +65,7 @@ BrdfSamples SamplesOf(const Measurement& measurement) {
     throw Error(measurement.source + ": no valid sample of " +
                 std::to_string(measurement.counts.total) +
                 ": nowhere are both directions above the surface and all values finite and >= 0, "
-                "within --max_angle; trilobe info counts why");
+                "within --max_angle and --min_theta_d; trilobe info counts why");
   }
   return measurement.samples;
 }
@@ -90,7 +94,6 @@ void LimitAngles(double max_theta, Measurement* measurement) {
     LimitAngles(max_theta, Unmeasured::kBeyondMaxAngle, &*measurement->table);
     return;
   }
-  constexpr double kRounding = 1e-9;  // of degrees that became radians: 60 are not beyond 60
   const double largest = std::min(max_theta, measurement->max_theta);
   std::vector<int> kept;
   measurement->max_theta = 0;
@@ -102,6 +105,31 @@ void LimitAngles(double max_theta, Measurement* measurement) {
     measurement->max_theta = std::max(measurement->max_theta, std::min(theta, largest));
   }
   Keep(kept, &BinCounts::beyond_max_angle, measurement);
+}
+
+void LimitThetaD(double min_theta_d, Measurement* measurement) {
+  if (measurement->table) {
+    LimitThetaD(min_theta_d, &*measurement->table);
+    return;
+  }
+  std::vector<int> kept;
+  for (int j = 0; j < measurement->samples.size(); ++j) {
+    if (measurement->samples.Angles(j).theta_d >= min_theta_d - kRounding) kept.push_back(j);
+  }
+  Keep(kept, &BinCounts::below_min_theta_d, measurement);
+}
+
+void LeaveOutOwnShadow(Measurement* measurement) {
+  const OwnShadow shadow = FindOwnShadow(measurement->samples);
+  if (shadow.theta_d_deg == 0) return;
+  LimitThetaD(DegreesToRadians(shadow.theta_d_deg), measurement);
+  std::ostringstream note;
+  note << "the highlight is " << std::lround(shadow.darker)
+       << " times darker towards theta_d = 0 than at 20 to 30 deg, as where a detector stands in "
+          "its own light: "
+       << measurement->counts.below_min_theta_d << " samples below "
+       << static_cast<int>(shadow.theta_d_deg) << " deg are left out; --min_theta_d=0 takes them";
+  measurement->notes.push_back(note.str());
 }
 
 void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {

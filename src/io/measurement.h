@@ -52,6 +52,13 @@ double MaxAngleDegrees(const Measurement& measurement);
 // From now on nothing is valid where theta_i or theta_o is beyond `max_theta` [rad].
 void LimitAngles(double max_theta, Measurement* measurement);
 
+// The same where theta_d is below `min_theta_d` [rad].
+void LimitThetaD(double min_theta_d, Measurement* measurement);
+
+// The same of scattered samples where they show that the detector stood in its own light
+// (OwnShadow), with a note that says so.
+void LeaveOutOwnShadow(Measurement* measurement);
+
 // Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had
 // been lost: a table marks them as it marks lost bins, and of samples they are missing. Throws
 // Error for other shares.

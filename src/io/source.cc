@@ -125,14 +125,20 @@ void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
     table->max_theta = kPi / 2;
   }
   LimitAngles(DegreesToRadians(options.max_angle_deg), Unmeasured::kBeyondMaxAngle, table);
+  LimitThetaD(DegreesToRadians(options.min_theta_d_deg), table);
 }
 
 void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
   LeaveOutAtRandom(options.missing, options.seed, measurement);
   if (measurement->table) {
     DecideMeasured(options, &*measurement->table);
+    return;
+  }
+  LimitAngles(DegreesToRadians(options.max_angle_deg), measurement);
+  if (options.min_theta_d_deg < 0) {
+    LeaveOutOwnShadow(measurement);
   } else {
-    LimitAngles(DegreesToRadians(options.max_angle_deg), measurement);
+    LimitThetaD(DegreesToRadians(options.min_theta_d_deg), measurement);
   }
 }
 

@@ -24,6 +24,9 @@ struct SourceOptions {
   uint64_t seed = 1;
   int num_threads = 1;
   double max_angle_deg = 90;        // theta_i and theta_o beyond it do not count as measured
+  // theta_d below it does not; below 0: as far as a detector stood in its own light, by scattered
+  // samples.
+  double min_theta_d_deg = -1;
   bool extrapolated = false;        // what the authors of a file made up counts as measured
   std::string radiometry = "brdf";  // of UtiaRadiometries()
 };

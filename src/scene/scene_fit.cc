@@ -166,6 +166,7 @@ class MaterialFitter {
       key.Add("synth_seed", settings_.seed);
     }
     key.Add("max_angle", settings_.max_angle_deg);
+    key.Add("min_theta_d", settings_.min_theta_d_deg);
     key.Add("extrapolated", settings_.extrapolated);
     key.Add("directions", material_.reductions.samples
                               ? std::visit(DirectionsText(), material_.directions)
@@ -204,6 +205,7 @@ class MaterialFitter {
                                    .seed = settings_.seed,
                                    .num_threads = num_threads_,
                                    .max_angle_deg = settings_.max_angle_deg,
+                                   .min_theta_d_deg = settings_.min_theta_d_deg,
                                    .extrapolated = settings_.extrapolated};
     return IsSynthetic(material_.source) ? LoadMeasurement(material_.source, options)
                                          : ParseMeasurement(bytes_, material_.source, options);

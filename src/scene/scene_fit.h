@@ -26,7 +26,9 @@ struct SceneFitSettings {
   int lobes = 3;
   double noise = 0;  // of synth: sources
   uint64_t seed = 1;
-  double max_angle_deg = 90;  // what counts as measured, as in SourceOptions
+  // What counts as measured, as in SourceOptions:
+  double max_angle_deg = 90;
+  double min_theta_d_deg = -1;
   bool extrapolated = false;
   std::string program;  // "trilobe 0.1.0", for model files
   std::string build;    // and which build of it: what another one has fitted is not reused

@@ -373,6 +373,10 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--max_angle=90.5"}, "above 0, up to 90"},
       {{"--max_angle=nan"}, "above 0, up to 90"},
       {{"--max_angle=0.001"}, "no valid bin"},
+      {{"--min_theta_d=-2"}, "--min_theta_d=-2 is no smallest angle"},
+      {{"--min_theta_d=90"}, "from 0 to below 90"},
+      {{"--min_theta_d=nan"}, "from 0 to below 90"},
+      {{"--min_theta_d=89.9"}, "no valid bin"},
       {{"--json"}, "no flag --json"},
   };
   for (const BadInput& bad : cases) {

@@ -90,7 +90,8 @@ TEST(MbsdfFile, ErrorsSayWhatIsWrong) {
 TEST(MbsdfFile, ReadsPublishedMeasurements) {
   const std::string folder = std::string(TRILOBE_TEST_DATA_DIR) + "/mbsdf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
-  const Measurement blue = LoadMeasurement(folder + "carpaint_blue.mbsdf");
+  const std::string path = folder + "carpaint_blue.mbsdf";
+  const Measurement blue = LoadMeasurement(path, {.min_theta_d_deg = 0});
   EXPECT_FALSE(blue.table);
   EXPECT_EQ(blue.counts.total, 45 * 45 * 90);
   EXPECT_NEAR(blue.counts.negative / 182250.0, 0.4082139917695473, 1e-12);
@@ -108,6 +109,11 @@ TEST(MbsdfFile, ReadsPublishedMeasurements) {
     if (blue.samples.rho[j][1] > blue.samples.rho[brightest][1]) brightest = j;
   }
   EXPECT_LT(blue.samples.angles[brightest].theta_h, DegreesToRadians(4));
+
+  const Measurement lit = LoadMeasurement(path);  // the detector stood in its own light
+  EXPECT_EQ(lit.counts.valid, 94767);
+  EXPECT_EQ(lit.counts.below_min_theta_d, blue.counts.valid - 94767);
+  EXPECT_THAT(lit.notes, ElementsAre(HasSubstr("below 14 deg")));
 }
 
 }  // namespace
