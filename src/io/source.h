@@ -23,7 +23,7 @@ struct SourceOptions {
   double missing = 0.0;  // share of the bins or samples that is left out at random
   uint64_t seed = 1;
   int num_threads = 1;
-  double max_angle_deg = 90;        // theta_i and theta_o beyond it do not count as measured
+  double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured
   // theta_d below it does not; below 0: as far as a detector stood in its own light, by scattered
   // samples.
   double min_theta_d_deg = -1;
