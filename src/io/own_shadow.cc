@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "trilobe/brdf/directions.h"
@@ -46,12 +47,16 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
     if (degree >= kLitDegrees) lit[theta_h_class].push_back(value);
   }
 
+  std::array<double, kClasses> bright{};  // 0 where too few samples tell
+  for (int k = 0; k < kClasses; ++k) {
+    if (lit[k].size() >= kFewestLit) bright[k] = Quantile(0.5, std::move(lit[k]));
+  }
+
   // By theta_d: how bright the highlight is, 1 as where it is lit.
   std::array<std::vector<double>, kLitDegrees> ratios;
   for (const auto& [degree, theta_h_class, value] : highlight) {
-    if (degree >= kLitDegrees || lit[theta_h_class].size() < kFewestLit) continue;
-    const double bright = Quantile(0.5, lit[theta_h_class]);
-    if (bright > 0) ratios[degree].push_back(value / bright);
+    if (degree >= kLitDegrees || !(bright[theta_h_class] > 0)) continue;
+    ratios[degree].push_back(value / bright[theta_h_class]);
   }
   std::vector<double> middle;
   for (int degree = 0; degree < kShadowedDegrees; ++degree) {
