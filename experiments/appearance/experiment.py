@@ -124,8 +124,7 @@ def units(setting):
     """Fits, the program's own scores of them, and pictures."""
     planned = fits.planned(setting)
     sources = {unit.labels["material"] for unit in planned}
-    again, meshed = ({source.name for source in setting.every(setting.manifest[every])}
-                     for every in ("noise_every", "mesh_every"))
+    again = {source.name for source in setting.every(setting.manifest["noise_every"])}
     scenes, made = _scenes(setting), list(planned)
     probe = setting.place("probe")
     environments = {BUILT_IN: (), **({"probe": (f"--probe={probe}",)} if probe else {})}
@@ -144,8 +143,6 @@ def units(setting):
                     labels={"material": source.name, "run": run, "kind": "score",
                             "environment": name}))
         for scene, flags in scenes.items():
-            if scene == "mesh" and source.name not in meshed:
-                continue
             paths = {seed: rendering.light_paths(setting, "appearance", scene, flags, seed)
                      for seed in (1, noise.AGAIN)}
             for seed in (1, noise.AGAIN) if source.name in again else (1,):

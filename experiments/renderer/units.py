@@ -26,7 +26,8 @@ def modules(*names):
 
 def light_paths(setting, experiment, scene, words, seed):
     """The paths of a scene, a product. words: flags and Products, of `light_paths`."""
+    counts = fits.words(setting.manifest["paths"][scene])
     return Product(Unit(f"{experiment}/paths/{scene}-{seed}", HERE / "light_paths",
-                        (FOLDER, *words, f"--seed={seed}", *fits.words(setting.manifest["paths"])),
+                        (FOLDER, *words, f"--seed={seed}", *counts),
                         "paths.npz", modules=modules("scene.py", "light_lobes.py")),
                    "paths.npz")
