@@ -4,6 +4,7 @@
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
+#include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/app/write_measurement.h"
 #include "trilobe/base/error.h"
@@ -48,9 +49,7 @@ int RunConvert(std::span<const std::string> arguments) {
   Inputs({source}).CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
   const Measurement measurement = MeasurementOf(source, out, options);
-  for (const std::string& note : measurement.notes) {
-    std::cerr << "trilobe: " << source << ": " << note << "\n";
-  }
+  TellNotes(measurement);
   const std::string written = WriteMeasurement(measurement, out, options.num_threads);
   std::cout << "wrote " << out << ": " << written << "\n";
   return 0;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "trilobe/app/interrupt.h"
+#include "trilobe/app/print.h"
 #include "trilobe/app/program.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/peak_memory.h"
@@ -145,9 +146,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     report.key = FitKey(settings, source, bytes);
   }
   report.seconds.read = stopwatch.Lap();
-  for (const std::string& note : measured.notes) {
-    std::cerr << "trilobe: " << source << ": " << note << "\n";
-  }
+  TellNotes(measured);
   const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
   if (table == nullptr && settings.finish.max_parameters > 0) {
     throw Error(source +

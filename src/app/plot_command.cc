@@ -8,6 +8,7 @@
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
+#include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/model_file.h"
@@ -33,6 +34,7 @@ int RunPlot(std::span<const std::string> arguments) {
   PictureData data;
   if (arguments.size() > 1) {
     measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
+    TellNotes(*measured);
     data = PictureDataOf(*measured);
     if (data.empty()) TableOf(*measured);  // its error
   }

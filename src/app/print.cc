@@ -35,6 +35,12 @@ void PrintLine(const std::string& label, const std::string& value) {
             << "\n";
 }
 
+void TellNotes(const Measurement& measurement) {
+  for (const std::string& note : measurement.notes) {
+    std::cerr << "trilobe: " << measurement.source << ": " << note << "\n";
+  }
+}
+
 void PrintJson(const nlohmann::ordered_json& json) {
   std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "trilobe/brdf/channels.h"
+#include "trilobe/io/measurement.h"
 
 // What `score` and `info` print: a table for people, or one JSON object.
 DECLARE_bool(json);
@@ -27,6 +28,9 @@ std::string Right(const std::string& text, int width);
 
 // "label", spaces up to a fixed column, "value", on a line of standard output.
 void PrintLine(const std::string& label, const std::string& value);
+
+// What a measurement's reader found wrong with it, a line each on standard error.
+void TellNotes(const Measurement& measurement);
 
 // One object and a newline on standard output. A number that is not finite becomes null, text that
 // is not UTF-8 is repaired.

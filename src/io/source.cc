@@ -135,16 +135,14 @@ void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
     return;
   }
   LimitAngles(DegreesToRadians(options.max_angle_deg), measurement);
-  if (options.min_theta_d_deg < 0) {
-    LeaveOutOwnShadow(measurement);
-  } else {
-    LimitThetaD(DegreesToRadians(options.min_theta_d_deg), measurement);
-  }
+  LimitThetaD(DegreesToRadians(options.min_theta_d_deg), measurement);
 }
 
 Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
                              const SourceOptions& options) {
   Measurement measurement = FormatOf(bytes, source).read(bytes, source, options);
+  // Of all that was measured: within a limit there may be no light to hold the shadow against.
+  if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
   DecideMeasured(options, &measurement);
   return measurement;
 }
