@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/app/run_program.h"
 #include "tests/io/tensor_bytes.h"
@@ -385,6 +386,26 @@ TEST(ScoreTest, ComparesTwoMeasurements) {
 }
 
 // By another light, and as a picture.
+// A mirror direction's value is lost below theta_d = 10 degrees.
+TEST(ScoreTest, TellsOfADetectorInItsOwnLight) {
+  const TemporaryFolder folder;
+  const std::string csv = folder / "mirror.csv";
+  std::ostringstream rows;
+  rows << "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+  for (int theta = 0; theta < 40; ++theta) {
+    const char* const rho = theta < 10 ? "0.01,0.01,0.01" : "1,1,1";
+    for (int phi = 0; phi < 360; phi += 30) {
+      rows << theta << "," << phi << "," << theta << "," << phi - 180 << "," << rho << "\n";
+    }
+  }
+  Write(csv, rows.str());
+  EXPECT_THAT(RunProgram({"score", "synth:foam", csv}).err,
+              StartsWith("trilobe: " + csv + ": the highlight is 100 times darker"));
+  EXPECT_THAT(RunProgram({"convert", csv, "--out=" + folder / "lit.csv"}).err,
+              HasSubstr("120 samples below 10 deg"));
+  EXPECT_EQ(RunProgram({"score", "synth:foam", csv, "--min_theta_d=0"}).err, "");
+}
+
 TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
