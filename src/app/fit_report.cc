@@ -137,6 +137,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"valid_samples", fit.valid_samples},
           {"max_angle", fit.max_angle},
           {"bins", ToJson(report.bins)},
+          {"data_notes", report.data_notes},
           {"solver", fit.solver},
           {"init", fit.init},
           {"weighting", fit.weighting},

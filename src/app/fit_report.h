@@ -33,7 +33,8 @@ struct FitReport {
   ModelSpec spec;
   double noise = 0;  // of the source
   int64_t seed = 0;
-  BinCounts bins;  // of the source: how many were left out, and why
+  std::vector<std::string> data_notes;  // as in Measurement
+  BinCounts bins;                       // of the source: how many were left out, and why
   SolverSummary summary;
   std::optional<NodeChoice> nodes;  // of those of D and G, where it was asked for
   // Samples that joined the data for the solver, whose E counts them (WithGuide).

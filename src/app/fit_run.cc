@@ -147,6 +147,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   }
   report.seconds.read = stopwatch.Lap();
   TellNotes(measured);
+  report.data_notes = measured.notes;
   const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
   if (table == nullptr && settings.finish.max_parameters > 0) {
     throw Error(source +

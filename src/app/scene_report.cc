@@ -49,6 +49,7 @@ const SceneMaterial& MaterialOf(const SceneRun& run, const MaterialFit& fit) {
 void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
   const SceneMaterial& material = MaterialOf(run, fit);
   out << "\n" << fit.name << ": " << material.source << "; " << BudgetText(material.budget) << "\n";
+  for (const std::string& note : fit.data_notes) out << "  note:     " << note << "\n";
   if (fit.used_samples < fit.valid_samples) {
     out << "  left out: " << fit.valid_samples - fit.used_samples << " of " << fit.valid_samples
         << " samples, in directions that the scene does not use\n";
@@ -78,6 +79,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   return {
       {"name", fit.name},
       {"source", material.source},
+      {"data_notes", fit.data_notes},
       {"budget", ToJson(material.budget)},
       {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},
       {"lobes", fit.file.model.spec().lobes},

@@ -189,7 +189,7 @@ class MaterialFitter {
 
   std::string PruneKey() const {
     Key key = FitKey("scene");
-    key.Add("then", "prune 3");
+    key.Add("then", "prune 4");
     key.Add("unit", static_cast<int>(material_.budget.unit));
     key.Add("amount", material_.budget.amount);
     const SceneReductions& reductions = material_.reductions;
@@ -218,6 +218,7 @@ class MaterialFitter {
       BrdfSamples samples = SamplesOf(measured);
       valid_samples_ = samples.size();
       max_angle_ = MaxAngleDegrees(measured);
+      data_notes_ = measured.notes;
       const ModelSpec spec =
           measured.anisotropic
               ? ModelSpec::AnisotropicFor(settings_.lobes,
@@ -297,6 +298,7 @@ class MaterialFitter {
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;
     fit.fit_from_cache = full->from_cache;
+    fit.data_notes = data_notes_;
     fit.valid_samples = valid_samples_;
     fit.used_samples = objective.samples().size();
     fit.full_parameters = full->file.model.spec().num_parameters();
@@ -320,6 +322,7 @@ class MaterialFitter {
   const std::string bytes_;
   const std::string bytes_hash_;
   std::optional<Objective> objective_, guided_;
+  std::vector<std::string> data_notes_;
   int valid_samples_ = 0;
   double max_angle_ = 90;  // [degrees] that the measurement reaches
 };

@@ -61,8 +61,9 @@ inline int BytesOf(int parameters) { return parameters * static_cast<int>(sizeof
 // What a material needs.
 struct MaterialFit {
   std::string name;
-  int valid_samples = 0;  // of the measurement
-  int used_samples = 0;   // of these, by the fit
+  std::vector<std::string> data_notes;  // as in Measurement
+  int valid_samples = 0;                // of the measurement
+  int used_samples = 0;                 // of these, by the fit
   int full_parameters = 0;
   SceneScore full, pruned;
   ModelFile file;          // the pruned model, and how the full one came about

@@ -385,9 +385,8 @@ TEST(ScoreTest, ComparesTwoMeasurements) {
   EXPECT_TRUE(other["appearance"]["psnr_db"].is_number());
 }
 
-// By another light, and as a picture.
 // A mirror direction's value is lost below theta_d = 10 degrees.
-TEST(ScoreTest, TellsOfADetectorInItsOwnLight) {
+TEST(DataNotes, TellOfADetectorInItsOwnLight) {
   const TemporaryFolder folder;
   const std::string csv = folder / "mirror.csv";
   std::ostringstream rows;
@@ -404,8 +403,24 @@ TEST(ScoreTest, TellsOfADetectorInItsOwnLight) {
   EXPECT_THAT(RunProgram({"convert", csv, "--out=" + folder / "lit.csv"}).err,
               HasSubstr("120 samples below 10 deg"));
   EXPECT_EQ(RunProgram({"score", "synth:foam", csv, "--min_theta_d=0"}).err, "");
+
+  const auto notes_of = [](const json& from) { return from["data_notes"].dump(); };
+  const std::string out = folder / "fit";
+  RunProgram({"fit", csv, "--max_iterations=1", "--out=" + out});
+  EXPECT_THAT(notes_of(json::parse(Contents(out + "/report.json"))), HasSubstr("below 10 deg"));
+  Write(folder / "scene.json", R"({"format": "trilobe-scene", "version": 1, "materials": [
+      {"name": "mirror", "source": "mirror.csv", "budget": {"relative_rise": 0}}]})");
+  for (const bool again : {false, true}) {  // from the cache, too
+    const ProgramResult plan = RunProgram({"plan", folder / "scene.json", "--json",
+                                           "--max_iterations=1", "--cache=" + (folder / "cache")});
+    ASSERT_EQ(plan.status, 0) << plan.err;
+    const json material = json::parse(plan.out)["materials"][0];
+    EXPECT_EQ(material["from_cache"]["prune"], again);
+    EXPECT_THAT(notes_of(material), HasSubstr("below 10 deg"));
+  }
 }
 
+// By another light, and as a picture.
 TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
