@@ -8,6 +8,7 @@
 #include <string>
 
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/grid_cosines.h"
 
 namespace trilobe {
 namespace {
@@ -35,15 +36,11 @@ void CheckSizes(const BrdfSamples& samples) {
   if (!samples.directions.empty()) check("pairs of directions", samples.directions.size());
 }
 
-// One pass over bins that ascend. Both directions are above the surface at the centre of a bin
-// where cos theta_{i,o} = a -+ b cos phi_d > 0 (ToCosines), a and b being those of its row.
+// One pass over bins that ascend.
 void CheckBins(const BrdfSamples& samples) {
   const MerlGrid& grid = samples.grid;
-  CheckGrid(grid);
-  std::vector<double> cos_phi(grid.phi_d);
-  for (int p = 0; p < grid.phi_d; ++p) cos_phi[p] = std::cos(grid.Center(0, 0, p).phi_d);
-  int last = -1, row_begin = -grid.phi_d;
-  double a = 0, b = 0;
+  const GridCosines cosines(grid);
+  int last = -1;
   for (int j = 0; j < samples.size(); ++j) {
     const int bin = samples.bins[j];
     if (bin <= last || bin >= grid.size()) {
@@ -52,13 +49,8 @@ void CheckBins(const BrdfSamples& samples) {
                  (last < 0 ? "" : ", after one in bin " + std::to_string(last)) +
                  "; bins must exist and ascend");
     }
-    if (bin - row_begin >= grid.phi_d) {
-      row_begin = bin - bin % grid.phi_d;
-      const HalfDiffAngles at = grid.Center(bin);
-      a = std::cos(at.theta_h) * std::cos(at.theta_d);
-      b = std::sin(at.theta_h) * std::sin(at.theta_d);
-    }
-    if (!(a - std::abs(b * cos_phi[bin - row_begin]) > 0)) {
+    const auto [cos_i, cos_o] = cosines(bin);
+    if (!(cos_i > 0 && cos_o > 0)) {
       FailAt(samples, j,
              "is in bin " + std::to_string(bin) +
                  ", at whose centre a direction is below the surface");

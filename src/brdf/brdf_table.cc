@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/grid_cosines.h"
 
 namespace trilobe {
 
@@ -29,10 +30,10 @@ BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid) {
 }
 
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid) {
-  CheckGrid(grid);
+  const GridCosines cosines(grid);
   std::vector<bool> above(grid.size());
   for (int bin = 0; bin < grid.size(); ++bin) {
-    const auto [cos_i, cos_o] = ToCosines(grid.Center(bin));
+    const auto [cos_i, cos_o] = cosines(bin);
     above[bin] = cos_i > 0 && cos_o > 0;
   }
   return above;
@@ -64,8 +65,9 @@ void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
   table->max_theta = max_theta;
   table->unmeasured.resize(table->grid.size(), Unmeasured::kNo);
   const double min_cosine = std::cos(max_theta);
+  const GridCosines cosines(table->grid);
   for (int bin = 0; bin < table->grid.size(); ++bin) {
-    const auto [cos_i, cos_o] = ToCosines(table->grid.Center(bin));
+    const auto [cos_i, cos_o] = cosines(bin);
     const bool above_surface = cos_i > 0 && cos_o > 0;
     const bool beyond = std::min(cos_i, cos_o) < min_cosine;
     Unmeasured& why = table->unmeasured[bin];

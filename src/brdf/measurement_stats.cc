@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/brdf/grid_cosines.h"
 
 namespace trilobe {
 namespace {
@@ -83,12 +84,13 @@ std::vector<double> ValidShares(const BrdfTable& table) {
   constexpr int kCells = 90;
   std::vector<int> bins(kCells * kCells), valid_bins(kCells * kCells);
   const std::vector<bool> valid = ValidBins(table);
+  const GridCosines cosines(table.grid);
   const auto cell_of = [](double cosine) {
     return std::min(static_cast<int>(RadiansToDegrees(std::acos(std::min(cosine, 1.0)))),
                     kCells - 1);
   };
   for (int bin = 0; bin < table.grid.size(); ++bin) {
-    const auto [cos_i, cos_o] = ToCosines(table.grid.Center(bin));
+    const auto [cos_i, cos_o] = cosines(bin);
     if (!(cos_i > 0 && cos_o > 0)) continue;
     const int cell = cell_of(cos_i) * kCells + cell_of(cos_o);
     ++bins[cell];

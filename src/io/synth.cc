@@ -9,6 +9,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/named.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/brdf/grid_cosines.h"
 #include "trilobe/io/counter_random.h"
 #include "trilobe/io/synth_anisotropic.h"
 
@@ -208,13 +209,13 @@ BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
                 " is anisotropic, which a MERL table cannot hold; use it as scattered samples");
   }
   BrdfTable table = MakeInvalidTable("synth:" + material.name, grid);
+  const GridCosines cosines_at(grid);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     const int row = grid.theta_d * grid.phi_d;
     for (int bin = h * row; bin < (h + 1) * row; ++bin) {
-      const HalfDiffAngles center = grid.Center(bin);
-      const Cosines cosines = ToCosines(center);
+      const Cosines cosines = cosines_at(bin);
       if (!(std::min(cosines.i, cosines.o) > 0)) continue;
-      const auto rho = Measure(material, ToDirections(center), noise, seed, bin);
+      const auto rho = Measure(material, ToDirections(grid.Center(bin)), noise, seed, bin);
       for (int c = 0; c < kChannels && rho; ++c) table.SetValue(c, bin, (*rho)[c]);
     }
   });

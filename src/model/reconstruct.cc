@@ -5,6 +5,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/brdf/grid_cosines.h"
 #include "trilobe/model/continuous_model.h"
 
 namespace trilobe {
@@ -42,13 +43,17 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
                         samples.grid.theta_d == spec.f_axis.size;
   const ContinuousModel evaluate(model);
+  if (own_bins) {
+    const GridCosines cosines(samples.grid);
+    return ForEach(samples.size(), num_threads, [&](int j) {
+      const int row = samples.bins[j] / samples.grid.phi_d;
+      return evaluate(PointStencil(row / samples.grid.theta_d),
+                      PointStencil(row % samples.grid.theta_d), cosines(samples.bins[j]));
+    });
+  }
   return ForEach(samples.size(), num_threads, [&](int j) {
     const HalfDiffAngles angles = samples.Angles(j);
-    const Cosines cosines = ToCosines(angles);
-    if (!own_bins) return evaluate(angles, cosines);
-    const int row = samples.bins[j] / samples.grid.phi_d;
-    return evaluate(PointStencil(row / samples.grid.theta_d),
-                    PointStencil(row % samples.grid.theta_d), cosines);
+    return evaluate(angles, ToCosines(angles));
   });
 }
 

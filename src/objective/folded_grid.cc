@@ -6,6 +6,7 @@
 
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/directions.h"
+#include "trilobe/brdf/grid_cosines.h"
 #include "trilobe/model/shadowing_pieces.h"
 
 namespace trilobe {
@@ -67,6 +68,7 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
   }
 
   const CatmullRom spline(g_nodes);
+  const GridCosines cosines(grid);
   const std::vector<CatmullRom::Piece> cosine = CosinePieces(spline);
   std::vector<double> constant(grid.theta_h, 0.0), energy(grid.theta_h, 0.0);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
@@ -76,7 +78,7 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
       for (int p = 0; p < half; ++p) {
         const Pair pair = lookup.At(h, d, p);
         if (pair.empty()) continue;
-        const auto [cos_i, cos_o] = ToCosines(grid.Center(h, d, p));
+        const auto [cos_i, cos_o] = cosines(h, d, p);
         const CatmullRom::Location i = spline.Locate(std::acos(cos_i));
         const CatmullRom::Location o = spline.Locate(std::acos(cos_o));
         folded.interval_i[n] = static_cast<int16_t>(i.interval);
