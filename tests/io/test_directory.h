@@ -9,12 +9,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tests/contents.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
@@ -41,11 +41,7 @@ class TestDirectory {
     return Path(name);
   }
 
-  // Content of a file, read without the code under test.
-  static std::string Content(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  static std::string Content(const std::string& path) { return Contents(path); }
 
   // Sorted names of what is in the folder.
   std::vector<std::string> Names() const {
