@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <numeric>
 #include <random>
 #include <string>
 #include <string_view>
@@ -23,6 +26,16 @@ inline constexpr bool kSanitized = true;  // about ten times slower: tests do le
 #else
 inline constexpr bool kSanitized = false;
 #endif
+
+// Whether a test looks at a combination of choices, given by their numbers: it does at one in `n`,
+// and any two choices still meet where there are n or more to choose from for a third.
+inline bool IsOneIn(int n, std::initializer_list<std::ptrdiff_t> choices) {
+  return std::accumulate(choices.begin(), choices.end(), std::ptrdiff_t{0}) % n == 0;
+}
+template <typename T>
+std::ptrdiff_t NumberOf(const T& choice, const std::vector<T>& choices) {
+  return &choice - choices.data();
+}
 
 // Random numbers that are the same on every machine, as <random>'s distributions are not.
 class Random {

@@ -186,15 +186,24 @@ std::string InOtherOrder(UtiaNumbers numbers, bool rows_by_phi, bool columns_by_
 }
 
 TEST(UtiaFile, ANoteTellsNumbersInAnotherOrder) {
-  for (const char* name : {"charmeuse", "velvet", "linen", "rolled_brass", "varnished_plywood",
-                           "aniso_ggx_steel", "aniso_ggx_lacquer", "plastic@6x48", "felt@6x48"}) {
+  const std::vector<const char*> names = {"charmeuse",
+                                          "velvet",
+                                          "linen",
+                                          "rolled_brass",
+                                          "varnished_plywood",
+                                          "aniso_ggx_steel",
+                                          "aniso_ggx_lacquer",
+                                          "plastic@6x48",
+                                          "felt@6x48"};
+  for (const char* const& name : names) {
     SCOPED_TRACE(name);
-    if (kSanitized && name != std::string_view("velvet")) continue;
+    if (kSanitized && name != std::string_view("felt@6x48")) continue;
     const Measurement measurement =
         LoadMeasurement(std::string("synth:") + name, {.noise = 0.03, .missing = 0.01});
     const UtiaNumbers numbers(measurement);
     EXPECT_THAT(Parse(numbers).notes, IsEmpty());
     for (int k = 1; k < 8; ++k) {
+      if (!IsOneIn(3, {k, NumberOf(name, names)})) continue;  // three materials in each order
       const bool rows = (k & 1) != 0, columns = (k & 2) != 0, interleaved = (k & 4) != 0;
       const auto notes =
           ParseUtia(InOtherOrder(numbers, rows, columns, interleaved), "x.bin").notes;
