@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What takes too long for .ci/run: clang-tidy on everything, the longest tests under the
+# What takes too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests under the
 # address and undefined-behaviour sanitizers, the thread sanitizer, some hundred faults, and long fuzzing.
 #   scripts/nightly.sh [TRIALS [RUNS]]      faults to try (400), executions of each fuzzer (10000000)
 set -euo pipefail
@@ -25,9 +25,11 @@ build asan-ubsan
 step "Running the longest tests with them"
 run_tests asan-ubsan-long
 
-step "Building the program"
-quietly configure-release cmake --preset release
-build release trilobe_app
+step "Building the program and the tests"
+quietly configure-release cmake --preset release -DTRILOBE_BUILD_TESTS=ON
+build release
+step "Running the tests that go through choices, with all combinations"
+TRILOBE_ALL_CHOICES=1 run_tests release
 step "Breaking runs of it"
 tests/faults/harness.py --trials="${1:-400}"
 
