@@ -79,6 +79,10 @@ def checked(runs):
             if name not in RUN:
                 raise UsageError(f"runs.{place}.{name} of the manifest: not one of "
                                  f"{', '.join(RUN)}")
+            if name == "every" and isinstance(value, dict) and all(
+                    of in ("MERL", "RGL", "own") and type(n) is int and n >= 1
+                    for of, n in value.items()):
+                continue
             kind = list if name == "solvers" else type(RUN[name])
             if type(value) is not kind or (kind is int and value < 1):
                 what = {list: "a list", dict: "an object", str: "text", int: "1 or more"}[kind]
@@ -91,7 +95,8 @@ def planned(setting):
 
     A run is a set of fits: {"solvers": [...], "every": 4, "starts": [...], "seeds": [...],
     "threads": [...], "weightings": [...], "repeats": 2, "flags": {...}}, all but the first with a
-    default. It stands for every combination on every 4th material of each list; its flags come on
+    default. It stands for every combination on every 4th material of each list ({"MERL": 4}: of
+    that list, and on all of the others); its flags come on
     top of the manifest's "flags". Its "name", if it has one, is a label of its fits. Raises
     UsageError for any other member, or one of another type.
     """

@@ -85,8 +85,11 @@ def find(places):
 def every(sources, n):
     """Every n-th name of each list, from the first; of other names every n-th of those given.
 
-    An odd n takes materials of both halves.
+    An odd n takes materials of both halves. {"MERL": 3} takes every third of that list, and all of
+    the others.
     """
     own = sorted(source.name for source in sources if source.database == "own")
-    chosen = {name for names in (MERL, RGL, own) for name in names[::n]}
+    step = n if isinstance(n, dict) else dict.fromkeys(("MERL", "RGL", "own"), n)
+    chosen = {name for database, names in (("MERL", MERL), ("RGL", RGL), ("own", own))
+              for name in names[::step.get(database, 1)]}
     return [source for source in sources if source.name in chosen]

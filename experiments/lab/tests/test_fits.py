@@ -34,7 +34,8 @@ class FitsTest(FolderTest):
 
     def test_runs_that_are_none_are_refused(self):
         for wrong in ("text", [{"every": 2}], [{"solvers": "awls"}], [{"solvers": [], "every": 0}],
-                      [{"solvers": [], "solver": []}], [{"solvers": [], "flags": 1}]):
+                      [{"solvers": [], "solver": []}], [{"solvers": [], "flags": 1}],
+                      [{"solvers": [], "every": {"MERL": 0}}], [{"solvers": [], "every": {"x": 1}}]):
             with self.subTest(wrong), self.assertRaisesRegex(UsageError, "manifest"):
                 fits.planned(self.setting(wrong))
 

@@ -28,6 +28,8 @@ class SettingsTest(FolderTest):
         everything = [materials.Source(name, name) for name in materials.MERL + materials.RGL]
         chosen = {source.name for source in materials.every(everything, 4)}
         self.assertEqual(len(chosen), 10 + 6)
+        of_one = {source.name for source in materials.every(everything, {"MERL": 4})}
+        self.assertEqual(of_one, chosen | set(materials.RGL))
         some = everything[1::2]
         self.assertEqual({source.name for source in materials.every(some, 4)},
                          chosen & {source.name for source in some})
