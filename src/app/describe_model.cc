@@ -98,8 +98,8 @@ void DescribeModel(const std::string& path) {
                                             {"dead", CountUnobserved(file, factor)}};
       if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
-    json["stored_numbers"] =
-        file.layout ? file.layout->num_parameters(spec) : spec.num_parameters();
+    json["stored_numbers"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
+    json["stretch"] = {{"along", spec.stretch.along}, {"across", spec.stretch.across}};
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},
                    {"init", fit.init},
@@ -125,6 +125,10 @@ void DescribeModel(const std::string& path) {
   if (file.layout) {
     PrintLine("stored", std::to_string(file.layout->num_parameters(spec)) + " parameters, and " +
                             std::to_string(file.layout->num_places(spec)) + " places of nodes");
+  }
+  if (spec.stretch.any()) {
+    PrintLine("stretch", "along " + Text(spec.stretch.along) + ", across " +
+                             Text(spec.stretch.across) + " (exponents of 1 / cos theta_d)");
   }
   for (const Factor factor : kFactors) {
     const int unobserved = CountUnobserved(file, factor);

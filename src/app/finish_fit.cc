@@ -49,9 +49,18 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
         [sphere = SphereJudge(*measured, options.appearance)](const FactorModel& candidate) {
           return sphere(ContinuousModel(candidate)).psnr_db;
         };
-    ChosenModel chosen = ChooseModel(
-        of, fit.model,
-        {.max_parameters = options.max_parameters, .judge = judge, .stop = options.stop});
+    std::function<double(const FactorModel&)> judge_beyond;
+    if (!measured->unmeasured.empty()) {
+      judge_beyond = [sphere = SphereJudge::OfAllDirections(*measured, options.appearance)](
+                         const FactorModel& candidate) {
+        return sphere(ContinuousModel(candidate)).psnr_db;
+      };
+    }
+    ChosenModel chosen = ChooseModel(of, fit.model,
+                                     {.max_parameters = options.max_parameters,
+                                      .judge = judge,
+                                      .judge_beyond = judge_beyond,
+                                      .stop = options.stop});
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
     fit.layout = std::move(chosen.layout);

@@ -69,8 +69,8 @@ FactorModel StartFromFile() {
   FactorModel model = ReadModel(FLAGS_init).model;
   if (ModelIsGiven()) {
     throw Error(FLAGS_init +
-                " brings its own lobes and tables; leave out --model, --lobes, --d_nodes, "
-                "--f_bins, --g_nodes and --nodes");
+                " brings its own lobes and tables; leave out --model, --lobes, --stretch, "
+                "--d_nodes, --f_bins, --g_nodes and --nodes");
   }
   return model;
 }
@@ -183,8 +183,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init", "model", "d_nodes", "f_bins", "g_nodes", "nodes", "guide", "max_numbers", "robust",
-        "probe", "course", "reconstruction", "plots", "diagnose", "shard"}) {
+       {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "guide", "max_numbers",
+        "robust", "probe", "course", "reconstruction", "plots", "diagnose", "shard"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

@@ -19,7 +19,9 @@ using Json = nlohmann::ordered_json;
 // The value of --model that stands for a spec, which a model file may have brought.
 std::string ModelName(const ModelSpec& spec) {
   const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
-  if (spec == ModelSpec::SharedFactors(spec.lobes, grid)) return "shared";
+  ModelSpec shared = ModelSpec::SharedFactors(spec.lobes, grid);
+  shared.stretch = spec.stretch;
+  if (spec == shared) return "shared";
   if (spec == ModelSpec::IndependentG(grid)) return "independent";
   if (spec.anisotropic()) return "anisotropic";
   return "other";
@@ -57,6 +59,7 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
                      {"numbers", candidate.num_parameters},
                      {"objective", candidate.E},
                      {"psnr_db", candidate.score},
+                     {"wild_beyond_data", candidate.wild},
                      {"seconds", candidate.seconds}});
   }
   return array;
@@ -73,6 +76,23 @@ Json ToJson(const NodeChoice& choice) {
   return {{"chosen", choice.tried[choice.chosen].name},
           {"held_out_samples", choice.held_out},
           {"tried", tried}};
+}
+
+// Where it is much of E.
+std::string Irreducible(const ScoreReport& score) {
+  constexpr double kMuch = 0.1;
+  const double share =
+      score.objective > 0 ? std::min(score.irreducible_objective / score.objective, 1.0) : 0;
+  if (share < kMuch) return "";
+  return "reciprocity  " + Text(100 * share, 3) +
+         " % of E is what exchanged directions differ by in the data; no reciprocal model lowers "
+         "it\n";
+}
+
+std::string Describe(const Stretch& stretch) {
+  if (!stretch.any()) return "";
+  return "stretch      highlights widen with theta_d by 1 / cos^x: x = " + Text(stretch.along, 3) +
+         " along the plane of both directions, " + Text(stretch.across, 3) + " across it\n";
 }
 
 // What was chosen, and what it was chosen from.
@@ -109,6 +129,7 @@ std::string Describe(const FitReport::Finished& finished) {
     text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
             Text(candidate.score) + " dB, " + std::to_string(candidate.num_parameters) +
             " parameters, E " + Text(candidate.E) +
+            (candidate.wild ? ", but runs wild beyond the data" : "") +
             (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
   }
   return text;
@@ -131,63 +152,66 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
-  return {{"source", fit.source},
-          {"noise", report.noise},
-          {"seed", report.seed},
-          {"valid_samples", fit.valid_samples},
-          {"max_angle", fit.max_angle},
-          {"bins", ToJson(report.bins)},
-          {"data_notes", report.data_notes},
-          {"solver", fit.solver},
-          {"init", fit.init},
-          {"weighting", fit.weighting},
-          {"model", ModelName(report.spec)},
-          {"lobes", report.spec.lobes},
-          {"parameters", report.spec.num_parameters()},
-          {"stored_numbers", report.stored_parameters},
-          {"candidates", ToJson(report.finished.candidates)},
-          {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
-          {"guide", report.guide
-                        ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
-                        : Json()},
-          {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
-          {"threads", fit.threads},
-          {"options",
-           {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
-          {"notes", summary.notes},
-          {"starts", ToJson(summary.starts)},
-          {"stop_reason", fit.stop_reason},
-          {"iterations", fit.iterations},
-          {"best_iteration", summary.BestIteration()},
-          {"rejected_steps", summary.RejectedSteps()},
-          {"initial_objective", fit.initial_objective},
-          {"objective", score.objective},
-          {"relative_objective", score.relative_objective},
-          {"psnr_db", score.psnr_db},
-          {"psnr_peak", score.psnr_peak},
-          {"rmse", score.rmse},
-          {"mean_relative_error", score.mean_relative_error},
-          {"mean_log_error", score.mean_log_error},
-          {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
-          {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
-          {"light", ToJson(report.light)},
-          {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
-          {"seconds",
-           {{"read", seconds.read},
-            {"prepare", seconds.prepare},
-            {"init", seconds.init},
-            {"nodes", seconds.nodes},
-            {"solve", seconds.solve},
-            {"finish", seconds.finish},
-            {"score", seconds.score}}},
-          {"phases", ToJson(summary.phases)},
-          {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
-          {"program", fit.program},
-          {"date", fit.date},
-          {"key", report.key},
-          {"interrupted", report.interrupted},
-          {"run", fit.run},
-          {"files", report.files}};
+  return {
+      {"source", fit.source},
+      {"noise", report.noise},
+      {"seed", report.seed},
+      {"valid_samples", fit.valid_samples},
+      {"max_angle", fit.max_angle},
+      {"bins", ToJson(report.bins)},
+      {"data_notes", report.data_notes},
+      {"solver", fit.solver},
+      {"init", fit.init},
+      {"weighting", fit.weighting},
+      {"model", ModelName(report.spec)},
+      {"lobes", report.spec.lobes},
+      {"stretch", {{"along", report.spec.stretch.along}, {"across", report.spec.stretch.across}}},
+      {"parameters", report.spec.num_parameters()},
+      {"stored_numbers", report.stored_parameters},
+      {"candidates", ToJson(report.finished.candidates)},
+      {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
+      {"guide", report.guide
+                    ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
+                    : Json()},
+      {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
+      {"threads", fit.threads},
+      {"options",
+       {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
+      {"notes", summary.notes},
+      {"starts", ToJson(summary.starts)},
+      {"stop_reason", fit.stop_reason},
+      {"iterations", fit.iterations},
+      {"best_iteration", summary.BestIteration()},
+      {"rejected_steps", summary.RejectedSteps()},
+      {"initial_objective", fit.initial_objective},
+      {"objective", score.objective},
+      {"relative_objective", score.relative_objective},
+      {"irreducible_objective", score.irreducible_objective},
+      {"psnr_db", score.psnr_db},
+      {"psnr_peak", score.psnr_peak},
+      {"rmse", score.rmse},
+      {"mean_relative_error", score.mean_relative_error},
+      {"mean_log_error", score.mean_log_error},
+      {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
+      {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
+      {"light", ToJson(report.light)},
+      {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
+      {"seconds",
+       {{"read", seconds.read},
+        {"prepare", seconds.prepare},
+        {"init", seconds.init},
+        {"nodes", seconds.nodes},
+        {"solve", seconds.solve},
+        {"finish", seconds.finish},
+        {"score", seconds.score}}},
+      {"phases", ToJson(summary.phases)},
+      {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
+      {"program", fit.program},
+      {"date", fit.date},
+      {"key", report.key},
+      {"interrupted", report.interrupted},
+      {"run", fit.run},
+      {"files", report.files}};
 }
 
 void Print(const FitReport& report) {
@@ -204,6 +228,7 @@ void Print(const FitReport& report) {
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
+            << Irreducible(score) << Describe(report.spec.stretch)
             << (report.nodes ? Describe(*report.nodes) : "")
             << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
             << (report.appearance

@@ -233,7 +233,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.finished = {fit.tied, fit.candidates, fit.chosen};
   report.spec = fit.model.spec();
   report.stored_parameters =
-      fit.layout ? fit.layout->num_parameters(report.spec) : report.spec.num_parameters();
+      fit.layout.value_or(TableLayout::Full(report.spec)).num_parameters(report.spec);
   report.score = ScoreModel(fit.objective, fit.model);
   report.fit.objective = report.score.objective;
   ModelFile file{fit.model, UnobservedParameters(fit.objective.coverage()), report.fit, fit.layout};

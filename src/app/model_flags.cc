@@ -22,6 +22,12 @@ DEFINE_string(
     "of an anisotropic model, nodes of D: so many theta_h by so many phi_h, theta_h at even "
     "steps, or with an r (12rx48) of the root of theta_h; by default 12rx36, or fewer phi_h where "
     "the data have fewer; with --model=anisotropic 6x48");
+DEFINE_string(
+    stretch, "",
+    "of an isotropic model, ALONG,ACROSS: exponents by which highlights get wider with theta_d, "
+    "along "
+    "the plane of both directions and across it (docs/method.md#stretched-highlights); by default "
+    "0,0, as in the paper; --model=auto finds them");
 DEFINE_int32(f_bins, 0,
              "of an anisotropic model, bins of F over theta_d, from 4; by default 6, with "
              "--model=anisotropic 90");
@@ -62,6 +68,21 @@ Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   return axis;
 }
 
+Stretch StretchFromFlags() {
+  if (FLAGS_stretch.empty()) return {};
+  const std::string_view text = FLAGS_stretch;
+  const size_t comma = text.find(',');
+  const std::optional<double> along = ToNumber(text.substr(0, comma));
+  const std::optional<double> across =
+      comma == std::string::npos ? std::nullopt : ToNumber(text.substr(comma + 1));
+  if (!along || !across) {
+    throw Error("--stretch=" + FLAGS_stretch + " is no stretch; give ALONG,ACROSS, as -0.2,0.3");
+  }
+  const Stretch stretch{.along = *along, .across = *across};
+  CheckStretch(stretch);
+  return stretch;
+}
+
 ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
   ModelSpec spec = FLAGS_model == "anisotropic"
                        ? ModelSpec::Anisotropic(FLAGS_lobes)
@@ -85,6 +106,7 @@ ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
   ModelSpec spec =
       independent ? ModelSpec::IndependentG(grid) : ModelSpec::SharedFactors(FLAGS_lobes, grid);
   if (g_nodes > 0) spec.g_axis.size = g_nodes;
+  spec.stretch = StretchFromFlags();
   CheckSpec(spec);
   return spec;
 }
@@ -110,6 +132,11 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
   const std::optional<HemisphereGrid> grid =
       measurement.anisotropic ? GridOf(measurement) : std::nullopt;
   if (anisotropic) {
+    if (StretchFromFlags().any()) {
+      throw Error(measurement.source +
+                  ": --stretch is for isotropic models, and this is to have an " +
+                  "anisotropic one; --model=isotropic fits the other");
+    }
     return AnisotropicSpec(grid.value_or(HemisphereGrid()), measurement.max_theta);
   }
   const ModelSpec spec =
@@ -158,7 +185,7 @@ std::vector<NodeCandidate> NodeLadderFromFlags(const ModelSpec& spec,
 }
 
 std::vector<std::string> ModelFlags() {
-  return {"model", "lobes", "d_nodes", "f_bins", "g_nodes", "nodes"};
+  return {"model", "lobes", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes"};
 }
 
 double GuideFromFlags() {

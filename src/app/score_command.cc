@@ -48,6 +48,7 @@ Json ToJson(const ScoreReport& report, const std::optional<AppearanceReport>& ap
                {"valid_samples", report.valid_samples},
                {"objective", report.objective},
                {"relative_objective", report.relative_objective},
+               {"irreducible_objective", report.irreducible_objective},
                {"psnr_db", report.psnr_db},
                {"psnr_peak", report.psnr_peak},
                {"rmse", report.rmse},
@@ -93,6 +94,10 @@ void PrintTable(const ScoreReport& report, const std::optional<AppearanceReport>
   PrintLine("weighting", objective.weighting().name);
   PrintLine("objective E", Text(report.objective, 10));
   PrintLine("E / E of a black model", Text(report.relative_objective));
+  if (report.irreducible_objective > 0) {
+    PrintLine("irreducible part of E",
+              Text(report.irreducible_objective) + ", by which exchanged directions differ");
+  }
   PrintLine("PSNR", Text(report.psnr_db) + " dB, peak " + Text(report.psnr_peak) + " /sr");
   PrintLine("RMSE", Text(report.rmse) + " /sr (red " + Text(report.rmse_channel[0]) + ", green " +
                         Text(report.rmse_channel[1]) + ", blue " + Text(report.rmse_channel[2]) +

@@ -145,11 +145,14 @@ ImagePair RenderPair(const TabulatedBrdf& measured, const AngularBrdf& fitted, c
 }
 
 // Everything, measured or not; for `measured` what its table is filled with.
+BrdfTable AllMeasured(BrdfTable measured) {
+  measured.unmeasured.clear();
+  return measured;
+}
+
 ImagePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
                            const AppearanceOptions& options) {
-  BrdfTable all = measured;
-  all.unmeasured.clear();
-  return RenderPair(TabulatedBrdf(all), fitted, Everything, options);
+  return RenderPair(TabulatedBrdf(AllMeasured(measured)), fitted, Everything, options);
 }
 
 }  // namespace
@@ -252,11 +255,21 @@ ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitte
 }
 
 SphereJudge::SphereJudge(const BrdfTable& measured, const AppearanceOptions& options)
+    : SphereJudge(measured, MeasuredDirections(measured), options) {}
+
+SphereJudge::SphereJudge(const BrdfTable& measured,
+                         std::function<bool(const HalfDiffAngles&, const Cosines&)> counts,
+                         const AppearanceOptions& options)
     : size_(options.size),
       num_threads_(options.num_threads),
       lights_(DrawLights(EnvironmentOf(options), options.lights)),
-      counts_(MeasuredDirections(measured)),
+      counts_(std::move(counts)),
       measured_(Render(Interpolated(TabulatedBrdf(measured)))) {}
+
+SphereJudge SphereJudge::OfAllDirections(const BrdfTable& measured,
+                                         const AppearanceOptions& options) {
+  return {AllMeasured(measured), Everything, options};
+}
 
 SphereError SphereJudge::operator()(const AngularBrdf& fitted) const {
   return CompareSpheres(measured_, Render(Clamped(fitted)));

@@ -90,10 +90,16 @@ class SphereJudge {
  public:
   // Throws Error when no bin is valid or the environment is black.
   SphereJudge(const BrdfTable& measured, const AppearanceOptions& options);
+  // Looks at all directions: at what whoever made the measurement took for those that it lacks, or
+  // else at its nearest valid bins (BeyondData::psnr_db).
+  static SphereJudge OfAllDirections(const BrdfTable& measured, const AppearanceOptions& options);
 
   SphereError operator()(const AngularBrdf& fitted) const;
 
  private:
+  SphereJudge(const BrdfTable& measured,
+              std::function<bool(const HalfDiffAngles&, const Cosines&)> counts,
+              const AppearanceOptions& options);
   RenderedImage Render(const AngularBrdf& brdf) const;
 
   const int size_, num_threads_;

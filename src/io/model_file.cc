@@ -108,7 +108,7 @@ std::string FormatModel(const ModelFile& file) {
   const ModelSpec& spec = model.spec();
   OrderedJson json;
   json["format"] = kModelFormat;
-  json["version"] = kModelVersion;
+  json["version"] = spec.stretch.any() ? kStretchedVersion : kModelVersion;
   json["kind"] = spec.anisotropic() ? kAnisotropicKind : kIsotropicKind;
   json["lobes"] = spec.lobes;
   for (const Factor factor : kFactors) {
@@ -124,6 +124,9 @@ std::string FormatModel(const ModelFile& file) {
       json["theta_nodes"][FactorName(factor)] = axis.theta;
       json["phi_nodes"][FactorName(factor)] = std::move(phi);
     }
+  }
+  if (spec.stretch.any()) {
+    json["stretch"] = {{"along", spec.stretch.along}, {"across", spec.stretch.across}};
   }
   const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
   CheckLayout(layout, spec);

@@ -7,6 +7,8 @@ namespace trilobe {
 
 inline constexpr const char* kModelFormat = "trilobe-model";
 inline constexpr int kModelVersion = 1;
+// Of models whose highlights are stretched, which readers of version 1 would evaluate wrongly.
+inline constexpr int kStretchedVersion = 2;
 inline constexpr const char* kIsotropicKind = "isotropic";
 inline constexpr const char* kAnisotropicKind = "anisotropic";
 

@@ -9,6 +9,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/json_value.h"
 #include "trilobe/io/model_format.h"
+#include "trilobe/model/stretch.h"
 
 namespace trilobe {
 namespace {
@@ -58,6 +59,14 @@ class Node {
   double Number() const {
     CheckType(Type::kNumber, "a number");
     if (json_.number() < 0) Fail("must be finite and >= 0, not " + NumberText());
+    return json_.number();
+  }
+
+  double Exponent() const {
+    CheckType(Type::kNumber, "a number");
+    if (!(std::abs(json_.number()) <= kMaxStretch)) {
+      Fail("must be from -2 to 2, not " + NumberText());
+    }
     return json_.number();
   }
 
@@ -130,6 +139,14 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
     Sharing(factor, spec) = {.per_lobe = entry["per_lobe"].Bool(),
                              .per_channel = entry["per_channel"].Bool()};
   }
+}
+
+// Which readers of version 1 do not know.
+void ReadStretch(const Node& root, ModelSpec* spec) {
+  if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) return;
+  const Node node = root["stretch"].CheckObject();
+  if (spec->anisotropic()) node.Fail("is for isotropic models");
+  spec->stretch = {.along = node["along"].Exponent(), .across = node["across"].Exponent()};
 }
 
 // Entries of a table: those that the file lists, or, where it lists nodes, as many as it says.
@@ -212,6 +229,7 @@ ModelSpec ReadSpec(const Node& root) {
     }
     AxisOf(factor, &spec).size = static_cast<int>(size);
   }
+  ReadStretch(root, &spec);
   return spec;
 }
 
@@ -323,10 +341,11 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
     root["format"].Fail("must be \"" + std::string(kModelFormat) + "\"");
   }
   if (const int version = root["version"].Integer(std::numeric_limits<int>::max());
-      version != kModelVersion) {
-    root["version"].Fail("is " + std::to_string(version) + "; this program reads version " +
-                         std::to_string(kModelVersion) +
-                         (version > kModelVersion ? "; update it" : ""));
+      version != kModelVersion && version != kStretchedVersion) {
+    root["version"].Fail("is " + std::to_string(version) + "; this program reads versions " +
+                         std::to_string(kModelVersion) + " and " +
+                         std::to_string(kStretchedVersion) +
+                         (version > kStretchedVersion ? "; update it" : ""));
   }
   const std::string kind = root["kind"].String();
   if (kind != kIsotropicKind && kind != kAnisotropicKind) {

@@ -37,8 +37,9 @@ Rgb ContinuousModel::operator()(const Stencil& D, const Stencil& F, const Cosine
 }
 
 Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
-  return (*this)(LinearStencil(grid_.ThetaHCoordinate(angles.theta_h), grid_.theta_h),
-                 LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
+  return (*this)(
+      LinearStencil(grid_.ThetaHCoordinate(model_.spec().stretch.ThetaH(angles)), grid_.theta_h),
+      LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
 }
 
 Rgb ContinuousModel::operator()(const DirectionPair& directions) const {

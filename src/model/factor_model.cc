@@ -74,16 +74,18 @@ void CheckCoverage(std::span<const double> coverage, const FactorModel& model) {
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin) {
   CheckIsotropic(spec, "a MERL grid, which knows no azimuths,");
   SampleStencils stencils;
-  stencils.D = PointStencil(bin / (grid.theta_d * grid.phi_d));
+  const HalfDiffAngles angles = grid.Center(bin);
+  stencils.D = spec.stretch.any() ? spec.d_axis.At(spec.stretch.ThetaH(angles), 0)
+                                  : PointStencil(bin / (grid.theta_d * grid.phi_d));
   stencils.F = PointStencil(bin / grid.phi_d % grid.theta_d);
-  SetCosineStencils(spec, ToCosines(grid.Center(bin)), &stencils);
+  SetCosineStencils(spec, ToCosines(angles), &stencils);
   return stencils;
 }
 
 SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles) {
   CheckIsotropic(spec, "a pair of directions without azimuths");
   SampleStencils stencils;
-  stencils.D = spec.d_axis.At(angles.theta_h, 0);
+  stencils.D = spec.d_axis.At(spec.stretch.ThetaH(angles), 0);
   stencils.F = spec.f_axis.At(angles.theta_d, 0);
   SetCosineStencils(spec, ToCosines(angles), &stencils);
   return stencils;

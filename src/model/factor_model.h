@@ -87,8 +87,9 @@ struct SampleStencils {
   double inverse_cosines = 0;
 };
 
-// Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/method.md). The grid's
-// theta_h, theta_d resolution is that of the spec's D and F. Throws Error for an anisotropic spec.
+// Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/method.md), a stretched
+// D between two. The grid's theta_h, theta_d resolution is that of the spec's D and F. Throws Error
+// for an anisotropic spec.
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);
 
 // Stencils at any directions, as the axes have it (Axis::At). Angles without azimuths do for

@@ -37,6 +37,9 @@ class Cells {
   // Two directions above the surface, theta and, where G is polar, phi, but for D's own.
   struct Pair {
     int d;
+    // The half vectors of an entry that is read by a stretched theta_h, over those without a
+    // stretch.
+    double half_vectors;
     Cosines cosines;
     double theta_i, phi_i, theta_o, phi_o;
   };
@@ -46,8 +49,13 @@ class Cells {
     for (int d = 0; d < spec_.f_axis.size; ++d) {
       for (int p = 0; p < phi_steps(); ++p) {
         HalfDiffAngles angles = grid_.Center(0, d, p);
-        angles.theta_h = spec_.d_axis.Theta(h);
+        const double read_at = spec_.d_axis.Theta(h);
+        const double factor = spec_.stretch.Factor(angles.theta_d, angles.phi_d);
+        angles.theta_h = read_at / factor;
+        if (angles.theta_h >= kPi / 2) continue;
         Pair pair{.d = d,
+                  .half_vectors =
+                      factor == 1 ? 1 : std::sin(angles.theta_h) / (factor * std::sin(read_at)),
                   .cosines = ToCosines(angles),
                   .theta_i = 0,
                   .phi_i = 0,
@@ -138,7 +146,7 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
       if (!observed(Factor::kF, pair.d)) continue;
       const auto [G_i, G_o] = cells.ReadG(h, pair);
       if (!all_live(G_i) || !all_live(G_o)) continue;
-      const double solid_angle = cells.SolidAngle(h, pair.d);
+      const double solid_angle = cells.SolidAngle(h, pair.d) * pair.half_vectors;
       const double white = solid_angle * pair.cosines.i * pair.cosines.o;
       all += white;
       for (int c = 0; c < kChannels; ++c) {

@@ -6,6 +6,7 @@
 #include "trilobe/brdf/channels.h"
 #include "trilobe/brdf/merl_grid.h"
 #include "trilobe/model/axis.h"
+#include "trilobe/model/stretch.h"
 
 namespace trilobe {
 
@@ -33,6 +34,7 @@ struct ModelSpec {
   Axis d_axis{.rule = Axis::Rule::kRootTheta};  // of theta_h, or of (theta_h, phi_h)
   Axis f_axis{.rule = Axis::Rule::kTheta};      // of theta_d
   Axis g_axis{.rule = Axis::Rule::kSpline};     // of theta, or of (theta, phi)
+  Stretch stretch = {};                         // of the highlights, of isotropic models only
 
   // `lobes` lobes with D, G shared by the channels, F shared by the lobes (paper eq. 3):
   // 822 parameters for three lobes on the MERL grid.
@@ -86,8 +88,8 @@ struct ModelSpec {
   bool operator==(const ModelSpec&) const = default;
 };
 
-// Throws Error unless the lobes are in [0, kMaxLobes] and the axes are in order (CheckAxis), F one
-// of theta_d alone.
+// Throws Error unless the lobes are in [0, kMaxLobes], the axes are in order (CheckAxis), F one
+// of theta_d alone, and the stretch (CheckStretch), which no anisotropic spec has.
 void CheckSpec(const ModelSpec& spec);
 
 // Throws Error, which says what `wants` it, if the spec is anisotropic.

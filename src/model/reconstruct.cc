@@ -41,7 +41,7 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
     });
   }
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
-                        samples.grid.theta_d == spec.f_axis.size;
+                        samples.grid.theta_d == spec.f_axis.size && !spec.stretch.any();
   const ContinuousModel evaluate(model);
   if (own_bins) {
     const GridCosines cosines(samples.grid);

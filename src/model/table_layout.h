@@ -38,7 +38,7 @@ struct TableLayout {
   }
   std::vector<int>& of(Factor factor, int table) { return nodes[static_cast<int>(factor)][table]; }
 
-  // How many parameters are stored: values alone, without the places of nodes.
+  // How many parameters are stored: values, those of a stretch too, without the places of nodes.
   int num_parameters(const ModelSpec& spec) const;
   // How many places of nodes are stored with them: those of tables that are not stored as a whole.
   int num_places(const ModelSpec& spec) const;

@@ -47,7 +47,7 @@ struct Power {
   double exponent = 1;
   double epsilon = 1e-3;  // [1/sr], or of the level
   bool relative = false;
-  bool by_channel = false;
+  double by_channel = 0;  // share of the channel's own value in b, the rest being the mean's
   bool both_cosines = false;
   double solid_angle = 0;  // exponent of the solid angle
 
@@ -64,9 +64,16 @@ struct Power {
       const double slope = exponent == 1 ? 1 / x : std::pow(x, -exponent);
       return area * Square(cosine * slope);
     };
-    if (by_channel) return {weight(point.rho[0]), weight(point.rho[1]), weight(point.rho[2])};
-    const double w = weight(Mean(point.rho));
-    return {w, w, w};
+    const double mean = Mean(point.rho);
+    if (by_channel == 0) {
+      const double w = weight(mean);
+      return {w, w, w};
+    }
+    Rgb w;
+    for (int c = 0; c < kChannels; ++c) {
+      w[c] = weight(by_channel * point.rho[c] + (1 - by_channel) * mean);
+    }
+    return w;
   }
 };
 
@@ -107,7 +114,8 @@ Weighting ParsePower(const std::string& name) {
     } else if (key == "relative") {
       power.relative = yes();
     } else if (key == "by_channel") {
-      power.by_channel = yes();
+      if (value > 1) FailPower(name, "by_channel must be at most 1");
+      power.by_channel = value;
     } else if (key == "both_cosines") {
       power.both_cosines = yes();
     } else if (key == "solid_angle") {
@@ -137,15 +145,25 @@ const std::vector<Weighting>& Weightings() {
            .relative = true,
            .both_cosines = true,
            .solid_angle = 0.75}),
+      PowerWeighting(
+          "appearance_channel",
+          "as appearance, (9 rho + mean)/10 by channel in the place of the mean: for saturated "
+          "colours (docs/model-choice.md)",
+          {.exponent = 0.75,
+           .epsilon = 0.05,
+           .relative = true,
+           .by_channel = 0.9,
+           .both_cosines = true,
+           .solid_angle = 0.75}),
       PowerWeighting("log_relative",
                      "(cos theta_i/(b+1e-3))^2, b = rho cos theta_i, its mean over the channels: "
                      "the tangent of log(b+1e-3), Nielsen et al. 2015",
                      {}),
-      PowerWeighting("log_relative_channel", "the same, b by channel", {.by_channel = true}),
+      PowerWeighting("log_relative_channel", "the same, b by channel", {.by_channel = 1}),
       PowerWeighting("cube_root",
                      "cos^2 theta_i (b+1e-3)^(-4/3), by channel: the tangent of a cube root, "
                      "Fores et al. 2012",
-                     {.exponent = 2.0 / 3, .by_channel = true}),
+                     {.exponent = 2.0 / 3, .by_channel = 1}),
       {"percentage", "1/(rho+1e-3)^2: relative error, Tofallis 2008", false,
        ByChannel(PercentageWeight)},
       {"compressive", "(log(1+b)/rho)^2: the chord of Low's log metric", false,

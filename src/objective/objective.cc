@@ -144,7 +144,8 @@ struct Objective::Prepared {
         spec(of),
         weighting(ForSamples(weights, samples)) {
     bool nonnegative = true;
-    if (samples.on_grid()) {
+    // A stretched D is read between the bins of a grid, differently along a row of it.
+    if (samples.on_grid() && !spec.stretch.any()) {
       folded =
           std::make_unique<FoldedGrid>(Fold(samples, spec.g_axis.size, weighting, num_threads));
       measured_energy = folded->measured_energy;
@@ -192,7 +193,7 @@ struct Objective::Prepared {
   }
 
   const BrdfSamples samples;
-  const ModelSpec spec;  // of which the sizes of the tables count
+  const ModelSpec spec;  // of which axes and stretch count
   const Weighting weighting;
   double measured_energy = 0;
   CoverageByChannel coverage;
@@ -214,9 +215,11 @@ Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting
 Objective::Objective(const Objective& other, const ModelSpec& spec)
     : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
   CheckReadable(spec, samples());
-  const bool same_axes = std::ranges::all_of(
-      kFactors, [&](Factor factor) { return spec.axis(factor) == other.spec_.axis(factor); });
-  if (!same_axes) {
+  const bool reads_alike =
+      spec.stretch == other.spec_.stretch && std::ranges::all_of(kFactors, [&](Factor factor) {
+        return spec.axis(factor) == other.spec_.axis(factor);
+      });
+  if (!reads_alike) {
     prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
   }
   coverage_ = CoverageOfParameters(prepared_->coverage, spec);
@@ -227,6 +230,10 @@ const BrdfSamples& Objective::samples() const { return prepared_->samples; }
 const Weighting& Objective::weighting() const { return prepared_->weighting; }
 
 double Objective::MeasuredEnergy() const { return prepared_->measured_energy; }
+
+double Objective::IrreducibleEnergy() const {
+  return folded() != nullptr ? folded()->constant : folded_samples()->constant;
+}
 
 const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 

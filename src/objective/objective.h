@@ -26,8 +26,8 @@ class Objective {
   Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
             int num_threads = 1);
 
-  // The same samples for models of another spec. Where its axes are the same, all that was prepared
-  // is shared, and this costs next to nothing. Throws Error as above.
+  // The same samples for models of another spec. Where axes and stretch are the same, all that was
+  // prepared is shared, and this costs next to nothing. Throws Error as above.
   Objective(const Objective& other, const ModelSpec& spec);
 
   const BrdfSamples& samples() const;
@@ -42,6 +42,10 @@ class Objective {
   // sum w rho*^2: E of the black model, the scale against which E is small or large.
   double MeasuredEnergy() const;
 
+  // The part of E that no model changes: samples that read alike, which the two orders of a pair of
+  // directions do, differ by it. What a measurement lacks of reciprocity is the most of it.
+  double IrreducibleEnergy() const;
+
   // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
   // order of FactorModel::parameters(). 0 marks an unobserved bin: not a parameter at all
   // (docs/method.md).
@@ -53,18 +57,19 @@ class Objective {
   // All of them. Made at the first call (280 bytes a sample).
   const std::vector<WeightedSample>& weighted_samples() const;
 
-  // The samples folded by symmetry, or null when they are not on a grid.
+  // The samples folded by symmetry, or null when they are not on a grid, or the spec's stretch
+  // reads D between its bins.
   const FoldedGrid* folded() const;
 
   // The same for samples that are not; null for those that are.
   const FoldedSamples* folded_samples() const;
 
   // The folded samples by knot intervals of G. Made at the first call (64 bytes a sample). Throws
-  // Error when they are not on a grid.
+  // Error where folded() is null.
   const SplineCells& spline_cells() const;
 
  private:
-  struct Prepared;  // what depends on no more of the spec than the sizes of its tables
+  struct Prepared;  // what depends on no more of the spec than its axes and its stretch
 
   std::shared_ptr<const Prepared> prepared_;
   ModelSpec spec_;

@@ -82,6 +82,7 @@ ScoreReport ScoreModel(const Objective& objective, const FactorModel& model) {
   ScoreReport report =
       ScoreValues(objective, EvaluateSamples(model, objective.samples(), objective.num_threads()));
   report.objective = objective.Value(model);
+  report.irreducible_objective = objective.IrreducibleEnergy();
   if (objective.MeasuredEnergy() > 0) {
     report.relative_objective = report.objective / objective.MeasuredEnergy();
   }

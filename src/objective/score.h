@@ -29,6 +29,8 @@ struct ScoreReport {
   // is 0 where the measurement itself is black.
   double objective = 0;
   double relative_objective = 0;
+  double irreducible_objective =
+      0;  // Objective::IrreducibleEnergy; 0 where two tables are compared
 
   // Root of the mean of (rho - rho*)^2 [1/sr], over all channels and for each.
   double rmse = 0;

@@ -17,6 +17,10 @@ struct ModelChoiceOptions {
   // How good a model is to the eye; the highest wins, the first of equals. Asked once a candidate.
   std::function<double(const FactorModel&)> judge;
 
+  // How good one is in directions that were not measured, if there are any. One that is more than
+  // 1 (dB) below the fitted model there runs wild where data end, and is not taken.
+  std::function<double(const FactorModel&)> judge_beyond = nullptr;
+
   // Asked after each step; true to stop with the best so far that keeps to the budget.
   std::function<bool()> stop = [] { return false; };
 };
@@ -27,6 +31,7 @@ struct ModelCandidate {
   int num_parameters = 0;  // stored
   double E = 0;            // Objective::Value
   double score = 0;        // by the judge; -infinity where that says NaN
+  bool wild = false;       // beyond the data, and not chosen for that
   double seconds = 0;      // that it took to make, from the one that it came from
 };
 

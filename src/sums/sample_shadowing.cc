@@ -11,7 +11,7 @@ namespace trilobe {
 namespace {
 
 // Consecutive samples that read a node in the same way, and a place for their numbers.
-struct Stretch {
+struct SampleRange {
   int size;
   const double *A, *weight_i, *weight_o;
   double *b, *G_i, *G_o;
@@ -20,8 +20,8 @@ struct Stretch {
 constexpr int kLanes = 8;
 
 template <bool kBoth>
-TRILOBE_ALWAYS_INLINE void AddLanes(const Stretch& at, int n, const double* G, const double* weight,
-                                    Lanes8* c) {
+TRILOBE_ALWAYS_INLINE void AddLanes(const SampleRange& at, int n, const double* G,
+                                    const double* weight, Lanes8* c) {
   Lanes8 A, b, w, g;
   LoadLanes(at.A + n, &A);
   LoadLanes(at.b + n, &b);
@@ -45,7 +45,7 @@ TRILOBE_ALWAYS_INLINE void AddLanes(const Stretch& at, int n, const double* G, c
 
 // c1 .. c4 of the change of E (ElementQuartic).
 template <bool kBoth>
-TRILOBE_ALWAYS_INLINE void AddStretch(const Stretch& at, double* c) {
+TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
   // Of one direction alone, G of the other one counts.
   const bool is_i = at.weight_i != nullptr;
   const double* const weight = is_i ? at.weight_i : at.weight_o;
@@ -76,7 +76,7 @@ TRILOBE_ALWAYS_INLINE void AddStretch(const Stretch& at, double* c) {
 }
 
 TRILOBE_MULTIVERSION
-void AddChange(const Stretch& at, double* c) {
+void AddChange(const SampleRange& at, double* c) {
   if (at.weight_i != nullptr && at.weight_o != nullptr) {
     AddStretch<true>(at, c);
   } else {
@@ -106,7 +106,7 @@ void SubtractChange(int size, const double* __restrict a, const double* __restri
 
 // The node moves.
 TRILOBE_MULTIVERSION
-void Move(const Stretch& at, double step) {
+void Move(const SampleRange& at, double step) {
   const double* __restrict const A = at.A;
   double* __restrict const b = at.b, * __restrict const G_i = at.G_i, * __restrict const G_o = at.G_o;
   const double* __restrict const weight_i = at.weight_i, * __restrict const weight_o = at.weight_o;
@@ -222,13 +222,13 @@ void SampleShadowing::UpdateTable(int t, const std::function<void(const FactorMo
     const auto weight = [&](Reading reading, int k) {
       return k < 0 ? nullptr : samples_.of(reading).weight[k].data() + of.begin;
     };
-    return Stretch{.size = of.end - of.begin,
-                   .A = &A_[of.begin],
-                   .weight_i = weight(Reading::kGi, of.i),
-                   .weight_o = weight(Reading::kGo, of.o),
-                   .b = &b_[of.begin],
-                   .G_i = &of_table.G_i[of.begin],
-                   .G_o = &of_table.G_o[of.begin]};
+    return SampleRange{.size = of.end - of.begin,
+                       .A = &A_[of.begin],
+                       .weight_i = weight(Reading::kGi, of.i),
+                       .weight_o = weight(Reading::kGo, of.o),
+                       .b = &b_[of.begin],
+                       .G_i = &of_table.G_i[of.begin],
+                       .G_o = &of_table.G_o[of.begin]};
   };
   SetSums(t);
   const std::vector<double> old_G_i = of_table.G_i, old_G_o = of_table.G_o;

@@ -218,6 +218,7 @@ TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
 TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
   ExpectRefusal({"fit", kVelvet, "--nodes=all"}, "known: given, held_out");
   ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--d_nodes=4x12"}, "leave out --d_nodes");
+  ExpectRefusal({"fit", kVelvet, "--stretch=0.1,0.2"}, "--stretch is for isotropic models");
   ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--model=isotropic"},
                 "--nodes is for anisotropic models");
   ExpectRefusal({"fit", "synth:plastic", "--nodes=held_out"}, "--nodes is for anisotropic models");

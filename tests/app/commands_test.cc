@@ -453,7 +453,8 @@ TEST(ScoreTest, RejectsBadInput) {
   ExpectError(RunProgram({"score", "nothing.json", "synth:foam"}), "nothing.json");
   ExpectError(RunProgram({"score", folder / "model.json", "nothing.binary"}), "nothing.binary");
   ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=heavy"}),
-              "known: appearance, log_relative, log_relative_channel, cube_root, percentage, "
+              "known: appearance, appearance_channel, log_relative, log_relative_channel, "
+              "cube_root, percentage, "
               "compressive, log, ");
   ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=power:x=1"}),
               "unknown key 'x'");

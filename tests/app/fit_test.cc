@@ -335,11 +335,15 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
   const std::vector<BadInput> cases = {
       {{"--solver=x"}, "known: auto, "},
       {{"--weighting=x"},
-       "known: appearance, log_relative, log_relative_channel, cube_root, percentage, compressive, "
+       "known: appearance, appearance_channel, log_relative, log_relative_channel, cube_root, "
+       "percentage, compressive, "
        "log, "
        "cosine, "
        "uniform"},
       {{"--weighting=power:exponent=9"}, "exponent must be at most 2"},
+      {{"--stretch=1"}, "--stretch=1 is no stretch; give ALONG,ACROSS"},
+      {{"--stretch=1,x"}, "--stretch=1,x is no stretch"},
+      {{"--stretch=0,2.5"}, "it must be from -2 to 2"},
       {{"--probe=missing"}, "missing"},
       {{"--init=x"}, "known: "},
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},

@@ -371,6 +371,31 @@ TEST(ModelFile, RefusesAnisotropicTablesThatHaveOtherNodes) {
               HasSubstr("key 'G[0]' must have 1 entries"));
 }
 
+TEST(ModelFile, KeepsAStretch) {
+  ModelSpec spec = ModelSpec::SharedFactors(2);
+  spec.stretch = {.along = -0.35, .across = 0.15};
+  const ModelFile file = RandomModel(spec);
+  const json document = json::parse(FormatModel(file));
+  EXPECT_EQ(document["version"], 2);  // readers of version 1 would evaluate it wrongly
+  EXPECT_EQ(document["stretch"], (json{{"along", -0.35}, {"across", 0.15}}));
+  EXPECT_TRUE(SameBits(ParseModel(FormatModel(file), "model.json").model, file.model));
+  const json plain = json::parse(FormatModel(RandomModel(ModelSpec::SharedFactors(2))));
+  EXPECT_FALSE(plain.contains("stretch"));
+
+  const auto error_of = [&](const json& stretch) {
+    json changed = document;
+    changed["stretch"] = stretch;
+    return ErrorOfText(changed.dump());
+  };
+  EXPECT_THAT(error_of("wide"), HasSubstr("key 'stretch' must be an object"));
+  EXPECT_THAT(error_of({{"along", 0}}), HasSubstr("key 'stretch.across' is missing"));
+  EXPECT_THAT(error_of({{"along", -2.5}, {"across", 0}}),
+              HasSubstr("key 'stretch.along' must be from -2 to 2, not -2.5"));
+  json without = document;
+  without.erase("stretch");
+  EXPECT_THAT(ErrorOfText(without.dump()), HasSubstr("key 'stretch' is missing"));
+}
+
 TEST(ModelFile, RefusesOtherFormatsKindsAndVersions) {
   const auto error_of = [](const char* key, const json& value) {
     return ErrorAfter([&](json* document) { (*document)[key] = value; });
@@ -378,7 +403,7 @@ TEST(ModelFile, RefusesOtherFormatsKindsAndVersions) {
   EXPECT_THAT(error_of("format", "other"), HasSubstr("key 'format' must be \"trilobe-model\""));
   EXPECT_THAT(error_of("kind", "bivariate"),
               HasSubstr("key 'kind' must be \"isotropic\" or \"anisotropic\""));
-  EXPECT_THAT(error_of("version", 2), AllOf(HasSubstr("key 'version' is 2"), HasSubstr("update")));
+  EXPECT_THAT(error_of("version", 3), AllOf(HasSubstr("key 'version' is 3"), HasSubstr("update")));
   EXPECT_THAT(error_of("version", 0), HasSubstr("key 'version' is 0"));
 }
 

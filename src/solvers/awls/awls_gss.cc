@@ -140,8 +140,10 @@ class AwlsGss : public Solver {
                         FactorModel* model) const override {
     Run run("awls_gss", objective, options, model);
     if (objective.folded() == nullptr) {
-      throw Error(objective.samples().source +
-                  ": solver awls_gss needs samples on a MERL grid; use --solver=awls");
+      throw Error(
+          objective.samples().source +
+          ": solver awls_gss needs samples on a MERL grid, and highlights without a stretch; "
+          "use --solver=awls");
     }
     CellSums cells(*objective.folded(), objective.spec());
     const LinearShadowing shadowing(*objective.folded());

@@ -16,7 +16,7 @@ constexpr double kSmallDecrease = 1e-5;
 
 int StrideFor(const Objective& objective, const StartRace::Thinning& thinning) {
   // Folded samples are half as many.
-  const int fold = objective.folded() != nullptr ? 2 : 1;
+  const int fold = objective.samples().on_grid() ? 2 : 1;
   const int wanted = fold * thinning.samples_per_parameter * objective.spec().num_parameters();
   return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
 }

@@ -1,0 +1,37 @@
+#ifndef TRILOBE_MODEL_STRETCH_H_
+#define TRILOBE_MODEL_STRETCH_H_
+
+#include "trilobe/brdf/directions.h"
+
+namespace trilobe {
+
+// How highlights change their shape with theta_d, for isotropic models. D is read not at theta_h
+// but at
+//   theta_h sqrt((cos phi_d cos^along theta_d)^2 + (sin phi_d cos^across theta_d)^2),
+// 90 degrees at most: phi_d is 0 where the half vector leans within the plane of wi and wo. So a
+// highlight is by cos^-along theta_d wider along that plane than at normal incidence, and by
+// cos^-across theta_d across it. With 0 and 0 D is a distribution of normals, as in the paper (eq.
+// 3); a lobe of fixed width about the mirror direction would have 0 and 1. Exchanging wi and wo
+// changes nothing.
+struct Stretch {
+  double along = 0;
+  double across = 0;
+
+  bool any() const { return along != 0 || across != 0; }
+
+  // By what theta_h is multiplied, above 0.
+  double Factor(double theta_d, double phi_d) const;
+  // Where D is read; theta_h itself, to the bit, without a stretch. [rad]
+  double ThetaH(const HalfDiffAngles& angles) const;
+
+  bool operator==(const Stretch&) const = default;
+};
+
+inline constexpr double kMaxStretch = 2;
+
+// Throws Error unless both exponents are from -kMaxStretch to kMaxStretch.
+void CheckStretch(const Stretch& stretch);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_STRETCH_H_

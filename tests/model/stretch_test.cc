@@ -1,0 +1,108 @@
+#include "trilobe/model/stretch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "tests/test_util.h"
+#include "trilobe/base/error.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/model/continuous_model.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/model_spec.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kTheta = 0.3, kHalfTurn = kPi / 2;
+
+TEST(Stretch, NoneIsTheIdentityToTheBit) {
+  EXPECT_FALSE(Stretch().any());
+  for (const double theta_h : {0.0, 0.1, 1.5}) {
+    EXPECT_EQ(Stretch().ThetaH({theta_h, 1.2, 0.7}), theta_h);
+  }
+}
+
+TEST(Stretch, WidensHighlightsByPowersOfTheCosine) {
+  const Stretch stretch{.along = -0.5, .across = 0.25};
+  EXPECT_TRUE(stretch.any());
+  for (const double theta_d : {0.0, 0.5, 1.0, 1.4}) {
+    const double cosine = std::cos(theta_d);
+    // The half vector leans within the plane of both directions, or across it.
+    EXPECT_NEAR(stretch.ThetaH({kTheta, theta_d, 0}),
+                std::min(kTheta * std::pow(cosine, -0.5), kPi / 2), 1e-15);
+    EXPECT_NEAR(stretch.ThetaH({kTheta, theta_d, kHalfTurn}), kTheta * std::pow(cosine, 0.25),
+                1e-15);
+    const double between = stretch.Factor(theta_d, kPi / 4);
+    EXPECT_NEAR(between * between, (1 / cosine + std::sqrt(cosine)) / 2, 1e-12);
+  }
+  // Nothing changes at normal incidence, and nothing is infinite at grazing.
+  EXPECT_EQ(stretch.Factor(0, 0.3), 1);
+  for (const double phi_d : {0.0, 0.5, kHalfTurn}) {
+    const double read_at = stretch.ThetaH({1.5, kPi / 2, phi_d});
+    EXPECT_TRUE(read_at >= 0 && read_at <= kPi / 2) << phi_d;
+  }
+}
+
+// A lobe of fixed width about the mirror direction has 0 and 1: so far from it in wo, whichever
+// way, D is read at the same place.
+TEST(Stretch, ZeroAndOneIsALobeAboutTheMirrorDirection) {
+  const Stretch stretch{.along = 0, .across = 1};
+  const Direction wi = {std::sin(1.0), 0, std::cos(1.0)};
+  const double small = 1e-4;
+  const Direction within = {-std::sin(1.0 + small), 0, std::cos(1.0 + small)};
+  const Direction across = {-std::sin(1.0) * std::cos(small), std::sin(small),
+                            std::cos(1.0) * std::cos(small)};
+  const double along = stretch.ThetaH(ToHalfDiff({wi, within}));
+  EXPECT_NEAR(along, small / 2, 1e-8);
+  EXPECT_NEAR(stretch.ThetaH(ToHalfDiff({wi, across})), along, 1e-7);
+}
+
+TEST(Stretch, ExchangedDirectionsReadTheSame) {
+  ModelSpec spec = ModelSpec::SharedFactors(2);
+  spec.stretch = {.along = -0.6, .across = 0.4};
+  const FactorModel model = RandomModel(spec, 1);
+  Random random(1);
+  for (int k = 0; k < 100; ++k) {
+    const auto direction = [&random] {
+      const double theta = random.Uniform(0, 1.5), phi = random.Uniform(0, 6);
+      return Direction{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                       std::cos(theta)};
+    };
+    const DirectionPair pair{direction(), direction()};
+    const Rgb rho = Evaluate(model, pair), exchanged = Evaluate(model, {pair.wo, pair.wi});
+    const Rgb continuous = ContinuousModel(model)(pair);
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_NEAR(exchanged[c], rho[c], 1e-9 * rho[c]);
+      EXPECT_NEAR(continuous[c], rho[c], 1e-9 * rho[c]);
+    }
+  }
+}
+
+TEST(Stretch, BadOnesAreRefused) {
+  const auto error_of = [](const ModelSpec& spec) -> std::string {
+    try {
+      CheckSpec(spec);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ModelSpec spec = ModelSpec::SharedFactors(1);
+  for (const double bad : {2.1, -3.0, std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity()}) {
+    spec.stretch = {.along = 0, .across = bad};
+    EXPECT_THAT(error_of(spec), testing::HasSubstr("must be from -2 to 2")) << bad;
+  }
+  spec.stretch = {.along = -2, .across = 2};
+  EXPECT_EQ(error_of(spec), "");
+  spec = ModelSpec::Anisotropic(1);
+  spec.stretch.along = 0.1;
+  EXPECT_THAT(error_of(spec), testing::HasSubstr("a stretch of highlights wants an isotropic"));
+}
+
+}  // namespace
+}  // namespace trilobe
