@@ -85,7 +85,8 @@ std::string Irreducible(const ScoreReport& score) {
       score.objective > 0 ? std::min(score.irreducible_objective / score.objective, 1.0) : 0;
   if (share < kMuch) return "";
   return "reciprocity  " + Text(100 * share, 3) +
-         " % of E is what exchanged directions differ by in the data; no reciprocal model lowers "
+         " % of E is what exchanged directions differ by in the data, noise included; no "
+         "reciprocal model lowers "
          "it\n";
 }
 
