@@ -7,6 +7,7 @@
 #include "trilobe/app/flags.h"
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
+#include "trilobe/app/stretch_report.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/continuous_model.h"
@@ -99,7 +100,7 @@ void DescribeModel(const std::string& path) {
       if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
     json["stored_numbers"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
-    json["stretch"] = {{"along", spec.stretch.along}, {"across", spec.stretch.across}};
+    json["stretch"] = ToJson(spec.stretch);
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},
                    {"init", fit.init},

@@ -45,20 +45,18 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   Canonicalize(objective.coverage(), &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
   if (options.max_parameters > 0 && !options.stop()) {
-    const auto judge =
-        [sphere = SphereJudge(*measured, options.appearance)](const FactorModel& candidate) {
-          return sphere(ContinuousModel(candidate)).psnr_db;
-        };
-    std::function<double(const FactorModel&)> judge_beyond;
-    if (!measured->unmeasured.empty()) {
-      judge_beyond = [sphere = SphereJudge::OfAllDirections(*measured, options.appearance)](
-                         const FactorModel& candidate) {
+    const auto psnr_by = [](const SphereJudge& sphere) {
+      return [sphere](const FactorModel& candidate) {
         return sphere(ContinuousModel(candidate)).psnr_db;
       };
+    };
+    std::function<double(const FactorModel&)> judge_beyond;
+    if (!measured->unmeasured.empty()) {
+      judge_beyond = psnr_by(SphereJudge::OfAllDirections(*measured, options.appearance));
     }
     ChosenModel chosen = ChooseModel(of, fit.model,
                                      {.max_parameters = options.max_parameters,
-                                      .judge = judge,
+                                      .judge = psnr_by(SphereJudge(*measured, options.appearance)),
                                       .judge_beyond = judge_beyond,
                                       .stop = options.stop});
     fit.objective = Objective(objective, chosen.model.spec());

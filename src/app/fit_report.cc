@@ -10,6 +10,7 @@
 #include "trilobe/app/bin_counts.h"
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
+#include "trilobe/app/stretch_report.h"
 
 namespace trilobe {
 namespace {
@@ -86,8 +87,7 @@ std::string Irreducible(const ScoreReport& score) {
   if (share < kMuch) return "";
   return "reciprocity  " + Text(100 * share, 3) +
          " % of E is what exchanged directions differ by in the data, noise included; no "
-         "reciprocal model lowers "
-         "it\n";
+         "reciprocal model lowers it\n";
 }
 
 std::string Describe(const Stretch& stretch) {
@@ -153,66 +153,65 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
-  return {
-      {"source", fit.source},
-      {"noise", report.noise},
-      {"seed", report.seed},
-      {"valid_samples", fit.valid_samples},
-      {"max_angle", fit.max_angle},
-      {"bins", ToJson(report.bins)},
-      {"data_notes", report.data_notes},
-      {"solver", fit.solver},
-      {"init", fit.init},
-      {"weighting", fit.weighting},
-      {"model", ModelName(report.spec)},
-      {"lobes", report.spec.lobes},
-      {"stretch", {{"along", report.spec.stretch.along}, {"across", report.spec.stretch.across}}},
-      {"parameters", report.spec.num_parameters()},
-      {"stored_numbers", report.stored_parameters},
-      {"candidates", ToJson(report.finished.candidates)},
-      {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
-      {"guide", report.guide
-                    ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
-                    : Json()},
-      {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
-      {"threads", fit.threads},
-      {"options",
-       {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
-      {"notes", summary.notes},
-      {"starts", ToJson(summary.starts)},
-      {"stop_reason", fit.stop_reason},
-      {"iterations", fit.iterations},
-      {"best_iteration", summary.BestIteration()},
-      {"rejected_steps", summary.RejectedSteps()},
-      {"initial_objective", fit.initial_objective},
-      {"objective", score.objective},
-      {"relative_objective", score.relative_objective},
-      {"irreducible_objective", score.irreducible_objective},
-      {"psnr_db", score.psnr_db},
-      {"psnr_peak", score.psnr_peak},
-      {"rmse", score.rmse},
-      {"mean_relative_error", score.mean_relative_error},
-      {"mean_log_error", score.mean_log_error},
-      {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
-      {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
-      {"light", ToJson(report.light)},
-      {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
-      {"seconds",
-       {{"read", seconds.read},
-        {"prepare", seconds.prepare},
-        {"init", seconds.init},
-        {"nodes", seconds.nodes},
-        {"solve", seconds.solve},
-        {"finish", seconds.finish},
-        {"score", seconds.score}}},
-      {"phases", ToJson(summary.phases)},
-      {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
-      {"program", fit.program},
-      {"date", fit.date},
-      {"key", report.key},
-      {"interrupted", report.interrupted},
-      {"run", fit.run},
-      {"files", report.files}};
+  return {{"source", fit.source},
+          {"noise", report.noise},
+          {"seed", report.seed},
+          {"valid_samples", fit.valid_samples},
+          {"max_angle", fit.max_angle},
+          {"bins", ToJson(report.bins)},
+          {"data_notes", report.data_notes},
+          {"solver", fit.solver},
+          {"init", fit.init},
+          {"weighting", fit.weighting},
+          {"model", ModelName(report.spec)},
+          {"lobes", report.spec.lobes},
+          {"stretch", ToJson(report.spec.stretch)},
+          {"parameters", report.spec.num_parameters()},
+          {"stored_numbers", report.stored_parameters},
+          {"candidates", ToJson(report.finished.candidates)},
+          {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
+          {"guide", report.guide
+                        ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
+                        : Json()},
+          {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
+          {"threads", fit.threads},
+          {"options",
+           {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
+          {"notes", summary.notes},
+          {"starts", ToJson(summary.starts)},
+          {"stop_reason", fit.stop_reason},
+          {"iterations", fit.iterations},
+          {"best_iteration", summary.BestIteration()},
+          {"rejected_steps", summary.RejectedSteps()},
+          {"initial_objective", fit.initial_objective},
+          {"objective", score.objective},
+          {"relative_objective", score.relative_objective},
+          {"irreducible_objective", score.irreducible_objective},
+          {"psnr_db", score.psnr_db},
+          {"psnr_peak", score.psnr_peak},
+          {"rmse", score.rmse},
+          {"mean_relative_error", score.mean_relative_error},
+          {"mean_log_error", score.mean_log_error},
+          {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
+          {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
+          {"light", ToJson(report.light)},
+          {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
+          {"seconds",
+           {{"read", seconds.read},
+            {"prepare", seconds.prepare},
+            {"init", seconds.init},
+            {"nodes", seconds.nodes},
+            {"solve", seconds.solve},
+            {"finish", seconds.finish},
+            {"score", seconds.score}}},
+          {"phases", ToJson(summary.phases)},
+          {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
+          {"program", fit.program},
+          {"date", fit.date},
+          {"key", report.key},
+          {"interrupted", report.interrupted},
+          {"run", fit.run},
+          {"files", report.files}};
 }
 
 void Print(const FitReport& report) {
