@@ -92,7 +92,10 @@ inline std::vector<NamedSpec> TestSpecs(const MerlGrid& grid) {
   add("everything shared by all", 2, kAll, kAll, kAll);
   add("nothing shared", 2, kEach, kEach, kEach);
   add("stretched highlights", 2, kLobe, kChannel, kLobe);
-  specs.back().spec.stretch = {.along = -0.4, .across = 0.3};
+  specs.back().spec.stretches = Stretch{.along = -0.4, .across = 0.3};
+  add("lobes stretched differently", 3, kLobe, kChannel, kLobe);
+  constexpr Stretch kAlong{.along = -0.4, .across = 0.3}, kAcross{.along = 0.2, .across = -0.5};
+  specs.back().spec.stretches = Stretches({kAlong, kAcross, kAlong});
   return specs;
 }
 
@@ -165,7 +168,8 @@ inline long double ExactRead(const Stencil& stencil, std::span<const double> tab
 inline long double ExactEvaluate(const FactorModel& model, const SampleStencils& at, int c) {
   long double rho = model.d()[c];
   for (int m = 0; m < model.spec().lobes; ++m) {
-    rho += model.s(m)[c] * ExactRead(at.D, model.D(m, c)) * ExactRead(at.F, model.F(m, c)) *
+    const Stencil& D = at.DOf(model.spec().stretches.index(m));
+    rho += model.s(m)[c] * ExactRead(D, model.D(m, c)) * ExactRead(at.F, model.F(m, c)) *
            ExactRead(at.G_i, model.G(m, c)) * ExactRead(at.G_o, model.G(m, c)) * at.inverse_cosines;
   }
   return rho;

@@ -100,7 +100,7 @@ void DescribeModel(const std::string& path) {
       if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
     json["stored_numbers"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
-    json["stretch"] = ToJson(spec.stretch);
+    json["stretch"] = StretchesToJson(spec);
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},
                    {"init", fit.init},
@@ -127,9 +127,8 @@ void DescribeModel(const std::string& path) {
     PrintLine("stored", std::to_string(file.layout->num_parameters(spec)) + " parameters, and " +
                             std::to_string(file.layout->num_places(spec)) + " places of nodes");
   }
-  if (spec.stretch.any()) {
-    PrintLine("stretch", "along " + Text(spec.stretch.along) + ", across " +
-                             Text(spec.stretch.across) + " (exponents of 1 / cos theta_d)");
+  if (spec.stretches.any()) {
+    PrintLine("stretch", DescribeStretches(spec) + " (exponents of 1 / cos theta_d)");
   }
   for (const Factor factor : kFactors) {
     const int unobserved = CountUnobserved(file, factor);

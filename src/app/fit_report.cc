@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 std::string ModelName(const ModelSpec& spec) {
   const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
   ModelSpec shared = ModelSpec::SharedFactors(spec.lobes, grid);
-  shared.stretch = spec.stretch;
+  shared.stretches = spec.stretches;
   if (spec == shared) return "shared";
   if (spec == ModelSpec::IndependentG(grid)) return "independent";
   if (spec.anisotropic()) return "anisotropic";
@@ -90,10 +90,11 @@ std::string Irreducible(const ScoreReport& score) {
          "reciprocal model lowers it\n";
 }
 
-std::string Describe(const Stretch& stretch) {
-  if (!stretch.any()) return "";
-  return "stretch      highlights widen with theta_d by 1 / cos^x: x = " + Text(stretch.along, 3) +
-         " along the plane of both directions, " + Text(stretch.across, 3) + " across it\n";
+std::string StretchLine(const ModelSpec& spec) {
+  if (!spec.stretches.any()) return "";
+  return "stretch      highlights widen with theta_d by 1 / cos^x, x along the plane of both "
+         "directions and across it: " +
+         DescribeStretches(spec) + "\n";
 }
 
 // What was chosen, and what it was chosen from.
@@ -165,7 +166,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"weighting", fit.weighting},
           {"model", ModelName(report.spec)},
           {"lobes", report.spec.lobes},
-          {"stretch", ToJson(report.spec.stretch)},
+          {"stretch", StretchesToJson(report.spec)},
           {"parameters", report.spec.num_parameters()},
           {"stored_numbers", report.stored_parameters},
           {"candidates", ToJson(report.finished.candidates)},
@@ -228,7 +229,7 @@ void Print(const FitReport& report) {
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
             << Text(100 * score.mean_relative_error) << " %\n"
-            << Irreducible(score) << Describe(report.spec.stretch)
+            << Irreducible(score) << StretchLine(report.spec)
             << (report.nodes ? Describe(*report.nodes) : "")
             << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
             << (report.appearance
@@ -254,3 +255,11 @@ void Print(const FitReport& report) {
 }
 
 }  // namespace trilobe
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "trilobe/app/appearance_report.h"
+#include "trilobe/app/bin_counts.h"

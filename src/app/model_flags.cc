@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "trilobe/app/flags.h"
 #include "trilobe/base/error.h"
@@ -25,9 +26,9 @@ DEFINE_string(
 DEFINE_string(
     stretch, "",
     "of an isotropic model, ALONG,ACROSS: exponents by which highlights get wider with theta_d, "
-    "along "
-    "the plane of both directions and across it (docs/method.md#stretched-highlights); by default "
-    "0,0, as in the paper; --model=auto finds them");
+    "along the plane of both directions and across it (docs/method.md#stretched-highlights); one "
+    "pair for all lobes, or one a lobe, ALONG,ACROSS,ALONG,ACROSS...; by default 0,0, as in the "
+    "paper; --model=auto finds them");
 DEFINE_int32(f_bins, 0,
              "of an anisotropic model, bins of F over theta_d, from 4; by default 6, with "
              "--model=anisotropic 90");
@@ -68,19 +69,26 @@ Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   return axis;
 }
 
-Stretch StretchFromFlags() {
+Stretches StretchesFromFlags() {
   if (FLAGS_stretch.empty()) return {};
-  const std::string_view text = FLAGS_stretch;
-  const size_t comma = text.find(',');
-  const std::optional<double> along = ToNumber(text.substr(0, comma));
-  const std::optional<double> across =
-      comma == std::string::npos ? std::nullopt : ToNumber(text.substr(comma + 1));
-  if (!along || !across) {
-    throw Error("--stretch=" + FLAGS_stretch + " is no stretch; give ALONG,ACROSS, as -0.2,0.3");
+  std::vector<double> exponents;
+  std::string_view rest = FLAGS_stretch;
+  for (bool more = true; more;) {
+    const size_t comma = rest.find(',');
+    more = comma != std::string_view::npos;
+    const std::optional<double> exponent = ToNumber(rest.substr(0, comma));
+    if (exponent) exponents.push_back(*exponent);
+    if (!exponent || (!more && exponents.size() % 2 != 0)) {
+      throw Error("--stretch=" + FLAGS_stretch +
+                  " is no stretch; give ALONG,ACROSS, as -0.2,0.3, once or for each lobe");
+    }
+    if (more) rest.remove_prefix(comma + 1);
   }
-  const Stretch stretch{.along = *along, .across = *across};
-  CheckStretch(stretch);
-  return stretch;
+  std::vector<Stretch> of_lobes;
+  for (size_t k = 0; k < exponents.size(); k += 2) {
+    of_lobes.push_back({.along = exponents[k], .across = exponents[k + 1]});
+  }
+  return Stretches(of_lobes);
 }
 
 ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
@@ -106,7 +114,7 @@ ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
   ModelSpec spec =
       independent ? ModelSpec::IndependentG(grid) : ModelSpec::SharedFactors(FLAGS_lobes, grid);
   if (g_nodes > 0) spec.g_axis.size = g_nodes;
-  spec.stretch = StretchFromFlags();
+  spec.stretches = StretchesFromFlags();
   CheckSpec(spec);
   return spec;
 }
@@ -132,7 +140,7 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
   const std::optional<HemisphereGrid> grid =
       measurement.anisotropic ? GridOf(measurement) : std::nullopt;
   if (anisotropic) {
-    if (StretchFromFlags().any()) {
+    if (StretchesFromFlags().any()) {
       throw Error(measurement.source +
                   ": --stretch is for isotropic models, and this is to have an " +
                   "anisotropic one; --model=isotropic fits the other");

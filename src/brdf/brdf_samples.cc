@@ -1,6 +1,7 @@
 #include "trilobe/brdf/brdf_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -173,31 +174,85 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
   return selected;
 }
 
-BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
-  if (stride < 1) {
-    throw Error("samples cannot be thinned by " + std::to_string(stride) +
-                "; give a stride of 1 or more");
-  }
-  CheckSizes(samples);
-  CheckGrid(samples.grid);
-  const MerlGrid& grid = samples.grid;
-  std::vector<int> kept;
-  for (int j = 0; j < samples.size(); ++j) {
+namespace {
+
+void CheckStride(int stride) {
+  if (stride >= 1) return;
+  throw Error("samples cannot be thinned by " + std::to_string(stride) +
+              "; give a stride of 1 or more");
+}
+
+// A number of each sample, so that those whose number a stride divides are spread evenly.
+int Phase(const BrdfSamples& samples, int j, int stride) {
+  if (!samples.on_grid()) {
     // Multiples of the golden ratio: evenly spread over any regular order of directions.
     constexpr double kGolden = 0.6180339887498949;
     const double place = j * kGolden;
-    int phase = static_cast<int>((place - std::floor(place)) * stride);
-    if (samples.on_grid()) {
-      const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
-      // Primes, which have no common factor with a smaller stride, so that neighbouring rows
-      // differ.
-      phase =
-          std::min(p, grid.phi_d - 1 - p) + 29 * (row / grid.theta_d) + 37 * (row % grid.theta_d);
-    }
-    if (phase % stride == 0) kept.push_back(j);
+    return static_cast<int>((place - std::floor(place)) * stride);
+  }
+  const MerlGrid& grid = samples.grid;
+  const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
+  // Primes, which have no common factor with a smaller stride, so that neighbouring rows differ.
+  return std::min(p, grid.phi_d - 1 - p) + 29 * (row / grid.theta_d) + 37 * (row % grid.theta_d);
+}
+
+}  // namespace
+
+BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
+  CheckStride(stride);
+  CheckSizes(samples);
+  CheckGrid(samples.grid);
+  std::vector<int> kept;
+  for (int j = 0; j < samples.size(); ++j) {
+    if (Phase(samples, j, stride) % stride == 0) kept.push_back(j);
   }
   if (kept.empty() && samples.size() > 0) kept.push_back(0);
   return Selected(samples, kept);
+}
+
+BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {
+  CheckStride(stride);
+  if (least < 1)
+    throw Error("at least " + std::to_string(least) + " samples a place; give 1 or more");
+  CheckSamples(samples);
+  // The bins of theta_h, theta_d, theta_i and theta_o; the last two, which may be exchanged, in one
+  // table.
+  const MerlGrid& grid = samples.grid;
+  using Places = std::array<int, 4>;
+  const auto places_of = [&](int j) -> Places {
+    const HalfDiffAngles angles = samples.Angles(j);
+    const Cosines cosines = ToCosines(angles);
+    const auto degree = [](double cosine) {
+      return std::min(static_cast<int>(RadiansToDegrees(std::acos(std::min(cosine, 1.0)))), 89);
+    };
+    const auto bin = [](double coordinate, int bins) {
+      return std::clamp(static_cast<int>(coordinate), 0, bins - 1);
+    };
+    const int d = grid.theta_h, i = d + grid.theta_d;
+    return {bin(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h),
+            d + bin(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d), i + degree(cosines.i),
+            i + degree(cosines.o)};
+  };
+  std::vector<int> counts(grid.theta_h + grid.theta_d + 90, 0);
+  std::vector<Places> places(samples.size());
+  for (int j = 0; j < samples.size(); ++j) {
+    places[j] = places_of(j);
+    for (const int place : places[j]) ++counts[place];
+  }
+  std::vector<int> kept;
+  std::vector<double> strides;
+  for (int j = 0; j < samples.size(); ++j) {
+    int fewest = samples.size();
+    for (const int place : places[j]) fewest = std::min(fewest, counts[place]);
+    const int own_stride = std::clamp(fewest / least, 1, stride);
+    if (Phase(samples, j, own_stride) % own_stride != 0) continue;
+    kept.push_back(j);
+    strides.push_back(own_stride);
+  }
+  BrdfSamples thinned = Selected(samples, kept);
+  thinned.multiplicity.resize(kept.size(), 1);
+  for (size_t k = 0; k < kept.size(); ++k) thinned.multiplicity[k] *= strides[k];
+  return thinned;
 }
 
 }  // namespace trilobe

@@ -81,6 +81,17 @@ OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
   return lists;
 }
 
+// That of all lobes, or a list of those of each.
+OrderedJson StretchesToJson(const ModelSpec& spec) {
+  const auto to_json = [](const Stretch& stretch) {
+    return OrderedJson{{"along", stretch.along}, {"across", stretch.across}};
+  };
+  if (!spec.stretches.several()) return to_json(spec.stretches.of(0));
+  OrderedJson list = OrderedJson::array();
+  for (int m = 0; m < spec.lobes; ++m) list.push_back(to_json(spec.stretches.of(m)));
+  return list;
+}
+
 // Indented by two, but arrays of numbers each on one line.
 void Print(const OrderedJson& json, const std::string& indent, std::string* text) {
   const bool nested = json.is_object() ||
@@ -108,7 +119,7 @@ std::string FormatModel(const ModelFile& file) {
   const ModelSpec& spec = model.spec();
   OrderedJson json;
   json["format"] = kModelFormat;
-  json["version"] = spec.stretch.any() ? kStretchedVersion : kModelVersion;
+  json["version"] = spec.stretches.any() ? kStretchedVersion : kModelVersion;
   json["kind"] = spec.anisotropic() ? kAnisotropicKind : kIsotropicKind;
   json["lobes"] = spec.lobes;
   for (const Factor factor : kFactors) {
@@ -125,9 +136,7 @@ std::string FormatModel(const ModelFile& file) {
       json["phi_nodes"][FactorName(factor)] = std::move(phi);
     }
   }
-  if (spec.stretch.any()) {
-    json["stretch"] = {{"along", spec.stretch.along}, {"across", spec.stretch.across}};
-  }
+  if (spec.stretches.any()) json["stretch"] = StretchesToJson(spec);
   const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
   CheckLayout(layout, spec);
   json["d"] = ChannelsToJson(model.d(), layout.coloured_d, "d");

@@ -26,6 +26,7 @@ class Node {
 
   bool has(const std::string& key) const { return json_.Find(key) != nullptr; }
   bool is_object() const { return json_.type() == Type::kObject; }
+  bool is_array() const { return json_.type() == Type::kArray; }
 
   Node operator[](const std::string& key) const {
     const std::string path = key_.empty() ? key : key_ + "." + key;
@@ -144,9 +145,24 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
 // Which readers of version 1 do not know.
 void ReadStretch(const Node& root, ModelSpec* spec) {
   if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) return;
-  const Node node = root["stretch"].CheckObject();
+  const Node node = root["stretch"];
   if (spec->anisotropic()) node.Fail("is for isotropic models");
-  spec->stretch = {.along = node["along"].Exponent(), .across = node["across"].Exponent()};
+  const auto read = [](const Node& of) {
+    of.CheckObject();
+    return Stretch{.along = of["along"].Exponent(), .across = of["across"].Exponent()};
+  };
+  if (node.is_object()) {  // that of all lobes
+    spec->stretches = read(node);
+    return;
+  }
+  if (!node.is_array()) node.Fail("must be an object, or a list of one a lobe");
+  node.CheckArraySize(spec->lobes);
+  std::vector<Stretch> of_lobes;
+  for (int m = 0; m < spec->lobes; ++m) of_lobes.push_back(read(node[m]));
+  spec->stretches = Stretches(of_lobes);
+  if (spec->stretches.several() && !spec->D.per_lobe) {
+    node.Fail("must be one for all lobes, since they share D");
+  }
 }
 
 // Entries of a table: those that the file lists, or, where it lists nodes, as many as it says.

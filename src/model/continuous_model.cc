@@ -1,5 +1,6 @@
 #include "trilobe/model/continuous_model.h"
 
+#include <array>
 #include <cmath>
 
 #include "trilobe/model/shadowing_pieces.h"
@@ -15,7 +16,8 @@ ContinuousModel::ContinuousModel(const FactorModel& model)
   CheckIsotropic(model.spec(), "a function of half and difference angles");
 }
 
-Rgb ContinuousModel::operator()(const Stencil& D, const Stencil& F, const Cosines& cosines) const {
+Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
+                                const Cosines& cosines) const {
   const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));
   const CatmullRom::Location o = spline_.Locate(std::acos(cosines.o));
   const auto product = [&](const std::vector<CatmullRom::Piece>& spline) {
@@ -29,7 +31,7 @@ Rgb ContinuousModel::operator()(const Stencil& D, const Stencil& F, const Cosine
   for (int c = 0; c < kChannels; ++c) {
     rho[c] = model_.d()[c];
     for (int m = 0; m < spec.lobes; ++m) {
-      rho[c] += model_.s(m)[c] * D(model_.D(m, c)) * F(model_.F(m, c)) *
+      rho[c] += model_.s(m)[c] * D[spec.stretches.index(m)](model_.D(m, c)) * F(model_.F(m, c)) *
                 g_products[spec.table(Factor::kG, m, c)];
     }
   }
@@ -37,9 +39,13 @@ Rgb ContinuousModel::operator()(const Stencil& D, const Stencil& F, const Cosine
 }
 
 Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
-  return (*this)(
-      LinearStencil(grid_.ThetaHCoordinate(model_.spec().stretch.ThetaH(angles)), grid_.theta_h),
-      LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
+  std::array<Stencil, kMaxLobes> D;
+  const std::vector<Stretch>& stretches = model_.spec().stretches.distinct();
+  for (size_t k = 0; k < stretches.size(); ++k) {
+    D[k] = LinearStencil(grid_.ThetaHCoordinate(stretches[k].ThetaH(angles)), grid_.theta_h);
+  }
+  return (*this)(std::span(D.data(), stretches.size()),
+                 LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
 }
 
 Rgb ContinuousModel::operator()(const DirectionPair& directions) const {

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_MODEL_CONTINUOUS_MODEL_H_
 #define TRILOBE_MODEL_CONTINUOUS_MODEL_H_
 
+#include <span>
 #include <vector>
 
 #include "trilobe/brdf/channels.h"
@@ -19,8 +20,9 @@ class ContinuousModel {
   // Keeps a reference to `model`, which must outlive it. Throws Error for an anisotropic one.
   explicit ContinuousModel(const FactorModel& model);
 
-  // BRDF [1/sr] where D and F are read through these stencils. Cosines in (0, 1].
-  Rgb operator()(const Stencil& D, const Stencil& F, const Cosines& cosines) const;
+  // BRDF [1/sr] where D, by the number of the stretch, and F are read through these stencils.
+  // Cosines in (0, 1].
+  Rgb operator()(std::span<const Stencil> D, const Stencil& F, const Cosines& cosines) const;
 
   // D and F linear between bin centres. `cosines` are those of `angles`.
   Rgb operator()(const HalfDiffAngles& angles, const Cosines& cosines) const;

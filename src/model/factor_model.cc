@@ -29,6 +29,15 @@ void SetCosineStencils(const ModelSpec& spec, const Cosines& cosines, SampleSten
       1 / (SplinedCosine(spline, stencils->G_i) * SplinedCosine(spline, stencils->G_o));
 }
 
+void SetStretchedStencils(const ModelSpec& spec, const HalfDiffAngles& angles,
+                          SampleStencils* stencils) {
+  const std::vector<Stretch>& stretches = spec.stretches.distinct();
+  stencils->D = spec.d_axis.At(stretches[0].ThetaH(angles), 0);
+  for (size_t k = 1; k < stretches.size(); ++k) {
+    stencils->more_D.push_back(spec.d_axis.At(stretches[k].ThetaH(angles), 0));
+  }
+}
+
 }  // namespace
 
 FactorModel::FactorModel(const ModelSpec& spec) : spec_(spec) {
@@ -75,8 +84,11 @@ SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin
   CheckIsotropic(spec, "a MERL grid, which knows no azimuths,");
   SampleStencils stencils;
   const HalfDiffAngles angles = grid.Center(bin);
-  stencils.D = spec.stretch.any() ? spec.d_axis.At(spec.stretch.ThetaH(angles), 0)
-                                  : PointStencil(bin / (grid.theta_d * grid.phi_d));
+  if (spec.stretches.any()) {
+    SetStretchedStencils(spec, angles, &stencils);
+  } else {
+    stencils.D = PointStencil(bin / (grid.theta_d * grid.phi_d));
+  }
   stencils.F = PointStencil(bin / grid.phi_d % grid.theta_d);
   SetCosineStencils(spec, ToCosines(angles), &stencils);
   return stencils;
@@ -85,7 +97,7 @@ SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin
 SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles) {
   CheckIsotropic(spec, "a pair of directions without azimuths");
   SampleStencils stencils;
-  stencils.D = spec.d_axis.At(spec.stretch.ThetaH(angles), 0);
+  SetStretchedStencils(spec, angles, &stencils);
   stencils.F = spec.f_axis.At(angles.theta_d, 0);
   SetCosineStencils(spec, ToCosines(angles), &stencils);
   return stencils;
@@ -113,7 +125,8 @@ double Evaluate(const FactorModel& model, const SampleStencils& stencils, int ch
   double rho = model.d()[channel];
   for (int m = 0; m < model.spec().lobes; ++m) {
     const std::span<const double> G = model.G(m, channel);
-    rho += model.s(m)[channel] * stencils.D(model.D(m, channel)) * stencils.F(model.F(m, channel)) *
+    const Stencil& D = stencils.DOf(model.spec().stretches.index(m));
+    rho += model.s(m)[channel] * D(model.D(m, channel)) * stencils.F(model.F(m, channel)) *
            stencils.G_i(G) * stencils.G_o(G) * stencils.inverse_cosines;
   }
   return rho;

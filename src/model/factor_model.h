@@ -80,11 +80,17 @@ void CheckParameters(const FactorModel& model);
 void CheckCoverage(std::span<const double> coverage, const FactorModel& model);
 
 // How one direction pair reads the tables: the model's value is
-//   d + sum_m s (D . stencil) (F . stencil) (G . theta_i) (G . theta_o) * inverse_cosines.
+//   d + sum_m s (D . its stretch's stencil) (F . stencil) (G . theta_i) (G . theta_o) *
+//   inverse_cosines.
 struct SampleStencils {
   Stencil D, F, G_i, G_o;
+  std::vector<Stencil> more_D =
+      {};  // where lobes are stretched differently: of the second stretch on
   // 1 / (cos theta_i cos theta_o), splined as G is where that is a spline (docs/method.md).
   double inverse_cosines = 0;
+
+  // By the number of the stretch among the distinct ones.
+  const Stencil& DOf(int stretch) const { return stretch == 0 ? D : more_D[stretch - 1]; }
 };
 
 // Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/method.md), a stretched

@@ -205,7 +205,9 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
   NormalizeScale(coverage, model);
   const ModelSpec& spec = model->spec();
   LobeLight light = ComputeLobeLight(coverage, *model);
-  if (order == LobeOrder::kByLight && spec.lobes > 1) {
+  // The coverage of D is that of its lobe's stretch.
+  const bool may_change_places = !spec.stretches.several();
+  if (order == LobeOrder::kByLight && spec.lobes > 1 && may_change_places) {
     std::vector<int> lobes(spec.lobes);
     std::iota(lobes.begin(), lobes.end(), 0);
     std::ranges::stable_sort(lobes, std::greater(), [&](int m) { return light.Share(m); });

@@ -18,7 +18,8 @@ namespace trilobe {
 //   (LobeLight::through); by coverage where the model is anisotropic;
 // - s carries the magnitude: 4 s is the albedo of a lobe whose F and G are 1. A lobe whose factors
 //   vanish gets s = 0, its vanished tables 1 everywhere before normalisation;
-// - the lobe that reflects most comes first.
+// - the lobe that reflects most comes first; but lobes that are stretched differently stay in their
+//   places.
 // Unobserved bins (coverage 0) are filled for display and for directions beyond the data first,
 // from their nearest observed neighbours: linearly between two, beyond the last the median of the
 // last five; of G it is G / cos theta that is continued so, since that keeps the BRDF from growing

@@ -43,14 +43,14 @@ class Cells {
     Cosines cosines;
     double theta_i, phi_i, theta_o, phi_o;
   };
-  // The same for all entries of D of the theta_h of entry h.
-  std::vector<Pair> PairsAt(int h) const {
+  // The same for all entries of D of the theta_h of entry h, read by a stretch.
+  std::vector<Pair> PairsAt(int h, const Stretch& stretch) const {
     std::vector<Pair> pairs;
     for (int d = 0; d < spec_.f_axis.size; ++d) {
       for (int p = 0; p < phi_steps(); ++p) {
         HalfDiffAngles angles = grid_.Center(0, d, p);
         const double read_at = spec_.d_axis.Theta(h);
-        const double factor = spec_.stretch.Factor(angles.theta_d, angles.phi_d);
+        const double factor = stretch.Factor(angles.theta_d, angles.phi_d);
         angles.theta_h = read_at / factor;
         if (angles.theta_h >= kPi / 2) continue;
         Pair pair{.d = d,
@@ -96,6 +96,81 @@ double Total(const LobeLight& light) {
   return total;
 }
 
+// Adds what the lobes of a stretch reflect, over the places where they read D; with the first one
+// what is diffuse.
+void AddLight(std::span<const double> coverage, const FactorModel& model, int stretch,
+              LobeLight* light) {
+  const ModelSpec& spec = model.spec();
+  const Cells cells(spec);
+  std::vector<int> lobes;
+  for (int m = 0; m < spec.lobes; ++m) {
+    if (spec.stretches.index(m) == stretch) lobes.push_back(m);
+  }
+  // Entries are observed or unobserved in all tables of F and G, and of D in those of these lobes,
+  // alike, but for channels without weight.
+  const auto observed = [&](Factor factor, int entry) {
+    for (const int m : lobes) {
+      for (int c = 0; c < kChannels; ++c) {
+        const int t = spec.table(factor, m, c);
+        if (coverage[model.TableOffset(factor, t) + entry] > 0) return true;
+      }
+    }
+    return lobes.empty();
+  };
+  const auto all_live = [&](const Stencil& stencil) {
+    for (int k = 0; k < stencil.size; ++k) {
+      if (stencil.weight[k] != 0 && !observed(Factor::kG, stencil.index[k])) return false;
+    }
+    return true;
+  };
+  double all = 0;
+  Rgb diffuse{};
+  std::vector<Cells::Pair> pairs;
+  int pairs_ring = -1;
+  for (int h = 0; h < spec.d_axis.size; ++h) {
+    if (!observed(Factor::kD, h)) continue;
+    if (const int ring = h / spec.d_axis.phi_nodes; ring != pairs_ring) {
+      pairs = cells.PairsAt(h, spec.stretches.distinct()[stretch]);
+      pairs_ring = ring;
+    }
+    for (const Cells::Pair& pair : pairs) {
+      if (!observed(Factor::kF, pair.d)) continue;
+      const auto [G_i, G_o] = cells.ReadG(h, pair);
+      if (!all_live(G_i) || !all_live(G_o)) continue;
+      const double solid_angle = cells.SolidAngle(h, pair.d) * pair.half_vectors;
+      const double white = solid_angle * pair.cosines.i * pair.cosines.o;
+      all += white;
+      for (int c = 0; c < kChannels; ++c) {
+        diffuse[c] += white * model.d()[c];
+        for (const int m : lobes) {
+          const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
+          const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
+          const int G = model.TableOffset(Factor::kG, spec.table(Factor::kG, m, c));
+          // The cosines of the lobe's denominator and those of the integral cancel.
+          const double part = solid_angle * model.s(m)[c] * model.parameters()[D] *
+                              model.parameters()[F] * std::max(G_i(model.G(m, c)), 0.0) *
+                              std::max(G_o(model.G(m, c)), 0.0);
+          light->lobes[m][c] += part;
+          light->through[D] += part;
+          light->through[F] += part;
+          for (const Stencil* const stencil : {&G_i, &G_o}) {
+            for (int k = 0; k < stencil->size; ++k) {
+              light->through[G + stencil->index[k]] += part * std::abs(stencil->weight[k]);
+            }
+          }
+        }
+      }
+    }
+  }
+  // A Lambertian rho has the albedo pi rho.
+  const double scale = all > 0 ? kPi / all : 0;
+  for (const int m : lobes) {
+    for (double& x : light->lobes[m]) x *= scale;
+  }
+  if (stretch > 0) return;
+  for (int c = 0; c < kChannels; ++c) light->diffuse[c] = scale * diffuse[c];
+}
+
 }  // namespace
 
 double LobeLight::Share(int lobe) const {
@@ -114,68 +189,11 @@ double LobeLight::DiffuseShare() const {
 
 LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model) {
   CheckCoverage(coverage, model);
-  const ModelSpec& spec = model.spec();
-  const Cells cells(spec);
   LobeLight light;
-  light.lobes.resize(spec.lobes);
+  light.lobes.resize(model.spec().lobes);
   light.through.assign(model.parameters().size(), 0.0);
-  // Entries of a factor are observed or unobserved in all its tables alike, but for channels
-  // without weight.
-  const auto observed = [&](Factor factor, int entry) {
-    for (int t = 0; t < spec.num_tables(factor); ++t) {
-      if (coverage[model.TableOffset(factor, t) + entry] > 0) return true;
-    }
-    return spec.num_tables(factor) == 0;
-  };
-  const auto all_live = [&](const Stencil& stencil) {
-    for (int k = 0; k < stencil.size; ++k) {
-      if (stencil.weight[k] != 0 && !observed(Factor::kG, stencil.index[k])) return false;
-    }
-    return true;
-  };
-  double all = 0;
-  std::vector<Cells::Pair> pairs;
-  int pairs_ring = -1;
-  for (int h = 0; h < spec.d_axis.size; ++h) {
-    if (!observed(Factor::kD, h)) continue;
-    if (const int ring = h / spec.d_axis.phi_nodes; ring != pairs_ring) {
-      pairs = cells.PairsAt(h);
-      pairs_ring = ring;
-    }
-    for (const Cells::Pair& pair : pairs) {
-      if (!observed(Factor::kF, pair.d)) continue;
-      const auto [G_i, G_o] = cells.ReadG(h, pair);
-      if (!all_live(G_i) || !all_live(G_o)) continue;
-      const double solid_angle = cells.SolidAngle(h, pair.d) * pair.half_vectors;
-      const double white = solid_angle * pair.cosines.i * pair.cosines.o;
-      all += white;
-      for (int c = 0; c < kChannels; ++c) {
-        light.diffuse[c] += white * model.d()[c];
-        for (int m = 0; m < spec.lobes; ++m) {
-          const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
-          const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
-          const int G = model.TableOffset(Factor::kG, spec.table(Factor::kG, m, c));
-          // The cosines of the lobe's denominator and those of the integral cancel.
-          const double part = solid_angle * model.s(m)[c] * model.parameters()[D] *
-                              model.parameters()[F] * std::max(G_i(model.G(m, c)), 0.0) *
-                              std::max(G_o(model.G(m, c)), 0.0);
-          light.lobes[m][c] += part;
-          light.through[D] += part;
-          light.through[F] += part;
-          for (const Stencil* const stencil : {&G_i, &G_o}) {
-            for (int k = 0; k < stencil->size; ++k) {
-              light.through[G + stencil->index[k]] += part * std::abs(stencil->weight[k]);
-            }
-          }
-        }
-      }
-    }
-  }
-  // A Lambertian rho has the albedo pi rho.
-  const double scale = all > 0 ? kPi / all : 0;
-  for (double& x : light.diffuse) x *= scale;
-  for (Rgb& lobe : light.lobes) {
-    for (double& x : lobe) x *= scale;
+  for (size_t k = 0; k < model.spec().stretches.distinct().size(); ++k) {
+    AddLight(coverage, model, static_cast<int>(k), &light);
   }
   return light;
 }

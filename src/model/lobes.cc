@@ -64,6 +64,7 @@ FactorModel WithLobes(const FactorModel& model, std::span<const int> lobes) {
   for (const int lobe : lobes) CheckLobe(model, lobe);
   ModelSpec spec = model.spec();
   spec.lobes = static_cast<int>(lobes.size());
+  spec.stretches = spec.stretches.Of({lobes.begin(), lobes.end()});
   FactorModel result(spec);
   std::ranges::copy(model.d(), result.d().begin());
   for (int m = 0; m < spec.lobes; ++m) {
@@ -75,6 +76,14 @@ FactorModel WithLobes(const FactorModel& model, std::span<const int> lobes) {
       }
     }
   }
+  return result;
+}
+
+FactorModel WithStretches(const FactorModel& model, const Stretches& stretches) {
+  ModelSpec spec = model.spec();
+  spec.stretches = stretches;
+  FactorModel result(spec);
+  std::ranges::copy(model.parameters(), result.parameters().begin());
   return result;
 }
 

@@ -12,6 +12,9 @@ namespace trilobe {
 // Throws Error if there is no such lobe, or if there are more than kMaxLobes.
 FactorModel WithLobes(const FactorModel& model, std::span<const int> lobes);
 
+// The same parameters under other stretches of the highlights.
+FactorModel WithStretches(const FactorModel& model, const Stretches& stretches);
+
 // The model without a lobe: its s is gone, and the tables that it had to itself.
 // Throws Error if there is no such lobe.
 FactorModel WithoutLobe(const FactorModel& model, int lobe);

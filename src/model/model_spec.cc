@@ -101,8 +101,11 @@ void CheckSpec(const ModelSpec& spec) {
   if (spec.d_axis.rule == Axis::Rule::kSpline || spec.g_axis.rule == Axis::Rule::kRootTheta) {
     throw Error("a D table cannot be a spline, nor a G table one over the root of theta_h");
   }
-  CheckStretch(spec.stretch);
-  if (spec.stretch.any()) CheckIsotropic(spec, "a stretch of highlights");
+  spec.stretches.Check(spec.lobes);
+  if (spec.stretches.any()) CheckIsotropic(spec, "a stretch of highlights");
+  if (spec.stretches.several() && !spec.D.per_lobe) {
+    throw Error("lobes that share D must be stretched alike");
+  }
 }
 
 void CheckIsotropic(const ModelSpec& spec, const char* wants) {

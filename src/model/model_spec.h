@@ -34,7 +34,7 @@ struct ModelSpec {
   Axis d_axis{.rule = Axis::Rule::kRootTheta};  // of theta_h, or of (theta_h, phi_h)
   Axis f_axis{.rule = Axis::Rule::kTheta};      // of theta_d
   Axis g_axis{.rule = Axis::Rule::kSpline};     // of theta, or of (theta, phi)
-  Stretch stretch = {};                         // of the highlights, of isotropic models only
+  Stretches stretches = {};                     // of the highlights, of isotropic models only
 
   // `lobes` lobes with D, G shared by the channels, F shared by the lobes (paper eq. 3):
   // 822 parameters for three lobes on the MERL grid.
@@ -83,13 +83,18 @@ struct ModelSpec {
   bool serves(Factor factor, int table_index, int lobe, int channel) const {
     return table(factor, lobe, channel) == table_index;
   }
+  // By which of the distinct stretches a table of D is read.
+  int StretchOfTable(int d_table) const {
+    return stretches.index(D.per_lobe ? d_table / (D.per_channel ? kChannels : 1) : 0);
+  }
   int num_parameters() const;
 
   bool operator==(const ModelSpec&) const = default;
 };
 
 // Throws Error unless the lobes are in [0, kMaxLobes], the axes are in order (CheckAxis), F one
-// of theta_d alone, and the stretch (CheckStretch), which no anisotropic spec has.
+// of theta_d alone, and the stretches (Stretches::Check), which no anisotropic spec has, and which
+// are several only where each lobe has its own D.
 void CheckSpec(const ModelSpec& spec);
 
 // Throws Error, which says what `wants` it, if the spec is anisotropic.

@@ -41,14 +41,14 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
     });
   }
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
-                        samples.grid.theta_d == spec.f_axis.size && !spec.stretch.any();
+                        samples.grid.theta_d == spec.f_axis.size && !spec.stretches.any();
   const ContinuousModel evaluate(model);
   if (own_bins) {
     const GridCosines cosines(samples.grid);
     return ForEach(samples.size(), num_threads, [&](int j) {
       const int row = samples.bins[j] / samples.grid.phi_d;
-      return evaluate(PointStencil(row / samples.grid.theta_d),
-                      PointStencil(row % samples.grid.theta_d), cosines(samples.bins[j]));
+      const Stencil D = PointStencil(row / samples.grid.theta_d);
+      return evaluate({&D, 1}, PointStencil(row % samples.grid.theta_d), cosines(samples.bins[j]));
     });
   }
   return ForEach(samples.size(), num_threads, [&](int j) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
 
 #include "trilobe/base/error.h"
 
@@ -30,6 +31,33 @@ void CheckStretch(const Stretch& stretch) {
             << -kMaxStretch << " to " << kMaxStretch;
     throw Error(message.str());
   }
+}
+
+Stretches::Stretches(const Stretch& of_all) : distinct_({of_all}) {}
+
+Stretches::Stretches(const std::vector<Stretch>& of_lobes) {
+  for (const Stretch& stretch : of_lobes) {
+    const auto known = std::ranges::find(distinct_, stretch);
+    index_.push_back(static_cast<int>(known - distinct_.begin()));
+    if (known == distinct_.end()) distinct_.push_back(stretch);
+  }
+  if (distinct_.empty()) distinct_.emplace_back();
+  if (!several()) index_.clear();
+}
+
+Stretches Stretches::Of(const std::vector<int>& lobes) const {
+  if (!several()) return *this;
+  std::vector<Stretch> of_lobes;
+  for (const int lobe : lobes) of_lobes.push_back(of(lobe));
+  return Stretches(of_lobes);
+}
+
+void Stretches::Check(int lobes) const {
+  for (const Stretch& stretch : distinct_) CheckStretch(stretch);
+  const int count = static_cast<int>(index_.size());
+  if (!several() || count == lobes) return;
+  throw Error("there are stretches of " + std::to_string(count) + " lobes, but " +
+              std::to_string(lobes) + " lobes; give one a lobe, or one for all");
 }
 
 }  // namespace trilobe

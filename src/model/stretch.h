@@ -1,11 +1,13 @@
 #ifndef TRILOBE_MODEL_STRETCH_H_
 #define TRILOBE_MODEL_STRETCH_H_
 
+#include <vector>
+
 #include "trilobe/brdf/directions.h"
 
 namespace trilobe {
 
-// How highlights change their shape with theta_d, for isotropic models. D is read not at theta_h
+// How a highlight changes its shape with theta_d, for isotropic models. D is read not at theta_h
 // but at
 //   theta_h sqrt((cos phi_d cos^along theta_d)^2 + (sin phi_d cos^across theta_d)^2),
 // 90 degrees at most: phi_d is 0 where the half vector leans within the plane of wi and wo. So a
@@ -31,6 +33,37 @@ inline constexpr double kMaxStretch = 2;
 
 // Throws Error unless both exponents are from -kMaxStretch to kMaxStretch.
 void CheckStretch(const Stretch& stretch);
+
+// Those of a model's lobes: the same for all, or one each. Lobes that are stretched alike read
+// their D alike, by one stencil a pair of directions; `distinct` has that many.
+class Stretches {
+ public:
+  Stretches() : Stretches(Stretch{}) {}
+  Stretches(const Stretch& of_all);  // NOLINT(google-explicit-constructor): one is all of them
+  // One a lobe, or one for all.
+  explicit Stretches(const std::vector<Stretch>& of_lobes);
+
+  bool any() const { return several() || distinct_[0].any(); }
+  bool several() const { return distinct_.size() > 1; }
+  const Stretch& of(int lobe) const { return distinct_[index(lobe)]; }
+
+  // Each once, in the order of the lobes.
+  const std::vector<Stretch>& distinct() const { return distinct_; }
+  // Which of these a lobe has.
+  int index(int lobe) const { return several() ? index_[lobe] : 0; }
+
+  // Those of other lobes: the k-th is that of lobes[k] here.
+  Stretches Of(const std::vector<int>& lobes) const;
+
+  // Throws Error unless all are in range, and, if they are several, as many as there are lobes.
+  void Check(int lobes) const;
+
+  bool operator==(const Stretches&) const = default;
+
+ private:
+  std::vector<Stretch> distinct_;
+  std::vector<int> index_;  // [lobes]; empty where all are alike
+};
 
 }  // namespace trilobe
 

@@ -41,6 +41,7 @@ class SampleResidual {
       }
     };
     localize(Factor::kD, &at_.D);
+    for (Stencil& D : at_.more_D) localize(Factor::kD, &D);
     localize(Factor::kF, &at_.F);
     localize(Factor::kG, &at_.G_i);
     localize(Factor::kG, &at_.G_o);
@@ -56,7 +57,8 @@ class SampleResidual {
       T D{}, F{}, G{};  // G of both directions, over their cosines
       for (int C = 0; C < kChannels; ++C) {
         // A table that the channels share is read for the first of them.
-        if (C == 0 || spec_->D.per_channel) D = Read(at_.D, Factor::kD, m, C, blocks);
+        if (C == 0 || spec_->D.per_channel)
+          D = Read(at_.DOf(spec_->stretches.index(m)), Factor::kD, m, C, blocks);
         if (C == 0 || spec_->F.per_channel) F = Read(at_.F, Factor::kF, m, C, blocks);
         if (C == 0 || spec_->G.per_channel) {
           G = Read(at_.G_i, Factor::kG, m, C, blocks) * Read(at_.G_o, Factor::kG, m, C, blocks) *

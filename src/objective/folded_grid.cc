@@ -163,7 +163,7 @@ CoverageByChannel FoldedCoverage(const FoldedGrid& folded) {
   const CatmullRom spline(folded.g_nodes);
   CoverageByChannel coverage;
   for (int c = 0; c < kChannels; ++c) {
-    coverage[c].D.assign(folded.grid.theta_h, 0.0);
+    coverage[c].D = {std::vector<double>(folded.grid.theta_h, 0.0)};
     coverage[c].F.assign(folded.grid.theta_d, 0.0);
     coverage[c].G.assign(folded.g_nodes, 0.0);
   }
@@ -174,7 +174,7 @@ CoverageByChannel FoldedCoverage(const FoldedGrid& folded) {
                                   spline.StencilAt({folded.interval_o[n], folded.t_o[n] + 0.5})};
       for (int c = 0; c < kChannels; ++c) {
         const double w = folded.weight[c][n];
-        coverage[c].D[h] += w;
+        coverage[c].D[0][h] += w;
         coverage[c].F[d] += w;
         for (const Stencil& stencil : stencils) {
           for (int k = 0; k < stencil.size; ++k) {

@@ -54,7 +54,8 @@ double FoldedValue(const FoldedGrid& folded, const FactorModel& model, int num_t
 // Total weight sum w |stencil weight| of the samples that read each entry of a factor's table, by
 // channel.
 struct FactorCoverage {
-  std::vector<double> D, F, G;  // [d_bins], [f_bins], [g_nodes]
+  std::vector<std::vector<double>> D;  // by the number of the lobe's stretch. [d_bins]
+  std::vector<double> F, G;            // [f_bins], [g_nodes]
 };
 using CoverageByChannel = std::array<FactorCoverage, kChannels>;
 CoverageByChannel FoldedCoverage(const FoldedGrid& folded);

@@ -62,25 +62,34 @@ static_assert(4 * kMaxTableSize <= std::numeric_limits<uint16_t>::max());
 
 // A sample on its way into the order.
 struct Item {
-  std::array<uint16_t, kNumReadings> cell{};  // G first: theta_i, theta_o, D, F
-  uint64_t hash = 0;                          // of the weights, rounded
+  std::array<uint16_t, ReadingOrder::kMost> cell{};  // G first: theta_i, theta_o, D, F
+  uint64_t hash = 0;                                 // of the weights, rounded
   int sample = 0;
   bool exchanged = false;  // theta_i and theta_o
 
   auto Key() const { return std::tie(cell, hash, sample); }
 };
 
-const Stencil& StencilOf(const SampleStencils& at, Reading reading, bool exchanged) {
-  if (reading == Reading::kD) return at.D;
-  if (reading == Reading::kF) return at.F;
-  return (reading == Reading::kGi) != exchanged ? at.G_i : at.G_o;
+ReadingOrder OrderOf(const SampleStencils& at) {
+  return {.of_D = 1 + static_cast<int>(at.more_D.size())};
 }
+
+const Stencil& StencilOf(const SampleStencils& at, const ReadingOrder& order, int reading,
+                         bool exchanged) {
+  if (reading < order.F()) return at.DOf(reading);
+  if (reading == order.F()) return at.F;
+  return (reading == order.G_i()) != exchanged ? at.G_i : at.G_o;
+}
+
+// Where an item has a reading's cell: those of G are first.
+int PlaceInItem(const ReadingOrder& order, int reading) { return (reading + 2) % order.count(); }
 
 // The same for weights that differ by rounding errors, but for a few of a million.
 uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
   uint64_t hash = 0;
-  for (const Reading reading : kReadings) {
-    const Stencil& stencil = StencilOf(at, reading, exchanged);
+  const ReadingOrder order = OrderOf(at);
+  for (int r = 0; r < order.count(); ++r) {
+    const Stencil& stencil = StencilOf(at, order, r, exchanged);
     for (int k = 0; k < stencil.size; ++k) {
       const auto rounded = static_cast<uint64_t>(std::llround(stencil.weight[k] * 0x1p36));
       hash = (hash ^ rounded) * 0x9e3779b97f4a7c15U;
@@ -95,9 +104,10 @@ uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
 bool ReadAlike(const WeightedSample& a, bool a_exchanged, const WeightedSample& b,
                bool b_exchanged) {
   constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-  for (const Reading reading : kReadings) {
-    const Stencil& of_a = StencilOf(a.stencils, reading, a_exchanged);
-    const Stencil& of_b = StencilOf(b.stencils, reading, b_exchanged);
+  const ReadingOrder order = OrderOf(a.stencils);
+  for (int r = 0; r < order.count(); ++r) {
+    const Stencil& of_a = StencilOf(a.stencils, order, r, a_exchanged);
+    const Stencil& of_b = StencilOf(b.stencils, order, r, b_exchanged);
     if (of_a.size != of_b.size) return false;
     for (int k = 0; k < of_a.size; ++k) {
       if (of_a.index[k] != of_b.index[k]) return false;
@@ -113,11 +123,14 @@ std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSampl
   const auto find = [&](Factor factor, const Stencil& stencil) {
     return static_cast<uint16_t>(index[static_cast<int>(factor)].Find(stencil));
   };
+  const ReadingOrder& order = folded->order;
   std::vector<Item> items(samples.size());
   for (size_t j = 0; j < samples.size(); ++j) {
     const SampleStencils& at = samples[j].stencils;
-    items[j].cell = {find(Factor::kG, at.G_i), find(Factor::kG, at.G_o), find(Factor::kD, at.D),
-                     find(Factor::kF, at.F)};
+    for (int r = 0; r < order.count(); ++r) {
+      items[j].cell[PlaceInItem(order, r)] =
+          find(order.factor(r), StencilOf(at, order, r, /*exchanged=*/false));
+    }
     items[j].sample = static_cast<int>(j);
   }
   std::array<std::vector<int>, 3> rank;
@@ -126,9 +139,9 @@ std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSampl
     folded->cells[f] = std::move(index[f].cells());
   }
   for (Item& item : items) {
-    constexpr Factor kOrder[] = {Factor::kG, Factor::kG, Factor::kD, Factor::kF};
-    for (int k = 0; k < kNumReadings; ++k) {
-      item.cell[k] = static_cast<uint16_t>(rank[static_cast<int>(kOrder[k])][item.cell[k]]);
+    for (int r = 0; r < order.count(); ++r) {
+      uint16_t& cell = item.cell[PlaceInItem(order, r)];
+      cell = static_cast<uint16_t>(rank[static_cast<int>(order.factor(r))][cell]);
     }
     const SampleStencils& at = samples[item.sample].stencils;
     item.exchanged = std::tie(item.cell[0], at.G_i.weight) < std::tie(item.cell[1], at.G_o.weight);
@@ -143,6 +156,8 @@ std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSampl
 
 FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
   FoldedSamples folded;
+  if (!samples.empty()) folded.order = OrderOf(samples.front().stencils);
+  const ReadingOrder& order = folded.order;
   const std::vector<Item> items = Sorted(samples, &folded);
   // Where those begin that read alike.
   std::vector<int> begin;
@@ -160,10 +175,11 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
   begin.push_back(static_cast<int>(items.size()));
 
   folded.inverse_cosines.resize(size);
-  for (const Reading reading : kReadings) {
-    FoldedSamples::OfReading& of = folded.readings[static_cast<int>(reading)];
+  folded.readings.resize(order.count());
+  for (int r = 0; r < order.count(); ++r) {
+    FoldedSamples::OfReading& of = folded.readings[r];
     int width = 0;
-    for (const Cell& cell : folded.cells_of(FactorOf(reading))) width = std::max(width, cell.size);
+    for (const Cell& cell : folded.cells_of(r)) width = std::max(width, cell.size);
     of.cell.resize(size);
     of.weight.assign(width, std::vector<double>(size));
   }
@@ -175,10 +191,10 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
     const Item& first = items[begin[n]];
     const SampleStencils& at = samples[first.sample].stencils;
     folded.inverse_cosines[n] = at.inverse_cosines;
-    for (const Reading reading : kReadings) {
-      FoldedSamples::OfReading& of = folded.readings[static_cast<int>(reading)];
-      const Stencil& stencil = StencilOf(at, reading, first.exchanged);
-      of.cell[n] = first.cell[(static_cast<int>(reading) + 2) % kNumReadings];
+    for (int r = 0; r < order.count(); ++r) {
+      FoldedSamples::OfReading& of = folded.readings[r];
+      const Stencil& stencil = StencilOf(at, order, r, first.exchanged);
+      of.cell[n] = first.cell[PlaceInItem(order, r)];
       for (int k = 0; k < stencil.size; ++k) of.weight[k][n] = stencil.weight[k];
     }
     for (int c = 0; c < kChannels; ++c) {

@@ -25,13 +25,21 @@ struct Cell {
   std::array<int, Stencil::kMaxSize> entry{};
 };
 
-// A sample reads four times from tables: from D, from F, and from G for each direction.
-enum class Reading { kD, kF, kGi, kGo };
-inline constexpr Reading kReadings[] = {Reading::kD, Reading::kF, Reading::kGi, Reading::kGo};
-inline constexpr int kNumReadings = 4;
-constexpr Factor FactorOf(Reading reading) {
-  return reading == Reading::kD ? Factor::kD : reading == Reading::kF ? Factor::kF : Factor::kG;
-}
+// A sample's readings from tables, by number: from D, once for each of the lobes' stretches, from
+// F, and from G for each direction.
+struct ReadingOrder {
+  static constexpr int kMost = kMaxLobes + 3;
+
+  int of_D = 1;  // how many
+
+  int F() const { return of_D; }
+  int G_i() const { return of_D + 1; }
+  int G_o() const { return of_D + 2; }
+  int count() const { return of_D + 3; }
+  Factor factor(int reading) const {
+    return reading < F() ? Factor::kD : reading == F() ? Factor::kF : Factor::kG;
+  }
+};
 
 // Any samples, folded and sorted. Samples that read alike, exchanged directions included, since the
 // model's value does not change with them, become one with
@@ -50,7 +58,8 @@ struct FoldedSamples {
   };
 
   std::array<std::vector<Cell>, 3> cells;  // of D, F and G
-  std::array<OfReading, kNumReadings> readings;
+  ReadingOrder order;
+  std::vector<OfReading> readings;                    // [order.count()]
   std::vector<double> inverse_cosines;                // [size]
   std::array<std::vector<double>, kChannels> weight;  // [kChannels][size]
   std::array<std::vector<double>, kChannels> rho;     // [kChannels][size], [1/sr]
@@ -60,7 +69,7 @@ struct FoldedSamples {
 
   int size() const { return static_cast<int>(inverse_cosines.size()); }
   const std::vector<Cell>& cells_of(Factor factor) const { return cells[static_cast<int>(factor)]; }
-  const OfReading& of(Reading reading) const { return readings[static_cast<int>(reading)]; }
+  const std::vector<Cell>& cells_of(int reading) const { return cells_of(order.factor(reading)); }
 };
 
 FoldedSamples Fold(const std::vector<WeightedSample>& samples);

@@ -94,13 +94,15 @@ CoverageByChannel ScatteredCoverage(const FoldedSamples& samples, const ModelSpe
   CoverageByChannel coverage;
   for (int c = 0; c < kChannels; ++c) {
     FactorCoverage& of = coverage[c];
-    of.D.assign(spec.d_axis.size, 0.0);
+    of.D.assign(samples.order.of_D, std::vector<double>(spec.d_axis.size, 0.0));
     of.F.assign(spec.f_axis.size, 0.0);
     of.G.assign(spec.g_axis.size, 0.0);
-    for (const Reading reading : kReadings) {
-      const Factor factor = FactorOf(reading);
-      std::vector<double>& table = factor == Factor::kD ? of.D : factor == Factor::kF ? of.F : of.G;
-      const FoldedSamples::OfReading& readings = samples.of(reading);
+    for (int r = 0; r < samples.order.count(); ++r) {
+      const Factor factor = samples.order.factor(r);
+      std::vector<double>& table = factor == Factor::kD   ? of.D[r]
+                                   : factor == Factor::kF ? of.F
+                                                          : of.G;
+      const FoldedSamples::OfReading& readings = samples.readings[r];
       for (int j = 0; j < samples.size(); ++j) {
         const Cell& cell = samples.cells_of(factor)[readings.cell[j]];
         for (int k = 0; k < cell.size; ++k) {
@@ -118,16 +120,17 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
   FactorModel coverage(spec);  // borrowed for its layout: an entry a parameter
   for (int c = 0; c < kChannels; ++c) {
     double total = 0;
-    for (const double w : by_channel[c].D) total += w;
+    for (const double w : by_channel[c].D[0]) total += w;
     coverage.d()[c] = total;
     for (int m = 0; m < spec.lobes; ++m) coverage.s(m)[c] = total;
     for (const Factor factor : kFactors) {
-      const std::vector<double>& from = factor == Factor::kD   ? by_channel[c].D
-                                        : factor == Factor::kF ? by_channel[c].F
-                                                               : by_channel[c].G;
       for (int t = 0; t < spec.num_tables(factor); ++t) {
         const auto [begin, end] = spec.channels(factor, t);
         if (c < begin || c >= end) continue;
+        const std::vector<double>& from = factor == Factor::kD
+                                              ? by_channel[c].D[spec.StretchOfTable(t)]
+                                          : factor == Factor::kF ? by_channel[c].F
+                                                                 : by_channel[c].G;
         const std::span<double> to = coverage.table(factor, t);
         for (size_t k = 0; k < to.size(); ++k) to[k] += from[k];
       }
@@ -145,7 +148,7 @@ struct Objective::Prepared {
         weighting(ForSamples(weights, samples)) {
     bool nonnegative = true;
     // A stretched D is read between the bins of a grid, differently along a row of it.
-    if (samples.on_grid() && !spec.stretch.any()) {
+    if (samples.on_grid() && !spec.stretches.any()) {
       folded =
           std::make_unique<FoldedGrid>(Fold(samples, spec.g_axis.size, weighting, num_threads));
       measured_energy = folded->measured_energy;
@@ -193,7 +196,7 @@ struct Objective::Prepared {
   }
 
   const BrdfSamples samples;
-  const ModelSpec spec;  // of which axes and stretch count
+  const ModelSpec spec;  // of which axes and stretches count
   const Weighting weighting;
   double measured_energy = 0;
   CoverageByChannel coverage;
@@ -215,10 +218,10 @@ Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting
 Objective::Objective(const Objective& other, const ModelSpec& spec)
     : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
   CheckReadable(spec, samples());
-  const bool reads_alike =
-      spec.stretch == other.spec_.stretch && std::ranges::all_of(kFactors, [&](Factor factor) {
-        return spec.axis(factor) == other.spec_.axis(factor);
-      });
+  const bool reads_alike = spec.stretches.distinct() == other.spec_.stretches.distinct() &&
+                           std::ranges::all_of(kFactors, [&](Factor factor) {
+                             return spec.axis(factor) == other.spec_.axis(factor);
+                           });
   if (!reads_alike) {
     prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
   }

@@ -22,8 +22,10 @@ struct ReadJob {
     const double* table;
     int lanes;
     double* reading;
+    bool adds;  // to what is there: each stretch reads D of its own lobes
   };
-  std::array<OfReading, kNumReadings> readings;
+  std::array<OfReading, ReadingOrder::kMost> readings;
+  int num_readings;
   const TableLanes *D, *F, *G;
   const double *d, *s;
   int lobes, amplitude_lanes;
@@ -68,14 +70,15 @@ template <int kBlocks, bool kOneVector>
 TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
   for (int j = job.begin; j < job.end; ++j) {
     const int n = j - job.begin;
-    std::array<double*, kNumReadings> R;
-    for (int r = 0; r < kNumReadings; ++r) {
+    std::array<double*, ReadingOrder::kMost> R;
+    for (int r = 0; r < job.num_readings; ++r) {
       const ReadJob::OfReading& of = job.readings[r];
       const Cell& cell = of.cells[of.cell[j]];
       const int lanes = kOneVector ? kVector : of.lanes;
       R[r] = of.reading + n * lanes;
       for (int b = 0; b < lanes; b += kVector) {
         Lanes4 sum = {};
+        if (of.adds) LoadLanes(R[r] + b, &sum);
         for (int k = 0; k < cell.size; ++k) {
           Lanes4 entry;
           LoadLanes(of.table + cell.entry[k] * lanes + b, &entry);
@@ -88,9 +91,9 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
     for (int c = 0; c < kChannels; ++c) {
       Lanes4 D[kBlocks], F[kBlocks], G_i[kBlocks], G_o[kBlocks], of_s[kBlocks], x[kBlocks];
       LobesOf<kBlocks>(*job.D, c, R[0], D);
-      LobesOf<kBlocks>(*job.F, c, R[1], F);
-      LobesOf<kBlocks>(*job.G, c, R[2], G_i);
-      LobesOf<kBlocks>(*job.G, c, R[3], G_o);
+      LobesOf<kBlocks>(*job.F, c, R[job.num_readings - 3], F);
+      LobesOf<kBlocks>(*job.G, c, R[job.num_readings - 2], G_i);
+      LobesOf<kBlocks>(*job.G, c, R[job.num_readings - 1], G_o);
       Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
       for (int b = 0; b < kBlocks; ++b) {
         Lanes4 s;
@@ -141,9 +144,10 @@ TableLanes::TableLanes(const ModelSpec& spec, Factor factor)
 
 SampleReader::Batch::Batch(const SampleReader& reader)
     : residual(kBatch * kChannels), amplitude(kBatch * kChannels * reader.amplitude_lanes()) {
-  for (const Reading r : kReadings) {
-    reading[static_cast<int>(r)].resize(kBatch * reader.lanes(FactorOf(r)).size);
-  }
+  D.resize(kBatch * reader.lanes(Factor::kD).size);
+  F.resize(kBatch * reader.lanes(Factor::kF).size);
+  G_i.resize(kBatch * reader.lanes(Factor::kG).size);
+  G_o.resize(kBatch * reader.lanes(Factor::kG).size);
   D_slope.resize(kBatch * kChannels * reader.lanes(Factor::kD).size);
   F_slope.resize(kBatch * kChannels * reader.lanes(Factor::kF).size);
   shadow.resize(kBatch * kChannels * reader.lanes(Factor::kG).size);
@@ -155,19 +159,27 @@ SampleReader::SampleReader(const FoldedSamples& samples, const ModelSpec& spec)
       lobe_lanes_(std::max(PaddedToVectors(spec.lobes), kVector)),
       s_(kChannels * lobe_lanes_) {
   for (const Factor factor : kFactors) {
-    const int f = static_cast<int>(factor);
-    lanes_[f] = TableLanes(spec, factor);
-    tables_[f].resize(spec.table_size(factor) * lanes_[f].size);
+    const TableLanes lanes(spec, factor);
+    const int count = factor == Factor::kD ? samples.order.of_D : 1;
+    for (int k = 0; k < count; ++k) tables_.emplace_back(spec.table_size(factor) * lanes.size);
+    lanes_[static_cast<int>(factor)] = lanes;
   }
+}
+
+int SampleReader::ReadingOf(Factor factor, int table) const {
+  const ReadingOrder& order = samples_.order;
+  if (factor == Factor::kF) return order.F();
+  if (factor == Factor::kG) return order.G_i();
+  return spec_.StretchOfTable(table);
 }
 
 void SampleReader::SetModel(const FactorModel& model) {
   for (const Factor factor : kFactors) {
-    const int f = static_cast<int>(factor);
-    const TableLanes& of = lanes_[f];
+    const TableLanes& of = lanes(factor);
     for (int t = 0; t < spec_.num_tables(factor); ++t) {
       const std::span<const double> table = model.table(factor, t);
-      for (size_t k = 0; k < table.size(); ++k) tables_[f][k * of.size + of.of_table[t]] = table[k];
+      std::vector<double>& to = tables_[ReadingOf(factor, t)];
+      for (size_t k = 0; k < table.size(); ++k) to[k * of.size + of.of_table[t]] = table[k];
     }
   }
   for (int c = 0; c < kChannels; ++c) {
@@ -182,6 +194,7 @@ void SampleReader::Read(int begin, int end, Want want, Batch* batch) const {
               .slopes = want == Want::kSlopes,
               .samples = &samples_,
               .readings = {},
+              .num_readings = samples_.order.count(),
               .D = &lanes(Factor::kD),
               .F = &lanes(Factor::kF),
               .G = &lanes(Factor::kG),
@@ -195,17 +208,23 @@ void SampleReader::Read(int begin, int end, Want want, Batch* batch) const {
               .F_slope = batch->F_slope.data(),
               .shadow = batch->shadow.data()};
   bool one_vector = true;
-  for (const Reading reading : kReadings) {
-    const int r = static_cast<int>(reading), f = static_cast<int>(FactorOf(reading));
-    job.readings[r] = {.cells = samples_.cells[f].data(),
+  const ReadingOrder& order = samples_.order;
+  for (int r = 0; r < order.count(); ++r) {
+    const Factor factor = order.factor(r);
+    std::vector<double>& reading = r < order.F()      ? batch->D
+                                   : r == order.F()   ? batch->F
+                                   : r == order.G_i() ? batch->G_i
+                                                      : batch->G_o;
+    job.readings[r] = {.cells = samples_.cells_of(factor).data(),
                        .cell = samples_.readings[r].cell.data(),
                        .weight = {},
-                       .table = tables_[f].data(),
-                       .lanes = lanes_[f].size,
-                       .reading = batch->reading[r].data()};
+                       .table = tables_[std::min(r, order.G_i())].data(),
+                       .lanes = lanes(factor).size,
+                       .reading = reading.data(),
+                       .adds = r > 0 && r < order.F()};
     const std::vector<std::vector<double>>& weight = samples_.readings[r].weight;
     for (size_t k = 0; k < weight.size(); ++k) job.readings[r].weight[k] = weight[k].data();
-    one_vector = one_vector && lanes_[f].size == kVector;
+    one_vector = one_vector && lanes(factor).size == kVector;
   }
   if (one_vector) {
     ReadOneVector(job);

@@ -43,7 +43,7 @@ class SampleReader {
     std::vector<double> residual;  // rho - rho*. [kChannels]
     // d rho / d (s of each lobe, d), padded. [kChannels][amplitude_lanes]
     std::vector<double> amplitude;
-    std::array<std::vector<double>, kNumReadings> reading;  // [lanes]
+    std::vector<double> D, F, G_i, G_o;  // [lanes]
     // d rho / d reading, of each channel; in the place of those of G, the number that both share:
     // d rho / d G_i = G_o shadow and d rho / d G_o = G_i shadow. [kChannels][lanes]
     std::vector<double> D_slope, F_slope, shadow;
@@ -65,12 +65,16 @@ class SampleReader {
   const double* s() const { return s_.data(); }  // of the model. [kChannels][lobe_lanes]
   int amplitude_lanes() const { return PaddedToVectors(1 + spec_.lobes); }
 
+  // The number of the reading that reads a table of D, F or, of both, the first of G.
+  int ReadingOf(Factor factor, int table) const;
+
  private:
   const FoldedSamples& samples_;
   const ModelSpec spec_;
   const int lobe_lanes_;
   std::array<TableLanes, 3> lanes_;
-  std::array<std::vector<double>, 3> tables_;  // [entry][lanes]
+  // Of D for each stretch, with zeros for the lobes that have another; then of F and G.
+  std::vector<std::vector<double>> tables_;  // [entry][lanes]
   std::array<double, kChannels> d_{};
   std::vector<double> s_;  // [kChannels][lobe_lanes]
 };

@@ -15,12 +15,14 @@
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobes.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/scene/prune.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/joint/reduction.h"
+#include "trilobe/solvers/joint/stretch_search.h"
 #include "trilobe/solvers/race/start_race.h"
-#include "trilobe/solvers/race/stretch_search.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -31,7 +33,6 @@ struct Form {
   std::string name;
   FactorModel start;
   Weighting weighting;
-  bool anew = false;  // from starts of its own, since it ends in another minimum
 };
 
 // A stretch that lowers E by less than this fraction is none.
@@ -84,50 +85,74 @@ std::vector<Form> FormsFrom(const Form& base) {
   return forms;
 }
 
-// So many samples that what a model makes of them is nearly what it makes of all.
-Objective Thinned(const Objective& objective) {
-  constexpr int kSamplesPerParameter = 100, kMaxStride = 24;
-  const int wanted = kSamplesPerParameter * objective.spec().num_parameters();
-  const int stride = std::clamp(objective.samples().size() / wanted, 1, kMaxStride);
+// So many samples for each parameter, more where an entry of a table would be read by few: it could
+// be anything, and for all samples the model would be far off.
+Objective Thinned(const Objective& objective, int samples_per_parameter, int max_stride) {
+  constexpr int kLeast = 16;  // samples a place, as many times as there are for each parameter
+  const int wanted = samples_per_parameter * objective.spec().num_parameters();
+  const int stride = std::clamp(objective.samples().size() / wanted, 1, max_stride);
   if (stride == 1) return objective;
-  return {Thinned(objective.samples(), stride), objective.spec(), objective.weighting(),
-          objective.num_threads()};
+  return {ThinnedByPlace(objective.samples(), stride, kLeast * samples_per_parameter),
+          objective.spec(), objective.weighting(), objective.num_threads()};
 }
 
-// Where few samples lead, a few joint steps on all of them go on: an entry that the few hardly read
-// may be anything.
-FactorModel OnAll(const Objective& objective, const FactorModel& start,
-                  const std::function<bool()>& stop, const Reduction* reduction = nullptr) {
+// So many that what a model makes of them is nearly what it makes of all.
+Objective Some(const Objective& objective) { return Thinned(objective, 100, 24); }
+
+// So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
+Objective Few(const Objective& objective) { return Thinned(objective, 16, 72); }
+
+// Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
+// read may be anything.
+FactorModel GoOn(const Objective& objective, const FactorModel& start,
+                 const std::function<bool()>& stop, const Reduction* reduction = nullptr) {
   constexpr int kSteps = 2;
-  PhaseSeconds phases;
-  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
-                       reduction ? JointStepper::Trial::kAsItIs : JointStepper::Trial::kProjected,
-                       &phases, reduction);
-  stepper.Restart(start);
-  for (int k = 0; k < kSteps && !stepper.exhausted() && !stop(); ++k) stepper.Step();
-  return stepper.current();
+  return JointSteps(objective, start, kSteps, stop, reduction).model;
 }
 
-// Joint steps on few samples.
-FactorModel Fit(const Objective& objective, const FactorModel& start,
-                const std::function<bool()>& stop) {
-  constexpr StartRace::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
-  constexpr int kSteps = 12;
-  StartRace race(objective, kThinned, stop);
-  race.Enter("", [&start] { return std::optional(start); }, {.count = 0});
-  race.Advance(kSteps);
-  return race.leader() != nullptr ? *race.leader() : start;
-}
+// Objectives of the same samples for other specs and weightings; what it takes to prepare the
+// samples is made once for a weighting and stretches.
+class Objectives {
+ public:
+  explicit Objectives(const Objective& own) : made_({own}) {}
+
+  Objective For(const ModelSpec& spec, const Weighting& weighting) {
+    const auto alike = std::ranges::find_if(made_, [&](const Objective& other) {
+      return other.weighting().name == weighting.name &&
+             other.spec().stretches.distinct() == spec.stretches.distinct();
+    });
+    if (alike != made_.end()) return {*alike, spec};
+    const Objective& own = made_.front();
+    made_.push_back(weighting.name == own.weighting().name
+                        ? Objective(own, spec)
+                        : Objective(own.samples(), spec, weighting, own.num_threads()));
+    return made_.back();
+  }
+
+ private:
+  std::vector<Objective> made_;
+};
 
 // What the default solver makes of few samples from its own starts.
-FactorModel FitAnew(const Objective& objective, const FactorModel& start,
+FactorModel FitAnew(const Objective& some, const FactorModel& start,
                     const std::function<bool()>& stop) {
   FactorModel model = start;
   SolverOptions options;
   options.diagnose = false;
   options.on_iteration = [&stop](const IterationRecord&, const FactorModel&) { return !stop(); };
-  MakeSolver("auto")->Solve(Thinned(objective), options, &model);
+  MakeSolver("auto")->Solve(some, options, &model);
   return model;
+}
+
+// Whether the data rather have a form that shares less: a stretch may look like one.
+bool SharesLess(const Objective& few, const FactorModel& fitted, double E_stretched,
+                const std::function<bool()>& stop) {
+  constexpr int kSteps = 5;
+  for (const Form& form : FormsFrom({"", fitted, few.weighting()})) {
+    const Objective of(few, form.start.spec());
+    if (JointSteps(of, form.start, kSteps, stop).E < E_stretched) return true;
+  }
+  return false;
 }
 
 // The last observed entry of each G; that of the table where data go on to its end.
@@ -172,8 +197,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options) {
   if (options.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
   ChosenModel best;
-  // What is not wild has at least this beyond the data.
-  double beyond = -std::numeric_limits<double>::infinity();
+  double beyond = 0;  // the data, the score of the fit
   Stopwatch stopwatch;
   const auto judge = [&](const std::string& name, const FactorModel& model,
                          const TableLayout& layout, double E) {
@@ -195,31 +219,30 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     if (last.num_parameters > options.max_parameters) return;
     if (best.chosen >= 0 && !(last.score > best.candidates[best.chosen].score)) return;
     if (options.judge_beyond && best.chosen >= 0) {
-      last.wild = !(options.judge_beyond(model) >= beyond);
+      constexpr double kMayLose = 1, kOfGain = 0.5;  // [dB]
+      const double gain = last.score - best.candidates.front().score;
+      last.wild = !(beyond - options.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
       if (last.wild) return;
     }
     best.chosen = static_cast<int>(best.candidates.size()) - 1;
     best.model = model;
     best.layout = layout;
   };
-  // Of all samples; what it takes to prepare them is made once for a stretch and a weighting.
-  std::vector<Objective> prepared = {objective};
-  const auto on_all = [&](const ModelSpec& spec, const Weighting& weighting) -> Objective {
-    const auto alike = std::ranges::find_if(prepared, [&](const Objective& other) {
-      return other.spec().stretch == spec.stretch && other.weighting().name == weighting.name;
-    });
-    if (alike != prepared.end()) return {*alike, spec};
-    prepared.push_back(
-        weighting.name == objective.weighting().name
-            ? Objective(objective, spec)
-            : Objective(objective.samples(), spec, weighting, objective.num_threads()));
-    return prepared.back();
-  };
-  // E, as it is quoted, is of the objective that was asked for.
+  // Forms are fitted to some samples; only what is thinned of them, to all.
+  Objectives all(objective), some(Some(objective)), few(Few(objective));
+  // E, as it is quoted, is of the objective that was asked for. All samples would have to be
+  // prepared for a stretch, which takes longer than to evaluate them once.
   const auto value_of = [&](const FactorModel& model) {
-    return on_all(model.spec(), objective.weighting()).Value(model);
+    if (!model.spec().stretches.any()) {
+      return all.For(model.spec(), objective.weighting()).Value(model);
+    }
+    const std::vector<Rgb> values =
+        EvaluateSamples(model, objective.samples(), objective.num_threads());
+    return ScoreValues(objective, values).objective;
   };
-  const auto thin = [&](const std::string& name, const Objective& of, const FactorModel& model) {
+  const auto thin = [&](const std::string& name, const Weighting& weighting,
+                        const FactorModel& model) {
+    const Objective of = all.For(model.spec(), weighting);
     const std::vector<int> last_live = LastLiveNodes(of);
     const auto continued = 2 * static_cast<int>(std::ranges::count_if(last_live, [&](int k) {
                              return k < of.spec().g_axis.size - 1;
@@ -229,21 +252,20 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     // Not where next to nothing would be left.
     const bool continues = continued > 0 && options.max_parameters > 4 * continued;
     prune.max_parameters = options.max_parameters - (continues ? continued : 0);
-    PrunedModel pruned = Prune(Thinned(of), model, prune);
+    PrunedModel pruned = Prune(some.For(model.spec(), weighting), model, prune);
     const Objective to(of, pruned.model.spec());
     const Reduction stored(to.spec(), pruned.layout);
-    pruned.model = OnAll(to, pruned.model, options.stop, &stored);
+    pruned.model = GoOn(to, pruned.model, options.stop, &stored);
     if (continues) ContinueShadowing(last_live, &pruned);
     judge(name + ", thinned", pruned.model, pruned.layout, value_of(pruned.model));
     choose(pruned.model, pruned.layout);
   };
 
-  const TableLayout all = TableLayout::Full(fitted.spec());
-  judge("as fitted", fitted, all, objective.Value(fitted));
-  constexpr double kMayLose = 1;  // [dB]
-  if (options.judge_beyond) beyond = options.judge_beyond(fitted) - kMayLose;
-  choose(fitted, all);
-  if (best.chosen < 0) thin("as fitted", objective, fitted);
+  const TableLayout full = TableLayout::Full(fitted.spec());
+  judge("as fitted", fitted, full, objective.Value(fitted));
+  if (options.judge_beyond) beyond = options.judge_beyond(fitted);
+  choose(fitted, full);
+  if (best.chosen < 0) thin("as fitted", objective.weighting(), fitted);
   if (best.chosen < 0) {
     // One parameter a table is still too much: lobes and colours have to go, and no form that
     // shares less has a chance.
@@ -257,65 +279,76 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     return best;
   }
   struct Fitted {
-    std::string name;
-    Objective objective;  // that it was fitted to
-    FactorModel model;
+    Form form;  // with the fitted model as its start
     double score;
   };
   std::vector<Fitted> forms;
-  const auto fit = [&](const Form& form) {
+  const auto fit = [&](Form form) {
     if (options.stop()) return;
     const ModelSpec& spec = form.start.spec();
-    Objective of = on_all(spec, form.weighting);
-    const FactorModel start =
-        form.anew ? FitAnew(of, form.start, options.stop) : Fit(of, form.start, options.stop);
-    FactorModel model = OnAll(of, start, options.stop);
-    const double score = judge(form.name, model, TableLayout::Full(spec), value_of(model));
-    forms.push_back({form.name, std::move(of), std::move(model), score});
+    constexpr int kStepsOnFew = 12;
+    const Objective of_few = few.For(spec, form.weighting);
+    form.start = JointSteps(of_few, form.start, kStepsOnFew, options.stop).model;
+    form.start = GoOn(some.For(spec, form.weighting), form.start, options.stop);
+    const double E = value_of(form.start);
+    const double score = judge(form.name, form.start, TableLayout::Full(spec), E);
+    forms.push_back({std::move(form), score});
   };
   // The form that the others go on from: that of the first two which looks best.
   Form base{"", fitted, objective.weighting()};
   double base_score = best.candidates[best.chosen].score;
-  const auto go_on_from = [&](Form form) {
+  const auto go_on_from_last = [&] {
+    base = forms.back().form;
     base_score = forms.back().score;
-    form.start = forms.back().model;
-    form.anew = false;
-    base = std::move(form);
   };
-  Form next = base;
-  if (fitted.spec().lobes > 0 && !fitted.spec().anisotropic() && !fitted.spec().stretch.any()) {
-    next = {"stretched", FitStretch(objective, fitted, options.stop), base.weighting};
-    fit(next);
+  bool stretched = false;
+  if (fitted.spec().lobes > 0 && !fitted.spec().anisotropic() && !fitted.spec().stretches.any()) {
+    const Objective of = few.For(fitted.spec(), base.weighting);
+    const SteppedModel start = FitStretches(of, fitted, options.stop);
+    fit({"stretched", start.model, base.weighting});
     if (options.stop()) return best;
     // Under other weights it may look better even where it does not under these.
-    if (!(best.candidates.back().E < (1 - kWorthwhile) * best.candidates.front().E)) {
-      next = base;
-    } else if (forms.back().score > base_score) {
-      go_on_from(next);
-    }
+    stretched = best.candidates.back().E < (1 - kWorthwhile) * best.candidates.front().E &&
+                !SharesLess(of, fitted, start.E, options.stop);
+    if (stretched && forms.back().score > base_score) go_on_from_last();
   }
-  if (next.weighting.name == "appearance" && IsSaturated(objective.samples())) {
-    next.name += next.name.empty() ? "weighed by channel" : ", weighed by channel";
-    next.weighting = FindWeighting("appearance_channel");
-    next.anew = true;
-    fit(next);
+  if (objective.weighting().name == "appearance" && IsSaturated(objective.samples())) {
+    const Weighting by_channel = FindWeighting("appearance_channel");
+    if (stretched) {
+      fit({"stretched, weighed by channel", forms.back().form.start, by_channel});
+      if (options.stop()) return best;
+      if (forms.back().score > base_score) go_on_from_last();
+    }
+    // From starts of its own, since it ends in another minimum.
+    Form form{"weighed by channel anew",
+              FitAnew(some.For(fitted.spec(), by_channel), fitted, options.stop), by_channel};
+    if (stretched) {
+      const Objective of = few.For(fitted.spec(), by_channel);
+      form = {"stretched, weighed by channel anew",
+              FitStretches(of, form.start, options.stop).model, by_channel};
+    }
+    fit(form);
     if (options.stop()) return best;
-    if (forms.back().score > base_score) go_on_from(next);
+    if (forms.back().score > base_score) go_on_from_last();
   }
   for (const Form& form : FormsFrom(base)) fit(form);
   if (options.stop()) return best;
   // What follows takes time, and changes little of what a form has gained: only the best ones.
   std::ranges::stable_sort(forms, std::greater(), &Fitted::score);
-  for (Fitted& form : forms) {
-    if (options.stop() || form.score <= best.candidates[best.chosen].score) break;
-    TieEntriesAtDataEdge(form.objective, &form.model);
-    const TableLayout layout = TableLayout::Full(form.model.spec());
-    if (layout.num_parameters(form.model.spec()) > options.max_parameters) {
-      thin(form.name, form.objective, form.model);
+  for (Fitted& fitted_form : forms) {
+    if (options.stop() || fitted_form.score <= best.candidates[best.chosen].score) break;
+    auto& [name, model, weighting] = fitted_form.form;
+    const TableLayout layout = TableLayout::Full(model.spec());
+    if (layout.num_parameters(model.spec()) > options.max_parameters) {
+      TieEntriesAtDataEdge(some.For(model.spec(), weighting), &model, options.stop);
+      thin(name, weighting, model);
     } else {
-      Canonicalize(form.objective.coverage(), &form.model);
-      judge(form.name + ", finished", form.model, layout, value_of(form.model));
-      choose(form.model, layout);
+      const Objective of = all.For(model.spec(), weighting);
+      model = GoOn(of, model, options.stop);
+      TieEntriesAtDataEdge(of, &model, options.stop);
+      Canonicalize(of.coverage(), &model);
+      judge(name + ", finished", model, layout, value_of(model));
+      choose(model, layout);
     }
   }
   return best;

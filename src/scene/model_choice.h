@@ -18,7 +18,8 @@ struct ModelChoiceOptions {
   std::function<double(const FactorModel&)> judge;
 
   // How good one is in directions that were not measured, if there are any. One that is more than
-  // 1 (dB) below the fitted model there runs wild where data end, and is not taken.
+  // 1 (dB) below the fitted model there, and more than half of what it gains where data are, runs
+  // wild where they end, and is not taken.
   std::function<double(const FactorModel&)> judge_beyond = nullptr;
 
   // Asked after each step; true to stop with the best so far that keeps to the budget.

@@ -73,13 +73,29 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
                   "they change no value");
 }
 
+// The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
+PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Pruning& pruning) {
+  PruneState best{};
+  while (!starts.empty()) {
+    const ModelSpec spec = starts.front().spec();
+    const auto others = std::ranges::stable_partition(
+        starts, [&](const FactorModel& start) { return start.spec() == spec; });
+    const std::vector<FactorModel> alike(starts.begin(), others.begin());
+    starts.erase(starts.begin(), others.begin());
+    PruneState to{.objective = pruning.ObjectiveFor(spec), .model = {}, .layout = {}};
+    FittedModel fitted = FitFrom(alike, *to.objective, wanted, pruning.options().stop);
+    to.model = std::move(fitted.model);
+    to.E = fitted.E;
+    if (best.objective == nullptr || to.E < best.E) best = std::move(to);
+  }
+  return best;
+}
+
 // Tries the next number of lobes; true if it was taken.
 bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pruning) {
   const PruneState& state = pruning->state();
-  const ModelSpec& spec = starts.front().spec();
-  PruneState to{.objective = pruning->ObjectiveFor(spec), .model = {}, .layout = {}};
-  FittedModel fitted = FitFrom(starts, *to.objective, wanted, pruning->options().stop);
-  to.model = std::move(fitted.model);
+  PruneState to = FitLobes(starts, wanted, *pruning);
+  const int lobes = to.model.spec().lobes;
   NormalizeScale(to.objective->coverage(), &to.model);
   to.layout =
       NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
@@ -87,8 +103,8 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
   to.E = to.objective->Value(to.model);
   if (pruning->options().stop()) return false;
   const bool within = to.E <= wanted && pruning->Keeps(to);
-  const bool taken = spec.lobes > state.lobes() ? to.E < state.E : within;
-  const std::string what = LobesText(spec.lobes) + " instead of " + LobesText(state.lobes());
+  const bool taken = lobes > state.lobes() ? to.E < state.E : within;
+  const std::string what = LobesText(lobes) + " instead of " + LobesText(state.lobes());
   const std::string why = pruning->Against(to.E, within);
   return pruning->Decide(what, std::move(to), taken, why);
 }

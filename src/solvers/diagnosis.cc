@@ -89,7 +89,7 @@ int UndeterminedByThetaD(const Objective& objective) {
   const FoldedSamples* const samples = objective.folded_samples();
   const ModelSpec& spec = objective.spec();
   if (samples == nullptr) return 0;  // every bin of F has its own samples
-  const FoldedSamples::OfReading& F = samples->of(Reading::kF);
+  const FoldedSamples::OfReading& F = samples->readings[samples->order.F()];
   const int bins = spec.table_size(Factor::kF);
   const double eps = std::numeric_limits<double>::epsilon();
   int undetermined = 0;

@@ -7,54 +7,13 @@
 
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/triangle.h"
+#include "trilobe/objective/sample_derivatives.h"
 #include "trilobe/sums/grid/joint_rows.h"
 #include "trilobe/sums/grid/joint_shadowing.h"
 #include "trilobe/sums/sample_equations.h"
 
 namespace trilobe {
 namespace {
-
-// d rho / dx of one sample and channel: which parameters, and by how much.
-class SampleDerivatives {
- public:
-  explicit SampleDerivatives(int num_parameters) : values_(num_parameters, 0.0) {}
-
-  void Set(const FactorModel& model, const SampleStencils& at, int c) {
-    for (const int k : touched_) values_[k] = 0;
-    touched_.clear();
-    Add(c, 1);
-    const ModelSpec& spec = model.spec();
-    for (int m = 0; m < spec.lobes; ++m) {
-      const double s = model.s(m)[c], D = at.D(model.D(m, c)), F = at.F(model.F(m, c));
-      const double G_i = at.G_i(model.G(m, c)), G_o = at.G_o(model.G(m, c));
-      const double K = G_i * G_o * at.inverse_cosines;
-      Add(kChannels * (1 + m) + c, D * F * K);
-      const auto add_table = [&](Factor factor, const Stencil& stencil, double scale) {
-        const int offset = model.TableOffset(factor, spec.table(factor, m, c));
-        for (int k = 0; k < stencil.size; ++k) {
-          Add(offset + stencil.index[k], stencil.weight[k] * scale);
-        }
-      };
-      add_table(Factor::kD, at.D, s * F * K);
-      add_table(Factor::kF, at.F, s * D * K);
-      add_table(Factor::kG, at.G_i, s * D * F * G_o * at.inverse_cosines);
-      add_table(Factor::kG, at.G_o, s * D * F * G_i * at.inverse_cosines);
-    }
-  }
-
-  // Each once.
-  std::span<const int> touched() const { return touched_; }
-  double operator[](int k) const { return values_[k]; }
-
- private:
-  void Add(int k, double value) {
-    if (std::ranges::find(touched_, k) == touched_.end()) touched_.push_back(k);
-    values_[k] += value;
-  }
-
-  std::vector<double> values_;
-  std::vector<int> touched_;
-};
 
 // H += scale d2 rho / dx2 for one sample and channel: rho is linear in each of s, D, F and in the
 // two readings of G, so only products of two different ones have any.
@@ -77,7 +36,7 @@ void AddSecondDerivatives(const FactorModel& model, const SampleStencils& at, in
     one.index[0] = 0;
     one.weight[0] = 1;
     const Reading readings[] = {{kChannels * (1 + m) + c, one, model.s(m)[c]},
-                                reading(Factor::kD, at.D),
+                                reading(Factor::kD, at.DOf(spec.stretches.index(m))),
                                 reading(Factor::kF, at.F),
                                 reading(Factor::kG, at.G_i),
                                 reading(Factor::kG, at.G_o)};

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
+#include <utility>
 
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/triangle.h"
@@ -11,7 +11,39 @@
 namespace trilobe {
 namespace {
 
-constexpr Kind kKinds[] = {Kind::kAmplitudes, Kind::kD, Kind::kF, Kind::kG};
+// Rows of a kind, or of the tables of D that are read by one stretch, but for where their sums lie.
+SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch, int first_parameter) {
+  const ModelSpec& spec = reader.spec();
+  const FactorModel model(spec);
+  SampleRows rows;
+  rows.kind = kind;
+  if (kind == Kind::kAmplitudes) {
+    rows.entries = kChannels;
+    rows.lanes = reader.amplitude_lanes();
+    for (int a = 0; a <= spec.lobes; ++a) rows.table.push_back(a);
+    rows.lane = rows.table;
+  } else {
+    const Factor factor = FactorOf(kind);
+    rows.by_cell = factor != Factor::kG;
+    rows.entries = spec.table_size(factor);
+    rows.lanes = reader.lanes(factor).size;
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      if (factor == Factor::kD && spec.StretchOfTable(t) != stretch) continue;
+      rows.table.push_back(t);
+      rows.lane.push_back(reader.lanes(factor).of_table[t]);
+    }
+  }
+  rows.tables = static_cast<int>(rows.table.size());
+  for (int entry = 0; entry < rows.entries; ++entry) {
+    for (const int t : rows.table) {
+      const int parameter = kind != Kind::kAmplitudes ? model.TableOffset(FactorOf(kind), t) + entry
+                            : t == spec.lobes         ? entry
+                                                      : kChannels * (1 + t) + entry;
+      rows.parameter.push_back(parameter - first_parameter);
+    }
+  }
+  return rows;
+}
 
 }  // namespace
 
@@ -20,48 +52,34 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
     : reader_(samples, spec),
       num_threads_(num_threads),
       accumulators_(NumAccumulators(samples.size())) {
-  const FactorModel model(spec);
-  int first = 0;  // parameter of the kind
-  for (const Kind kind : kKinds) {
-    SampleRows& rows = layout_.rows[static_cast<int>(kind)];
-    const bool amplitudes = kind == Kind::kAmplitudes;
-    const Factor factor = amplitudes ? Factor::kD : FactorOf(kind);
+  int begin = 0;  // parameter of the only kind
+  if (only && *only != Kind::kAmplitudes) begin = FactorModel(spec).TableOffset(FactorOf(*only), 0);
+  const auto add = [&](Kind kind, int stretch) {
+    SampleRows rows = RowsOf(reader_, kind, stretch, begin);
     rows.wanted = !only || *only == kind;
-    rows.by_cell = kind == Kind::kD || kind == Kind::kF;
-    rows.entries = amplitudes ? kChannels : spec.table_size(factor);
-    rows.tables = amplitudes ? 1 + spec.lobes : spec.num_tables(factor);
-    rows.lanes = amplitudes ? reader_.amplitude_lanes() : reader_.lanes(factor).size;
-    if (amplitudes) {
-      rows.lane.resize(rows.tables);
-      std::iota(rows.lane.begin(), rows.lane.end(), 0);
-    } else {
-      rows.lane = reader_.lanes(factor).of_table;
-    }
-    const int begin = only == kind ? first : 0;
-    for (int entry = 0; entry < rows.entries; ++entry) {
-      for (int t = 0; t < rows.tables; ++t) {
-        const int parameter = !amplitudes       ? model.TableOffset(factor, t) + entry
-                              : t == spec.lobes ? entry
-                                                : kChannels * (1 + t) + entry;
-        rows.parameter.push_back(parameter - begin);
-      }
-    }
-    const int size = static_cast<int>(rows.parameter.size());
-    first += size;
+    layout_.rows.push_back(std::move(rows));
+  };
+  add(Kind::kAmplitudes, 0);
+  for (int k = 0; k < samples.order.of_D; ++k) add(Kind::kD, k);
+  add(Kind::kF, 0);
+  add(Kind::kG, 0);
+  const SampleRows& amplitudes = layout_.amplitudes();
+  for (SampleRows& rows : layout_.rows) {
     if (!rows.wanted) continue;
-    num_parameters_ += size;
-    const SampleRows& first_rows = layout_.of(Kind::kAmplitudes);
+    num_parameters_ += static_cast<int>(rows.parameter.size());
     rows.own_lines = SampleRows::kFirstAmplitude +
-                     (first_rows.wanted ? first_rows.entries * first_rows.tables : 0);
+                     (amplitudes.wanted ? amplitudes.entries * amplitudes.tables : 0);
     rows.own = layout_.size;
     layout_.size += rows.entries * rows.own_size();
-    for (int k = 1; k <= static_cast<int>(kind); ++k) {
-      const SampleRows& of = layout_.rows[k];
-      if (!of.wanted) continue;
-      rows.blocks[k] = layout_.size;
-      layout_.size += &of == &rows && rows.by_cell
-                          ? rows.InCell(static_cast<int>(samples.cells_of(factor).size()), 0)
-                          : static_cast<size_t>(of.entries) * rows.entries * of.tables * rows.lanes;
+    for (const SampleRows& of : layout_.rows) {
+      rows.blocks.push_back(layout_.size);
+      if (of.wanted && of.kind != Kind::kAmplitudes) {
+        layout_.size +=
+            &of == &rows && rows.by_cell
+                ? rows.InCell(static_cast<int>(samples.cells_of(FactorOf(rows.kind)).size()), 0)
+                : static_cast<size_t>(of.entries) * rows.entries * of.tables * rows.lanes;
+      }
+      if (&of == &rows) break;
     }
   }
 }
@@ -91,28 +109,26 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   result->gradient.assign(n, 0.0);
   result->squared_lengths.assign(n, 0.0);
   result->H.assign(n * n, 0.0);
-  for (const Kind kind : kKinds) {
-    const SampleRows& rows = layout_.of(kind);
+  for (const SampleRows& rows : layout_.rows) {
     if (!rows.wanted) continue;
     // Entries by threes of tables fill lines of the cache.
     constexpr int kEntries = 8;
     ParallelFor((rows.entries + kEntries - 1) / kEntries, num_threads_, [&](int chunk) {
       const int begin = chunk * kEntries, end = std::min(begin + kEntries, rows.entries);
-      for (int entry = begin; entry < end; ++entry) GatherOwn(kind, entry, result);
-      GatherBlocks(kind, begin, end, result);
+      for (int entry = begin; entry < end; ++entry) GatherOwn(rows, entry, result);
+      GatherBlocks(rows, begin, end, result);
     });
-    if (rows.by_cell) GatherCells(kind, result);
-    GatherSquaredLengths(kind, hessian, result);
+    if (rows.by_cell) GatherCells(rows, result);
+    GatherSquaredLengths(rows, hessian, result);
   }
   MirrorTriangle(Triangle::kLower, n, result->H.data());
 }
 
 // The gradient, and products with amplitudes. A product of two parameters of one kind is in one
 // place or the other, or half in both.
-void SampleEquations::GatherOwn(Kind kind, int entry, QuadraticModel* result) const {
+void SampleEquations::GatherOwn(const SampleRows& rows, int entry, QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
-  const SampleRows& rows = layout_.of(kind);
-  const SampleRows& amplitudes = layout_.of(Kind::kAmplitudes);
+  const SampleRows& amplitudes = layout_.amplitudes();
   const double* const sums = accumulators_[0].data();
   for (int t = 0; t < rows.tables; ++t) {
     const size_t p = rows.parameter[entry * rows.tables + t];
@@ -122,7 +138,7 @@ void SampleEquations::GatherOwn(Kind kind, int entry, QuadraticModel* result) co
     for (size_t i = 0; i < amplitudes.parameter.size() && amplitudes.wanted; ++i) {
       to[amplitudes.parameter[i]] = own[(SampleRows::kFirstAmplitude + i) * rows.lanes];
     }
-    if (kind != Kind::kAmplitudes) continue;
+    if (rows.kind != Kind::kAmplitudes) continue;
     for (int u = 0; u < rows.tables; ++u) {
       const size_t line = SampleRows::kFirstAmplitude + entry * rows.tables + t;
       to[rows.parameter[entry * rows.tables + u]] +=
@@ -131,12 +147,11 @@ void SampleEquations::GatherOwn(Kind kind, int entry, QuadraticModel* result) co
   }
 }
 
-// Products of all pairs of entries, for these of the kind.
-void SampleEquations::GatherBlocks(Kind kind, int first_entry, int last_entry,
+// Products of all pairs of entries, for these of the rows.
+void SampleEquations::GatherBlocks(const SampleRows& rows, int first_entry, int last_entry,
                                    QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
-  const SampleRows& rows = layout_.of(kind);
-  for (int k = 1; k <= static_cast<int>(kind); ++k) {
+  for (size_t k = 1; k < rows.blocks.size(); ++k) {
     const SampleRows& of = layout_.rows[k];
     const bool own = &of == &rows;
     if (!of.wanted || (own && rows.by_cell)) continue;
@@ -152,11 +167,18 @@ void SampleEquations::GatherBlocks(Kind kind, int first_entry, int last_entry,
         const double* const mirrored = own ? at(entry, e) : nullptr;
         for (int t = 0; t < rows.tables; ++t) {
           const int lane = rows.lane[t];
-          double* const to = &result->H[rows.parameter[entry * rows.tables + t] * n];
+          const auto p = static_cast<size_t>(rows.parameter[entry * rows.tables + t]);
           for (int u = 0; u < of.tables; ++u) {
             double value = from[u * rows.lanes + lane];
             if (own) value += mirrored[t * rows.lanes + rows.lane[u]];
-            to[columns[u]] = value;
+            const auto q = static_cast<size_t>(columns[u]);
+            // Tables of D that are read by different stretches are in any order. Within G the
+            // other triangle has the same.
+            if (own || q < p) {
+              result->H[p * n + q] = value;
+            } else {
+              result->H[q * n + p] = value;
+            }
           }
         }
       }
@@ -165,12 +187,11 @@ void SampleEquations::GatherBlocks(Kind kind, int first_entry, int last_entry,
 }
 
 // Those within a kind, cell by cell.
-void SampleEquations::GatherCells(Kind kind, QuadraticModel* result) const {
+void SampleEquations::GatherCells(const SampleRows& rows, QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
-  const SampleRows& rows = layout_.of(kind);
-  const double* const blocks = accumulators_[0].data() + rows.blocks[static_cast<int>(kind)];
+  const double* const blocks = accumulators_[0].data() + rows.blocks.back();
   const int block = rows.tables * rows.lanes;
-  const std::vector<Cell>& cells = reader_.samples().cells_of(FactorOf(kind));
+  const std::vector<Cell>& cells = reader_.samples().cells_of(FactorOf(rows.kind));
   for (size_t number = 0; number < cells.size(); ++number) {
     const Cell& cell = cells[number];
     const auto at = [&](int k, int l) {
@@ -192,9 +213,8 @@ void SampleEquations::GatherCells(Kind kind, QuadraticModel* result) const {
   }
 }
 
-void SampleEquations::GatherSquaredLengths(Kind kind, Hessian hessian,
+void SampleEquations::GatherSquaredLengths(const SampleRows& rows, Hessian hessian,
                                            QuadraticModel* result) const {
-  const SampleRows& rows = layout_.of(kind);
   const double* const own = accumulators_[0].data() + rows.own;
   for (int entry = 0; entry < rows.entries; ++entry) {
     for (int t = 0; t < rows.tables; ++t) {

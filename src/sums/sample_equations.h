@@ -23,10 +23,11 @@ class SampleEquations {
   void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:
-  void GatherOwn(Kind kind, int entry, QuadraticModel* result) const;
-  void GatherBlocks(Kind kind, int first_entry, int last_entry, QuadraticModel* result) const;
-  void GatherCells(Kind kind, QuadraticModel* result) const;
-  void GatherSquaredLengths(Kind kind, Hessian hessian, QuadraticModel* result) const;
+  void GatherOwn(const SampleRows& rows, int entry, QuadraticModel* result) const;
+  void GatherBlocks(const SampleRows& rows, int first_entry, int last_entry,
+                    QuadraticModel* result) const;
+  void GatherCells(const SampleRows& rows, QuadraticModel* result) const;
+  void GatherSquaredLengths(const SampleRows& rows, Hessian hessian, QuadraticModel* result) const;
 
   SampleReader reader_;
   const int num_threads_;

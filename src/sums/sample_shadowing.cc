@@ -191,8 +191,8 @@ void SampleShadowing::Read(const FactorModel& model) {
       for (size_t t = 0; t < tables_.size(); ++t) {
         const int lane = lanes.of_table[t];
         OfTable& of = tables_[t];
-        copy(&batch.reading[static_cast<int>(Reading::kGi)][lane], lanes.size, &of.G_i);
-        copy(&batch.reading[static_cast<int>(Reading::kGo)][lane], lanes.size, &of.G_o);
+        copy(&batch.G_i[lane], lanes.size, &of.G_i);
+        copy(&batch.G_o[lane], lanes.size, &of.G_o);
         const int first = reader_.spec().channels(Factor::kG, static_cast<int>(t)).begin;
         for (size_t c = 0; c < of.a.size(); ++c) {
           copy(&batch.shadow[(first + c) * lanes.size + lane], kChannels * lanes.size, &of.a[c]);
@@ -219,13 +219,13 @@ void SampleShadowing::UpdateTable(int t, const std::function<void(const FactorMo
                                   FactorModel* model) {
   OfTable& of_table = tables_[t];
   const auto stretch = [&](const Readers& of) {
-    const auto weight = [&](Reading reading, int k) {
-      return k < 0 ? nullptr : samples_.of(reading).weight[k].data() + of.begin;
+    const auto weight = [&](int reading, int k) {
+      return k < 0 ? nullptr : samples_.readings[reading].weight[k].data() + of.begin;
     };
     return SampleRange{.size = of.end - of.begin,
                        .A = &A_[of.begin],
-                       .weight_i = weight(Reading::kGi, of.i),
-                       .weight_o = weight(Reading::kGo, of.o),
+                       .weight_i = weight(samples_.order.G_i(), of.i),
+                       .weight_o = weight(samples_.order.G_o(), of.o),
                        .b = &b_[of.begin],
                        .G_i = &of_table.G_i[of.begin],
                        .G_o = &of_table.G_o[of.begin]};

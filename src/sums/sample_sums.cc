@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "trilobe/base/multiversion.h"
 
@@ -12,19 +14,23 @@ constexpr int kMaxLanes = kChannels * PaddedToVectors(kMaxLobes);
 constexpr int kMaxOwnLines = SampleRows::kFirstAmplitude + kChannels * (1 + kMaxLobes);
 constexpr int kMaxTables = kChannels * kMaxLobes;
 
-// A table as a column: its lane, and the channels that it serves.
-struct Column {
-  int lane;
-  ModelSpec::ChannelRange channels;
+// The tables that a reading reads, as columns of products: in what order, the lane of each, and the
+// channels that it serves.
+struct Columns {
+  struct Column {
+    int lane;
+    ModelSpec::ChannelRange channels;
+  };
+  std::vector<Column> of;
+  std::vector<int> place;  // by the number of the table; -1 where another stretch reads it
 };
 
 // What is the same for all samples.
 struct SumJob {
   const SampleReader* reader;
   const SampleLayout* layout;
-  std::array<std::vector<Column>, 3> columns;  // of D, F and G
-  bool one_kind;
-  std::array<bool, kNumReadings> needed;  // a reading, for rows or columns
+  ReadingOrder order;
+  std::vector<Columns> columns;  // [order.count()]
   double* sums;
 };
 
@@ -71,13 +77,15 @@ TRILOBE_ALWAYS_INLINE int LaneOf(const TableLanes& lanes, int m, int c) {
 
 // w (rho - rho*) d2 rho / (d a d b) for readings a and b of one sample, -1 being s: what is left of
 // s D F G_i G_o / (cos cos) without the two.
-TRILOBE_ALWAYS_INLINE double SecondDerivative(const SampleReader& reader, const double* s,
-                                              const Slopes* of, int a, int b, int m, int c,
-                                              double scale) {
-  double value = a < 0 || b < 0 ? scale : scale * s[c * reader.lobe_lanes() + m];
-  for (int r = 0; r < kNumReadings; ++r) {
+TRILOBE_ALWAYS_INLINE double SecondDerivative(const SumJob& job, const Slopes* of, int a, int b,
+                                              int m, int c, double scale) {
+  const SampleReader& reader = *job.reader;
+  double value = a < 0 || b < 0 ? scale : scale * reader.s()[c * reader.lobe_lanes() + m];
+  const auto is_D = [&](int r) { return r >= 0 && r < job.order.F(); };
+  if (!is_D(a) && !is_D(b)) value *= of[0].reading[LaneOf(reader.lanes(Factor::kD), m, c)];
+  for (int r = job.order.F(); r < job.order.count(); ++r) {
     if (r == a || r == b) continue;
-    value *= of[r].reading[LaneOf(reader.lanes(FactorOf(kReadings[r])), m, c)];
+    value *= of[r].reading[LaneOf(reader.lanes(job.order.factor(r)), m, c)];
   }
   return value;
 }
@@ -128,12 +136,12 @@ struct Sample {
   const double* residual;  // [kChannels]
   double w_residual[kChannels];
   const double* amplitude;  // [kChannels][amplitude lanes]
-  Slopes of[kNumReadings];
+  Slopes of[ReadingOrder::kMost];
 };
 
 // d and s of each channel, which move nothing in another one.
 TRILOBE_ALWAYS_INLINE void AddAmplitudes(const SumJob& job, const Sample& at, bool newton) {
-  const SampleRows& rows = job.layout->of(Kind::kAmplitudes);
+  const SampleRows& rows = job.layout->amplitudes();
   const FoldedSamples& samples = job.reader->samples();
   for (int c = 0; c < kChannels; ++c) {
     double* const own = job.sums + rows.own + c * rows.own_size();
@@ -155,12 +163,12 @@ template <bool kOneVector, bool kNewton>
 TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   const SampleReader& reader = *job.reader;
   const ModelSpec& spec = reader.spec();
-  const SampleRows& rows = job.layout->of(KindOf(FactorOf(kReadings[r])));
-  const SampleRows& amplitudes = job.layout->of(Kind::kAmplitudes);
+  const SampleRows& rows = job.layout->of(r);
+  const SampleRows& amplitudes = job.layout->amplitudes();
   const int lanes = Lanes<kOneVector>(rows.lanes);
-  const TableLanes& row_lanes = reader.lanes(FactorOf(kReadings[r]));
+  const TableLanes& row_lanes = reader.lanes(job.order.factor(r));
   const Slopes& own = at->of[r];
-  const int first_own = std::min(r, 2);  // reading of the same table
+  const int first_own = std::min(r, job.order.G_i());  // reading of the same table
   const double inverse_cosines = reader.samples().inverse_cosines[at->j];
 
   alignas(sizeof(Lanes8)) double lines[kMaxOwnLines * kMaxLanes];
@@ -171,12 +179,12 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   }
   Combine<kOneVector>({0, kChannels}, at->residual, 1, own.w_slope, lanes, to);
   to += lanes;
-  for (int c = 0; c < kChannels && !job.one_kind; ++c) {
+  for (int c = 0; c < kChannels && amplitudes.wanted; ++c) {
     for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
       Combine<kOneVector>({c, c + 1}, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
       if (kNewton && a < spec.lobes) {
-        to[LaneOf(row_lanes, a, c)] += SecondDerivative(reader, reader.s(), at->of, -1, r, a, c,
-                                                        at->w_residual[c] * inverse_cosines);
+        to[LaneOf(row_lanes, a, c)] +=
+            SecondDerivative(job, at->of, -1, r, a, c, at->w_residual[c] * inverse_cosines);
       }
     }
   }
@@ -186,26 +194,31 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   AddToEntries(lines, static_cast<int>(to - lines), 1, own, entry, own_size, of_entry);
 
   alignas(sizeof(Lanes8)) double products[kMaxTables * kMaxLanes];  // [tables][lanes]
-  for (int q = job.one_kind ? first_own : 0; q <= r; ++q) {
+  for (int q = 0; q <= r; ++q) {
+    if (!job.layout->of(q).wanted) continue;
     const Slopes& of = at->of[q];
-    const Factor factor = FactorOf(kReadings[q]);
+    const Columns& columns = job.columns[q];
+    const Factor factor = job.order.factor(q);
     const int of_lanes = Lanes<kOneVector>(reader.lanes(factor).size);
     to = products;
-    for (const Column& column : job.columns[static_cast<int>(factor)]) {
+    for (const Columns::Column& column : columns.of) {
       Combine<kOneVector>(column.channels, of.slope + column.lane, of_lanes, own.w_slope, lanes,
                           to);
       to += lanes;
     }
-    if (kNewton && q != r) {
+    // Stretches of D are those of different lobes, whose readings are not multiplied.
+    if (kNewton && q != r && r >= job.order.F()) {
       for (int c = 0; c < kChannels; ++c) {
         for (int m = 0; m < spec.lobes; ++m) {
-          products[spec.table(factor, m, c) * lanes + LaneOf(row_lanes, m, c)] += SecondDerivative(
-              reader, reader.s(), at->of, q, r, m, c, at->w_residual[c] * inverse_cosines);
+          const int place = columns.place[spec.table(factor, m, c)];
+          if (place < 0) continue;
+          products[place * lanes + LaneOf(row_lanes, m, c)] +=
+              SecondDerivative(job, at->of, q, r, m, c, at->w_residual[c] * inverse_cosines);
         }
       }
     }
     const int size = static_cast<int>(to - products);
-    double* const blocks = job.sums + rows.blocks[static_cast<int>(KindOf(factor))];
+    double* const blocks = job.sums + rows.blocks[job.layout->RowsOf(q)];
     const bool by_cell = q == r && rows.by_cell;
     constexpr int kInCell[] = {0, 1, 2, 3};
     static_assert(std::size(kInCell) == Stencil::kMaxSize);
@@ -244,6 +257,7 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
                                       const SampleReader::Batch& batch, Sample* at) {
   const SampleReader& reader = *job.reader;
   const FoldedSamples& samples = reader.samples();
+  const ReadingOrder& order = job.order;
   const int G_lanes = Lanes<kOneVector>(reader.lanes(Factor::kG).size);
   double objective = 0;
   alignas(sizeof(Lanes8)) double G_slope[2][kChannels * kMaxLanes];
@@ -258,36 +272,39 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
       at->w_residual[c] = w[c] * at->residual[c];
       objective += at->w_residual[c] * at->residual[c];
     }
-    for (int r = 0; r < kNumReadings; ++r) {
-      if (!job.needed[r]) continue;
+    for (int r = 0; r < order.count(); ++r) {
+      if (!job.layout->of(r).wanted) continue;
       const FoldedSamples::OfReading& readings = samples.readings[r];
-      const Factor factor = FactorOf(kReadings[r]);
+      const Factor factor = order.factor(r);
       const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
       Slopes& of = at->of[r];
       of.cell_number = readings.cell[j];
       of.cell = &samples.cells_of(factor)[of.cell_number];
       for (int k = 0; k < of.cell->size; ++k) of.weight[k] = readings.weight[k][j];
-      of.reading = batch.reading[r].data() + n * lanes;
-      if (r < 2) {
-        of.slope = (r == 0 ? batch.D_slope : batch.F_slope).data() + n * kChannels * lanes;
+      if (factor != Factor::kG) {
+        const bool is_D = factor == Factor::kD;
+        of.reading = (is_D ? batch.D : batch.F).data() + n * lanes;
+        of.slope = (is_D ? batch.D_slope : batch.F_slope).data() + n * kChannels * lanes;
       } else {
         // d rho / d G of one direction has G of the other.
-        const double* const other = batch.reading[5 - r].data() + n * G_lanes;
+        const bool is_i = r == order.G_i();
+        const double* const other = (is_i ? batch.G_o : batch.G_i).data() + n * G_lanes;
         const double* const shadow = batch.shadow.data() + n * kChannels * G_lanes;
+        double* const slope = G_slope[is_i ? 0 : 1];
         for (int c = 0; c < kChannels; ++c) {
-          for (int b = 0; b < G_lanes; ++b) {
-            G_slope[r - 2][c * G_lanes + b] = shadow[c * G_lanes + b] * other[b];
-          }
+          for (int b = 0; b < G_lanes; ++b)
+            slope[c * G_lanes + b] = shadow[c * G_lanes + b] * other[b];
         }
-        of.slope = G_slope[r - 2];
+        of.reading = (is_i ? batch.G_i : batch.G_o).data() + n * G_lanes;
+        of.slope = slope;
       }
       for (int c = 0; c < kChannels; ++c) {
         for (int b = 0; b < lanes; ++b) of.w_slope[c * lanes + b] = w[c] * of.slope[c * lanes + b];
       }
     }
-    if (job.layout->of(Kind::kAmplitudes).wanted) AddAmplitudes(job, *at, kNewton);
-    for (int r = 0; r < kNumReadings; ++r) {
-      const SampleRows& rows = job.layout->of(KindOf(FactorOf(kReadings[r])));
+    if (job.layout->amplitudes().wanted) AddAmplitudes(job, *at, kNewton);
+    for (int r = 0; r < order.count(); ++r) {
+      const SampleRows& rows = job.layout->of(r);
       if (rows.wanted && rows.tables > 0) AddReading<kOneVector, kNewton>(job, r, at);
     }
   }
@@ -318,21 +335,19 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
   SumJob job{};
   job.reader = &reader;
   job.layout = &layout;
+  job.order = reader.samples().order;
   job.sums = &sums[0];
-  int wanted = 0;
-  for (const SampleRows& rows : layout.rows) wanted += rows.wanted ? 1 : 0;
-  job.one_kind = wanted == 1;
-  for (int r = 0; r < kNumReadings; ++r) {
-    job.needed[r] = layout.of(KindOf(FactorOf(kReadings[r]))).wanted;
-  }
   bool one_vector = true;
-  for (const Factor factor : kFactors) {
-    const TableLanes& lanes = reader.lanes(factor);
-    one_vector = one_vector && lanes.size == kVector;
-    for (int t = 0; t < reader.spec().num_tables(factor); ++t) {
-      job.columns[static_cast<int>(factor)].push_back(
-          {lanes.of_table[t], reader.spec().channels(factor, t)});
+  for (int r = 0; r < job.order.count(); ++r) {
+    const Factor factor = job.order.factor(r);
+    one_vector = one_vector && reader.lanes(factor).size == kVector;
+    const SampleRows& rows = layout.of(r);
+    Columns columns{{}, std::vector<int>(reader.spec().num_tables(factor), -1)};
+    for (int k = 0; k < rows.tables; ++k) {
+      columns.place[rows.table[k]] = k;
+      columns.of.push_back({rows.lane[k], reader.spec().channels(factor, rows.table[k])});
     }
+    job.columns.push_back(std::move(columns));
   }
   const AddBatchFunction add_batch = hessian == Hessian::kNewton ? AddNewton
                                      : one_vector                ? AddGaussNewtonOfOneVector

@@ -344,6 +344,8 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--stretch=1"}, "--stretch=1 is no stretch; give ALONG,ACROSS"},
       {{"--stretch=1,x"}, "--stretch=1,x is no stretch"},
       {{"--stretch=0,2.5"}, "it must be from -2 to 2"},
+      {{"--stretch=0,1,0.5"}, "--stretch=0,1,0.5 is no stretch"},
+      {{"--stretch=0,1,0.5,1"}, "stretches of 2 lobes, but 3 lobes"},
       {{"--probe=missing"}, "missing"},
       {{"--init=x"}, "known: "},
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/base/error.h"
 
 namespace trilobe {
 namespace {
@@ -63,6 +64,41 @@ TEST(Thinned, IsAPartOfTheSamplesInTheirOrder) {
       }
     }
   }
+}
+
+// Places that few samples read keep more of them, and each counts for those that it stands for.
+TEST(ThinnedByPlace, KeepsWhatIsRareAndCountsItRight) {
+  const BrdfSamples all = ValidSamples(RandomTable(kLong, 3, /*lost=*/0));
+  for (const bool scattered : {false, true}) {
+    const BrdfSamples samples = scattered ? Scattered(all) : all;
+    constexpr int kStride = 8, kLeast = 20;
+    const BrdfSamples thinned = ThinnedByPlace(samples, kStride, kLeast);
+    EXPECT_LT(thinned.size(), samples.size() / 2);
+    const auto by_theta_h = [&](const BrdfSamples& of) {
+      std::vector<int> counts(kLong.theta_h, 0);
+      for (int j = 0; j < of.size(); ++j) {
+        const double h = kLong.ThetaHCoordinate(of.Angles(j).theta_h);
+        ++counts[std::clamp(static_cast<int>(h), 0, kLong.theta_h - 1)];
+      }
+      return counts;
+    };
+    const std::vector<int> before = by_theta_h(samples), after = by_theta_h(thinned);
+    for (int h = 0; h < kLong.theta_h; ++h) {
+      EXPECT_GE(after[h], std::min(before[h], kLeast) / 2) << h;
+    }
+    double count = 0;
+    for (int j = 0; j < thinned.size(); ++j) {
+      const double multiplicity = thinned.Multiplicity(j);
+      EXPECT_TRUE(multiplicity >= 1 && multiplicity <= kStride) << multiplicity;
+      count += multiplicity;
+    }
+    EXPECT_NEAR(count, samples.size(), 0.05 * samples.size());
+  }
+  const BrdfSamples same = ThinnedByPlace(all, 1, 1);
+  EXPECT_EQ(same.bins, all.bins);
+  EXPECT_EQ(ThinnedByPlace(all, 100, all.size()).bins, all.bins);  // all are rare
+  EXPECT_THROW(ThinnedByPlace(all, 0, 1), Error);
+  EXPECT_THROW(ThinnedByPlace(all, 1, 0), Error);
 }
 
 TEST(Thinned, KeepsMirroredPairsTogether) {

@@ -373,7 +373,7 @@ TEST(ModelFile, RefusesAnisotropicTablesThatHaveOtherNodes) {
 
 TEST(ModelFile, KeepsAStretch) {
   ModelSpec spec = ModelSpec::SharedFactors(2);
-  spec.stretch = {.along = -0.35, .across = 0.15};
+  spec.stretches = Stretch{.along = -0.35, .across = 0.15};
   const ModelFile file = RandomModel(spec);
   const json document = json::parse(FormatModel(file));
   EXPECT_EQ(document["version"], 2);  // readers of version 1 would evaluate it wrongly
@@ -382,12 +382,26 @@ TEST(ModelFile, KeepsAStretch) {
   const json plain = json::parse(FormatModel(RandomModel(ModelSpec::SharedFactors(2))));
   EXPECT_FALSE(plain.contains("stretch"));
 
+  spec.stretches = Stretches({{.along = -0.35, .across = 0.15}, {.along = 1, .across = 0}});
+  const ModelFile each = RandomModel(spec);
+  const json list = json::parse(FormatModel(each));
+  EXPECT_EQ(list["stretch"],
+            (json{{{"along", -0.35}, {"across", 0.15}}, {{"along", 1.0}, {"across", 0.0}}}));
+  const ModelFile read = ParseModel(FormatModel(each), "model.json");
+  EXPECT_EQ(read.model.spec(), spec);
+  EXPECT_TRUE(SameBits(read.model, each.model));
+
   const auto error_of = [&](const json& stretch) {
     json changed = document;
     changed["stretch"] = stretch;
     return ErrorOfText(changed.dump());
   };
-  EXPECT_THAT(error_of("wide"), HasSubstr("key 'stretch' must be an object"));
+  EXPECT_THAT(error_of("wide"),
+              HasSubstr("key 'stretch' must be an object, or a list of one a lobe"));
+  EXPECT_THAT(error_of(json::array({{{"along", 0}, {"across", 0}}})),
+              HasSubstr("key 'stretch' must have 2 entries, not 1"));
+  EXPECT_THAT(error_of(json::array({{{"along", 0}, {"across", 0}}, {{"along", 3}}})),
+              HasSubstr("key 'stretch[1].along' must be from -2 to 2, not 3"));
   EXPECT_THAT(error_of({{"along", 0}}), HasSubstr("key 'stretch.across' is missing"));
   EXPECT_THAT(error_of({{"along", -2.5}, {"across", 0}}),
               HasSubstr("key 'stretch.along' must be from -2 to 2, not -2.5"));

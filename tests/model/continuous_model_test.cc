@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tests/test_util.h"
 
@@ -20,6 +21,15 @@ HalfDiffAngles RandomAngles(Random* random) {
     const Cosines cosines = ToCosines(angles);
     if (cosines.i > 1e-3 && cosines.o > 1e-3) return angles;
   }
+}
+
+// How each stretch of the lobes reads D.
+std::vector<Stencil> ReadingsOfD(const ModelSpec& spec, const SampleStencils& at) {
+  std::vector<Stencil> D;
+  for (size_t k = 0; k < spec.stretches.distinct().size(); ++k) {
+    D.push_back(at.DOf(static_cast<int>(k)));
+  }
+  return D;
 }
 
 void ExpectNear(const Rgb& rho, const FactorModel& model, const SampleStencils& stencils,
@@ -40,7 +50,8 @@ TEST(ContinuousModelTest, EqualsTheStencilsInAnyDirections) {
       const Cosines cosines = ToCosines(angles);
       const SampleStencils stencils = ScatteredStencils(spec, angles);
       ExpectNear(continuous(angles, cosines), model, stencils, name);
-      ExpectNear(continuous(stencils.D, stencils.F, cosines), model, stencils, name);
+      ExpectNear(continuous(ReadingsOfD(spec, stencils), stencils.F, cosines), model, stencils,
+                 name);
     }
   }
 }
@@ -54,12 +65,11 @@ TEST(ContinuousModelTest, EqualsTheStencilsAtBinCentres) {
       if (!above[bin]) continue;
       const SampleStencils at = GridStencils(spec, kGrid, bin);
       const Cosines cosines = ToCosines(kGrid.Center(bin));
-      ExpectNear(continuous(at.D, at.F, cosines), model, at, name);
-      if (spec.stretch.any()) continue;
+      ExpectNear(continuous(ReadingsOfD(spec, at), at.F, cosines), model, at, name);
+      if (spec.stretches.any()) continue;
       const int row = bin / kGrid.phi_d;
-      ExpectNear(
-          continuous(PointStencil(row / kGrid.theta_d), PointStencil(row % kGrid.theta_d), cosines),
-          model, at, name);
+      const Stencil D = PointStencil(row / kGrid.theta_d);
+      ExpectNear(continuous({&D, 1}, PointStencil(row % kGrid.theta_d), cosines), model, at, name);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,10 @@ TEST(SplitLobe, GivesTheNewLobeTheFlanks) {
     const int added = model.spec().lobes;
     ModelSpec expected = model.spec();
     expected.lobes = added + 1;
+    std::vector<int> lobes(added);
+    std::iota(lobes.begin(), lobes.end(), 0);
+    lobes.push_back(lobe);
+    expected.stretches = expected.stretches.Of(lobes);
     ASSERT_EQ(split.spec(), expected) << what;
     for (int c = 0; c < kChannels; ++c) {
       const auto before = model.D(lobe, c);

@@ -3,15 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/directions.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {
@@ -63,7 +66,7 @@ TEST(Stretch, ZeroAndOneIsALobeAboutTheMirrorDirection) {
 
 TEST(Stretch, ExchangedDirectionsReadTheSame) {
   ModelSpec spec = ModelSpec::SharedFactors(2);
-  spec.stretch = {.along = -0.6, .across = 0.4};
+  spec.stretches = Stretch{.along = -0.6, .across = 0.4};
   const FactorModel model = RandomModel(spec, 1);
   Random random(1);
   for (int k = 0; k < 100; ++k) {
@@ -82,6 +85,52 @@ TEST(Stretch, ExchangedDirectionsReadTheSame) {
   }
 }
 
+TEST(Stretches, LobesThatAreStretchedAlikeShareAReading) {
+  constexpr Stretch kA{.along = 0.5, .across = 0}, kB{.along = 0, .across = -0.25};
+  EXPECT_FALSE(Stretches().any());
+  EXPECT_EQ(Stretches(), Stretches(Stretch()));
+  EXPECT_EQ(Stretches(std::vector<Stretch>()), Stretches());
+  EXPECT_EQ(Stretches(std::vector{kA, kA, kA}), Stretches(kA));
+  EXPECT_FALSE(Stretches(kA).several());
+  EXPECT_EQ(Stretches(kA).of(5), kA);
+
+  const Stretches stretches(std::vector{kA, kB, kA});
+  EXPECT_TRUE(stretches.any());
+  EXPECT_TRUE(stretches.several());
+  EXPECT_EQ(stretches.distinct(), (std::vector{kA, kB}));
+  EXPECT_EQ(stretches.index(0), 0);
+  EXPECT_EQ(stretches.index(1), 1);
+  EXPECT_EQ(stretches.index(2), 0);
+  EXPECT_EQ(stretches.of(1), kB);
+  EXPECT_EQ(stretches.Of({1, 0}), Stretches(std::vector{kB, kA}));
+  EXPECT_EQ(stretches.Of({0, 2}), Stretches(kA));
+  EXPECT_EQ(stretches.Of({}), Stretches());
+  EXPECT_TRUE(Stretches(std::vector{Stretch(), kB}).any());  // the first is none
+}
+
+// Each lobe by itself is what a model with its stretch alone makes of it.
+TEST(Stretches, EachLobeHasItsOwn) {
+  constexpr Stretch kA{.along = 0.5, .across = -0.2}, kB{.along = -0.3, .across = 0.8};
+  ModelSpec spec = ModelSpec::SharedFactors(2);
+  spec.stretches = Stretches(std::vector{kA, kB});
+  const FactorModel model = RandomModel(spec, 3);
+  Random random(4);
+  for (int k = 0; k < 50; ++k) {
+    const HalfDiffAngles angles{random.Uniform(0, 0.7), random.Uniform(0, 0.7),
+                                random.Uniform(0, kPi)};
+    const DirectionPair pair = ToDirections(angles);
+    const Rgb rho = Evaluate(model, pair);
+    Rgb sum{-model.d()[0], -model.d()[1], -model.d()[2]};  // is in both
+    for (int m = 0; m < 2; ++m) {
+      FactorModel alone = WithStretches(model, spec.stretches.of(m));
+      std::ranges::fill(alone.s(1 - m), 0.0);
+      const Rgb of_lobe = Evaluate(alone, pair);
+      for (int c = 0; c < kChannels; ++c) sum[c] += of_lobe[c];
+    }
+    for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(sum[c], rho[c], 1e-12 * rho[c]);
+  }
+}
+
 TEST(Stretch, BadOnesAreRefused) {
   const auto error_of = [](const ModelSpec& spec) -> std::string {
     try {
@@ -94,13 +143,20 @@ TEST(Stretch, BadOnesAreRefused) {
   ModelSpec spec = ModelSpec::SharedFactors(1);
   for (const double bad : {2.1, -3.0, std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity()}) {
-    spec.stretch = {.along = 0, .across = bad};
+    spec.stretches = Stretch{.along = 0, .across = bad};
     EXPECT_THAT(error_of(spec), testing::HasSubstr("must be from -2 to 2")) << bad;
   }
-  spec.stretch = {.along = -2, .across = 2};
+  spec.stretches = Stretch{.along = -2, .across = 2};
   EXPECT_EQ(error_of(spec), "");
+  spec = ModelSpec::SharedFactors(3);
+  spec.stretches = Stretches({{.along = 0.1}, {.along = 0.2}});
+  EXPECT_THAT(error_of(spec), testing::HasSubstr("stretches of 2 lobes, but 3 lobes"));
+  spec.lobes = 2;
+  EXPECT_EQ(error_of(spec), "");
+  spec.D.per_lobe = false;
+  EXPECT_THAT(error_of(spec), testing::HasSubstr("lobes that share D must be stretched alike"));
   spec = ModelSpec::Anisotropic(1);
-  spec.stretch.along = 0.1;
+  spec.stretches = Stretch{.along = 0.1};
   EXPECT_THAT(error_of(spec), testing::HasSubstr("a stretch of highlights wants an isotropic"));
 }
 

@@ -388,7 +388,7 @@ TEST(PowerWeighting, IsTheSameOnTheFoldedGrid) {
     for (const char* const weighting :
          {"log_relative", "power:both_cosines=1,solid_angle=1,relative=1"}) {
       const Objective objective(samples, spec, FindWeighting(weighting));
-      ASSERT_EQ(objective.folded() != nullptr, !spec.stretch.any());
+      ASSERT_EQ(objective.folded() != nullptr, !spec.stretches.any());
       const FactorModel model = RandomModel(spec, 8);
       const auto expected = static_cast<double>(ExactObjective(objective, model));
       EXPECT_NEAR(objective.Value(model), expected, 1e-12 * expected) << name << weighting;

@@ -43,9 +43,11 @@ std::vector<BrdfSamples> OnGridAndBetween() {
 }
 
 SampleStencils Magnitudes(SampleStencils at) {
-  for (Stencil* const stencil : {&at.D, &at.F, &at.G_i, &at.G_o}) {
+  const auto make_positive = [](Stencil* stencil) {
     for (double& weight : stencil->weight) weight = std::abs(weight);
-  }
+  };
+  for (Stencil* const stencil : {&at.D, &at.F, &at.G_i, &at.G_o}) make_positive(stencil);
+  for (Stencil& D : at.more_D) make_positive(&D);
   return at;
 }
 

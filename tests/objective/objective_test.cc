@@ -28,7 +28,7 @@ TEST(Objective, ValueIsTheSumOverAllSamples) {
     for (const auto& [name, spec] : TestSpecs(grid)) {
       for (const Weighting& weighting : Weightings()) {
         const Objective objective = MakeObjective(table, spec, weighting.name);
-        ASSERT_EQ(objective.folded() != nullptr, !spec.stretch.any());
+        ASSERT_EQ(objective.folded() != nullptr, !spec.stretches.any());
         const FactorModel model = RandomModel(spec, 2);
         const long double expected = ExactObjective(objective, model);
         ExpectRelative(objective.Value(model), expected, 1e-12, name + ", " + weighting.name);
@@ -102,7 +102,7 @@ TEST(Objective, IsTheSameMadeFromOneOfAnotherSpec) {
     return made.folded() == first.folded();
   };
   for (const auto& [name, spec] : TestSpecs(kOdd)) {
-    EXPECT_EQ(expect_same(spec, name), !spec.stretch.any()) << name;
+    EXPECT_EQ(expect_same(spec, name), !spec.stretches.any()) << name;
   }
   ModelSpec finer = first.spec();
   finer.g_axis.size += 3;
@@ -152,19 +152,25 @@ std::vector<double> BruteForceCoverage(const Objective& objective) {
       const double w = sample.weight[c];
       coverage.d()[c] += w;
       for (int m = 0; m < spec.lobes; ++m) coverage.s(m)[c] += w;
-      const auto add = [&](Factor factor, const Stencil& stencil) {
+      // Each table once, by the first lobe that it serves.
+      const auto add = [&](Factor factor, const auto& stencil_of) {
         for (int t = 0; t < spec.num_tables(factor); ++t) {
           bool serves = false;
-          for (int m = 0; m < spec.lobes; ++m) serves = serves || spec.serves(factor, t, m, c);
+          Stencil stencil;
+          for (int m = spec.lobes - 1; m >= 0; --m) {
+            if (!spec.serves(factor, t, m, c)) continue;
+            serves = true;
+            stencil = stencil_of(m);
+          }
           for (int k = 0; serves && k < stencil.size; ++k) {
             coverage.table(factor, t)[stencil.index[k]] += w * std::abs(stencil.weight[k]);
           }
         }
       };
-      add(Factor::kD, at.D);
-      add(Factor::kF, at.F);
-      add(Factor::kG, at.G_i);
-      add(Factor::kG, at.G_o);
+      add(Factor::kD, [&](int m) { return at.DOf(spec.stretches.index(m)); });
+      add(Factor::kF, [&](int) { return at.F; });
+      add(Factor::kG, [&](int) { return at.G_i; });
+      add(Factor::kG, [&](int) { return at.G_o; });
     }
   }
   return {coverage.parameters().begin(), coverage.parameters().end()};
@@ -185,7 +191,7 @@ TEST(Objective, CoverageCountsTheWeightOfTheReaders) {
             << name << ", parameter " << k;
       }
       // A stretched D is read in the place of its neighbours, too.
-      if (!scattered && spec.lobes > 0 && !spec.stretch.any()) {
+      if (!scattered && spec.lobes > 0 && !spec.stretches.any()) {
         const int unobserved = FactorModel(spec).TableOffset(Factor::kD, 0) + 3;
         EXPECT_EQ(objective.coverage()[unobserved], 0);
       }

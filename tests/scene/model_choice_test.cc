@@ -123,7 +123,8 @@ void ExpectConsistent(const Fit& fit, const ChosenModel& result, int max_paramet
   EXPECT_LE(chosen.num_parameters, max_parameters);
   CheckLayout(result.layout, result.model.spec());
   EXPECT_EQ(chosen.num_parameters, result.layout.num_parameters(result.model.spec()));
-  EXPECT_EQ(chosen.E, Objective(fit.objective, result.model.spec()).Value(result.model));
+  EXPECT_NEAR(chosen.E, Objective(fit.objective, result.model.spec()).Value(result.model),
+              1e-11 * chosen.E);
   // The model is what its stored parameters say.
   FactorModel expanded = result.model;
   ExpandStored(result.layout, &expanded);
@@ -230,6 +231,29 @@ TEST(ModelChoice, FinishesWhatItDoesNotThin) {
     while (objective.coverage()[result.model.TableOffset(Factor::kG, t) + last] == 0) --last;
     ASSERT_LT(last, spec.g_axis.size - 1);
     EXPECT_EQ(G[last], G[last - 1]) << t;
+  }
+}
+
+// What looks better may look a little worse where no data are, or half as much as it gains.
+TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
+  const Fit fit = MakeFit();
+  struct Case {
+    double gain, loss;
+    bool wild;
+  };
+  for (const auto& [gain, loss, wild] :
+       {Case{1, 0.9, false}, Case{1, 1.1, true}, Case{6, 2.9, false}, Case{6, 3.1, true}}) {
+    const ModelChoiceOptions options = {
+        .max_parameters = kPlenty,
+        .judge = [gain = gain](
+                     const FactorModel& model) { return model.spec().D.per_channel ? gain : 0.0; },
+        .judge_beyond =
+            [loss = loss](const FactorModel& model) {
+              return model.spec().D.per_channel ? 20 - loss : 20.0;
+            }};
+    const ChosenModel result = ChooseModel(fit.objective, fit.model, options);
+    EXPECT_EQ(result.candidates.back().wild, wild) << gain << " dB more, " << loss << " less";
+    EXPECT_EQ(result.model.spec().D.per_channel, !wild);
   }
 }
 

@@ -52,7 +52,7 @@ TEST(Invariance, PowersOfTwoScaleDAndSExactly) {
             // Slow: one start and scale will do.
             const bool slow = !UpdatesElements(solver);
             if (slow && (init.name != "random" || scale > 1)) continue;
-            if (solver.name == "awls_gss" && spec.stretch.any()) continue;  // refused
+            if (solver.name == "awls_gss" && spec.stretches.any()) continue;  // refused
             const std::string what = named.name + ", " + weighting.name + ", " + init.name + ", " +
                                      solver.name + ", x " + std::to_string(scale);
             FactorModel model = init.make(objective, 1);
@@ -133,7 +133,7 @@ TEST(Invariance, UnobservedBinsStayAsTheyWere) {
     EXPECT_EQ(std::ranges::count(unobserved, true) > 0, spec.lobes > 0);
     const FactorModel start = RandomModel(spec, 3);
     for (const SolverEntry& solver : kLibrarySolvers) {
-      if (solver.name == "awls_gss" && spec.stretch.any()) continue;  // refused
+      if (solver.name == "awls_gss" && spec.stretches.any()) continue;  // refused
       for (const double sigma : {0.0, 1.0}) {
         FactorModel model = start;
         SolverOptions options = Sweeps(3);

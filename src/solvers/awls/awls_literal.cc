@@ -20,7 +20,7 @@ struct LobeTerms {
   double s, D, F, G_i, G_o, inverse_cosines;
   LobeTerms(const FactorModel& model, const SampleStencils& at, int m, int c)
       : s(model.s(m)[c]),
-        D(at.D(model.D(m, c))),
+        D(at.DOf(model.spec().stretches.index(m))(model.D(m, c))),
         F(at.F(model.F(m, c))),
         G_i(at.G_i(model.G(m, c))),
         G_o(at.G_o(model.G(m, c))),
@@ -35,8 +35,8 @@ Response TableResponse(const FactorModel& model, const SampleStencils& at, Facto
     if (!model.spec().serves(factor, t, m, c)) continue;
     const LobeTerms lobe(model, at, m, c);
     if (factor == Factor::kD) {
-      response.p1 +=
-          at.D.WeightOf(k) * lobe.s * lobe.F * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
+      const Stencil& D = at.DOf(model.spec().stretches.index(m));
+      response.p1 += D.WeightOf(k) * lobe.s * lobe.F * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
     } else if (factor == Factor::kF) {
       response.p1 +=
           at.F.WeightOf(k) * lobe.s * lobe.D * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
@@ -70,7 +70,10 @@ SampleLists SamplesByEntry(const std::vector<WeightedSample>& samples, const Mod
       }
     };
     const SampleStencils& at = samples[j].stencils;
-    if (factor == Factor::kD) add(at.D);
+    if (factor == Factor::kD) {
+      add(at.D);
+      for (const Stencil& D : at.more_D) add(D);
+    }
     if (factor == Factor::kF) add(at.F);
     if (factor == Factor::kG) {
       add(at.G_i);

@@ -156,6 +156,17 @@ double JointStepper::Optimality() {
   return ScaledProjectedGradient(at_, y_);
 }
 
+SteppedModel JointSteps(const Objective& objective, const FactorModel& start, int steps,
+                        const std::function<bool()>& stop, const Reduction* reduction) {
+  PhaseSeconds phases;
+  JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
+                       reduction ? JointStepper::Trial::kAsItIs : JointStepper::Trial::kProjected,
+                       &phases, reduction);
+  stepper.Restart(start);
+  for (int k = 0; k < steps && !stepper.exhausted() && !stop(); ++k) stepper.Step();
+  return {stepper.current(), stepper.E()};
+}
+
 void RepeatJointSteps(JointStepper* stepper, Run* run) {
   for (bool go_on = !run->stopped(); go_on;) {
     Run::Step step{.accepted = stepper->Step()};

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
 #define TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -88,6 +89,16 @@ class JointStepper {
   double growth_ = 2;      // of lambda when the next step is rejected
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
+
+// The point after so many steps of curvature kByProgress from this one, and E there; after fewer
+// where no damping leads lower, and once `stop` is true. Trials are projected, unless there is a
+// reduction.
+struct SteppedModel {
+  FactorModel model;
+  double E;
+};
+SteppedModel JointSteps(const Objective& objective, const FactorModel& start, int steps,
+                        const std::function<bool()>& stop, const Reduction* reduction = nullptr);
 
 // The metric S of the damping of steps in parameters that make up these parts, from the squared
 // lengths of the columns of J. 0 where that is 0.

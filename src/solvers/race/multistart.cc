@@ -29,7 +29,9 @@ constexpr StartRace::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride
 FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
                  const std::function<bool()>& stop) {
   constexpr int kTries = 5;
+  const Stretches& stretches = objective.spec().stretches;
   ModelSpec spec = objective.spec();
+  spec.stretches = stretches.of(0);  // of all, as long as there are fewer lobes
   FactorModel model;
   for (int lobes = 1; lobes < objective.spec().lobes; ++lobes) {
     spec.lobes = lobes;
@@ -42,7 +44,7 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
     NormalizeScale(smaller.coverage(), &model);
     model = SplitLobe(model, StrongestLobe(model));
   }
-  return model;
+  return WithStretches(model, stretches);
 }
 
 // The race's starts, in the order in which they enter: the given one first.

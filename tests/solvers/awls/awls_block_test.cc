@@ -46,7 +46,7 @@ std::vector<std::vector<int>> Blocks(const FactorModel& model) {
 
 TEST(CellBlocks, StandWhereNoOtherPlaceIsBetter) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
-    if (spec.stretch.any()) continue;  // D is not constant in a cell then
+    if (spec.stretches.any()) continue;  // D is not constant in a cell then
     const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
     FactorModel model = RandomModel(spec, 2);
     CellSums sums(*objective.folded(), spec);
@@ -82,7 +82,7 @@ TEST(CellBlocks, StandWhereNoOtherPlaceIsBetter) {
 // b is carried along from block to block: after all of them it is what a pass over the data gives.
 TEST(CellBlocks, KeepTheSums) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
-    if (spec.stretch.any()) continue;  // D is not constant in a cell then
+    if (spec.stretches.any()) continue;  // D is not constant in a cell then
     const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
     FactorModel model = RandomModel(spec, 2);
     CellSums sums(*objective.folded(), spec), fresh(*objective.folded(), spec);

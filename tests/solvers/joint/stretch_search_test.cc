@@ -1,4 +1,4 @@
-#include "trilobe/solvers/race/stretch_search.h"
+#include "trilobe/solvers/joint/stretch_search.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/lobes.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
@@ -18,7 +19,7 @@ constexpr MerlGrid kGrid{.theta_h = 20, .theta_d = 15, .phi_d = 30};
 // A glossy lobe over a diffuse term, with highlights that widen by this.
 FactorModel Glossy(const Stretch& stretch) {
   ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
-  spec.stretch = stretch;
+  spec.stretches = stretch;
   FactorModel model(spec);
   std::ranges::fill(model.d(), 0.05);
   std::ranges::fill(model.s(0), 1.0);
@@ -42,37 +43,66 @@ FactorModel Fitted(const Objective& objective) {
   return model;
 }
 
-TEST(FitStretch, FindsTheOneThatTheDataHave) {
+TEST(FitStretches, FindsTheOneThatTheDataHave) {
   for (const Stretch& truth :
        {Stretch{.along = -0.3, .across = 0.4}, {.along = 0.5, .across = 0}}) {
     const Objective objective = MakeObjective(TableOf(Glossy(truth), kGrid),
                                               ModelSpec::SharedFactors(1, kGrid), "appearance");
     const FactorModel fitted = Fitted(objective);
-    const FactorModel found = FitStretch(objective, fitted, [] { return false; });
-    EXPECT_NEAR(found.spec().stretch.along, truth.along, 0.051);
-    EXPECT_NEAR(found.spec().stretch.across, truth.across, 0.051);
+    const FactorModel found = FitStretches(objective, fitted, [] { return false; }).model;
+    EXPECT_NEAR(found.spec().stretches.of(0).along, truth.along, 0.051);
+    EXPECT_NEAR(found.spec().stretches.of(0).across, truth.across, 0.051);
     EXPECT_LT(Objective(objective, found.spec()).Value(found), 0.05 * objective.Value(fitted));
   }
 }
 
-TEST(FitStretch, IsTheSameForAnyNumberOfThreads) {
+// Two lobes of different widths, each stretched by its own.
+TEST(FitStretches, FindsThoseOfTheLobes) {
+  ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Stretches truth({{.along = 0.4, .across = 0}, {.along = 0, .across = -0.4}});
+  spec.stretches = truth;
+  FactorModel model(spec);
+  const FactorModel one = Glossy({});
+  std::ranges::fill(model.d(), 0.05);
+  for (int m = 0; m < 2; ++m) {
+    std::ranges::fill(model.s(m), m == 0 ? 1.0 : 0.3);
+    for (int k = 0; k < spec.d_axis.size; ++k) {
+      model.table(Factor::kD, m)[k] =
+          3 * std::exp(-std::pow((k + 0.5) / (m == 0 ? 4 : 10), 2)) + 1e-3;
+    }
+    std::ranges::copy(one.table(Factor::kG, 0), model.table(Factor::kG, m).begin());
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    std::ranges::copy(one.table(Factor::kF, c), model.table(Factor::kF, c).begin());
+  }
+  const Objective objective =
+      MakeObjective(TableOf(model, kGrid), ModelSpec::SharedFactors(2, kGrid), "appearance");
+  const FactorModel start = WithStretches(model, Stretches());
+  const FactorModel found = FitStretches(objective, start, [] { return false; }).model;
+  for (int m = 0; m < 2; ++m) {
+    EXPECT_NEAR(found.spec().stretches.of(m).along, truth.of(m).along, 0.03) << m;
+    EXPECT_NEAR(found.spec().stretches.of(m).across, truth.of(m).across, 0.03) << m;
+  }
+}
+
+TEST(FitStretches, IsTheSameForAnyNumberOfThreads) {
   const auto found = [](int threads) {
     const Objective objective =
         MakeObjective(TableOf(Glossy({.along = 0.2, .across = -0.2}), kGrid),
                       ModelSpec::SharedFactors(1, kGrid), "appearance", threads);
-    return FitStretch(objective, Glossy({}), [] { return false; });
+    return FitStretches(objective, Glossy({}), [] { return false; }).model;
   };
   const FactorModel one = found(1), three = found(3);
   EXPECT_EQ(one.spec(), three.spec());
   EXPECT_TRUE(std::ranges::equal(one.parameters(), three.parameters()));
 }
 
-TEST(FitStretch, StoppedItLeavesWhatItHas) {
+TEST(FitStretches, StoppedItLeavesWhatItHas) {
   const Objective objective = MakeObjective(TableOf(Glossy({.along = 0.2, .across = 0.4}), kGrid),
                                             ModelSpec::SharedFactors(1, kGrid), "appearance");
   const FactorModel start = Glossy({});
-  const FactorModel found = FitStretch(objective, start, [] { return true; });
-  EXPECT_FALSE(found.spec().stretch.any());
+  const FactorModel found = FitStretches(objective, start, [] { return true; }).model;
+  EXPECT_FALSE(found.spec().stretches.any());
   EXPECT_TRUE(std::ranges::equal(found.parameters(), start.parameters()));
 }
 

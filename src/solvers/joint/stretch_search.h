@@ -1,0 +1,22 @@
+#ifndef TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
+#define TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
+
+#include <functional>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/solvers/joint/joint_step.h"
+
+namespace trilobe {
+
+// A model whose lobes are stretched, in whole hundredths, as steps of all exponents and parameters
+// (StretchStepper, JointSteps) lead to from `fitted`, an isotropic one, and E there. For few
+// samples, of which an objective is made anew at every step; its own spec does not matter. Lobes
+// that share D have one stretch together. Once `stop` is true the best so far is returned. The same
+// bits for any number of threads, as long as it stays false.
+SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
+                          const std::function<bool()>& stop);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
