@@ -39,6 +39,8 @@ class Model:
     """
 
     def __init__(self, content):
+        if "stretch" in content:
+            raise ValueError("stretch: lobes whose highlights are stretched are not compared")
         self.lobes = content["lobes"]
         self.d = numpy.array(content["d"], dtype=float)
         self.s = numpy.array(content["s"], dtype=float).reshape(self.lobes, CHANNELS)

@@ -74,11 +74,17 @@ def _numbers(model):
     return sum(map(_numbers, model)) if isinstance(model, list) else 1
 
 
+def _exponents(model):
+    """How many exponents say how the lobes' highlights are stretched."""
+    stretch = model.get("stretch", [])
+    return 2 * (len(stretch) if isinstance(stretch, list) else 1)
+
+
 def _of_fit(folder):
     """What a fit took and takes."""
     model = json.loads((folder / "model.json").read_text())
     return {"seconds": sum(Fit(folder).report["seconds"].values()),
-            "numbers": sum(_numbers(model[part]) for part in ("d", "s", "D", "F", "G"))}
+            "numbers": sum(_numbers(model[part]) for part in ("d", "s", "D", "F", "G")) + _exponents(model)}
 
 
 def _row(result, source, folder_of):

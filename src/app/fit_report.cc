@@ -255,11 +255,3 @@ void Print(const FitReport& report) {
 }
 
 }  // namespace trilobe
-#include <cmath>
-#include <iostream>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <variant>
-
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/app/bin_counts.h"

@@ -69,7 +69,7 @@ Axis ParseNodes(const char* flag, std::string_view text, bool with_root) {
   return axis;
 }
 
-Stretches StretchesFromFlags() {
+Stretches StretchesFromFlags(int lobes) {
   if (FLAGS_stretch.empty()) return {};
   std::vector<double> exponents;
   std::string_view rest = FLAGS_stretch;
@@ -87,6 +87,10 @@ Stretches StretchesFromFlags() {
   std::vector<Stretch> of_lobes;
   for (size_t k = 0; k < exponents.size(); k += 2) {
     of_lobes.push_back({.along = exponents[k], .across = exponents[k + 1]});
+  }
+  if (of_lobes.size() != 1 && static_cast<int>(of_lobes.size()) != lobes) {
+    throw Error("--stretch=" + FLAGS_stretch + " has " + std::to_string(of_lobes.size()) +
+                " pairs for " + std::to_string(lobes) + " lobes; give one, or one a lobe");
   }
   return Stretches(of_lobes);
 }
@@ -114,7 +118,7 @@ ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
   ModelSpec spec =
       independent ? ModelSpec::IndependentG(grid) : ModelSpec::SharedFactors(FLAGS_lobes, grid);
   if (g_nodes > 0) spec.g_axis.size = g_nodes;
-  spec.stretches = StretchesFromFlags();
+  spec.stretches = StretchesFromFlags(spec.lobes);
   CheckSpec(spec);
   return spec;
 }
@@ -140,7 +144,7 @@ ModelSpec SpecFromFlags(const Measurement& measurement) {
   const std::optional<HemisphereGrid> grid =
       measurement.anisotropic ? GridOf(measurement) : std::nullopt;
   if (anisotropic) {
-    if (StretchesFromFlags().any()) {
+    if (StretchesFromFlags(FLAGS_lobes).any()) {
       throw Error(measurement.source +
                   ": --stretch is for isotropic models, and this is to have an " +
                   "anisotropic one; --model=isotropic fits the other");

@@ -182,18 +182,20 @@ void CheckStride(int stride) {
               "; give a stride of 1 or more");
 }
 
-// A number of each sample, so that those whose number a stride divides are spread evenly.
-int Phase(const BrdfSamples& samples, int j, int stride) {
-  if (!samples.on_grid()) {
-    // Multiples of the golden ratio: evenly spread over any regular order of directions.
-    constexpr double kGolden = 0.6180339887498949;
-    const double place = j * kGolden;
-    return static_cast<int>((place - std::floor(place)) * stride);
-  }
+// A number of each sample on a grid, so that those whose number a stride divides are spread evenly;
+// of an exchanged pair the same. Primes, which have no common factor with a smaller stride, so that
+// neighbouring rows differ.
+int PhaseOnGrid(const BrdfSamples& samples, int j) {
   const MerlGrid& grid = samples.grid;
   const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
-  // Primes, which have no common factor with a smaller stride, so that neighbouring rows differ.
   return std::min(p, grid.phi_d - 1 - p) + 29 * (row / grid.theta_d) + 37 * (row % grid.theta_d);
+}
+
+// Fractions of the multiples of the golden ratio: evenly spread over any regular order.
+double GoldenFraction(int n) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double place = n * kGolden;
+  return place - std::floor(place);
 }
 
 }  // namespace
@@ -204,7 +206,9 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
   CheckGrid(samples.grid);
   std::vector<int> kept;
   for (int j = 0; j < samples.size(); ++j) {
-    if (Phase(samples, j, stride) % stride == 0) kept.push_back(j);
+    const int phase =
+        samples.on_grid() ? PhaseOnGrid(samples, j) : static_cast<int>(GoldenFraction(j) * stride);
+    if (phase % stride == 0) kept.push_back(j);
   }
   if (kept.empty() && samples.size() > 0) kept.push_back(0);
   return Selected(samples, kept);
@@ -245,9 +249,15 @@ BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {
     int fewest = samples.size();
     for (const int place : places[j]) fewest = std::min(fewest, counts[place]);
     const int own_stride = std::clamp(fewest / least, 1, stride);
-    if (Phase(samples, j, own_stride) % own_stride != 0) continue;
+    // Not by the remainders that Thinned goes by, which may thin what is left once more.
+    const int number = samples.on_grid() ? PhaseOnGrid(samples, j) : j;
+    if (GoldenFraction(number) * own_stride >= 1) continue;
     kept.push_back(j);
     strides.push_back(own_stride);
+  }
+  if (kept.empty() && samples.size() > 0) {
+    kept.push_back(0);
+    strides.push_back(samples.size());
   }
   BrdfSamples thinned = Selected(samples, kept);
   thinned.multiplicity.resize(kept.size(), 1);

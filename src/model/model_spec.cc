@@ -80,7 +80,9 @@ void CheckSameSpec(const ModelSpec& is, const ModelSpec& wanted) {
       tables += ", " + std::to_string(spec.num_tables(factor)) + " tables " + FactorName(factor) +
                 " of " + std::to_string(spec.table_size(factor));
     }
-    return std::to_string(spec.lobes) + " lobes" + tables;
+    return std::to_string(spec.lobes) + " lobes, stretched in " +
+           std::to_string(spec.stretches.any() ? spec.stretches.distinct().size() : 0) + " ways" +
+           tables;
   };
   throw Error("a model of another spec: it has " + text(is) + "; wanted are " + text(wanted) +
               ", shared alike");

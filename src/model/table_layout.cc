@@ -31,7 +31,7 @@ TableLayout TableLayout::Full(const ModelSpec& spec) {
 int TableLayout::num_parameters(const ModelSpec& spec) const {
   int parameters = (coloured_d ? kChannels : 1) + spec.lobes * (coloured_s ? kChannels : 1);
   if (spec.stretches.any() && spec.lobes > 0) {
-    parameters += 2 * static_cast<int>(spec.stretches.distinct().size());
+    parameters += 2 * (spec.stretches.several() ? spec.lobes : 1);
   }
   for (const auto& tables : nodes) {
     for (const std::vector<int>& table : tables) parameters += static_cast<int>(table.size());

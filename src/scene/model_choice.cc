@@ -85,8 +85,8 @@ std::vector<Form> FormsFrom(const Form& base) {
   return forms;
 }
 
-// So many samples for each parameter, more where an entry of a table would be read by few: it could
-// be anything, and for all samples the model would be far off.
+// So many samples for each parameter, more at angles that few have: an entry that is read by none
+// of those left could be anything, and for all samples the model would be far off.
 Objective Thinned(const Objective& objective, int samples_per_parameter, int max_stride) {
   constexpr int kLeast = 16;  // samples a place, as many times as there are for each parameter
   const int wanted = samples_per_parameter * objective.spec().num_parameters();
@@ -144,13 +144,21 @@ FactorModel FitAnew(const Objective& some, const FactorModel& start,
   return model;
 }
 
-// Whether the data rather have a form that shares less: a stretch may look like one.
-bool SharesLess(const Objective& few, const FactorModel& fitted, double E_stretched,
+// Whether the data rather have a form that shares less: a stretch may look like one. What more
+// parameters fit of few samples by chance is taken off.
+bool SharesLess(const Objective& few, const FactorModel& fitted, const SteppedModel& stretched,
                 const std::function<bool()>& stop) {
   constexpr int kSteps = 5;
+  const double values = kChannels * few.samples().size() / 2.0;  // exchanged ones say the same
+  const auto expected = [&](double E, const ModelSpec& spec) {
+    const double share = std::min(spec.num_parameters() / values, 0.9);
+    return E * (1 + share) / (1 - share);
+  };
   for (const Form& form : FormsFrom({"", fitted, few.weighting()})) {
-    const Objective of(few, form.start.spec());
-    if (JointSteps(of, form.start, kSteps, stop).E < E_stretched) return true;
+    const ModelSpec& spec = form.start.spec();
+    if (spec.lobes != fitted.spec().lobes) continue;
+    const double E = JointSteps(Objective(few, spec), form.start, kSteps, stop).E;
+    if (expected(E, spec) < expected(stretched.E, stretched.model.spec())) return true;
   }
   return false;
 }
@@ -283,8 +291,9 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     double score;
   };
   std::vector<Fitted> forms;
+  // False once it is to stop; then there is no such form.
   const auto fit = [&](Form form) {
-    if (options.stop()) return;
+    if (options.stop()) return false;
     const ModelSpec& spec = form.start.spec();
     constexpr int kStepsOnFew = 12;
     const Objective of_few = few.For(spec, form.weighting);
@@ -293,8 +302,9 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     const double E = value_of(form.start);
     const double score = judge(form.name, form.start, TableLayout::Full(spec), E);
     forms.push_back({std::move(form), score});
+    return true;
   };
-  // The form that the others go on from: that of the first two which looks best.
+  // The form that the others go on from: that of the first which looks best.
   Form base{"", fitted, objective.weighting()};
   double base_score = best.candidates[best.chosen].score;
   const auto go_on_from_last = [&] {
@@ -305,18 +315,20 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
   if (fitted.spec().lobes > 0 && !fitted.spec().anisotropic() && !fitted.spec().stretches.any()) {
     const Objective of = few.For(fitted.spec(), base.weighting);
     const SteppedModel start = FitStretches(of, fitted, options.stop);
-    fit({"stretched", start.model, base.weighting});
-    if (options.stop()) return best;
+    if (!fit({"stretched", start.model, base.weighting})) return best;
     // Under other weights it may look better even where it does not under these.
-    stretched = best.candidates.back().E < (1 - kWorthwhile) * best.candidates.front().E &&
-                !SharesLess(of, fitted, start.E, options.stop);
+    stretched = start.model.spec().stretches.any() &&
+                best.candidates.back().E < (1 - kWorthwhile) * best.candidates.front().E &&
+                !SharesLess(of, fitted, start, options.stop);
     if (stretched && forms.back().score > base_score) go_on_from_last();
   }
   if (objective.weighting().name == "appearance" && IsSaturated(objective.samples())) {
-    const Weighting by_channel = FindWeighting("appearance_channel");
+    // Selections keep the level of the whole.
+    const Weighting by_channel =
+        ForSamples(FindWeighting("appearance_channel"), objective.samples());
     if (stretched) {
-      fit({"stretched, weighed by channel", forms.back().form.start, by_channel});
-      if (options.stop()) return best;
+      const Form form{"stretched, weighed by channel", forms.back().form.start, by_channel};
+      if (!fit(form)) return best;
       if (forms.back().score > base_score) go_on_from_last();
     }
     // From starts of its own, since it ends in another minimum.
@@ -327,11 +339,12 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
       form = {"stretched, weighed by channel anew",
               FitStretches(of, form.start, options.stop).model, by_channel};
     }
-    fit(form);
-    if (options.stop()) return best;
+    if (!fit(form)) return best;
     if (forms.back().score > base_score) go_on_from_last();
   }
-  for (const Form& form : FormsFrom(base)) fit(form);
+  for (const Form& form : FormsFrom(base)) {
+    if (!fit(form)) return best;
+  }
   if (options.stop()) return best;
   // What follows takes time, and changes little of what a form has gained: only the best ones.
   std::ranges::stable_sort(forms, std::greater(), &Fitted::score);

@@ -17,7 +17,7 @@ struct ModelChoiceOptions {
   // How good a model is to the eye; the highest wins, the first of equals. Asked once a candidate.
   std::function<double(const FactorModel&)> judge;
 
-  // How good one is in directions that were not measured, if there are any. One that is more than
+  // How good one is in all directions, where some were not measured. One that is more than
   // 1 (dB) below the fitted model there, and more than half of what it gains where data are, runs
   // wild where they end, and is not taken.
   std::function<double(const FactorModel&)> judge_beyond = nullptr;
@@ -44,11 +44,12 @@ struct ChosenModel {
 };
 
 // The form that looks best within a budget of parameters (docs/model-choice.md): the fitted model
-// itself, thinned if it has more parameters; or one that shares less or has a lobe more, fitted
-// from there by some joint steps and thinned to the budget. Where one parameter a table is too
-// much, what Prune makes of the fitted model, with fewer lobes or colours. `fitted` is a fit of the
-// objective, in canonical form, and has its spec. The same bits for any number of threads, as long
-// as `stop` stays false. Throws Error for a budget below 1.
+// itself, thinned if it has more parameters; or one whose lobes are stretched, that is weighed by
+// channel, shares less or has a lobe more, fitted from there by some joint steps and thinned to the
+// budget. Where one parameter a table is too much, what Prune makes of the fitted model, with fewer
+// lobes or colours. `fitted` is a fit of the objective, in canonical form, and has its spec. The
+// same bits for any number of threads, as long as `stop` stays false. Throws Error for a budget
+// below 1.
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options);
 

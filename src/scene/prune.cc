@@ -76,17 +76,18 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
 // The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
 PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Pruning& pruning) {
   PruneState best{};
-  while (!starts.empty()) {
+  while (!starts.empty() && !(best.objective != nullptr && pruning.options().stop())) {
     const ModelSpec spec = starts.front().spec();
-    const auto others = std::ranges::stable_partition(
-        starts, [&](const FactorModel& start) { return start.spec() == spec; });
-    const std::vector<FactorModel> alike(starts.begin(), others.begin());
-    starts.erase(starts.begin(), others.begin());
+    const auto others =
+        std::stable_partition(starts.begin(), starts.end(),
+                              [&](const FactorModel& start) { return start.spec() == spec; });
+    const std::vector<FactorModel> alike(starts.begin(), others);
+    starts.erase(starts.begin(), others);
     PruneState to{.objective = pruning.ObjectiveFor(spec), .model = {}, .layout = {}};
     FittedModel fitted = FitFrom(alike, *to.objective, wanted, pruning.options().stop);
     to.model = std::move(fitted.model);
     to.E = fitted.E;
-    if (best.objective == nullptr || to.E < best.E) best = std::move(to);
+    if (best.objective == nullptr || !(best.E <= to.E)) best = std::move(to);
   }
   return best;
 }

@@ -94,6 +94,11 @@ TEST(ThinnedByPlace, KeepsWhatIsRareAndCountsItRight) {
     }
     EXPECT_NEAR(count, samples.size(), 0.05 * samples.size());
   }
+  // Thinned once more, the same share of each is left.
+  const BrdfSamples twice = Thinned(ThinnedByPlace(all, 8, 20), 4);
+  double count = 0;
+  for (int j = 0; j < twice.size(); ++j) count += 4 * twice.Multiplicity(j);
+  EXPECT_NEAR(count, all.size(), 0.1 * all.size());
   const BrdfSamples same = ThinnedByPlace(all, 1, 1);
   EXPECT_EQ(same.bins, all.bins);
   EXPECT_EQ(ThinnedByPlace(all, 100, all.size()).bins, all.bins);  // all are rare

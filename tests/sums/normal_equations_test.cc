@@ -86,6 +86,29 @@ TEST(NormalEquations, OfScatteredSamplesEqualReference) {
   }
 }
 
+// As many readings of D as there may be, in two vectors of lobes; and with a D for each channel.
+TEST(NormalEquations, OfLobesThatAreAllStretchedDifferently) {
+  for (const bool per_channel : {false, true}) {
+    ModelSpec spec = ModelSpec::SharedFactors(per_channel ? 3 : kMaxLobes, kGrid);
+    spec.D.per_channel = per_channel;
+    std::vector<Stretch> stretches;
+    for (int m = 0; m < spec.lobes; ++m) {
+      stretches.push_back({.along = 0.2 * m - 0.5, .across = 0.4 - 0.1 * m});
+    }
+    spec.stretches = Stretches(stretches);
+    const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
+    const FactorModel model = RandomModel(spec, 4);
+    EXPECT_NEAR(objective.Value(model), static_cast<double>(ExactObjective(objective, model)),
+                1e-12 * objective.Value(model));
+    QuadraticModel actual, expected;
+    for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
+      NormalEquations(objective).Evaluate(model, hessian, &actual);
+      EvaluateReference(objective, model, hessian, &expected);
+      ExpectEqual(actual, expected, per_channel ? "D by channel" : "eight lobes");
+    }
+  }
+}
+
 TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
