@@ -216,8 +216,9 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
 
 BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {
   CheckStride(stride);
-  if (least < 1)
+  if (least < 1) {
     throw Error("at least " + std::to_string(least) + " samples a place; give 1 or more");
+  }
   CheckSamples(samples);
   // The bins of theta_h, theta_d, theta_i and theta_o; the last two, which may be exchanged, in one
   // table.

@@ -28,9 +28,9 @@ void SampleDerivatives::Set(const FactorModel& model, const SampleStencils& at, 
   }
 }
 
-void SampleDerivatives::Add(int k, double value) {
-  if (std::ranges::find(touched_, k) == touched_.end()) touched_.push_back(k);
-  values_[k] += value;
+void SampleDerivatives::Add(int parameter, double value) {
+  if (std::ranges::find(touched_, parameter) == touched_.end()) touched_.push_back(parameter);
+  values_[parameter] += value;
 }
 
 }  // namespace trilobe

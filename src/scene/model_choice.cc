@@ -100,7 +100,7 @@ Objective Thinned(const Objective& objective, int samples_per_parameter, int max
 Objective Some(const Objective& objective) { return Thinned(objective, 100, 24); }
 
 // So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
-Objective Few(const Objective& objective) { return Thinned(objective, 16, 72); }
+Objective Few(const Objective& objective) { return Thinned(objective, 32, 72); }
 
 // Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
 // read may be anything.
@@ -304,23 +304,20 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     forms.push_back({std::move(form), score});
     return true;
   };
-  // The form that the others go on from: that of the first which looks best.
-  Form base{"", fitted, objective.weighting()};
-  double base_score = best.candidates[best.chosen].score;
-  const auto go_on_from_last = [&] {
-    base = forms.back().form;
-    base_score = forms.back().score;
-  };
+  // The forms that the others go on from: that of the first which looks best, and any that looks
+  // nearly as good.
+  std::vector<Fitted> bases = {
+      {{"", fitted, objective.weighting()}, best.candidates[best.chosen].score}};
   bool stretched = false;
   if (fitted.spec().lobes > 0 && !fitted.spec().anisotropic() && !fitted.spec().stretches.any()) {
-    const Objective of = few.For(fitted.spec(), base.weighting);
+    const Objective of = few.For(fitted.spec(), objective.weighting());
     const SteppedModel start = FitStretches(of, fitted, options.stop);
-    if (!fit({"stretched", start.model, base.weighting})) return best;
+    if (!fit({"stretched", start.model, objective.weighting()})) return best;
     // Under other weights it may look better even where it does not under these.
     stretched = start.model.spec().stretches.any() &&
                 best.candidates.back().E < (1 - kWorthwhile) * best.candidates.front().E &&
                 !SharesLess(of, fitted, start, options.stop);
-    if (stretched && forms.back().score > base_score) go_on_from_last();
+    if (stretched) bases.push_back(forms.back());
   }
   if (objective.weighting().name == "appearance" && IsSaturated(objective.samples())) {
     // Selections keep the level of the whole.
@@ -329,7 +326,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     if (stretched) {
       const Form form{"stretched, weighed by channel", forms.back().form.start, by_channel};
       if (!fit(form)) return best;
-      if (forms.back().score > base_score) go_on_from_last();
+      bases.push_back(forms.back());
     }
     // From starts of its own, since it ends in another minimum.
     Form form{"weighed by channel anew",
@@ -340,10 +337,15 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
               FitStretches(of, form.start, options.stop).model, by_channel};
     }
     if (!fit(form)) return best;
-    if (forms.back().score > base_score) go_on_from_last();
+    bases.push_back(forms.back());
   }
-  for (const Form& form : FormsFrom(base)) {
-    if (!fit(form)) return best;
+  constexpr double kNearly = 1;  // [dB]
+  const double best_base = std::ranges::max(bases, {}, &Fitted::score).score;
+  for (const Fitted& base : bases) {
+    if (base.score < best_base - kNearly) continue;
+    for (const Form& form : FormsFrom(base.form)) {
+      if (!fit(form)) return best;
+    }
   }
   if (options.stop()) return best;
   // What follows takes time, and changes little of what a form has gained: only the best ones.
