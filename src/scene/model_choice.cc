@@ -154,13 +154,12 @@ bool SharesLess(const Objective& few, const FactorModel& fitted, const SteppedMo
     const double share = std::min(spec.num_parameters() / values, 0.9);
     return E * (1 + share) / (1 - share);
   };
-  for (const Form& form : FormsFrom({"", fitted, few.weighting()})) {
+  return std::ranges::any_of(FormsFrom({"", fitted, few.weighting()}), [&](const Form& form) {
     const ModelSpec& spec = form.start.spec();
-    if (spec.lobes != fitted.spec().lobes) continue;
+    if (spec.lobes != fitted.spec().lobes) return false;
     const double E = JointSteps(Objective(few, spec), form.start, kSteps, stop).E;
-    if (expected(E, spec) < expected(stretched.E, stretched.model.spec())) return true;
-  }
-  return false;
+    return expected(E, spec) < expected(stretched.E, stretched.model.spec());
+  });
 }
 
 // The last observed entry of each G; that of the table where data go on to its end.

@@ -292,8 +292,9 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
         const double* const shadow = batch.shadow.data() + n * kChannels * G_lanes;
         double* const slope = G_slope[is_i ? 0 : 1];
         for (int c = 0; c < kChannels; ++c) {
-          for (int b = 0; b < G_lanes; ++b)
+          for (int b = 0; b < G_lanes; ++b) {
             slope[c * G_lanes + b] = shadow[c * G_lanes + b] * other[b];
+          }
         }
         of.reading = (is_i ? batch.G_i : batch.G_o).data() + n * G_lanes;
         of.slope = slope;
