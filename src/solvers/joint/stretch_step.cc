@@ -123,6 +123,7 @@ StretchStepper::StretchStepper(const Objective& objective, const FactorModel& mo
     const bool held = model.parameters()[p] == 0 && at.gradient[p] >= 0;
     if (at.squared_lengths[p] > 0 && !held) free_.push_back(static_cast<int>(p));
   }
+  if (free_.empty()) return;  // of a black measurement, say
   const size_t f = free_.size();
   // Scale moves between the factors without a change of E: a little damping holds it.
   constexpr double kDamping = 1e-4;
