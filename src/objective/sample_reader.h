@@ -65,10 +65,10 @@ class SampleReader {
   const double* s() const { return s_.data(); }  // of the model. [kChannels][lobe_lanes]
   int amplitude_lanes() const { return PaddedToVectors(1 + spec_.lobes); }
 
+ private:
   // The number of the reading that reads a table of D, F or, of both, the first of G.
   int ReadingOf(Factor factor, int table) const;
 
- private:
   const FoldedSamples& samples_;
   const ModelSpec spec_;
   const int lobe_lanes_;

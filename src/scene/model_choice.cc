@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,7 +21,6 @@
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/joint/reduction.h"
 #include "trilobe/solvers/joint/stretch_search.h"
-#include "trilobe/solvers/race/start_race.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

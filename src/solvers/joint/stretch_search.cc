@@ -13,20 +13,21 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
   constexpr int kMaxTries = 20;
   constexpr double kMaxStep = 0.4;  // of an exponent
   constexpr double kSmall = 1e-3;   // a decrease of E, relative, that ends the search
-  const auto fit_from = [&](const FactorModel& start) {
-    return JointSteps(Objective(objective, start.spec()), start, kJointSteps, stop);
-  };
-  SteppedModel best = fit_from(fitted);
+  // Where the samples are prepared for the stretches of the best point, steps from it are, too.
+  Objective at_best(objective, fitted.spec());
+  SteppedModel best = JointSteps(at_best, fitted, kJointSteps, stop);
   double lambda = 1e-2;
   std::optional<StretchStepper> stepper;
   for (int tries = 0; tries < kMaxTries && !stop(); ++tries) {
-    if (!stepper) stepper.emplace(Objective(objective, best.model.spec()), best.model);
+    if (!stepper) stepper.emplace(at_best, best.model);
     const std::optional<FactorModel> start = stepper->Step(lambda, kMaxStep);
     if (!start) break;
-    SteppedModel trial = fit_from(*start);
+    Objective at_trial(objective, start->spec());
+    SteppedModel trial = JointSteps(at_trial, *start, kJointSteps, stop);
     if (trial.E < best.E) {
       const bool small = trial.E > (1 - kSmall) * best.E;
       best = std::move(trial);
+      at_best = std::move(at_trial);
       stepper.reset();
       lambda /= 4;
       if (small) break;
