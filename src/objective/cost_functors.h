@@ -57,8 +57,9 @@ class SampleResidual {
       T D{}, F{}, G{};  // G of both directions, over their cosines
       for (int C = 0; C < kChannels; ++C) {
         // A table that the channels share is read for the first of them.
-        if (C == 0 || spec_->D.per_channel)
+        if (C == 0 || spec_->D.per_channel) {
           D = Read(at_.DOf(spec_->stretches.index(m)), Factor::kD, m, C, blocks);
+        }
         if (C == 0 || spec_->F.per_channel) F = Read(at_.F, Factor::kF, m, C, blocks);
         if (C == 0 || spec_->G.per_channel) {
           G = Read(at_.G_i, Factor::kG, m, C, blocks) * Read(at_.G_o, Factor::kG, m, C, blocks) *
