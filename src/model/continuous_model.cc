@@ -40,11 +40,11 @@ Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
 
 Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
   std::array<Stencil, kMaxLobes> D;
-  const std::vector<Stretch>& stretches = model_.spec().stretches.distinct();
-  for (size_t k = 0; k < stretches.size(); ++k) {
-    D[k] = LinearStencil(grid_.ThetaHCoordinate(stretches[k].ThetaH(angles)), grid_.theta_h);
-  }
-  return (*this)(std::span(D.data(), stretches.size()),
+  const Stretches& stretches = model_.spec().stretches;
+  stretches.ForEachThetaH(angles, [&](size_t k, double theta_h) {
+    D[k] = LinearStencil(grid_.ThetaHCoordinate(theta_h), grid_.theta_h);
+  });
+  return (*this)(std::span(D.data(), stretches.distinct().size()),
                  LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
 }
 

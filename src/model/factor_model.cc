@@ -31,11 +31,14 @@ void SetCosineStencils(const ModelSpec& spec, const Cosines& cosines, SampleSten
 
 void SetStretchedStencils(const ModelSpec& spec, const HalfDiffAngles& angles,
                           SampleStencils* stencils) {
-  const std::vector<Stretch>& stretches = spec.stretches.distinct();
-  stencils->D = spec.d_axis.At(stretches[0].ThetaH(angles), 0);
-  for (size_t k = 1; k < stretches.size(); ++k) {
-    stencils->more_D.push_back(spec.d_axis.At(stretches[k].ThetaH(angles), 0));
-  }
+  spec.stretches.ForEachThetaH(angles, [&](size_t k, double theta_h) {
+    const Stencil D = spec.d_axis.At(theta_h, 0);
+    if (k == 0) {
+      stencils->D = D;
+    } else {
+      stencils->more_D.push_back(D);
+    }
+  });
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class Cells {
       for (int p = 0; p < phi_steps(); ++p) {
         HalfDiffAngles angles = grid_.Center(0, d, p);
         const double read_at = spec_.d_axis.Theta(h);
-        const double factor = stretch.Factor(angles.theta_d, angles.phi_d);
+        const double factor = stretch.Factor({angles.theta_d, angles.phi_d});
         angles.theta_h = read_at / factor;
         if (angles.theta_h >= kPi / 2) continue;
         Pair pair{.d = d,

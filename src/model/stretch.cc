@@ -9,18 +9,27 @@
 
 namespace trilobe {
 
-double Stretch::Factor(double theta_d, double phi_d) const {
-  if (!any()) return 1;
+Stretch::Place::Place(double theta_d, double phi_d) {
   // theta_d = 90 degrees has no highlight, and must not make it infinite.
   constexpr double kMinCosine = 1e-4;
-  const double cosine = std::max(std::cos(theta_d), kMinCosine);
-  return std::hypot(std::cos(phi_d) * std::pow(cosine, along),
-                    std::sin(phi_d) * std::pow(cosine, across));
+  log_cosine = std::log(std::max(std::cos(theta_d), kMinCosine));
+  const double cosine = std::cos(phi_d);
+  cos2_phi = cosine * cosine;
+}
+
+double Stretch::Factor(const Place& place) const {
+  if (!any()) return 1;
+  const double along2 = std::exp(2 * along * place.log_cosine);
+  const double across2 = std::exp(2 * across * place.log_cosine);
+  return std::sqrt(place.cos2_phi * along2 + (1 - place.cos2_phi) * across2);
+}
+
+double Stretch::ThetaH(double theta_h, const Place& place) const {
+  return any() ? std::min(theta_h * Factor(place), kPi / 2) : theta_h;
 }
 
 double Stretch::ThetaH(const HalfDiffAngles& angles) const {
-  if (!any()) return angles.theta_h;
-  return std::min(angles.theta_h * Factor(angles.theta_d, angles.phi_d), kPi / 2);
+  return any() ? ThetaH(angles.theta_h, {angles.theta_d, angles.phi_d}) : angles.theta_h;
 }
 
 void CheckStretch(const Stretch& stretch) {

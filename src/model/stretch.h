@@ -1,6 +1,7 @@
 #ifndef TRILOBE_MODEL_STRETCH_H_
 #define TRILOBE_MODEL_STRETCH_H_
 
+#include <cstddef>
 #include <vector>
 
 #include "trilobe/brdf/directions.h"
@@ -16,14 +17,22 @@ namespace trilobe {
 // 3); a lobe of fixed width about the mirror direction would have 0 and 1. Exchanging wi and wo
 // changes nothing.
 struct Stretch {
+  // A pair of directions, prepared for all stretches.
+  struct Place {
+    Place(double theta_d, double phi_d);
+    double log_cosine;  // of theta_d; at grazing angles of a little less
+    double cos2_phi;
+  };
+
   double along = 0;
   double across = 0;
 
   bool any() const { return along != 0 || across != 0; }
 
   // By what theta_h is multiplied, above 0.
-  double Factor(double theta_d, double phi_d) const;
+  double Factor(const Place& place) const;
   // Where D is read; theta_h itself, to the bit, without a stretch. [rad]
+  double ThetaH(double theta_h, const Place& place) const;
   double ThetaH(const HalfDiffAngles& angles) const;
 
   bool operator==(const Stretch&) const = default;
@@ -51,6 +60,16 @@ class Stretches {
   const std::vector<Stretch>& distinct() const { return distinct_; }
   // Which of these a lobe has.
   int index(int lobe) const { return several() ? index_[lobe] : 0; }
+
+  // read_at(k, theta_h [rad]) for each of them: where the k-th reads D.
+  template <typename ReadAt>
+  void ForEachThetaH(const HalfDiffAngles& angles, const ReadAt& read_at) const {
+    if (!any()) return read_at(size_t{0}, angles.theta_h);
+    const Stretch::Place place(angles.theta_d, angles.phi_d);
+    for (size_t k = 0; k < distinct_.size(); ++k) {
+      read_at(k, distinct_[k].ThetaH(angles.theta_h, place));
+    }
+  }
 
   // Those of other lobes: the k-th is that of lobes[k] here.
   Stretches Of(const std::vector<int>& lobes) const;

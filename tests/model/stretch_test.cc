@@ -39,11 +39,11 @@ TEST(Stretch, WidensHighlightsByPowersOfTheCosine) {
                 std::min(kTheta * std::pow(cosine, -0.5), kPi / 2), 1e-15);
     EXPECT_NEAR(stretch.ThetaH({kTheta, theta_d, kHalfTurn}), kTheta * std::pow(cosine, 0.25),
                 1e-15);
-    const double between = stretch.Factor(theta_d, kPi / 4);
+    const double between = stretch.Factor({theta_d, kPi / 4});
     EXPECT_NEAR(between * between, (1 / cosine + std::sqrt(cosine)) / 2, 1e-12);
   }
   // Nothing changes at normal incidence, and nothing is infinite at grazing.
-  EXPECT_EQ(stretch.Factor(0, 0.3), 1);
+  EXPECT_EQ(stretch.Factor({0, 0.3}), 1);
   for (const double phi_d : {0.0, 0.5, kHalfTurn}) {
     const double read_at = stretch.ThetaH({1.5, kPi / 2, phi_d});
     EXPECT_TRUE(read_at >= 0 && read_at <= kPi / 2) << phi_d;

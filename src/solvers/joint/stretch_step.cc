@@ -49,6 +49,7 @@ class ExponentDerivatives {
   // The stencils of D with each exponent a little higher and lower.
   void SetAngles(const HalfDiffAngles& angles) {
     const ModelSpec& spec = model_.spec();
+    const Stretch::Place place(angles.theta_d, angles.phi_d);
     higher_.clear();
     lower_.clear();
     for (int g = 0; g < groups_; ++g) {
@@ -56,8 +57,8 @@ class ExponentDerivatives {
       for (const auto& [along, across] : {std::pair{kStep, 0.0}, {0.0, kStep}}) {
         const Stretch higher{at.along + along, at.across + across};
         const Stretch lower{at.along - along, at.across - across};
-        higher_.push_back(spec.d_axis.At(higher.ThetaH(angles), 0));
-        lower_.push_back(spec.d_axis.At(lower.ThetaH(angles), 0));
+        higher_.push_back(spec.d_axis.At(higher.ThetaH(angles.theta_h, place), 0));
+        lower_.push_back(spec.d_axis.At(lower.ThetaH(angles.theta_h, place), 0));
       }
     }
   }
