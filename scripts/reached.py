@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Prints which sources of a build folder the changes of this branch can reach, one a line.
+"""Prints which sources of a build folder are to be checked for the changes of this branch, one a line.
 
 scripts/reached.py BUILD_DIR [BASE]     BUILD_DIR has a compile_commands.json
 
-Those are the sources that have changed since this branch left BASE (origin/main), or include,
-however indirectly, a file that has, or are compiled otherwise than there: where it has changed how
-things are built, the preset that BUILD_DIR is named after is configured as it was at BASE, too. All
-of them where it cannot be told: if BASE is empty or unknown, if nothing has changed since, as on
-BASE itself, if the former preset cannot be configured, or if what has changed says what is checked,
-or with what.
+Those are the sources that have changed since this branch left BASE (origin/main); for each header
+that has, one source that includes it, however indirectly, its own if it has one; all that include
+a header that used to include what it no longer does, since they may have relied on it; and those
+that are compiled otherwise than there: where it has changed how things are built, the preset that
+BUILD_DIR is named after is configured as it was at BASE, too. All sources where it cannot be told:
+if BASE is empty or unknown, if nothing has changed since, as on BASE itself, if the former preset
+cannot be configured, or if what has changed says what is checked, or with what.
 """
 
 import json
@@ -24,6 +25,7 @@ CONCERNS_ALL = re.compile(
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
 INCLUDE = re.compile(rb'^#include "([^"]+)"', re.MULTILINE)
+ANY_INCLUDE = re.compile(rb"^#include (\S+)", re.MULTILINE)
 
 
 def git(*arguments):
@@ -59,24 +61,36 @@ def compiled_otherwise(commit, build_dir):
     return {ROOT / source for source, how in now.items() if then.get(source) != how}
 
 
-def changes(base, build_dir):
-    """Paths below ROOT, committed or not; None where it cannot be told."""
+def since(base):
+    """The commit at which this branch left BASE; None where there is none, or no git."""
     try:
-        since = git("merge-base", "HEAD", base).strip()
-    except (subprocess.CalledProcessError, FileNotFoundError):  # no such BASE, or no git
+        return git("merge-base", "HEAD", base).strip()
+    except (subprocess.CalledProcessError, FileNotFoundError):
         return None
+
+
+def changes(commit, build_dir):
+    """Paths below ROOT that differ from a commit, committed or not; None where it cannot be told."""
     # Without renames: what included a file by its former name has changed itself, or does not build.
-    paths = set(git("diff", "--name-only", "--no-renames", since).splitlines())
+    paths = set(git("diff", "--name-only", "--no-renames", commit).splitlines())
     paths.update(git("ls-files", "--others", "--exclude-standard").splitlines())
     if not paths or any(CONCERNS_ALL.search(path) for path in paths):
         return None
     changed = {(ROOT / path).resolve() for path in paths}
     if any(CONCERNS_BUILD.search(path) for path in paths):
         try:
-            changed |= compiled_otherwise(since, build_dir)
+            changed |= compiled_otherwise(commit, build_dir)
         except (subprocess.CalledProcessError, FileNotFoundError):  # not to be configured, then
             return None
     return changed
+
+
+def includes_less(file, commit):
+    """Whether a file no longer includes something that it did at a commit."""
+    done = subprocess.run(["git", "show", f"{commit}:{file.relative_to(ROOT)}"], cwd=ROOT,
+                          capture_output=True)
+    return bool(set(ANY_INCLUDE.findall(done.stdout)) -
+                set(ANY_INCLUDE.findall(file.read_bytes())))
 
 
 def included_by(file):
@@ -89,25 +103,41 @@ def included_by(file):
                 break
 
 
-def reaches(file, changed, known):
-    """Whether `changed` has the file, or one that it includes."""
+def all_included_by(file, known):
+    """Those that it includes, however indirectly."""
     if file not in known:
-        known[file] = file in changed  # for a file that includes itself
-        known[file] = known[file] or any(
-            reaches(included, changed, known) for included in included_by(file))
+        known[file] = set()  # for a file that includes itself
+        for included in included_by(file):
+            known[file] |= {included} | all_included_by(included, known)
     return known[file]
+
+
+def to_check(sources, changed, commit):
+    """Those of the sources that are to be checked for the changes since a commit."""
+    known = {}
+    included = {source: all_included_by(source, known) for source in sources if source.is_file()}
+    checked = {source for source in included if source in changed}
+    for header in sorted(changed & set().union(*included.values())):
+        users = [source for source in included if header in included[source]]
+        if includes_less(header, commit):
+            checked.update(users)
+        elif not checked.intersection(users):
+            # Its own source, or the one that the build makes for it, has its name.
+            checked.add(next((user for user in users if user.stem == header.stem), users[0]))
+    return checked
 
 
 def main():
     build_dir = pathlib.Path(sys.argv[1]).resolve()
     base = sys.argv[2] if len(sys.argv) > 2 else "origin/main"
     commands = json.loads((build_dir / "compile_commands.json").read_text())
-    sources = [pathlib.Path(command["directory"], command["file"]).resolve()
-               for command in commands]
-    changed = changes(base, build_dir)
-    known = {}
-    for source in dict.fromkeys(sources):
-        if changed is None or (source.is_file() and reaches(source, changed, known)):
+    sources = list(dict.fromkeys(pathlib.Path(command["directory"], command["file"]).resolve()
+                                 for command in commands))
+    commit = since(base)
+    changed = changes(commit, build_dir) if commit is not None else None
+    checked = set(sources) if changed is None else to_check(sources, changed, commit)
+    for source in sources:
+        if source in checked:
             print(source)
 
 

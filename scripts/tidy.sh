@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs clang-tidy (.clang-tidy) on the files of a configured build folder that the changes since BASE
-# can reach (scripts/reached.py), or on all where BASE is empty: scripts/tidy.sh BUILD_DIR [BASE].
+# Runs clang-tidy (.clang-tidy) on the files of a configured build folder that are to be checked for the
+# changes since BASE (scripts/reached.py), or on all where BASE is empty: scripts/tidy.sh BUILD_DIR [BASE].
 # clang parses each file with its compiler's flags and without precompiled headers, so this also shows
 # clang's own warnings, and that each file and header includes what it needs.
 set -euo pipefail

@@ -68,9 +68,24 @@ class Reached(unittest.TestCase):
                               capture_output=True, text=True, check=True)
         return [str(pathlib.Path(line).relative_to(self.root)) for line in done.stdout.split()]
 
-    def test_follows_includes(self):
+    def test_checks_a_changed_header_by_its_own_source(self):
+        self.write("src/math/cubic.h", '#include "trilobe/base/error.h"\n// changed\n')
+        self.commit()
+        self.assertEqual(self.reached(), ["src/math/cubic.cc"])
+        # Or by any that has changed itself.
+        self.write("tests/math/cubic_test.cc", '#include "tests/util.h"\n// changed\n')
+        self.assertEqual(self.reached(), ["tests/math/cubic_test.cc"])
+
+    def test_checks_a_header_without_a_source_by_what_includes_it(self):
         self.write("src/base/error.h", "// changed\n")
         self.commit()
+        self.assertEqual(self.reached(), ["src/math/cubic.cc"])
+        self.git("branch", "--force", "main")
+        self.write("tests/util.h", '#include "trilobe/math/cubic.h"\n// changed\n')
+        self.assertEqual(self.reached(), ["tests/math/cubic_test.cc"])
+
+    def test_checks_all_that_may_have_relied_on_an_include(self):
+        self.write("src/math/cubic.h", "")
         self.assertEqual(self.reached(), ["src/math/cubic.cc", "tests/math/cubic_test.cc"])
 
     def test_sees_what_is_not_committed(self):
