@@ -1,11 +1,9 @@
 #include "trilobe/objective/sample_derivatives.h"
 
-#include <algorithm>
-
 namespace trilobe {
 
 void SampleDerivatives::Set(const FactorModel& model, const SampleStencils& at, int c) {
-  for (const int k : touched_) values_[k] = 0;
+  for (const int k : touched_) values_[k] = is_touched_[k] = 0;
   touched_.clear();
   Add(c, 1);
   const ModelSpec& spec = model.spec();
@@ -29,7 +27,8 @@ void SampleDerivatives::Set(const FactorModel& model, const SampleStencils& at, 
 }
 
 void SampleDerivatives::Add(int parameter, double value) {
-  if (std::ranges::find(touched_, parameter) == touched_.end()) touched_.push_back(parameter);
+  if (!is_touched_[parameter]) touched_.push_back(parameter);
+  is_touched_[parameter] = 1;
   values_[parameter] += value;
 }
 

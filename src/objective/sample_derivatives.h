@@ -1,6 +1,7 @@
 #ifndef TRILOBE_OBJECTIVE_SAMPLE_DERIVATIVES_H_
 #define TRILOBE_OBJECTIVE_SAMPLE_DERIVATIVES_H_
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace trilobe {
 // over many are in sums/.
 class SampleDerivatives {
  public:
-  explicit SampleDerivatives(int num_parameters) : values_(num_parameters, 0.0) {}
+  explicit SampleDerivatives(int num_parameters)
+      : values_(num_parameters, 0.0), is_touched_(num_parameters, 0) {}
 
   void Set(const FactorModel& model, const SampleStencils& at, int channel);
 
@@ -25,6 +27,7 @@ class SampleDerivatives {
 
   std::vector<double> values_;
   std::vector<int> touched_;
+  std::vector<uint8_t> is_touched_;  // of each parameter
 };
 
 }  // namespace trilobe

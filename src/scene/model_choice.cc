@@ -257,7 +257,7 @@ ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
     // Not where next to nothing would be left.
     const bool continues = continued > 0 && options.max_parameters > 4 * continued;
     prune.max_parameters = options.max_parameters - (continues ? continued : 0);
-    PrunedModel pruned = Prune(some.For(model.spec(), weighting), model, prune);
+    PrunedModel pruned = Prune(few.For(model.spec(), weighting), model, prune);
     const Objective to(of, pruned.model.spec());
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options.stop, &stored);

@@ -1,5 +1,6 @@
 #include "trilobe/solvers/joint/stretch_search.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -11,14 +12,17 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
                           const std::function<bool()>& stop) {
   constexpr int kJointSteps = 3;  // at each point
   constexpr int kMaxTries = 20;
+  constexpr int kMaxRejected = 5;   // in a row
   constexpr double kMaxStep = 0.4;  // of an exponent
-  constexpr double kSmall = 1e-3;   // a decrease of E, relative, that ends the search
+  constexpr double kMinLambda = 1e-4;
+  constexpr double kSmall = 1e-3;  // a decrease of E, relative, that ends the search
   // Where the samples are prepared for the stretches of the best point, steps from it are, too.
   Objective at_best(objective, fitted.spec());
   SteppedModel best = JointSteps(at_best, fitted, kJointSteps, stop);
   double lambda = 1e-2;
+  int rejected = 0;
   std::optional<StretchStepper> stepper;
-  for (int tries = 0; tries < kMaxTries && !stop(); ++tries) {
+  for (int tries = 0; tries < kMaxTries && rejected < kMaxRejected && !stop(); ++tries) {
     if (!stepper) stepper.emplace(at_best, best.model);
     const std::optional<FactorModel> start = stepper->Step(lambda, kMaxStep);
     if (!start) break;
@@ -29,10 +33,12 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
       best = std::move(trial);
       at_best = std::move(at_trial);
       stepper.reset();
-      lambda /= 4;
+      lambda = std::max(lambda / 4, kMinLambda);
+      rejected = 0;
       if (small) break;
     } else {
       lambda *= 8;
+      ++rejected;
     }
   }
   return best;

@@ -1,10 +1,14 @@
 #include "trilobe/solvers/joint/stretch_step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <numeric>
 #include <utility>
 
+#include "trilobe/base/parallel.h"
 #include "trilobe/math/cholesky.h"
 #include "trilobe/model/lobes.h"
 #include "trilobe/objective/sample_derivatives.h"
@@ -84,14 +88,16 @@ class ExponentDerivatives {
   std::vector<Stencil> higher_, lower_;
 };
 
-ExponentEquations Linearize(const Objective& objective, const FactorModel& model) {
+// Of samples [begin, end).
+ExponentEquations SumsOver(const Objective& objective, const FactorModel& model, int begin,
+                           int end) {
   ExponentDerivatives exponents(model);
   const int size = exponents.size(), n = model.spec().num_parameters();
   ExponentEquations sums{Vector(size), Vector(static_cast<size_t>(size) * size),
                          Vector(static_cast<size_t>(size) * n)};
   SampleDerivatives parameters(n);
   Vector K(size);
-  for (int j = 0; j < objective.samples().size(); ++j) {
+  for (int j = begin; j < end; ++j) {
     const WeightedSample sample = objective.Sample(j);
     exponents.SetAngles(objective.samples().Angles(j));
     for (int c = 0; c < kChannels; ++c) {
@@ -109,6 +115,23 @@ ExponentEquations Linearize(const Objective& objective, const FactorModel& model
     }
   }
   return sums;
+}
+
+ExponentEquations Linearize(const Objective& objective, const FactorModel& model) {
+  constexpr int kParts = 16;
+  const int64_t size = objective.samples().size();
+  std::array<ExponentEquations, kParts> parts;
+  ParallelFor(kParts, objective.num_threads(), [&](int k) {
+    parts[k] = SumsOver(objective, model, static_cast<int>(size * k / kParts),
+                        static_cast<int>(size * (k + 1) / kParts));
+  });
+  for (int k = 1; k < kParts; ++k) {
+    for (const auto sums :
+         {&ExponentEquations::K_r, &ExponentEquations::K_K, &ExponentEquations::J_K}) {
+      std::ranges::transform(parts[0].*sums, parts[k].*sums, (parts[0].*sums).begin(), std::plus());
+    }
+  }
+  return std::move(parts[0]);
 }
 
 }  // namespace
@@ -134,7 +157,7 @@ StretchStepper::StretchStepper(const Objective& objective, const FactorModel& mo
     A[a * f + a] *= 1 + kDamping;
   }
   const int rows = static_cast<int>(f), columns = 1 + size_;
-  if (!FactorCholesky(rows, A.data())) return;
+  if (!FactorCholesky(rows, A.data(), objective.num_threads())) return;
   Vector half(f * columns);  // L^-1 of J'r and of the columns of J'K
   for (size_t a = 0; a < f; ++a) {
     half[a] = at.gradient[free_[a]];
