@@ -31,6 +31,20 @@ std::string Percent(double share) {
   return (share > 0 && share < 0.0005 ? "<0.1" : std::string(text.data())) + " %%";
 }
 
+// Legend of curves that differ in colour by their channel and in dashes by their lobe.
+std::string LegendByChannelAndLobe(const FactorModel& model) {
+  std::string legend;
+  const auto add = [&](const std::string& color, const std::string& dash, const std::string& name) {
+    legend += ", NaN with lines linewidth 2.5 linecolor '" + color + "' dashtype " + dash +
+              " title '" + name + "'";
+  };
+  for (int c = 0; c < kChannels; ++c) add(kChannelColors[c], "solid", kChannelNames[c]);
+  for (int m = 0; m < model.spec().lobes; ++m) {
+    add("#555555", kDash[m], "lobe " + std::to_string(m + 1) + (Absent(model, m) ? " (s = 0)" : ""));
+  }
+  return legend;
+}
+
 }  // namespace
 
 bool Absent(const FactorModel& model, int lobe) {
@@ -63,6 +77,8 @@ std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor fa
   std::string data, curves, hollow;
   std::vector<double> values;
   bool any_unobserved = false;
+  const bool by_channel = spec.sharing(factor).per_channel;
+  const bool by_both = by_channel && spec.sharing(factor).per_lobe && spec.lobes > 1;
   for (int t = 0; t < spec.num_tables(factor); ++t) {
     const auto [lobe, channel] = OwnerOf(spec, factor, t);
     const bool absent = spec.sharing(factor).per_lobe && Absent(model, lobe);
@@ -81,7 +97,6 @@ std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor fa
     for (size_t i = 0; i < table.size() && !absent; ++i) {
       if (through[i] >= enough) values.push_back(table[i]);
     }
-    const bool by_channel = spec.sharing(factor).per_channel;
     const std::string block = std::string(FactorName(factor)) + std::to_string(t);
     data += GnuplotData(block, rows);
     const std::string style = std::string("linecolor '") +
@@ -90,11 +105,12 @@ std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor fa
     curves += absent ? "dots linecolor '#FFFFFF'"
                      : "lines linewidth 2.5 " + style + " dashtype " +
                            (by_channel ? kDash[lobe] : "solid");
-    curves += " title '" + TableName(model, factor, t) + "'";
+    curves += by_both ? " notitle" : " title '" + TableName(model, factor, t) + "'";
     hollow +=
         ", $" + block + " using 1:3 with points pointtype 6 pointsize 1.1 " + style + " notitle";
   }
   if (values.empty()) return "";
+  if (by_both) curves += LegendByChannelAndLobe(model);
   if (any_unobserved) {
     curves +=
         hollow + ", NaN with points pointtype 6 pointsize 1.1 linecolor '#555555' title 'no data'";
