@@ -10,10 +10,26 @@
 namespace trilobe {
 namespace {
 
+// How a factor's tables lie in lanes; what the compiler can know of TableLanes.
+struct Sharing {
+  bool per_lobe, per_channel;
+  int stride, size;
+
+  TRILOBE_ALWAYS_INLINE int First(int channel) const { return per_channel ? channel * stride : 0; }
+  bool operator==(const Sharing&) const = default;
+};
+constexpr Sharing kByLobe{
+    .per_lobe = true, .per_channel = false, .stride = kVector, .size = kVector};
+constexpr Sharing kByChannel{.per_lobe = false, .per_channel = true, .stride = 1, .size = kVector};
+
+Sharing SharingOf(const TableLanes& lanes) {
+  return {lanes.per_lobe, lanes.per_channel, lanes.stride, lanes.size};
+}
+
 // All that the loops over samples need.
 struct ReadJob {
   int begin, end;
-  bool slopes;
+  SampleReader::Wanted wanted;
   const FoldedSamples* samples;
   struct OfReading {
     const Cell* cells;
@@ -26,7 +42,7 @@ struct ReadJob {
   };
   std::array<OfReading, ReadingOrder::kMost> readings;
   int num_readings;
-  const TableLanes *D, *F, *G;
+  Sharing D, F, G;
   const double *d, *s;
   int lobes, amplitude_lanes;
   double *residual, *amplitude, *D_slope, *F_slope, *shadow;
@@ -34,11 +50,10 @@ struct ReadJob {
 
 // Of the lobes in a channel.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void LobesOf(const TableLanes& lanes, int c, const double* reading,
-                                   Lanes4* of) {
-  const double* const first = reading + lanes.First(c);
+TRILOBE_ALWAYS_INLINE void LobesOf(Sharing sharing, int c, const double* reading, Lanes4* of) {
+  const double* const first = reading + sharing.First(c);
   for (int b = 0; b < kBlocks; ++b) {
-    if (lanes.per_lobe) {
+    if (sharing.per_lobe) {
       LoadLanes(first + kVector * b, &of[b]);
     } else {
       of[b] = Lanes4{} + *first;
@@ -55,19 +70,28 @@ TRILOBE_ALWAYS_INLINE double Sum(const Lanes4* of) {
 
 // The reverse of LobesOf, for derivatives.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void ToTables(const TableLanes& lanes, int c, const Lanes4* of,
-                                    double* slope) {
-  double* const first = slope + c * lanes.size + lanes.First(c);
-  if (lanes.per_lobe) {
+TRILOBE_ALWAYS_INLINE void ToTables(Sharing sharing, int c, const Lanes4* of, double* slope) {
+  double* const first = slope + c * sharing.size + sharing.First(c);
+  if (sharing.per_lobe) {
     for (int b = 0; b < kBlocks; ++b) StoreLanes(of[b], first + kVector * b);
   } else {
     *first = Sum<kBlocks>(of);
   }
 }
 
-// kOneVector: all tables of each factor have their lanes in one vector.
-template <int kBlocks, bool kOneVector>
+// What the compiler knows of the tables.
+enum class Known {
+  kNothing,
+  kOneVector,     // all tables of each factor have their lanes in one vector
+  kPaperSharing,  // and a lobe has one D and one G, a channel one F
+};
+
+template <int kBlocks, Known kKnown>
 TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
+  constexpr bool kOneVector = kKnown != Known::kNothing;
+  constexpr bool kPaper = kKnown == Known::kPaperSharing;
+  const Sharing D_sharing = kPaper ? kByLobe : job.D, F_sharing = kPaper ? kByChannel : job.F,
+                G_sharing = kPaper ? kByLobe : job.G;
   for (int j = job.begin; j < job.end; ++j) {
     const int n = j - job.begin;
     std::array<double*, ReadingOrder::kMost> R;
@@ -90,10 +114,10 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
     const double inverse_cosines = job.samples->inverse_cosines[j];
     for (int c = 0; c < kChannels; ++c) {
       Lanes4 D[kBlocks], F[kBlocks], G_i[kBlocks], G_o[kBlocks], of_s[kBlocks], x[kBlocks];
-      LobesOf<kBlocks>(*job.D, c, R[0], D);
-      LobesOf<kBlocks>(*job.F, c, R[job.num_readings - 3], F);
-      LobesOf<kBlocks>(*job.G, c, R[job.num_readings - 2], G_i);
-      LobesOf<kBlocks>(*job.G, c, R[job.num_readings - 1], G_o);
+      LobesOf<kBlocks>(D_sharing, c, R[0], D);
+      LobesOf<kBlocks>(F_sharing, c, R[job.num_readings - 3], F);
+      LobesOf<kBlocks>(G_sharing, c, R[job.num_readings - 2], G_i);
+      LobesOf<kBlocks>(G_sharing, c, R[job.num_readings - 1], G_o);
       Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
       for (int b = 0; b < kBlocks; ++b) {
         Lanes4 s;
@@ -107,23 +131,28 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
         x[b] = s * of_s[b];
       }
       job.residual[n * kChannels + c] = job.d[c] + Sum<kBlocks>(x) - job.samples->rho[c][j];
-      if (!job.slopes) continue;
-      double* const amplitude = job.amplitude + (n * kChannels + c) * job.amplitude_lanes;
-      for (int b = 0; b < kBlocks; ++b) StoreLanes(of_s[b], amplitude + kVector * b);
-      amplitude[job.lobes] = 1;
-      ToTables<kBlocks>(*job.D, c, of_D, job.D_slope + n * kChannels * job.D->size);
-      ToTables<kBlocks>(*job.F, c, of_F, job.F_slope + n * kChannels * job.F->size);
-      ToTables<kBlocks>(*job.G, c, of_G, job.shadow + n * kChannels * job.G->size);
+      if (!job.wanted.any()) continue;
+      if (job.wanted.amplitudes) {
+        double* const amplitude = job.amplitude + (n * kChannels + c) * job.amplitude_lanes;
+        for (int b = 0; b < kBlocks; ++b) StoreLanes(of_s[b], amplitude + kVector * b);
+        amplitude[job.lobes] = 1;
+      }
+      const int slope = n * kChannels;
+      if (job.wanted.D) ToTables<kBlocks>(D_sharing, c, of_D, job.D_slope + slope * D_sharing.size);
+      if (job.wanted.F) ToTables<kBlocks>(F_sharing, c, of_F, job.F_slope + slope * F_sharing.size);
+      if (job.wanted.G) ToTables<kBlocks>(G_sharing, c, of_G, job.shadow + slope * G_sharing.size);
     }
   }
 }
 
 TRILOBE_MULTIVERSION
-void ReadOneVector(const ReadJob& job) { ReadSamples<1, true>(job); }
+void ReadPaperSharing(const ReadJob& job) { ReadSamples<1, Known::kPaperSharing>(job); }
 TRILOBE_MULTIVERSION
-void ReadFourLobes(const ReadJob& job) { ReadSamples<1, false>(job); }
+void ReadOneVector(const ReadJob& job) { ReadSamples<1, Known::kOneVector>(job); }
 TRILOBE_MULTIVERSION
-void ReadEightLobes(const ReadJob& job) { ReadSamples<2, false>(job); }
+void ReadFourLobes(const ReadJob& job) { ReadSamples<1, Known::kNothing>(job); }
+TRILOBE_MULTIVERSION
+void ReadEightLobes(const ReadJob& job) { ReadSamples<2, Known::kNothing>(job); }
 static_assert(kMaxLobes <= 2 * kVector);
 
 }  // namespace
@@ -188,16 +217,16 @@ void SampleReader::SetModel(const FactorModel& model) {
   }
 }
 
-void SampleReader::Read(int begin, int end, Want want, Batch* batch) const {
+void SampleReader::Read(int begin, int end, const Wanted& wanted, Batch* batch) const {
   ReadJob job{.begin = begin,
               .end = end,
-              .slopes = want == Want::kSlopes,
+              .wanted = wanted,
               .samples = &samples_,
               .readings = {},
               .num_readings = samples_.order.count(),
-              .D = &lanes(Factor::kD),
-              .F = &lanes(Factor::kF),
-              .G = &lanes(Factor::kG),
+              .D = SharingOf(lanes(Factor::kD)),
+              .F = SharingOf(lanes(Factor::kF)),
+              .G = SharingOf(lanes(Factor::kG)),
               .d = d_.data(),
               .s = s_.data(),
               .lobes = spec_.lobes,
@@ -226,7 +255,9 @@ void SampleReader::Read(int begin, int end, Want want, Batch* batch) const {
     for (size_t k = 0; k < weight.size(); ++k) job.readings[r].weight[k] = weight[k].data();
     one_vector = one_vector && lanes(factor).size == kVector;
   }
-  if (one_vector) {
+  if (one_vector && job.D == kByLobe && job.F == kByChannel && job.G == kByLobe) {
+    ReadPaperSharing(job);
+  } else if (one_vector) {
     ReadOneVector(job);
   } else if (lobe_lanes_ == kVector) {
     ReadFourLobes(job);
@@ -246,7 +277,7 @@ double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int n
     const int chunk_end = std::min((k + 1) * kChunk, samples.size());
     for (int begin = k * kChunk; begin < chunk_end; begin += SampleReader::kBatch) {
       const int end = std::min(begin + SampleReader::kBatch, chunk_end);
-      reader.Read(begin, end, SampleReader::Want::kResiduals, &batch);
+      reader.Read(begin, end, /*wanted=*/{}, &batch);
       for (int j = begin; j < end; ++j) {
         for (int c = 0; c < kChannels; ++c) {
           const double residual = batch.residual[(j - begin) * kChannels + c];

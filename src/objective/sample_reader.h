@@ -54,9 +54,15 @@ class SampleReader {
   // From now on, this model's parameters are read. It is not kept.
   void SetModel(const FactorModel& model);
 
-  // Samples [begin, end), kBatch at most. Residuals always; the rest where wanted.
-  enum class Want { kResiduals, kSlopes };
-  void Read(int begin, int end, Want want, Batch* batch) const;
+  // Which slopes are wanted, besides residuals and readings.
+  struct Wanted {
+    bool amplitudes = false, D = false, F = false, G = false;
+    bool any() const { return amplitudes || D || F || G; }
+  };
+  static constexpr Wanted kAllSlopes{true, true, true, true};
+
+  // Samples [begin, end), kBatch at most.
+  void Read(int begin, int end, const Wanted& wanted, Batch* batch) const;
 
   const FoldedSamples& samples() const { return samples_; }
   const ModelSpec& spec() const { return spec_; }

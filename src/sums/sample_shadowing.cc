@@ -179,7 +179,7 @@ void SampleShadowing::Read(const FactorModel& model) {
     SampleReader::Batch batch(reader_);
     for (int begin = chunk_begin; begin < chunk_end; begin += SampleReader::kBatch) {
       const int end = std::min(begin + SampleReader::kBatch, chunk_end);
-      reader_.Read(begin, end, SampleReader::Want::kSlopes, &batch);
+      reader_.Read(begin, end, {.G = true}, &batch);
       const auto copy = [&](const double* from, int stride, std::vector<double>* to) {
         for (int j = begin; j < end; ++j) (*to)[j] = from[(j - begin) * stride];
       };

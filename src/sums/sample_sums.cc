@@ -353,12 +353,16 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
   const AddBatchFunction add_batch = hessian == Hessian::kNewton ? AddNewton
                                      : one_vector                ? AddGaussNewtonOfOneVector
                                                                  : AddGaussNewton;
+  SampleReader::Wanted wanted{.amplitudes = layout.amplitudes().wanted};
+  for (int r = 0; r < job.order.F(); ++r) wanted.D = wanted.D || layout.of(r).wanted;
+  wanted.F = layout.of(job.order.F()).wanted;
+  wanted.G = layout.of(job.order.G_i()).wanted;
   SampleReader::Batch batch(reader);
   Sample at{};
   double objective = 0;
   while (begin < end) {
     const int batch_end = std::min(begin + SampleReader::kBatch, end);
-    reader.Read(begin, batch_end, SampleReader::Want::kSlopes, &batch);
+    reader.Read(begin, batch_end, wanted, &batch);
     objective += add_batch(job, begin, batch_end, batch, &at);
     begin = batch_end;
   }
