@@ -83,7 +83,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
   }
   if (!any) return false;
 
-  const double E = objective.Value(*model);
+  const double enough = (1 + kMaxRise) * objective.Value(*model);
   FactorModel tied = *model;
   ExpandStored(layout, &tied);
   const Reduction reduction(spec, layout);
@@ -93,9 +93,13 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
   stepper.Restart(tied);
   for (int step = 0; step < kSteps && !stepper.exhausted() && !stop(); ++step) {
     const double before = stepper.E();
-    if (stepper.Step() && stepper.E() > (1 - kSmallDecrease) * before) break;
+    if (!stepper.Step()) continue;
+    const double decrease = before - stepper.E();
+    // As much again in each step that is left would not bring E back.
+    const bool hopeless = stepper.E() - (kSteps - 1 - step) * decrease > enough;
+    if (hopeless || decrease < kSmallDecrease * before) break;
   }
-  if (!(stepper.E() <= (1 + kMaxRise) * E)) return false;
+  if (!(stepper.E() <= enough)) return false;
   *model = stepper.current();
   return true;
 }
