@@ -40,7 +40,8 @@ std::string LegendByChannelAndLobe(const FactorModel& model) {
   };
   for (int c = 0; c < kChannels; ++c) add(kChannelColors[c], "solid", kChannelNames[c]);
   for (int m = 0; m < model.spec().lobes; ++m) {
-    add("#555555", kDash[m], "lobe " + std::to_string(m + 1) + (Absent(model, m) ? " (s = 0)" : ""));
+    add("#555555", kDash[m],
+        "lobe " + std::to_string(m + 1) + (Absent(model, m) ? " (s = 0)" : ""));
   }
   return legend;
 }
