@@ -121,9 +121,13 @@ def to_check(sources, changed, commit):
         users = [source for source in included if header in included[source]]
         if includes_less(header, commit):
             checked.update(users)
-        elif not checked.intersection(users):
-            # Its own source, or the one that the build makes for it, has its name.
-            checked.add(next((user for user in users if user.stem == header.stem), users[0]))
+        else:
+            # Its own source, or the one that the build makes for it: that includes it first, which
+            # shows that the header includes what it needs.
+            name = header.relative_to(ROOT).with_suffix("").parts[1:]
+            own = [user for user in users if user.with_suffix("").parts[-len(name):] == name]
+            if own or not checked.intersection(users):
+                checked.add((own or users)[0])
     return checked
 
 

@@ -28,10 +28,6 @@ double Stretch::ThetaH(double theta_h, const Place& place) const {
   return any() ? std::min(theta_h * Factor(place), kPi / 2) : theta_h;
 }
 
-double Stretch::ThetaH(const HalfDiffAngles& angles) const {
-  return any() ? ThetaH(angles.theta_h, {angles.theta_d, angles.phi_d}) : angles.theta_h;
-}
-
 void CheckStretch(const Stretch& stretch) {
   for (const double exponent : {stretch.along, stretch.across}) {
     if (exponent >= -kMaxStretch && exponent <= kMaxStretch) continue;

@@ -33,7 +33,6 @@ struct Stretch {
   double Factor(const Place& place) const;
   // Where D is read; theta_h itself, to the bit, without a stretch. [rad]
   double ThetaH(double theta_h, const Place& place) const;
-  double ThetaH(const HalfDiffAngles& angles) const;
 
   bool operator==(const Stretch&) const = default;
 };

@@ -10,21 +10,11 @@
 namespace trilobe {
 namespace {
 
-// How a factor's tables lie in lanes; what the compiler can know of TableLanes.
-struct Sharing {
-  bool per_lobe, per_channel;
-  int stride, size;
-
-  TRILOBE_ALWAYS_INLINE int First(int channel) const { return per_channel ? channel * stride : 0; }
-  bool operator==(const Sharing&) const = default;
-};
-constexpr Sharing kByLobe{
+// Of the paper's sharing: a lobe has one D and one G, a channel one F.
+constexpr LaneLayout kByLobe{
     .per_lobe = true, .per_channel = false, .stride = kVector, .size = kVector};
-constexpr Sharing kByChannel{.per_lobe = false, .per_channel = true, .stride = 1, .size = kVector};
-
-Sharing SharingOf(const TableLanes& lanes) {
-  return {lanes.per_lobe, lanes.per_channel, lanes.stride, lanes.size};
-}
+constexpr LaneLayout kByChannel{
+    .per_lobe = false, .per_channel = true, .stride = 1, .size = kVector};
 
 // All that the loops over samples need.
 struct ReadJob {
@@ -42,7 +32,7 @@ struct ReadJob {
   };
   std::array<OfReading, ReadingOrder::kMost> readings;
   int num_readings;
-  Sharing D, F, G;
+  LaneLayout D, F, G;
   const double *d, *s;
   int lobes, amplitude_lanes;
   double *residual, *amplitude, *D_slope, *F_slope, *shadow;
@@ -50,10 +40,10 @@ struct ReadJob {
 
 // Of the lobes in a channel.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void LobesOf(Sharing sharing, int c, const double* reading, Lanes4* of) {
-  const double* const first = reading + sharing.First(c);
+TRILOBE_ALWAYS_INLINE void LobesOf(LaneLayout layout, int c, const double* reading, Lanes4* of) {
+  const double* const first = reading + layout.First(c);
   for (int b = 0; b < kBlocks; ++b) {
-    if (sharing.per_lobe) {
+    if (layout.per_lobe) {
       LoadLanes(first + kVector * b, &of[b]);
     } else {
       of[b] = Lanes4{} + *first;
@@ -70,9 +60,9 @@ TRILOBE_ALWAYS_INLINE double Sum(const Lanes4* of) {
 
 // The reverse of LobesOf, for derivatives.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void ToTables(Sharing sharing, int c, const Lanes4* of, double* slope) {
-  double* const first = slope + c * sharing.size + sharing.First(c);
-  if (sharing.per_lobe) {
+TRILOBE_ALWAYS_INLINE void ToTables(LaneLayout layout, int c, const Lanes4* of, double* slope) {
+  double* const first = slope + c * layout.size + layout.First(c);
+  if (layout.per_lobe) {
     for (int b = 0; b < kBlocks; ++b) StoreLanes(of[b], first + kVector * b);
   } else {
     *first = Sum<kBlocks>(of);
@@ -90,8 +80,8 @@ template <int kBlocks, Known kKnown>
 TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
   constexpr bool kOneVector = kKnown != Known::kNothing;
   constexpr bool kPaper = kKnown == Known::kPaperSharing;
-  const Sharing D_sharing = kPaper ? kByLobe : job.D, F_sharing = kPaper ? kByChannel : job.F,
-                G_sharing = kPaper ? kByLobe : job.G;
+  const LaneLayout D_lanes = kPaper ? kByLobe : job.D, F_lanes = kPaper ? kByChannel : job.F,
+                   G_lanes = kPaper ? kByLobe : job.G;
   for (int j = job.begin; j < job.end; ++j) {
     const int n = j - job.begin;
     std::array<double*, ReadingOrder::kMost> R;
@@ -114,10 +104,10 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
     const double inverse_cosines = job.samples->inverse_cosines[j];
     for (int c = 0; c < kChannels; ++c) {
       Lanes4 D[kBlocks], F[kBlocks], G_i[kBlocks], G_o[kBlocks], of_s[kBlocks], x[kBlocks];
-      LobesOf<kBlocks>(D_sharing, c, R[0], D);
-      LobesOf<kBlocks>(F_sharing, c, R[job.num_readings - 3], F);
-      LobesOf<kBlocks>(G_sharing, c, R[job.num_readings - 2], G_i);
-      LobesOf<kBlocks>(G_sharing, c, R[job.num_readings - 1], G_o);
+      LobesOf<kBlocks>(D_lanes, c, R[0], D);
+      LobesOf<kBlocks>(F_lanes, c, R[job.num_readings - 3], F);
+      LobesOf<kBlocks>(G_lanes, c, R[job.num_readings - 2], G_i);
+      LobesOf<kBlocks>(G_lanes, c, R[job.num_readings - 1], G_o);
       Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
       for (int b = 0; b < kBlocks; ++b) {
         Lanes4 s;
@@ -138,9 +128,9 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
         amplitude[job.lobes] = 1;
       }
       const int slope = n * kChannels;
-      if (job.wanted.D) ToTables<kBlocks>(D_sharing, c, of_D, job.D_slope + slope * D_sharing.size);
-      if (job.wanted.F) ToTables<kBlocks>(F_sharing, c, of_F, job.F_slope + slope * F_sharing.size);
-      if (job.wanted.G) ToTables<kBlocks>(G_sharing, c, of_G, job.shadow + slope * G_sharing.size);
+      if (job.wanted.D) ToTables<kBlocks>(D_lanes, c, of_D, job.D_slope + slope * D_lanes.size);
+      if (job.wanted.F) ToTables<kBlocks>(F_lanes, c, of_F, job.F_slope + slope * F_lanes.size);
+      if (job.wanted.G) ToTables<kBlocks>(G_lanes, c, of_G, job.shadow + slope * G_lanes.size);
     }
   }
 }
@@ -158,8 +148,8 @@ static_assert(kMaxLobes <= 2 * kVector);
 }  // namespace
 
 TableLanes::TableLanes(const ModelSpec& spec, Factor factor)
-    : per_lobe(spec.sharing(factor).per_lobe || spec.lobes == 0),
-      per_channel(spec.sharing(factor).per_channel) {
+    : LaneLayout{.per_lobe = spec.sharing(factor).per_lobe || spec.lobes == 0,
+                 .per_channel = spec.sharing(factor).per_channel} {
   const int lobe_lanes = std::max(PaddedToVectors(spec.lobes), kVector);
   stride = per_lobe ? lobe_lanes : 1;
   size = PaddedToVectors(per_channel ? kChannels * stride : stride);
@@ -224,9 +214,9 @@ void SampleReader::Read(int begin, int end, const Wanted& wanted, Batch* batch) 
               .samples = &samples_,
               .readings = {},
               .num_readings = samples_.order.count(),
-              .D = SharingOf(lanes(Factor::kD)),
-              .F = SharingOf(lanes(Factor::kF)),
-              .G = SharingOf(lanes(Factor::kG)),
+              .D = lanes(Factor::kD),
+              .F = lanes(Factor::kF),
+              .G = lanes(Factor::kG),
               .d = d_.data(),
               .s = s_.data(),
               .lobes = spec_.lobes,

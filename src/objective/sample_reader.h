@@ -14,18 +14,23 @@ namespace trilobe {
 inline constexpr int kVector = 4;
 constexpr int PaddedToVectors(int size) { return (size + kVector - 1) / kVector * kVector; }
 
-// Where the tables of a factor have their lanes: those of the lobes follow each other, once or
-// channel by channel.
-struct TableLanes {
-  TableLanes() = default;
-  TableLanes(const ModelSpec& spec, Factor factor);
+// How the tables of a factor lie in lanes: those of the lobes follow each other, once or channel by
+// channel.
+struct LaneLayout {
+  bool per_lobe = false, per_channel = false;
+  int stride = 0;  // from one channel's lanes to the next one's
+  int size = 0;    // of all, padded
 
   // The first of the lanes that serve a channel: one a lobe, or one for all of them.
   int First(int channel) const { return per_channel ? channel * stride : 0; }
+  bool operator==(const LaneLayout&) const = default;
+};
 
-  bool per_lobe = false, per_channel = false;
-  int stride = 0;             // from one channel's lanes to the next one's
-  int size = 0;               // of all, padded
+// And which lane each of them has.
+struct TableLanes : LaneLayout {
+  TableLanes() = default;
+  TableLanes(const ModelSpec& spec, Factor factor);
+
   std::vector<int> of_table;  // [num_tables]
 };
 
@@ -59,7 +64,6 @@ class SampleReader {
     bool amplitudes = false, D = false, F = false, G = false;
     bool any() const { return amplitudes || D || F || G; }
   };
-  static constexpr Wanted kAllSlopes{true, true, true, true};
 
   // Samples [begin, end), kBatch at most.
   void Read(int begin, int end, const Wanted& wanted, Batch* batch) const;

@@ -22,10 +22,14 @@ namespace {
 
 constexpr double kTheta = 0.3, kHalfTurn = kPi / 2;
 
+double ReadAt(const Stretch& stretch, const HalfDiffAngles& angles) {
+  return stretch.ThetaH(angles.theta_h, {angles.theta_d, angles.phi_d});
+}
+
 TEST(Stretch, NoneIsTheIdentityToTheBit) {
   EXPECT_FALSE(Stretch().any());
   for (const double theta_h : {0.0, 0.1, 1.5}) {
-    EXPECT_EQ(Stretch().ThetaH({theta_h, 1.2, 0.7}), theta_h);
+    EXPECT_EQ(ReadAt(Stretch(), {theta_h, 1.2, 0.7}), theta_h);
   }
 }
 
@@ -35,9 +39,9 @@ TEST(Stretch, WidensHighlightsByPowersOfTheCosine) {
   for (const double theta_d : {0.0, 0.5, 1.0, 1.4}) {
     const double cosine = std::cos(theta_d);
     // The half vector leans within the plane of both directions, or across it.
-    EXPECT_NEAR(stretch.ThetaH({kTheta, theta_d, 0}),
+    EXPECT_NEAR(ReadAt(stretch, {kTheta, theta_d, 0}),
                 std::min(kTheta * std::pow(cosine, -0.5), kPi / 2), 1e-15);
-    EXPECT_NEAR(stretch.ThetaH({kTheta, theta_d, kHalfTurn}), kTheta * std::pow(cosine, 0.25),
+    EXPECT_NEAR(ReadAt(stretch, {kTheta, theta_d, kHalfTurn}), kTheta * std::pow(cosine, 0.25),
                 1e-15);
     const double between = stretch.Factor({theta_d, kPi / 4});
     EXPECT_NEAR(between * between, (1 / cosine + std::sqrt(cosine)) / 2, 1e-12);
@@ -45,7 +49,7 @@ TEST(Stretch, WidensHighlightsByPowersOfTheCosine) {
   // Nothing changes at normal incidence, and nothing is infinite at grazing.
   EXPECT_EQ(stretch.Factor({0, 0.3}), 1);
   for (const double phi_d : {0.0, 0.5, kHalfTurn}) {
-    const double read_at = stretch.ThetaH({1.5, kPi / 2, phi_d});
+    const double read_at = ReadAt(stretch, {1.5, kPi / 2, phi_d});
     EXPECT_TRUE(read_at >= 0 && read_at <= kPi / 2) << phi_d;
   }
 }
@@ -59,9 +63,9 @@ TEST(Stretch, ZeroAndOneIsALobeAboutTheMirrorDirection) {
   const Direction within = {-std::sin(1.0 + small), 0, std::cos(1.0 + small)};
   const Direction across = {-std::sin(1.0) * std::cos(small), std::sin(small),
                             std::cos(1.0) * std::cos(small)};
-  const double along = stretch.ThetaH(ToHalfDiff({wi, within}));
+  const double along = ReadAt(stretch, ToHalfDiff({wi, within}));
   EXPECT_NEAR(along, small / 2, 1e-8);
-  EXPECT_NEAR(stretch.ThetaH(ToHalfDiff({wi, across})), along, 1e-7);
+  EXPECT_NEAR(ReadAt(stretch, ToHalfDiff({wi, across})), along, 1e-7);
 }
 
 TEST(Stretch, ExchangedDirectionsReadTheSame) {

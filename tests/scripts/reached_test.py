@@ -72,9 +72,9 @@ class Reached(unittest.TestCase):
         self.write("src/math/cubic.h", '#include "trilobe/base/error.h"\n// changed\n')
         self.commit()
         self.assertEqual(self.reached(), ["src/math/cubic.cc"])
-        # Or by any that has changed itself.
+        # Even where another source has changed itself.
         self.write("tests/math/cubic_test.cc", '#include "tests/util.h"\n// changed\n')
-        self.assertEqual(self.reached(), ["tests/math/cubic_test.cc"])
+        self.assertEqual(self.reached(), ["src/math/cubic.cc", "tests/math/cubic_test.cc"])
 
     def test_checks_a_header_without_a_source_by_what_includes_it(self):
         self.write("src/base/error.h", "// changed\n")
