@@ -19,7 +19,7 @@ constexpr LaneLayout kByChannel{
 // All that the loops over samples need.
 struct ReadJob {
   int begin, end;
-  SampleReader::Wanted wanted;
+  SampleReader::Slopes slopes;
   const FoldedSamples* samples;
   struct OfReading {
     const Cell* cells;
@@ -121,16 +121,14 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
         x[b] = s * of_s[b];
       }
       job.residual[n * kChannels + c] = job.d[c] + Sum<kBlocks>(x) - job.samples->rho[c][j];
-      if (!job.wanted.any()) continue;
-      if (job.wanted.amplitudes) {
-        double* const amplitude = job.amplitude + (n * kChannels + c) * job.amplitude_lanes;
-        for (int b = 0; b < kBlocks; ++b) StoreLanes(of_s[b], amplitude + kVector * b);
-        amplitude[job.lobes] = 1;
-      }
+      if (job.slopes == SampleReader::Slopes::kNone) continue;
+      double* const amplitude = job.amplitude + (n * kChannels + c) * job.amplitude_lanes;
+      for (int b = 0; b < kBlocks; ++b) StoreLanes(of_s[b], amplitude + kVector * b);
+      amplitude[job.lobes] = 1;
       const int slope = n * kChannels;
-      if (job.wanted.D) ToTables<kBlocks>(D_lanes, c, of_D, job.D_slope + slope * D_lanes.size);
-      if (job.wanted.F) ToTables<kBlocks>(F_lanes, c, of_F, job.F_slope + slope * F_lanes.size);
-      if (job.wanted.G) ToTables<kBlocks>(G_lanes, c, of_G, job.shadow + slope * G_lanes.size);
+      ToTables<kBlocks>(D_lanes, c, of_D, job.D_slope + slope * D_lanes.size);
+      ToTables<kBlocks>(F_lanes, c, of_F, job.F_slope + slope * F_lanes.size);
+      ToTables<kBlocks>(G_lanes, c, of_G, job.shadow + slope * G_lanes.size);
     }
   }
 }
@@ -207,10 +205,10 @@ void SampleReader::SetModel(const FactorModel& model) {
   }
 }
 
-void SampleReader::Read(int begin, int end, const Wanted& wanted, Batch* batch) const {
+void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
   ReadJob job{.begin = begin,
               .end = end,
-              .wanted = wanted,
+              .slopes = slopes,
               .samples = &samples_,
               .readings = {},
               .num_readings = samples_.order.count(),
@@ -267,7 +265,7 @@ double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int n
     const int chunk_end = std::min((k + 1) * kChunk, samples.size());
     for (int begin = k * kChunk; begin < chunk_end; begin += SampleReader::kBatch) {
       const int end = std::min(begin + SampleReader::kBatch, chunk_end);
-      reader.Read(begin, end, /*wanted=*/{}, &batch);
+      reader.Read(begin, end, SampleReader::Slopes::kNone, &batch);
       for (int j = begin; j < end; ++j) {
         for (int c = 0; c < kChannels; ++c) {
           const double residual = batch.residual[(j - begin) * kChannels + c];

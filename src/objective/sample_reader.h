@@ -59,14 +59,11 @@ class SampleReader {
   // From now on, this model's parameters are read. It is not kept.
   void SetModel(const FactorModel& model);
 
-  // Which slopes are wanted, besides residuals and readings.
-  struct Wanted {
-    bool amplitudes = false, D = false, F = false, G = false;
-    bool any() const { return amplitudes || D || F || G; }
-  };
+  // Whether slopes are wanted, besides residuals and readings.
+  enum class Slopes { kNone, kAll };
 
   // Samples [begin, end), kBatch at most.
-  void Read(int begin, int end, const Wanted& wanted, Batch* batch) const;
+  void Read(int begin, int end, Slopes slopes, Batch* batch) const;
 
   const FoldedSamples& samples() const { return samples_; }
   const ModelSpec& spec() const { return spec_; }

@@ -12,7 +12,7 @@ namespace trilobe {
 namespace {
 
 // Rows of a kind, or of the tables of D that are read by one stretch, but for where their sums lie.
-SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch, int first_parameter) {
+SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch) {
   const ModelSpec& spec = reader.spec();
   const FactorModel model(spec);
   SampleRows rows;
@@ -36,10 +36,10 @@ SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch, int first_
   rows.tables = static_cast<int>(rows.table.size());
   for (int entry = 0; entry < rows.entries; ++entry) {
     for (const int t : rows.table) {
-      const int parameter = kind != Kind::kAmplitudes ? model.TableOffset(FactorOf(kind), t) + entry
-                            : t == spec.lobes         ? entry
-                                                      : kChannels * (1 + t) + entry;
-      rows.parameter.push_back(parameter - first_parameter);
+      rows.parameter.push_back(kind != Kind::kAmplitudes
+                                   ? model.TableOffset(FactorOf(kind), t) + entry
+                               : t == spec.lobes ? entry
+                                                 : kChannels * (1 + t) + entry);
     }
   }
   return rows;
@@ -48,16 +48,12 @@ SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch, int first_
 }  // namespace
 
 SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& spec,
-                                 int num_threads, std::optional<Kind> only)
+                                 int num_threads)
     : reader_(samples, spec),
       num_threads_(num_threads),
       accumulators_(NumAccumulators(samples.size())) {
-  int begin = 0;  // parameter of the only kind
-  if (only && *only != Kind::kAmplitudes) begin = FactorModel(spec).TableOffset(FactorOf(*only), 0);
   const auto add = [&](Kind kind, int stretch) {
-    SampleRows rows = RowsOf(reader_, kind, stretch, begin);
-    rows.wanted = !only || *only == kind;
-    layout_.rows.push_back(std::move(rows));
+    layout_.rows.push_back(RowsOf(reader_, kind, stretch));
   };
   add(Kind::kAmplitudes, 0);
   for (int k = 0; k < samples.order.of_D; ++k) add(Kind::kD, k);
@@ -65,15 +61,13 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
   add(Kind::kG, 0);
   const SampleRows& amplitudes = layout_.amplitudes();
   for (SampleRows& rows : layout_.rows) {
-    if (!rows.wanted) continue;
     num_parameters_ += static_cast<int>(rows.parameter.size());
-    rows.own_lines = SampleRows::kFirstAmplitude +
-                     (amplitudes.wanted ? amplitudes.entries * amplitudes.tables : 0);
+    rows.own_lines = SampleRows::kFirstAmplitude + amplitudes.entries * amplitudes.tables;
     rows.own = layout_.size;
     layout_.size += rows.entries * rows.own_size();
     for (const SampleRows& of : layout_.rows) {
       rows.blocks.push_back(layout_.size);
-      if (of.wanted && of.kind != Kind::kAmplitudes) {
+      if (of.kind != Kind::kAmplitudes) {
         layout_.size +=
             &of == &rows && rows.by_cell
                 ? rows.InCell(static_cast<int>(samples.cells_of(FactorOf(rows.kind)).size()), 0)
@@ -110,7 +104,6 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   result->squared_lengths.assign(n, 0.0);
   result->H.assign(n * n, 0.0);
   for (const SampleRows& rows : layout_.rows) {
-    if (!rows.wanted) continue;
     // Entries by threes of tables fill lines of the cache.
     constexpr int kEntries = 8;
     ParallelFor((rows.entries + kEntries - 1) / kEntries, num_threads_, [&](int chunk) {
@@ -135,7 +128,7 @@ void SampleEquations::GatherOwn(const SampleRows& rows, int entry, QuadraticMode
     const double* const own = sums + rows.own + entry * rows.own_size() + rows.lane[t];
     result->gradient[p] = own[SampleRows::kGradient * rows.lanes];
     double* const to = &result->H[p * n];
-    for (size_t i = 0; i < amplitudes.parameter.size() && amplitudes.wanted; ++i) {
+    for (size_t i = 0; i < amplitudes.parameter.size(); ++i) {
       to[amplitudes.parameter[i]] = own[(SampleRows::kFirstAmplitude + i) * rows.lanes];
     }
     if (rows.kind != Kind::kAmplitudes) continue;
@@ -154,7 +147,7 @@ void SampleEquations::GatherBlocks(const SampleRows& rows, int first_entry, int 
   for (size_t k = 1; k < rows.blocks.size(); ++k) {
     const SampleRows& of = layout_.rows[k];
     const bool own = &of == &rows;
-    if (!of.wanted || (own && rows.by_cell)) continue;
+    if (own && rows.by_cell) continue;
     const double* const blocks = accumulators_[0].data() + rows.blocks[k];
     const int block = of.tables * rows.lanes;
     const auto at = [&](int e_of, int e) {

@@ -1,7 +1,6 @@
 #ifndef TRILOBE_SUMS_SAMPLE_EQUATIONS_H_
 #define TRILOBE_SUMS_SAMPLE_EQUATIONS_H_
 
-#include <optional>
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
@@ -12,14 +11,12 @@
 
 namespace trilobe {
 
-// The normal equations of any samples, of all parameters of a model or of one kind (AddSampleSums).
+// The normal equations of any samples, of all parameters of a model (AddSampleSums).
 class SampleEquations {
  public:
-  SampleEquations(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
-                  std::optional<Kind> only = std::nullopt);
+  SampleEquations(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
 
-  // Sets all of *result; where it is of one kind, its parameters alone. The same bits for any
-  // number of threads.
+  // Sets all of *result. The same bits for any number of threads.
   void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <span>
 
 #include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
 #include "trilobe/math/element_step.h"
 
 namespace trilobe {
@@ -15,6 +16,24 @@ struct SampleRange {
   int size;
   const double *A, *weight_i, *weight_o;
   double *b, *G_i, *G_o;
+};
+
+// The numbers of all samples.
+struct NodeJob {
+  const double* A;
+  double *b, *G_i, *G_o;
+  // Of the entries of cells of G, by either direction.
+  std::array<const double*, Stencil::kMaxSize> weight_i, weight_o;
+
+  SampleRange Of(const SampleShadowing::Readers& of) const {
+    return {.size = of.end - of.begin,
+            .A = A + of.begin,
+            .weight_i = of.i < 0 ? nullptr : weight_i[of.i] + of.begin,
+            .weight_o = of.o < 0 ? nullptr : weight_o[of.o] + of.begin,
+            .b = b + of.begin,
+            .G_i = G_i + of.begin,
+            .G_o = G_o + of.begin};
+  }
 };
 
 constexpr int kLanes = 8;
@@ -76,11 +95,13 @@ TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
 }
 
 TRILOBE_MULTIVERSION
-void AddChange(const SampleRange& at, double* c) {
-  if (at.weight_i != nullptr && at.weight_o != nullptr) {
-    AddStretch<true>(at, c);
-  } else {
-    AddStretch<false>(at, c);
+void AddChange(const NodeJob& job, std::span<const SampleShadowing::Readers> readers, double* c) {
+  for (const SampleShadowing::Readers& of : readers) {
+    if (of.i >= 0 && of.o >= 0) {
+      AddStretch<true>(job.Of(of), c);
+    } else {
+      AddStretch<false>(job.Of(of), c);
+    }
   }
 }
 
@@ -104,9 +125,8 @@ void SubtractChange(int size, const double* __restrict a, const double* __restri
   }
 }
 
-// The node moves.
-TRILOBE_MULTIVERSION
-void Move(const SampleRange& at, double step) {
+// The node that these samples read moves.
+TRILOBE_ALWAYS_INLINE void MoveRange(const SampleRange& at, double step) {
   const double* __restrict const A = at.A;
   double* __restrict const b = at.b, * __restrict const G_i = at.G_i, * __restrict const G_o = at.G_o;
   const double* __restrict const weight_i = at.weight_i, * __restrict const weight_o = at.weight_o;
@@ -132,23 +152,34 @@ void Move(const SampleRange& at, double step) {
   }
 }
 
+TRILOBE_MULTIVERSION
+void Move(const NodeJob& job, std::span<const SampleShadowing::Readers> readers, double step) {
+  for (const SampleShadowing::Readers& of : readers) MoveRange(job.Of(of), step);
+}
+
 }  // namespace
 
-SampleShadowing::SampleShadowing(const FoldedSamples& samples, const ModelSpec& spec,
-                                 int num_threads)
-    : samples_(samples),
-      num_threads_(num_threads),
-      reader_(samples, spec),
-      readers_(spec.table_size(Factor::kG)),
-      A_(samples.size()),
-      b_(samples.size()) {
-  const size_t size = samples.size();
-  for (std::vector<double>& of_channel : residual_) of_channel.resize(size);
+SampleShadowing::SampleShadowing(SampleReadings* readings)
+    : readings_(*readings),
+      readers_(readings->spec().table_size(Factor::kG)),
+      A_(readings->samples().size()),
+      b_(readings->samples().size()) {
+  const ModelSpec& spec = readings_.spec();
+  const FoldedSamples& samples = readings_.samples();
+  for (std::vector<double>& of_channel : residual_) of_channel.resize(samples.size());
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
     const auto [begin, end] = spec.channels(Factor::kG, t);
-    tables_.push_back({std::vector<double>(size), std::vector<double>(size),
-                       std::vector<std::vector<double>>(end - begin, std::vector<double>(size))});
+    a_.emplace_back(end - begin, std::vector<double>(samples.size()));
   }
+  const auto add = [&](int node, const Readers& of) {
+    std::vector<Readers>& all = readers_[node];
+    if (!all.empty() && all.back().end == of.begin && all.back().i == of.i &&
+        all.back().o == of.o) {
+      all.back().end = of.end;
+    } else {
+      all.push_back(of);
+    }
+  };
   const std::vector<Cell>& cells = samples.cells_of(Factor::kG);
   for (const auto& [cell_i, cell_o, begin, end] : samples.pairs) {
     const Cell &i = cells[cell_i], &o = cells[cell_o];
@@ -157,45 +188,28 @@ SampleShadowing::SampleShadowing(const FoldedSamples& samples, const ModelSpec& 
       const auto found = std::find(cell.entry.begin(), last, entry);
       return found == last ? -1 : static_cast<int>(found - cell.entry.begin());
     };
-    for (int k = 0; k < i.size; ++k) {
-      readers_[i.entry[k]].push_back({begin, end, k, place(o, i.entry[k])});
-    }
+    for (int k = 0; k < i.size; ++k) add(i.entry[k], {begin, end, k, place(o, i.entry[k])});
     for (int k = 0; k < o.size; ++k) {
-      if (place(i, o.entry[k]) < 0) readers_[o.entry[k]].push_back({begin, end, -1, k});
+      if (place(i, o.entry[k]) < 0) add(o.entry[k], {begin, end, -1, k});
     }
   }
 }
 
-void SampleShadowing::ForChunks(const std::function<void(int, int)>& work) const {
-  constexpr int kChunk = 64 * SampleReader::kBatch;
-  ParallelFor((samples_.size() + kChunk - 1) / kChunk, num_threads_,
-              [&](int k) { work(k * kChunk, std::min((k + 1) * kChunk, samples_.size())); });
-}
-
 void SampleShadowing::Read(const FactorModel& model) {
-  reader_.SetModel(model);
-  const TableLanes& lanes = reader_.lanes(Factor::kG);
-  ForChunks([&](int chunk_begin, int chunk_end) {
-    SampleReader::Batch batch(reader_);
-    for (int begin = chunk_begin; begin < chunk_end; begin += SampleReader::kBatch) {
-      const int end = std::min(begin + SampleReader::kBatch, chunk_end);
-      reader_.Read(begin, end, {.G = true}, &batch);
-      const auto copy = [&](const double* from, int stride, std::vector<double>* to) {
-        for (int j = begin; j < end; ++j) (*to)[j] = from[(j - begin) * stride];
-      };
+  constexpr int kBatch = SampleReadings::kBatch;
+  readings_.ForChunks([&](int chunk_begin, int chunk_end) {
+    SampleReadings::Batch batch(readings_.spec(), Kind::kG);
+    for (int begin = chunk_begin; begin < chunk_end; begin += kBatch) {
+      const int size = std::min(kBatch, chunk_end - begin);
+      readings_.Evaluate(begin, begin + size, model, &batch);
       for (int c = 0; c < kChannels; ++c) {
-        for (int j = begin; j < end; ++j) {
-          residual_[c][j] = -batch.residual[(j - begin) * kChannels + c];
-        }
+        std::transform(&batch.residual[c * kBatch], &batch.residual[c * kBatch] + size,
+                       &residual_[c][begin], std::negate<>());
       }
-      for (size_t t = 0; t < tables_.size(); ++t) {
-        const int lane = lanes.of_table[t];
-        OfTable& of = tables_[t];
-        copy(&batch.G_i[lane], lanes.size, &of.G_i);
-        copy(&batch.G_o[lane], lanes.size, &of.G_o);
-        const int first = reader_.spec().channels(Factor::kG, static_cast<int>(t)).begin;
-        for (size_t c = 0; c < of.a.size(); ++c) {
-          copy(&batch.shadow[(first + c) * lanes.size + lane], kChannels * lanes.size, &of.a[c]);
+      for (int t = 0; t < batch.tables; ++t) {
+        const int first = readings_.spec().channels(Factor::kG, t).begin;
+        for (size_t c = 0; c < a_[t].size(); ++c) {
+          std::copy_n(batch.Slope(first + static_cast<int>(c), t), size, &a_[t][c][begin]);
         }
       }
     }
@@ -203,13 +217,12 @@ void SampleShadowing::Read(const FactorModel& model) {
 }
 
 void SampleShadowing::SetSums(int t) {
-  const OfTable& of = tables_[t];
-  const int first = reader_.spec().channels(Factor::kG, t).begin;
-  ForChunks([&](int begin, int end) {
+  const int first = readings_.spec().channels(Factor::kG, t).begin;
+  readings_.ForChunks([&](int begin, int end) {
     std::fill(A_.begin() + begin, A_.begin() + end, 0.0);
     std::fill(b_.begin() + begin, b_.begin() + end, 0.0);
-    for (size_t c = 0; c < of.a.size(); ++c) {
-      AddToSums(end - begin, &samples_.weight[first + c][begin], &of.a[c][begin],
+    for (size_t c = 0; c < a_[t].size(); ++c) {
+      AddToSums(end - begin, &readings_.samples().weight[first + c][begin], &a_[t][c][begin],
                 &residual_[first + c][begin], &A_[begin], &b_[begin]);
     }
   });
@@ -217,38 +230,39 @@ void SampleShadowing::SetSums(int t) {
 
 void SampleShadowing::UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
                                   FactorModel* model) {
-  OfTable& of_table = tables_[t];
-  const auto stretch = [&](const Readers& of) {
-    const auto weight = [&](int reading, int k) {
-      return k < 0 ? nullptr : samples_.readings[reading].weight[k].data() + of.begin;
-    };
-    return SampleRange{.size = of.end - of.begin,
-                       .A = &A_[of.begin],
-                       .weight_i = weight(samples_.order.G_i(), of.i),
-                       .weight_o = weight(samples_.order.G_o(), of.o),
-                       .b = &b_[of.begin],
-                       .G_i = &of_table.G_i[of.begin],
-                       .G_o = &of_table.G_o[of.begin]};
+  const FoldedSamples& samples = readings_.samples();
+  std::vector<double>&G_i = readings_.G_i(t), &G_o = readings_.G_o(t);
+  NodeJob job{.A = A_.data(),
+              .b = b_.data(),
+              .G_i = G_i.data(),
+              .G_o = G_o.data(),
+              .weight_i = {},
+              .weight_o = {}};
+  const auto weights = [&](int reading, std::array<const double*, Stencil::kMaxSize>* of) {
+    const std::vector<std::vector<double>>& weight = samples.readings[reading].weight;
+    for (size_t k = 0; k < weight.size(); ++k) (*of)[k] = weight[k].data();
   };
+  weights(samples.order.G_i(), &job.weight_i);
+  weights(samples.order.G_o(), &job.weight_o);
   SetSums(t);
-  const std::vector<double> old_G_i = of_table.G_i, old_G_o = of_table.G_o;
+  const std::vector<double> old_G_i = G_i, old_G_o = G_o;
   const std::span<double> table = model->table(Factor::kG, t);
   for (size_t node = 0; node < table.size(); ++node) {
     std::array<double, 4> c{};
-    for (const Readers& of : readers_[node]) AddChange(stretch(of), c.data());
+    AddChange(job, readers_[node], c.data());
     const double step =
         BestElement(table[node], {.c1 = c[0], .c2 = c[1], .c3 = c[2], .c4 = c[3]}) - table[node];
     if (step != 0) {
-      for (const Readers& of : readers_[node]) Move(stretch(of), step);
+      Move(job, readers_[node], step);
       table[node] += step;
     }
     if (on_element) on_element(*model);
   }
-  const int first = reader_.spec().channels(Factor::kG, t).begin;
-  ForChunks([&](int begin, int end) {
-    for (size_t c = 0; c < of_table.a.size(); ++c) {
-      SubtractChange(end - begin, &of_table.a[c][begin], &of_table.G_i[begin], &of_table.G_o[begin],
-                     &old_G_i[begin], &old_G_o[begin], &residual_[first + c][begin]);
+  const int first = readings_.spec().channels(Factor::kG, t).begin;
+  readings_.ForChunks([&](int begin, int end) {
+    for (size_t c = 0; c < a_[t].size(); ++c) {
+      SubtractChange(end - begin, &a_[t][c][begin], &G_i[begin], &G_o[begin], &old_G_i[begin],
+                     &old_G_o[begin], &residual_[first + c][begin]);
     }
   });
 }

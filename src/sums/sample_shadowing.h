@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/folded_samples.h"
-#include "trilobe/objective/sample_reader.h"
+#include "trilobe/sums/sample_readings.h"
 
 namespace trilobe {
 
@@ -18,38 +17,31 @@ namespace trilobe {
 //   A p^2 - 2 b p,  p = p1 delta + p2 delta^2,  and b by -A p.
 class SampleShadowing {
  public:
-  SampleShadowing(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
-
-  // Reads the samples by a model. The same bits for any number of threads.
-  void Read(const FactorModel& model);
-
-  // Puts every node of a table of that model where E is lowest with the others held; tables may
-  // follow each other. `on_element`, if set, sees the model after each.
-  void UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
-                   FactorModel* model);
-
- private:
   // Samples that read a node: as which entry of their cells of theta_i and theta_o, -1 if not.
   struct Readers {
     int begin, end, i, o;
   };
 
-  // What samples read of a table. [samples]
-  struct OfTable {
-    std::vector<double> G_i, G_o;
-    std::vector<std::vector<double>> a;  // of each channel that it serves
-  };
+  explicit SampleShadowing(SampleReadings* readings);
 
-  // Calls work(begin, end) for all samples, in chunks.
-  void ForChunks(const std::function<void(int, int)>& work) const;
+  // Looks at the samples, whose tables are read by this model. The same bits for any number of
+  // threads.
+  void Read(const FactorModel& model);
+
+  // Puts every node of a table of that model where E is lowest with the others held, and what is
+  // read of it with it; tables may follow each other. `on_element`, if set, sees the model after
+  // each.
+  void UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
+                   FactorModel* model);
+
+ private:
   void SetSums(int t);
 
-  const FoldedSamples& samples_;
-  const int num_threads_;
-  SampleReader reader_;
+  SampleReadings& readings_;
   std::vector<std::vector<Readers>> readers_;            // [node]
   std::array<std::vector<double>, kChannels> residual_;  // rho* - rho. [samples]
-  std::vector<OfTable> tables_;
+  // What a table's G_i G_o is multiplied by in each channel that it serves. [tables][.][samples]
+  std::vector<std::vector<std::vector<double>>> a_;
   std::vector<double> A_, b_;  // of the table that is updated. [samples]
 };
 

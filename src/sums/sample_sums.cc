@@ -179,7 +179,7 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   }
   Combine<kOneVector>({0, kChannels}, at->residual, 1, own.w_slope, lanes, to);
   to += lanes;
-  for (int c = 0; c < kChannels && amplitudes.wanted; ++c) {
+  for (int c = 0; c < kChannels; ++c) {
     for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
       Combine<kOneVector>({c, c + 1}, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
       if (kNewton && a < spec.lobes) {
@@ -195,7 +195,6 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
 
   alignas(sizeof(Lanes8)) double products[kMaxTables * kMaxLanes];  // [tables][lanes]
   for (int q = 0; q <= r; ++q) {
-    if (!job.layout->of(q).wanted) continue;
     const Slopes& of = at->of[q];
     const Columns& columns = job.columns[q];
     const Factor factor = job.order.factor(q);
@@ -273,7 +272,6 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
       objective += at->w_residual[c] * at->residual[c];
     }
     for (int r = 0; r < order.count(); ++r) {
-      if (!job.layout->of(r).wanted) continue;
       const FoldedSamples::OfReading& readings = samples.readings[r];
       const Factor factor = order.factor(r);
       const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
@@ -303,10 +301,9 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
         for (int b = 0; b < lanes; ++b) of.w_slope[c * lanes + b] = w[c] * of.slope[c * lanes + b];
       }
     }
-    if (job.layout->amplitudes().wanted) AddAmplitudes(job, *at, kNewton);
+    AddAmplitudes(job, *at, kNewton);
     for (int r = 0; r < order.count(); ++r) {
-      const SampleRows& rows = job.layout->of(r);
-      if (rows.wanted && rows.tables > 0) AddReading<kOneVector, kNewton>(job, r, at);
+      if (job.layout->of(r).tables > 0) AddReading<kOneVector, kNewton>(job, r, at);
     }
   }
   return objective;
@@ -353,16 +350,12 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
   const AddBatchFunction add_batch = hessian == Hessian::kNewton ? AddNewton
                                      : one_vector                ? AddGaussNewtonOfOneVector
                                                                  : AddGaussNewton;
-  SampleReader::Wanted wanted{.amplitudes = layout.amplitudes().wanted};
-  for (int r = 0; r < job.order.F(); ++r) wanted.D = wanted.D || layout.of(r).wanted;
-  wanted.F = layout.of(job.order.F()).wanted;
-  wanted.G = layout.of(job.order.G_i()).wanted;
   SampleReader::Batch batch(reader);
   Sample at{};
   double objective = 0;
   while (begin < end) {
     const int batch_end = std::min(begin + SampleReader::kBatch, end);
-    reader.Read(begin, batch_end, wanted, &batch);
+    reader.Read(begin, batch_end, SampleReader::Slopes::kAll, &batch);
     objective += add_batch(job, begin, batch_end, batch, &at);
     begin = batch_end;
   }

@@ -7,14 +7,10 @@
 
 #include "trilobe/math/stencil.h"
 #include "trilobe/objective/sample_reader.h"
+#include "trilobe/sums/kind.h"
 #include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {
-
-// The kinds of a model's parameters, in their order; d and s are amplitudes.
-enum class Kind { kAmplitudes, kD, kF, kG };
-constexpr Kind KindOf(Factor factor) { return static_cast<Kind>(1 + static_cast<int>(factor)); }
-constexpr Factor FactorOf(Kind kind) { return static_cast<Factor>(static_cast<int>(kind) - 1); }
 
 // How the sums of one kind lie, or, of D, those of its tables that are read by one stretch. Each
 // entry of its tables (of amplitudes, each channel; their tables are s of each lobe, then d) has
@@ -27,7 +23,7 @@ struct SampleRows {
   static constexpr int kSquaredLength = 0, kGradient = 1, kFirstAmplitude = 2;
 
   Kind kind = Kind::kAmplitudes;
-  bool wanted = false, by_cell = false;
+  bool by_cell = false;
   int entries = 0, tables = 0, lanes = 0, own_lines = 0;
   std::vector<int> table;      // its number among those of the kind. [tables]
   std::vector<int> lane;       // [tables]

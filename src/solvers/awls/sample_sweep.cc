@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "trilobe/math/nonnegative_least_squares.h"
 
@@ -14,82 +15,82 @@ SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, in
     : Sweep(/*rounds=*/1),  // each costs as much as the first
       spec_(spec),
       phases_(phases),
-      shadowing_(samples, spec, num_threads) {
-  const ScopedTimer timer(&phases->preparing);
-  for (const Kind kind : {Kind::kAmplitudes, Kind::kD, Kind::kF}) {
-    equations_.emplace_back(samples, spec, num_threads, kind);
+      readings_(samples, spec, num_threads),
+      amplitudes_(readings_),
+      shadowing_(&readings_) {
+  for (int t = 0; t < spec.num_tables(Factor::kD);) {
+    int end = t + 1;
+    while (end < spec.num_tables(Factor::kD) &&
+           spec.StretchOfTable(end) == spec.StretchOfTable(t)) {
+      ++end;
+    }
+    tables_.emplace_back(readings_, Kind::kD, t, end);
+    t = end;
   }
+  if (spec.lobes > 0) tables_.emplace_back(readings_, Kind::kF, 0, spec.num_tables(Factor::kF));
 }
 
-void SampleSweep::Accumulate(Kind kind, const FactorModel& model) {
+void SampleSweep::UpdateFrom(ReadingSums* sums, FactorModel* model,
+                             const std::function<void()>& update) {
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    sums->Accumulate(*model);
+  }
+  {
+    const ScopedTimer timer(&phases_->linear_algebra);
+    update();
+  }
+  if (sums->kind() == Kind::kAmplitudes) return;
   const ScopedTimer timer(&phases_->evaluating);
-  equations_[static_cast<int>(kind)].Evaluate(model, Hessian::kGaussNewton, &at_);
-}
-
-void SampleSweep::Update(std::span<const int> places, int first, double E, FactorModel* model) {
-  const size_t size = places.size(), n = at_.gradient.size();
-  std::array<double, kMaxNonnegativeUnknowns> g{}, steps{};
-  std::array<double, kMaxNonnegativeUnknowns * kMaxNonnegativeUnknowns> H{};
-  std::array<double*, kMaxNonnegativeUnknowns> elements{};
-  for (size_t k = 0; k < size; ++k) {
-    elements[k] = &model->parameters()[first + places[k]];
-    g[k] = -at_.gradient[places[k]];
-    for (size_t l = 0; l < size; ++l) H[k * size + l] = at_.H[places[k] * n + places[l]];
-  }
-  if (!MoveToMinimum({H.data(), size * size}, {g.data(), size}, E, {elements.data(), size},
-                     steps.data())) {
-    return;
-  }
-  for (size_t k = 0; k < size; ++k) {
-    if (steps[k] == 0) continue;
-    const double* const row = &at_.H[places[k] * n];
-    for (size_t l = 0; l < n; ++l) at_.gradient[l] += steps[k] * row[l];
-  }
+  readings_.Read(*model, FactorOf(sums->kind()), sums->first(), sums->last());
 }
 
 void SampleSweep::operator()(const OnElement& on_element, FactorModel* model) {
-  const auto update = [&](int place, int first) {
-    const ScopedTimer timer(&phases_->linear_algebra);
-    Update({&place, 1}, first, 0, model);
-    if (on_element) on_element(*model);
-  };
-  Accumulate(Kind::kAmplitudes, *model);
-  for (int k = 0; k < kChannels * (1 + spec_.lobes); ++k) update(k, 0);
-  for (const Factor factor : {Factor::kD, Factor::kF}) {
-    Accumulate(KindOf(factor), *model);
-    const int size = spec_.num_tables(factor) * spec_.table_size(factor);
-    for (int k = 0; k < size; ++k) update(k, model->TableOffset(factor, 0));
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    readings_.Read(*model);
   }
+  const auto update_all = [&](ReadingSums* sums) {
+    UpdateFrom(sums, model, [&] {
+      for (int t = sums->first(); t < sums->last(); ++t) {
+        for (int entry = 0; entry < sums->entries(); ++entry) {
+          sums->Update(entry, {&t, 1}, 0, model);
+          if (on_element) on_element(*model);
+        }
+      }
+    });
+  };
+  update_all(&amplitudes_);
+  for (ReadingSums& sums : tables_) update_all(&sums);
   UpdateG(on_element, model);
 }
 
 void SampleSweep::UpdateBlocks(double E, int rounds, const OnElement& on_block,
                                FactorModel* model) {
-  const auto update = [&](std::span<const int> places, int first) {
-    const ScopedTimer timer(&phases_->linear_algebra);
-    Update(places, first, E, model);
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    readings_.Read(*model);
+  }
+  std::array<int, kMaxNonnegativeUnknowns> block{};
+  // Of tables first, first + stride ...
+  const auto update = [&](ReadingSums* sums, int entry, int first, int stride) {
+    size_t size = 0;
+    for (int t = first; t < sums->last(); t += stride) block[size++] = t;
+    sums->Update(entry, {block.data(), size}, E, model);
     if (on_block) on_block(*model);
   };
-  std::array<int, kMaxNonnegativeUnknowns> places{};
   for (int round = 0; round < rounds; ++round) {
-    Accumulate(Kind::kAmplitudes, *model);
-    for (int c = 0; c < kChannels; ++c) {
-      for (int a = 0; a <= spec_.lobes; ++a) places[a] = kChannels * a + c;
-      update({places.data(), static_cast<size_t>(1 + spec_.lobes)}, 0);
-    }
-    for (const Factor factor : {Factor::kD, Factor::kF}) {
+    UpdateFrom(&amplitudes_, model, [&] {
+      for (int c = 0; c < kChannels; ++c) update(&amplitudes_, c, 0, 1);
+    });
+    for (ReadingSums& sums : tables_) {
       // Tables that serve the same channels: those of the lobes.
-      const int groups = spec_.sharing(factor).per_channel ? kChannels : 1;
-      const int count = spec_.num_tables(factor) / groups;
-      if (count == 0) continue;
-      Accumulate(KindOf(factor), *model);
-      const int table_size = spec_.table_size(factor);
-      for (int k = 0; k < table_size; ++k) {
-        for (int c = 0; c < groups; ++c) {
-          for (int m = 0; m < count; ++m) places[m] = spec_.table(factor, m, c) * table_size + k;
-          update({places.data(), static_cast<size_t>(count)}, model->TableOffset(factor, 0));
+      const int groups = spec_.sharing(FactorOf(sums.kind())).per_channel ? kChannels : 1;
+      UpdateFrom(&sums, model, [&] {
+        for (int entry = 0; entry < sums.entries(); ++entry) {
+          for (int c = 0; c < groups; ++c) update(&sums, entry, sums.first() + c, groups);
         }
-      }
+      });
     }
   }
 }

@@ -1,0 +1,69 @@
+#ifndef TRILOBE_SUMS_SAMPLE_READINGS_H_
+#define TRILOBE_SUMS_SAMPLE_READINGS_H_
+
+#include <functional>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/folded_samples.h"
+#include "trilobe/sums/kind.h"
+
+namespace trilobe {
+
+// What all samples read from each table of a model, table by table, kept while the model's
+// parameters change, kind after kind: each table is read again only when it has changed, and what
+// follows from the readings is computed side by side for many samples.
+class SampleReadings {
+ public:
+  // Samples that are looked at together.
+  static constexpr int kBatch = 64;
+
+  // How the values of one batch move with what they read from tables of one kind. Beyond `size`,
+  // numbers are finite and mean nothing.
+  struct Batch {
+    Batch(const ModelSpec& spec, Kind kind);
+
+    const double* Slope(int c, int t) const { return &slope[(c * tables + t) * kBatch]; }
+    double* Slope(int c, int t) { return &slope[(c * tables + t) * kBatch]; }
+
+    Kind kind;
+    int tables;                    // of amplitudes: d, and s of each lobe
+    std::vector<double> residual;  // rho - rho*. [kChannels][kBatch]
+    // d rho / d reading; 1 for d, and of G, d rho / d (G_i G_o). [kChannels][tables][kBatch]
+    std::vector<double> slope;
+  };
+
+  // The samples must outlive this.
+  SampleReadings(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
+
+  // Reads all tables, or those of a factor [first, last), anew.
+  void Read(const FactorModel& model);
+  void Read(const FactorModel& model, Factor factor, int first, int last);
+
+  // What a table of G was read as by the first and by the second direction. [samples]
+  std::vector<double>& G_i(int table) { return G_i_[table]; }
+  std::vector<double>& G_o(int table) { return G_o_[table]; }
+
+  // Samples [begin, end), kBatch at most, of a model with the tables that were read.
+  void Evaluate(int begin, int end, const FactorModel& model, Batch* batch) const;
+
+  const FoldedSamples& samples() const { return samples_; }
+  const ModelSpec& spec() const { return spec_; }
+  int num_threads() const { return num_threads_; }
+  // Calls work(begin, end) for all samples, in chunks of whole batches.
+  void ForChunks(const std::function<void(int, int)>& work) const;
+
+ private:
+  // Reads tables by one of the readings into to[first .. last).
+  void ReadBy(int reading, const FactorModel& model, int first, int last,
+              std::vector<std::vector<double>>* to);
+
+  const FoldedSamples& samples_;
+  const ModelSpec spec_;
+  const int num_threads_;
+  std::vector<std::vector<double>> D_, F_, G_i_, G_o_;  // [num_tables][samples]
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SUMS_SAMPLE_READINGS_H_
