@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/openblas.h"
@@ -35,40 +36,89 @@ void SolveTriangular(const char* trans, int n, const double* L, int columns, dou
 
 // Below this tiles are not worth their while.
 constexpr int kMinTiled = 1024;
-constexpr int kTile = 192;
+constexpr int kTile = 80;
+
+bool AnyNot0(int rows, int columns, size_t stride, const double* A) {
+  for (int j = 0; j < columns; ++j) {
+    for (int i = 0; i < rows; ++i) {
+      if (A[j * stride + i] != 0) return true;
+    }
+  }
+  return false;
+}
+
+// The lower triangle of a matrix in tiles, and which of them have any numbers in them.
+class Tiles {
+ public:
+  // Tiles of a column that follow each other: [begin, end).
+  struct Run {
+    int begin, end;
+  };
+
+  Tiles(int n, double* A) : n_(n), A_(A), full_((n + kTile - 1) / kTile) {
+    for (int j = 0; j < count(); ++j) {
+      full_[j].resize(count());
+      for (int i = j + 1; i < count(); ++i) full_[j][i] = AnyNot0(size(i), size(j), n_, at(i, j));
+    }
+  }
+
+  int count() const { return static_cast<int>(full_.size()); }
+  int size(int i) const { return std::min(kTile, n_ - i * kTile); }
+  int rows(const Run& run) const { return std::min(n_, run.end * kTile) - run.begin * kTile; }
+  double* at(int i, int j) const {
+    return A_ + static_cast<size_t>(j) * kTile * n_ + static_cast<size_t>(i) * kTile;
+  }
+
+  // Those below the diagonal that are not all 0; what a column takes from the tiles right of it
+  // fills these, wherever both of two are among its own.
+  std::vector<int> Below(int k) {
+    std::vector<int> below;
+    for (int i = k + 1; i < count(); ++i) {
+      if (!full_[k][i]) continue;
+      for (const int j : below) full_[j][i] = true;
+      below.push_back(i);
+    }
+    return below;
+  }
+
+ private:
+  const int n_;
+  double* const A_;
+  std::vector<std::vector<bool>> full_;  // by column and row
+};
 
 // Right-looking, a column of tiles at a time: its tile on the diagonal, those below it, and what
-// these take from the tiles right of it. Each tile is one thread's, whatever the number of threads.
+// these take from the tiles right of it. Tiles that are 0, and stay so, are left out. Each tile is
+// one thread's, whatever the number of threads.
 bool FactorByTiles(int n, double* A, int num_threads) {
   const double one = 1, minus_one = -1;
-  const int tiles = (n + kTile - 1) / kTile;
-  const auto size = [n](int i) { return std::min(kTile, n - i * kTile); };
-  const auto tile = [&](int i, int j) {
-    return A + static_cast<size_t>(j) * kTile * n + static_cast<size_t>(i) * kTile;
-  };
-  for (int k = 0; k < tiles; ++k) {
-    const int width = size(k), below = tiles - k - 1;
+  Tiles tiles(n, A);
+  for (int k = 0; k < tiles.count(); ++k) {
+    const int width = tiles.size(k);
     int info = 0;
     {
       const BlasCall call;
-      dpotrf_("L", &width, tile(k, k), &n, &info);
+      dpotrf_("L", &width, tiles.at(k, k), &n, &info);
     }
     if (info != 0) return false;
-    ParallelFor(below, num_threads, [&](int t) {
-      const int i = k + 1 + t, height = size(i);
+    const std::vector<int> below = tiles.Below(k);
+    const int count = static_cast<int>(below.size());
+    ParallelFor(count, num_threads, [&](int t) {
+      const int i = below[t], height = tiles.size(i);
       const BlasCall call;
-      dtrsm_("R", "L", "T", "N", &height, &width, &one, tile(k, k), &n, tile(i, k), &n);
+      dtrsm_("R", "L", "T", "N", &height, &width, &one, tiles.at(k, k), &n, tiles.at(i, k), &n);
     });
-    ParallelFor(below * (below + 1) / 2, num_threads, [&](int t) {
-      int j = k + 1, row = t;  // the t-th of the tiles in the lower triangle, column by column
-      for (; row >= tiles - j; ++j) row -= tiles - j;
-      const int i = j + row, height = size(i), columns = size(j);
+    ParallelFor(count, num_threads, [&](int t) {
+      const int j = below[t], columns = tiles.size(j);
       const BlasCall call;
-      if (i == j) {
-        dsyrk_("L", "N", &height, &width, &minus_one, tile(i, k), &n, &one, tile(i, i), &n);
-      } else {
-        dgemm_("N", "T", &height, &columns, &width, &minus_one, tile(i, k), &n, tile(j, k), &n,
-               &one, tile(i, j), &n);
+      dsyrk_("L", "N", &columns, &width, &minus_one, tiles.at(j, k), &n, &one, tiles.at(j, j), &n);
+      // Those below it in one call for each run.
+      for (int i = t + 1; i < count;) {
+        Tiles::Run run{below[i], below[i] + 1};
+        while (++i < count && below[i] == run.end) ++run.end;
+        const int rows = tiles.rows(run);
+        dgemm_("N", "T", &rows, &columns, &width, &minus_one, tiles.at(run.begin, k), &n,
+               tiles.at(j, k), &n, &one, tiles.at(run.begin, j), &n);
       }
     });
   }

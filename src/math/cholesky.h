@@ -8,7 +8,9 @@ namespace trilobe {
 
 // Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; what lies
 // above is neither read nor written. False, and no factor, if it is not positive definite.
-// More than one thread helps with large ones; the same bits for any number of them.
+// More than one thread helps with large ones; the same bits for any number of them. Of large ones,
+// tiles that are 0 in A and in L cost nothing: rows that have products with few others should come
+// first, and next to these.
 bool FactorCholesky(int n, double* A, int num_threads = 1);
 
 // Overwrites the factor L by both triangles of the inverse of L L'.

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "trilobe/base/parallel.h"
+
 namespace trilobe {
 
-// In blocks that fit into the cache.
-void MirrorTriangle(Triangle from, size_t n, double* A) {
+// In blocks that fit into the cache, of which a row is one thread's.
+void MirrorTriangle(Triangle from, size_t n, double* A, int num_threads) {
   constexpr size_t kBlock = 16;
-  for (size_t k0 = 0; k0 < n; k0 += kBlock) {
+  ParallelFor(static_cast<int>((n + kBlock - 1) / kBlock), num_threads, [&](int row) {
+    const size_t k0 = row * kBlock;
     for (size_t l0 = 0; l0 <= k0; l0 += kBlock) {
       for (size_t k = k0; k < std::min(n, k0 + kBlock); ++k) {
         for (size_t l = l0; l < std::min(k, l0 + kBlock); ++l) {
@@ -17,7 +20,7 @@ void MirrorTriangle(Triangle from, size_t n, double* A) {
         }
       }
     }
-  }
+  });
 }
 
 }  // namespace trilobe

@@ -9,7 +9,7 @@ namespace trilobe {
 enum class Triangle { kUpper, kLower };
 
 // Makes A [n][n] symmetric: what is in one triangle goes to the other.
-void MirrorTriangle(Triangle from, size_t n, double* A);
+void MirrorTriangle(Triangle from, size_t n, double* A, int num_threads = 1);
 
 }  // namespace trilobe
 

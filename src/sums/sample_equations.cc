@@ -102,7 +102,16 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   const auto n = static_cast<size_t>(num_parameters_);
   result->gradient.assign(n, 0.0);
   result->squared_lengths.assign(n, 0.0);
-  result->H.assign(n * n, 0.0);
+  // All of the lower triangle is set below, but for what is within a kind by cells, which is added.
+  result->H.resize(n * n);
+  for (const SampleRows& rows : layout_.rows) {
+    if (!rows.by_cell || rows.parameter.empty()) continue;
+    const auto [first, last] = std::ranges::minmax(rows.parameter);
+    ParallelFor(static_cast<int>(rows.parameter.size()), num_threads_, [&](int k) {
+      const size_t p = rows.parameter[k];
+      std::fill_n(&result->H[p * n + first], p + 1 - first, 0.0);
+    });
+  }
   for (const SampleRows& rows : layout_.rows) {
     // Entries by threes of tables fill lines of the cache.
     constexpr int kEntries = 8;
@@ -114,7 +123,7 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
     if (rows.by_cell) GatherCells(rows, result);
     GatherSquaredLengths(rows, hessian, result);
   }
-  MirrorTriangle(Triangle::kLower, n, result->H.data());
+  MirrorTriangle(Triangle::kLower, n, result->H.data(), num_threads_);
 }
 
 // The gradient, and products with amplitudes. A product of two parameters of one kind is in one

@@ -325,6 +325,11 @@ double AddNewton(const SumJob& job, int begin, int end, const SampleReader::Batc
                  Sample* at) {
   return AddBatch<false, true>(job, begin, end, batch, at);
 }
+TRILOBE_MULTIVERSION
+double AddNewtonOfOneVector(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
+                            Sample* at) {
+  return AddBatch<true, true>(job, begin, end, batch, at);
+}
 
 }  // namespace
 
@@ -347,9 +352,11 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
     }
     job.columns.push_back(std::move(columns));
   }
-  const AddBatchFunction add_batch = hessian == Hessian::kNewton ? AddNewton
-                                     : one_vector                ? AddGaussNewtonOfOneVector
-                                                                 : AddGaussNewton;
+  const bool newton = hessian == Hessian::kNewton;
+  const AddBatchFunction add_batch = one_vector
+                                         ? newton ? AddNewtonOfOneVector : AddGaussNewtonOfOneVector
+                                     : newton ? AddNewton
+                                              : AddGaussNewton;
   SampleReader::Batch batch(reader);
   Sample at{};
   double objective = 0;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 #include "tests/test_util.h"
@@ -22,31 +23,57 @@ std::vector<double> PositiveDefinite(int n) {
   return {A.data(), A.data() + A.size()};
 }
 
+// The same, but the first of its rows have products with their neighbours alone, those of the first
+// with those of the last, and with all of the others: a ring of nodes and what all of them share.
+std::vector<double> RingAndBorder(int n, int border, int reach) {
+  std::vector<double> A = PositiveDefinite(n);
+  const int ring = n - border;
+  for (int i = 0; i < ring; ++i) {
+    for (int j = 0; j < ring; ++j) {
+      const int apart = std::min(std::abs(i - j), ring - std::abs(i - j));
+      if (apart > reach) A[static_cast<size_t>(i) * n + j] = 0;
+    }
+    A[static_cast<size_t>(i) * n + i] += n;  // positive definite without them, too
+  }
+  return A;
+}
+
+// By the products with a vector, in which each entry has its part.
+void ExpectMultipliesBack(int n, const std::vector<double>& A) {
+  std::vector<double> factor = A;
+  ASSERT_TRUE(FactorCholesky(n, factor.data(), 2));
+  const Eigen::Map<const Eigen::MatrixXd> L(factor.data(), n, n), wanted(A.data(), n, n);
+  Random random(2);
+  Eigen::VectorXd x(n);
+  for (double& number : x) number = random.Normal();
+  const Eigen::VectorXd half = L.triangularView<Eigen::Lower>().transpose() * x;
+  const Eigen::VectorXd product = L.triangularView<Eigen::Lower>() * half;
+  EXPECT_LT((product - wanted * x).cwiseAbs().maxCoeff(), 1e-12 * wanted.cwiseAbs().maxCoeff())
+      << n;
+}
+
 TEST(FactorCholesky, MultipliesBackToTheMatrix) {
-  for (const int n : {1, 7, 300, 1025, 1300}) {
-    const std::vector<double> A = PositiveDefinite(n);
-    std::vector<double> factor = A;
-    ASSERT_TRUE(FactorCholesky(n, factor.data(), 2));
-    const Eigen::Map<const Eigen::MatrixXd> L(factor.data(), n, n), wanted(A.data(), n, n);
-    // By the products with a vector, in which each entry has its part.
-    Random random(2);
-    Eigen::VectorXd x(n);
-    for (double& number : x) number = random.Normal();
-    const Eigen::VectorXd half = L.triangularView<Eigen::Lower>().transpose() * x;
-    const Eigen::VectorXd product = L.triangularView<Eigen::Lower>() * half;
-    EXPECT_LT((product - wanted * x).cwiseAbs().maxCoeff(), 1e-12 * wanted.cwiseAbs().maxCoeff())
-        << n;
+  for (const int n : {1, 7, 300, 1025, 1300}) ExpectMultipliesBack(n, PositiveDefinite(n));
+}
+
+TEST(FactorCholesky, MultipliesBackToAMatrixWithTilesOfZeros) {
+  for (const int n : {1025, 1300}) {
+    ExpectMultipliesBack(n, RingAndBorder(n, /*border=*/200, /*reach=*/30));
+    // Of blocks that do not know of each other.
+    ExpectMultipliesBack(n, RingAndBorder(n, /*border=*/0, /*reach=*/0));
   }
 }
 
 TEST(FactorCholesky, HasTheSameBitsForAnyNumberOfThreads) {
   const int n = 1300;
-  std::vector<double> first = PositiveDefinite(n), second = first, third = first;
-  ASSERT_TRUE(FactorCholesky(n, first.data(), 1));
-  ASSERT_TRUE(FactorCholesky(n, second.data(), 2));
-  ASSERT_TRUE(FactorCholesky(n, third.data(), 3));
-  EXPECT_TRUE(std::ranges::equal(first, second));
-  EXPECT_TRUE(std::ranges::equal(first, third));
+  for (const std::vector<double>& A : {PositiveDefinite(n), RingAndBorder(n, 200, 30)}) {
+    std::vector<double> first = A, second = A, third = A;
+    ASSERT_TRUE(FactorCholesky(n, first.data(), 1));
+    ASSERT_TRUE(FactorCholesky(n, second.data(), 2));
+    ASSERT_TRUE(FactorCholesky(n, third.data(), 3));
+    EXPECT_TRUE(std::ranges::equal(first, second));
+    EXPECT_TRUE(std::ranges::equal(first, third));
+  }
 }
 
 // OpenBLAS without threads got one call of two hundred wrong.

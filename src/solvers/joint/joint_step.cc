@@ -27,6 +27,27 @@ constexpr double kLittleProgress = 1e-3;
 // that long for the damping.
 constexpr double kMinSquaredLength = 1e-2;
 
+// Of the parameters of anisotropic models: D of all lobes first, azimuth by azimuth. An entry of D
+// has products with those of D that some sample reads together with it, its neighbours, and with
+// all of F, G and the amplitudes.
+std::vector<size_t> EliminationOrder(const FactorModel& model) {
+  const ModelSpec& spec = model.spec();
+  std::vector<size_t> order;
+  if (!spec.d_axis.polar()) return order;
+  const int phis = spec.d_axis.phi_nodes, thetas = spec.d_axis.size / phis;
+  for (int b = 0; b < phis; ++b) {
+    for (int a = 0; a < thetas; ++a) {
+      for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
+        order.push_back(model.TableOffset(Factor::kD, t) + a * phis + b);
+      }
+    }
+  }
+  const size_t D = model.TableOffset(Factor::kD, 0), size = model.parameters().size();
+  for (size_t k = D + order.size(); k < size; ++k) order.push_back(k);
+  for (size_t k = 0; k < D; ++k) order.push_back(k);
+  return order;
+}
+
 }  // namespace
 
 std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
@@ -51,7 +72,7 @@ JointStepper::JointStepper(const Objective& objective, Curvature curvature, Tria
       hessian_(curvature == Curvature::kNewton ? Hessian::kNewton : Hessian::kGaussNewton),
       phases_(phases),
       trial_(trial),
-      step_(objective.num_threads()),
+      step_(NewStep()),
       lambda_(kInitialLambda) {
   CHECK(reduction == nullptr || trial == Trial::kAsItIs)
       << "a projection would leave the reduction";
@@ -67,9 +88,21 @@ void JointStepper::Rest() {
   equations_.reset();
   sweep_.reset();
   if (linearized_) binding_ = step_.binding();
-  step_ = NonnegativeStep(objective_.num_threads());
+  step_ = NewStep();
   at_ = {};
   linearized_ = false;
+}
+
+NonnegativeStep JointStepper::NewStep() const {
+  std::vector<size_t> order = EliminationOrder(FactorModel(objective_.spec()));
+  if (reduction_ != nullptr && !order.empty()) {
+    constexpr size_t kNone = -1;
+    std::vector<size_t> reduced(order.size(), kNone);
+    for (int j = 0; j < reduction_->size(); ++j) reduced[reduction_->source()[j]] = j;
+    for (size_t& k : order) k = reduced[k];
+    std::erase(order, kNone);
+  }
+  return NonnegativeStep(objective_.num_threads(), std::move(order));
 }
 
 void JointStepper::Restart(const FactorModel& model) {

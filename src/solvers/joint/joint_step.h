@@ -67,6 +67,7 @@ class JointStepper {
   void Wake();
   double Evaluate(const FactorModel& model);
   void Linearize();
+  NonnegativeStep NewStep() const;
 
   const Objective& objective_;
   const Curvature curvature_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trilobe/base/parallel.h"
 #include "trilobe/math/cholesky.h"
 #include "trilobe/math/element_step.h"
 
@@ -80,7 +81,8 @@ bool NonnegativeStep::Factor(double lambda) {
   const size_t n = x_.size();
   base_.clear();
   units_.clear();
-  for (size_t k = 0; k < n; ++k) {
+  for (size_t i = 0; i < n; ++i) {
+    const size_t k = order_.empty() ? i : order_[i];
     in_base_[k] = unit_[k] != 0 && !binding_[k];
     if (!in_base_[k]) continue;
     base_.push_back(k);
@@ -88,12 +90,16 @@ bool NonnegativeStep::Factor(double lambda) {
   }
   const size_t size = base_.size();
   L_.resize(size * size);
-  for (size_t j = 0; j < size; ++j) {
-    const double* const H_k = &at_->H[base_[j] * n];
-    double* const column = &L_[j * size];
-    for (size_t i = j; i < size; ++i) column[i] = units_[j] * H_k[base_[i]] * units_[i];
-    column[j] += lambda;
-  }
+  constexpr size_t kColumns = 64;
+  ParallelFor(static_cast<int>((size + kColumns - 1) / kColumns), num_threads_, [&](int chunk) {
+    const size_t begin = chunk * kColumns;
+    for (size_t j = begin; j < std::min(begin + kColumns, size); ++j) {
+      const double* const H_k = &at_->H[base_[j] * n];
+      double* const column = &L_[j * size];
+      for (size_t i = j; i < size; ++i) column[i] = units_[j] * H_k[base_[i]] * units_[i];
+      column[j] += lambda;
+    }
+  });
   return FactorCholesky(static_cast<int>(size), L_.data(), num_threads_);
 }
 
@@ -123,13 +129,13 @@ bool NonnegativeStep::SetStep(double lambda) {
   }
 
   // Of those held all along, most are at 0 already.
-  bool moved = false;
+  Eigen::VectorXd H_u = Eigen::VectorXd::Zero(static_cast<int>(n));
   for (size_t k = 0; k < n; ++k) {
     p_[k] = unit_[k] != 0 && binding_[k] && !in_base_[k] ? -z_[k] : 0;
     u_[k] = unit_[k] * p_[k];
-    moved = moved || p_[k] != 0;
+    if (p_[k] != 0) H_u += u_[k] * ConstVectorMap(&at_->H[k * n], static_cast<int>(n));
   }
-  const auto right_hand_side = [&](size_t k) { return -(moved ? g_[k] + H_p(k) : g_[k]); };
+  const auto right_hand_side = [&](size_t k) { return -(g_[k] + unit_[k] * H_u[k]); };
   const int size = static_cast<int>(base_.size());
   const int num_removed = static_cast<int>(removed_.size());
   const int num_added = static_cast<int>(added_.size());

@@ -18,7 +18,10 @@ namespace trilobe {
 // last round is projected. An object keeps its storage from one point to the next.
 class NonnegativeStep {
  public:
-  explicit NonnegativeStep(int num_threads = 1) : num_threads_(num_threads) {}
+  // `order`: in which parameters are eliminated; as they come if empty. Where those come first that
+  // have products with few others, and next to these, factors are sparse (FactorCholesky).
+  explicit NonnegativeStep(int num_threads = 1, std::vector<size_t> order = {})
+      : num_threads_(num_threads), order_(std::move(order)) {}
 
   // From now on steps start from x, with this S, which is 0 for parameters that cannot move. `at`
   // must stay as it is while they are asked for.
@@ -38,6 +41,7 @@ class NonnegativeStep {
 
  private:
   int num_threads_;  // for the factors of large ones
+  std::vector<size_t> order_;
 
   // How the active set was, seen from its solution.
   enum class Outcome { kRight, kChanged, kIndefinite };
