@@ -75,21 +75,6 @@ TRILOBE_ALWAYS_INLINE int LaneOf(const TableLanes& lanes, int m, int c) {
   return lanes.First(c) + (lanes.per_lobe ? m : 0);
 }
 
-// w (rho - rho*) d2 rho / (d a d b) for readings a and b of one sample, -1 being s: what is left of
-// s D F G_i G_o / (cos cos) without the two.
-TRILOBE_ALWAYS_INLINE double SecondDerivative(const SumJob& job, const Slopes* of, int a, int b,
-                                              int m, int c, double scale) {
-  const SampleReader& reader = *job.reader;
-  double value = a < 0 || b < 0 ? scale : scale * reader.s()[c * reader.lobe_lanes() + m];
-  const auto is_D = [&](int r) { return r >= 0 && r < job.order.F(); };
-  if (!is_D(a) && !is_D(b)) value *= of[0].reading[LaneOf(reader.lanes(Factor::kD), m, c)];
-  for (int r = job.order.F(); r < job.order.count(); ++r) {
-    if (r == a || r == b) continue;
-    value *= of[r].reading[LaneOf(reader.lanes(job.order.factor(r)), m, c)];
-  }
-  return value;
-}
-
 // Adds the same numbers, times a weight, to the blocks of a cell's entries.
 template <int kEntries>
 TRILOBE_ALWAYS_INLINE void AddToBlocks(const double* from, int size, double scale,
@@ -131,13 +116,58 @@ TRILOBE_ALWAYS_INLINE void AddToEntries(const double* from, int size, double sca
   }
 }
 
+// What multiplies in a lobe: s and the readings of D, F, G_i and G_o, in their order.
+constexpr int kS = 0, kParts = 5;
+TRILOBE_ALWAYS_INLINE int PartOf(const ReadingOrder& order, int reading) {
+  return reading < order.F() ? 1 : 2 + reading - order.F();
+}
+
 struct Sample {
   int j;
   const double* residual;  // [kChannels]
   double w_residual[kChannels];
   const double* amplitude;  // [kChannels][amplitude lanes]
   Slopes of[ReadingOrder::kMost];
+  // Of the lobes, for second derivatives alone.
+  alignas(sizeof(Lanes8)) double part[kParts][kChannels][PaddedToVectors(kMaxLobes)];
 };
+
+// Sets what second derivatives ask for.
+template <bool kOneVector>
+TRILOBE_ALWAYS_INLINE void SetParts(const SumJob& job, Sample* at) {
+  const SampleReader& reader = *job.reader;
+  const int lobe_lanes = Lanes<kOneVector>(reader.lobe_lanes());
+  for (int c = 0; c < kChannels; ++c) {
+    for (int b = 0; b < lobe_lanes; ++b) at->part[kS][c][b] = reader.s()[c * lobe_lanes + b];
+    // One reading of D has those of all stretches.
+    for (int r = job.order.F() - 1; r < job.order.count(); ++r) {
+      const TableLanes& lanes = reader.lanes(job.order.factor(r));
+      const double* const reading = at->of[r].reading + lanes.First(c);
+      double* const to = at->part[PartOf(job.order, r)][c];
+      for (int b = 0; b < lobe_lanes; ++b) to[b] = reading[lanes.per_lobe ? b : 0];
+    }
+  }
+}
+
+// w (rho - rho*) d2 rho / (d a d b) of the lobes in a channel, for two of their parts: what is left
+// of s D F G_i G_o / (cos cos) without these.
+template <bool kOneVector>
+TRILOBE_ALWAYS_INLINE void SecondDerivatives(const SumJob& job, const Sample& at, int a, int b,
+                                             int c, double* of_lobes) {
+  const SampleReader& reader = *job.reader;
+  const int lobe_lanes = Lanes<kOneVector>(reader.lobe_lanes());
+  const double scale = at.w_residual[c] * reader.samples().inverse_cosines[at.j];
+  for (int v = 0; v < lobe_lanes; v += kVector) {
+    Lanes4 product = Lanes4{} + scale;
+    for (int p = 0; p < kParts; ++p) {
+      if (p == a || p == b) continue;
+      Lanes4 part;
+      LoadLanes(at.part[p][c] + v, &part);
+      product *= part;
+    }
+    StoreLanes(product, of_lobes + v);
+  }
+}
 
 // d and s of each channel, which move nothing in another one.
 TRILOBE_ALWAYS_INLINE void AddAmplitudes(const SumJob& job, const Sample& at, bool newton) {
@@ -168,8 +198,8 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   const int lanes = Lanes<kOneVector>(rows.lanes);
   const TableLanes& row_lanes = reader.lanes(job.order.factor(r));
   const Slopes& own = at->of[r];
-  const int first_own = std::min(r, job.order.G_i());  // reading of the same table
-  const double inverse_cosines = reader.samples().inverse_cosines[at->j];
+  const int first_own = std::min(r, job.order.G_i());                 // reading of the same table
+  alignas(sizeof(Lanes8)) double second[PaddedToVectors(kMaxLobes)] = {};  // derivatives
 
   alignas(sizeof(Lanes8)) double lines[kMaxOwnLines * kMaxLanes];
   double* to = lines;
@@ -179,13 +209,12 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   }
   Combine<kOneVector>({0, kChannels}, at->residual, 1, own.w_slope, lanes, to);
   to += lanes;
+  const int own_part = PartOf(job.order, r);
   for (int c = 0; c < kChannels; ++c) {
+    if (kNewton) SecondDerivatives<kOneVector>(job, *at, kS, own_part, c, second);
     for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
       Combine<kOneVector>({c, c + 1}, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
-      if (kNewton && a < spec.lobes) {
-        to[LaneOf(row_lanes, a, c)] +=
-            SecondDerivative(job, at->of, -1, r, a, c, at->w_residual[c] * inverse_cosines);
-      }
+      if (kNewton && a < spec.lobes) to[LaneOf(row_lanes, a, c)] += second[a];
     }
   }
   double* const of_entry = job.sums + rows.own + (kNewton ? 0 : SampleRows::kGradient * lanes);
@@ -208,11 +237,10 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
     // Stretches of D are those of different lobes, whose readings are not multiplied.
     if (kNewton && q != r && r >= job.order.F()) {
       for (int c = 0; c < kChannels; ++c) {
+        SecondDerivatives<kOneVector>(job, *at, PartOf(job.order, q), own_part, c, second);
         for (int m = 0; m < spec.lobes; ++m) {
           const int place = columns.place[spec.table(factor, m, c)];
-          if (place < 0) continue;
-          products[place * lanes + LaneOf(row_lanes, m, c)] +=
-              SecondDerivative(job, at->of, q, r, m, c, at->w_residual[c] * inverse_cosines);
+          if (place >= 0) products[place * lanes + LaneOf(row_lanes, m, c)] += second[m];
         }
       }
     }
@@ -301,6 +329,7 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
         for (int b = 0; b < lanes; ++b) of.w_slope[c * lanes + b] = w[c] * of.slope[c * lanes + b];
       }
     }
+    if (kNewton) SetParts<kOneVector>(job, at);
     AddAmplitudes(job, *at, kNewton);
     for (int r = 0; r < order.count(); ++r) {
       if (job.layout->of(r).tables > 0) AddReading<kOneVector, kNewton>(job, r, at);
