@@ -108,20 +108,22 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
       LobesOf<kBlocks>(F_lanes, c, R[job.num_readings - 3], F);
       LobesOf<kBlocks>(G_lanes, c, R[job.num_readings - 2], G_i);
       LobesOf<kBlocks>(G_lanes, c, R[job.num_readings - 1], G_o);
-      Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
+      Lanes4 s[kBlocks], K[kBlocks];
       for (int b = 0; b < kBlocks; ++b) {
-        Lanes4 s;
-        LoadLanes(job.s + kVector * (c * kBlocks + b), &s);
-        const Lanes4 K = G_i[b] * G_o[b] * inverse_cosines;
-        const Lanes4 sK = s * K;
-        of_D[b] = sK * F[b];
-        of_F[b] = sK * D[b];
-        of_s[b] = D[b] * F[b] * K;
-        of_G[b] = s * (D[b] * F[b]) * inverse_cosines;
-        x[b] = s * of_s[b];
+        LoadLanes(job.s + kVector * (c * kBlocks + b), &s[b]);
+        K[b] = G_i[b] * G_o[b] * inverse_cosines;
+        of_s[b] = D[b] * F[b] * K[b];
+        x[b] = s[b] * of_s[b];
       }
       job.residual[n * kChannels + c] = job.d[c] + Sum<kBlocks>(x) - job.samples->rho[c][j];
       if (job.slopes == SampleReader::Slopes::kNone) continue;
+      Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
+      for (int b = 0; b < kBlocks; ++b) {
+        const Lanes4 sK = s[b] * K[b];
+        of_D[b] = sK * F[b];
+        of_F[b] = sK * D[b];
+        of_G[b] = s[b] * (D[b] * F[b]) * inverse_cosines;
+      }
       double* const amplitude = job.amplitude + (n * kChannels + c) * job.amplitude_lanes;
       for (int b = 0; b < kBlocks; ++b) StoreLanes(of_s[b], amplitude + kVector * b);
       amplitude[job.lobes] = 1;
