@@ -1,7 +1,9 @@
 #include "trilobe/model/lobe_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -125,6 +127,8 @@ void AddLight(std::span<const double> coverage, const FactorModel& model, int st
   };
   double all = 0;
   Rgb diffuse{};
+  const int G_tables = spec.num_tables(Factor::kG);
+  std::array<double, kChannels * kMaxLobes> shadowing{}, through_G{};  // by table of G
   std::vector<Cells::Pair> pairs;
   int pairs_ring = -1;
   for (int h = 0; h < spec.d_axis.size; ++h) {
@@ -140,23 +144,31 @@ void AddLight(std::span<const double> coverage, const FactorModel& model, int st
       const double solid_angle = cells.SolidAngle(h, pair.d) * pair.half_vectors;
       const double white = solid_angle * pair.cosines.i * pair.cosines.o;
       all += white;
+      // The cosines of a lobe's denominator and those of the integral cancel.
+      for (int t = 0; t < G_tables; ++t) {
+        const std::span<const double> G = model.table(Factor::kG, t);
+        shadowing[t] = solid_angle * std::max(G_i(G), 0.0) * std::max(G_o(G), 0.0);
+      }
+      through_G.fill(0);
       for (int c = 0; c < kChannels; ++c) {
         diffuse[c] += white * model.d()[c];
         for (const int m : lobes) {
           const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
           const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
-          const int G = model.TableOffset(Factor::kG, spec.table(Factor::kG, m, c));
-          // The cosines of the lobe's denominator and those of the integral cancel.
-          const double part = solid_angle * model.s(m)[c] * model.parameters()[D] *
-                              model.parameters()[F] * std::max(G_i(model.G(m, c)), 0.0) *
-                              std::max(G_o(model.G(m, c)), 0.0);
+          const int G = spec.table(Factor::kG, m, c);
+          const double part =
+              shadowing[G] * model.s(m)[c] * model.parameters()[D] * model.parameters()[F];
           light->lobes[m][c] += part;
           light->through[D] += part;
           light->through[F] += part;
-          for (const Stencil* const stencil : {&G_i, &G_o}) {
-            for (int k = 0; k < stencil->size; ++k) {
-              light->through[G + stencil->index[k]] += part * std::abs(stencil->weight[k]);
-            }
+          through_G[G] += part;
+        }
+      }
+      for (int t = 0; t < G_tables; ++t) {
+        double* const through = &light->through[model.TableOffset(Factor::kG, t)];
+        for (const Stencil* const stencil : {&G_i, &G_o}) {
+          for (int k = 0; k < stencil->size; ++k) {
+            through[stencil->index[k]] += through_G[t] * std::abs(stencil->weight[k]);
           }
         }
       }
