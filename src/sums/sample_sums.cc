@@ -15,11 +15,10 @@ constexpr int kMaxOwnLines = SampleRows::kFirstAmplitude + kChannels * (1 + kMax
 constexpr int kMaxTables = kChannels * kMaxLobes;
 
 // The tables that a reading reads, as columns of products: in what order, the lane of each, and the
-// channels that it serves.
+// first channel that it serves.
 struct Columns {
   struct Column {
-    int lane;
-    ModelSpec::ChannelRange channels;
+    int lane, channel;
   };
   std::vector<Column> of;
   std::vector<int> place;  // by the number of the table; -1 where another stretch reads it
@@ -50,23 +49,31 @@ TRILOBE_ALWAYS_INLINE int Lanes(int lanes) {
   return kOneVector ? kVector : lanes;
 }
 
-// y = sum_c x_c w_slope_c over these channels, x_c at x + c x_stride.
+// y = sum_c x_c w_slope_c over all channels, x_c at x + c x_stride.
 template <bool kOneVector>
-TRILOBE_ALWAYS_INLINE void Combine(ModelSpec::ChannelRange channels, const double* x, int x_stride,
-                                   const double* w_slope, int row_lanes, double* y) {
+TRILOBE_ALWAYS_INLINE void Combine(const double* x, int x_stride, const double* w_slope,
+                                   int row_lanes, double* y) {
   static_assert(kChannels == 3);
   const int lanes = Lanes<kOneVector>(row_lanes);
   for (int b = 0; b < lanes; b += kVector) {
+    Lanes4 w0, w1, w2;
+    LoadLanes(w_slope + b, &w0);
+    LoadLanes(w_slope + lanes + b, &w1);
+    LoadLanes(w_slope + 2 * lanes + b, &w2);
+    StoreLanes(x[0] * w0 + (x[x_stride] * w1 + x[2 * x_stride] * w2), y + b);
+  }
+}
+
+// y = x_c w_slope_c of one channel.
+template <bool kOneVector>
+TRILOBE_ALWAYS_INLINE void Scale(int c, const double* x, int x_stride, const double* w_slope,
+                                 int row_lanes, double* y) {
+  const int lanes = Lanes<kOneVector>(row_lanes);
+  const double x_c = x[c * x_stride];
+  for (int b = 0; b < lanes; b += kVector) {
     Lanes4 w;
-    LoadLanes(w_slope + channels.begin * lanes + b, &w);
-    Lanes4 sum = x[channels.begin * x_stride] * w;
-    if (channels.end > channels.begin + 1) {
-      Lanes4 w1, w2;
-      LoadLanes(w_slope + lanes + b, &w1);
-      LoadLanes(w_slope + 2 * lanes + b, &w2);
-      sum += x[x_stride] * w1 + x[2 * x_stride] * w2;
-    }
-    StoreLanes(sum, y + b);
+    LoadLanes(w_slope + c * lanes + b, &w);
+    StoreLanes(x_c * w, y + b);
   }
 }
 
@@ -198,7 +205,7 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
   const int lanes = Lanes<kOneVector>(rows.lanes);
   const TableLanes& row_lanes = reader.lanes(job.order.factor(r));
   const Slopes& own = at->of[r];
-  const int first_own = std::min(r, job.order.G_i());                 // reading of the same table
+  const int first_own = std::min(r, job.order.G_i());  // reading of the same table
   alignas(sizeof(Lanes8)) double second[PaddedToVectors(kMaxLobes)] = {};  // derivatives
 
   alignas(sizeof(Lanes8)) double lines[kMaxOwnLines * kMaxLanes];
@@ -207,13 +214,13 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
     for (int b = 0; b < lanes; ++b) to[b] = 0;  // the squared length: below
     to += lanes;
   }
-  Combine<kOneVector>({0, kChannels}, at->residual, 1, own.w_slope, lanes, to);
+  Combine<kOneVector>(at->residual, 1, own.w_slope, lanes, to);
   to += lanes;
   const int own_part = PartOf(job.order, r);
   for (int c = 0; c < kChannels; ++c) {
     if (kNewton) SecondDerivatives<kOneVector>(job, *at, kS, own_part, c, second);
     for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
-      Combine<kOneVector>({c, c + 1}, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
+      Scale<kOneVector>(c, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
       if (kNewton && a < spec.lobes) to[LaneOf(row_lanes, a, c)] += second[a];
     }
   }
@@ -229,10 +236,16 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
     const Factor factor = job.order.factor(q);
     const int of_lanes = Lanes<kOneVector>(reader.lanes(factor).size);
     to = products;
-    for (const Columns::Column& column : columns.of) {
-      Combine<kOneVector>(column.channels, of.slope + column.lane, of_lanes, own.w_slope, lanes,
-                          to);
-      to += lanes;
+    if (spec.sharing(factor).per_channel) {
+      for (const auto& [lane, channel] : columns.of) {
+        Scale<kOneVector>(channel, of.slope + lane, of_lanes, own.w_slope, lanes, to);
+        to += lanes;
+      }
+    } else {
+      for (const auto& [lane, channel] : columns.of) {
+        Combine<kOneVector>(of.slope + lane, of_lanes, own.w_slope, lanes, to);
+        to += lanes;
+      }
     }
     // Stretches of D are those of different lobes, whose readings are not multiplied.
     if (kNewton && q != r && r >= job.order.F()) {
@@ -377,7 +390,7 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
     Columns columns{{}, std::vector<int>(reader.spec().num_tables(factor), -1)};
     for (int k = 0; k < rows.tables; ++k) {
       columns.place[rows.table[k]] = k;
-      columns.of.push_back({rows.lane[k], reader.spec().channels(factor, rows.table[k])});
+      columns.of.push_back({rows.lane[k], reader.spec().channels(factor, rows.table[k]).begin});
     }
     job.columns.push_back(std::move(columns));
   }
