@@ -10,6 +10,7 @@
 #include "trilobe/app/stretch_report.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/io/stretch_json.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 
@@ -100,7 +101,7 @@ void DescribeModel(const std::string& path) {
       if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
     json["stored_numbers"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
-    json["stretch"] = StretchesToJson(spec);
+    json["stretch"] = StretchesToJson<Json>(spec);
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},
                    {"init", fit.init},

@@ -11,6 +11,7 @@
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/stretch_report.h"
+#include "trilobe/io/stretch_json.h"
 
 namespace trilobe {
 namespace {
@@ -166,7 +167,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"weighting", fit.weighting},
           {"model", ModelName(report.spec)},
           {"lobes", report.spec.lobes},
-          {"stretch", StretchesToJson(report.spec)},
+          {"stretch", StretchesToJson<Json>(report.spec)},
           {"parameters", report.spec.num_parameters()},
           {"stored_numbers", report.stored_parameters},
           {"candidates", ToJson(report.finished.candidates)},

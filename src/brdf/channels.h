@@ -12,6 +12,8 @@ inline constexpr const char* kChannelNames[kChannels] = {"red", "green", "blue"}
 
 using Rgb = std::array<double, kChannels>;
 
+inline double Mean(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_BRDF_CHANNELS_H_

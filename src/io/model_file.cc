@@ -10,6 +10,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/model_format.h"
+#include "trilobe/io/stretch_json.h"
 
 namespace trilobe {
 namespace {
@@ -81,17 +82,6 @@ OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
   return lists;
 }
 
-// That of all lobes, or a list of those of each.
-OrderedJson StretchesToJson(const ModelSpec& spec) {
-  const auto to_json = [](const Stretch& stretch) {
-    return OrderedJson{{"along", stretch.along}, {"across", stretch.across}};
-  };
-  if (!spec.stretches.several()) return to_json(spec.stretches.of(0));
-  OrderedJson list = OrderedJson::array();
-  for (int m = 0; m < spec.lobes; ++m) list.push_back(to_json(spec.stretches.of(m)));
-  return list;
-}
-
 // Indented by two, but arrays of numbers each on one line.
 void Print(const OrderedJson& json, const std::string& indent, std::string* text) {
   const bool nested = json.is_object() ||
@@ -136,7 +126,7 @@ std::string FormatModel(const ModelFile& file) {
       json["phi_nodes"][FactorName(factor)] = std::move(phi);
     }
   }
-  if (spec.stretches.any()) json["stretch"] = StretchesToJson(spec);
+  if (spec.stretches.any()) json["stretch"] = StretchesToJson<OrderedJson>(spec);
   const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
   CheckLayout(layout, spec);
   json["d"] = ChannelsToJson(model.d(), layout.coloured_d, "d");

@@ -31,6 +31,13 @@ std::string Percent(double share) {
   return (share > 0 && share < 0.0005 ? "<0.1" : std::string(text.data())) + " %%";
 }
 
+std::string LobeName(int lobe) { return "lobe " + std::to_string(lobe + 1); }
+
+// What stands behind the name of a lobe that is dark.
+const char* AbsenceOf(const FactorModel& model, int lobe) {
+  return Absent(model, lobe) ? " (s = 0)" : "";
+}
+
 // Legend of curves that differ in colour by their channel and in dashes by their lobe.
 std::string LegendByChannelAndLobe(const FactorModel& model) {
   std::string legend;
@@ -40,8 +47,7 @@ std::string LegendByChannelAndLobe(const FactorModel& model) {
   };
   for (int c = 0; c < kChannels; ++c) add(kChannelColors[c], "solid", kChannelNames[c]);
   for (int m = 0; m < model.spec().lobes; ++m) {
-    add("#555555", kDash[m],
-        "lobe " + std::to_string(m + 1) + (Absent(model, m) ? " (s = 0)" : ""));
+    add("#555555", kDash[m], LobeName(m) + AbsenceOf(model, m));
   }
   return legend;
 }
@@ -63,12 +69,10 @@ std::string TableName(const FactorModel& model, Factor factor, int index) {
   const TableSharing& sharing = spec.sharing(factor);
   const auto [lobe, channel] = OwnerOf(spec, factor, index);
   std::string name;
-  if (sharing.per_lobe && (spec.lobes > 1 || !sharing.per_channel)) {
-    name = "lobe " + std::to_string(lobe + 1);
-  }
+  if (sharing.per_lobe && (spec.lobes > 1 || !sharing.per_channel)) name = LobeName(lobe);
   if (sharing.per_channel) name += (name.empty() ? "" : ", ") + std::string(kChannelNames[channel]);
   if (name.empty()) name = "all lobes";
-  return sharing.per_lobe && Absent(model, lobe) ? name + " (s = 0)" : name;
+  return sharing.per_lobe ? name + AbsenceOf(model, lobe) : name;
 }
 
 std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor factor,
@@ -140,7 +144,7 @@ std::string AlbedoPanel(const LobeLight& light) {
       data[c] += GnuplotNumber(g + 0.28 * (c - 1)) + " " + GnuplotNumber(values[c]) + "\n";
       top = std::max(top, values[c]);
     }
-    const std::string name = g == 0 ? "diffuse" : "lobe " + std::to_string(g);
+    const std::string name = g == 0 ? "diffuse" : LobeName(g - 1);
     const double share = g == 0 ? light.DiffuseShare() : light.Share(g - 1);
     tics += (g == 0 ? "\"" : ", \"") + name + "\\n" + Percent(share) + "\" " + std::to_string(g);
   }

@@ -19,9 +19,8 @@ void DrawPairs(const Measurement& scattered, const std::string& path) {
   for (int i = 0; i < kNodes; ++i) {
     for (int o = 0; o < kNodes; ++o) {
       const size_t pair = static_cast<size_t>(i) * kNodes + o;
-      const Rgb& rho = values.rho[pair];
-      const double mean = (rho[0] + rho[1] + rho[2]) / 3 * std::cos(kUtiaGrid.Theta(i)) *
-                          std::cos(kUtiaGrid.Theta(o));
+      const double mean =
+          Mean(values.rho[pair]) * std::cos(kUtiaGrid.Theta(i)) * std::cos(kUtiaGrid.Theta(o));
       largest = std::max(largest, mean);
       rows[i].push_back(values.present[pair] ? mean : std::numeric_limits<double>::quiet_NaN());
     }

@@ -90,8 +90,6 @@ class Cells {
   const MerlGrid grid_;
 };
 
-double Mean(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
-
 double Total(const LobeLight& light) {
   double total = Mean(light.diffuse);
   for (const Rgb& lobe : light.lobes) total += Mean(lobe);

@@ -14,8 +14,6 @@ namespace {
 
 double Square(double x) { return x * x; }
 
-double Mean(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
-
 // A formula that looks at one channel at a time.
 std::function<Rgb(const WeightedPoint&, double)> ByChannel(double (*weight)(double, double)) {
   return [weight](const WeightedPoint& point, double /*level*/) {

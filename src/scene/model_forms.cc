@@ -53,7 +53,7 @@ bool IsSaturated(const BrdfSamples& samples) {
   double all = 0, saturated = 0;
   for (int j = 0; j < samples.size(); ++j) {
     const Rgb& rho = samples.rho[j];
-    const double mean = (rho[0] + rho[1] + rho[2]) / 3;
+    const double mean = Mean(rho);
     const Cosines cosines = samples.CosinesOf(j);
     const double light = samples.SolidAngle(j) * cosines.i * cosines.o * mean;
     all += light;

@@ -18,6 +18,7 @@ SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, in
       readings_(samples, spec, num_threads),
       amplitudes_(readings_),
       shadowing_(&readings_) {
+  const ScopedTimer timer(&phases->preparing);
   for (int t = 0; t < spec.num_tables(Factor::kD);) {
     int end = t + 1;
     while (end < spec.num_tables(Factor::kD) &&
