@@ -106,7 +106,7 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   result->H.resize(n * n);
   for (const SampleRows& rows : layout_.rows) {
     if (!rows.by_cell || rows.parameter.empty()) continue;
-    const auto [first, last] = std::ranges::minmax(rows.parameter);
+    const int first = std::ranges::min(rows.parameter);
     ParallelFor(static_cast<int>(rows.parameter.size()), num_threads_, [&](int k) {
       const size_t p = rows.parameter[k];
       std::fill_n(&result->H[p * n + first], p + 1 - first, 0.0);
