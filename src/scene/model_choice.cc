@@ -196,7 +196,7 @@ class ModelSearch {
     if (last.num_parameters > options_.max_parameters) return;
     if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
     if (options_.judge_beyond && best_.chosen >= 0) {
-      constexpr double kMayLose = 1, kOfGain = 0.5;  // [dB]
+      constexpr double kMayLose = 1.5, kOfGain = 0.5;  // [dB]
       const double gain = last.score - best_.candidates.front().score;
       last.wild = !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
       if (last.wild) return;
@@ -257,7 +257,11 @@ class ModelSearch {
     constexpr int kStepsOnFew = 12;
     const Objective of_few = few_.For(spec, form.weighting);
     form.start = JointSteps(of_few, form.start, kStepsOnFew, options_.stop).model;
-    form.start = GoOn(some_.For(spec, form.weighting), form.start, options_.stop);
+    const Objective of_some = some_.For(spec, form.weighting);
+    form.start = GoOn(of_some, form.start, options_.stop);
+    // Entries that no sample reads are what they were in the start, next to others that have moved
+    // far away; a picture reads between the two.
+    Canonicalize(of_some.coverage(), &form.start);
     const double E = ValueOf(form.start);
     const double score = Judge(form.name, form.start, TableLayout::Full(spec), E);
     forms_.push_back({std::move(form), score});

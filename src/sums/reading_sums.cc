@@ -128,9 +128,9 @@ void ReadingSums::Accumulate(const FactorModel& model) {
       const int end = std::min(begin + kBatch, last);
       readings_.Evaluate(begin, end, model, &batch);
       if (kind_ == Kind::kAmplitudes) {
-        AddAmplitudes(begin, end, batch, sums.data());
+        AddAmplitudes(begin, end, batch, &sums);
       } else {
-        AddBatch(begin, end, batch, sums.data());
+        AddBatch(begin, end, batch, &sums);
       }
     }
   });
@@ -140,15 +140,15 @@ void ReadingSums::Accumulate(const FactorModel& model) {
 }
 
 void ReadingSums::AddAmplitudes(int begin, int end, const SampleReadings::Batch& batch,
-                                double* sums) const {
+                                std::vector<double>* sums) const {
   const int size = end - begin;
   for (int c = 0; c < kChannels; ++c) {
     const double* const w = &readings_.samples().weight[c][begin];
     for (int t = 0; t < tables(); ++t) {
-      sums[c * table_lanes_ + t] +=
+      (*sums)[c * table_lanes_ + t] +=
           SumOfProducts(size, w, &batch.residual[c * kBatch], batch.Slope(c, t));
     }
-    double* const of_cell = sums + InCell(c, 0, 0);
+    double* const of_cell = &(*sums)[InCell(c, 0, 0)];
     for (size_t p = 0; p < pairs_.size(); ++p) {
       of_cell[p] +=
           SumOfProducts(size, w, batch.Slope(c, pairs_[p].t), batch.Slope(c, pairs_[p].u));
@@ -157,7 +157,7 @@ void ReadingSums::AddAmplitudes(int begin, int end, const SampleReadings::Batch&
 }
 
 void ReadingSums::AddBatch(int begin, int end, const SampleReadings::Batch& batch,
-                           double* sums) const {
+                           std::vector<double>* sums) const {
   const FoldedSamples& samples = readings_.samples();
   const int size = end - begin;
   std::array<double, kMostTables * kBatch> slopes;
@@ -187,8 +187,8 @@ void ReadingSums::AddBatch(int begin, int end, const SampleReadings::Batch& batc
                 .pairs_in_cell = pairs_in_cell_,
                 .slopes = slopes.data(),
                 .products = products.data(),
-                .of_entries = sums,
-                .of_cells = sums + of_cells_};
+                .of_entries = sums->data(),
+                .of_cells = sums->data() + of_cells_};
   for (size_t k = 0; k < of.weight.size(); ++k) job.weight[k] = &of.weight[k][begin];
   Spread(job);
 }
@@ -211,8 +211,9 @@ void ReadingSums::Update(int entry, std::span<const int> tables, double E, Facto
     for (size_t b = 0; b < size; ++b) {
       const int pair = pair_of(tables[a], tables[b]);
       if (pair < 0) continue;
-      for (const auto& [cell, k] : readers_[entry])
+      for (const auto& [cell, k] : readers_[entry]) {
         H[a * size + b] += sums[InCell(cell, k, k) + pair];
+      }
     }
   }
   if (!MoveToMinimum({H.data(), size * size}, {g.data(), size}, E, {parameters.data(), size},

@@ -53,8 +53,10 @@ class ReadingSums {
   size_t InCell(int cell, int k, int l) const {
     return of_cells_ + (static_cast<size_t>(cell) * pairs_in_cell_ + PairOf(k, l)) * pair_lanes_;
   }
-  void AddBatch(int begin, int end, const SampleReadings::Batch& batch, double* sums) const;
-  void AddAmplitudes(int begin, int end, const SampleReadings::Batch& batch, double* sums) const;
+  void AddBatch(int begin, int end, const SampleReadings::Batch& batch,
+                std::vector<double>* sums) const;
+  void AddAmplitudes(int begin, int end, const SampleReadings::Batch& batch,
+                     std::vector<double>* sums) const;
 
   const SampleReadings& readings_;
   const Kind kind_;

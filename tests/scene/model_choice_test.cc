@@ -242,7 +242,7 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
     bool wild;
   };
   for (const auto& [gain, loss, wild] :
-       {Case{1, 0.9, false}, Case{1, 1.1, true}, Case{6, 2.9, false}, Case{6, 3.1, true}}) {
+       {Case{1, 1.4, false}, Case{1, 1.6, true}, Case{6, 2.9, false}, Case{6, 3.1, true}}) {
     const ModelChoiceOptions options = {
         .max_parameters = kPlenty,
         .judge = [gain = gain](
@@ -255,6 +255,33 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
     EXPECT_EQ(result.candidates.back().wild, wild) << gain << " dB more, " << loss << " less";
     EXPECT_EQ(result.model.spec().D.per_channel, !wild);
   }
+}
+
+// What no sample reads is next to what some read, and a picture reads between the two.
+TEST(ModelChoice, JudgesFormsWithWhatNoSampleReadsContinued) {
+  BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);
+  LimitAngles(DegreesToRadians(50), Unmeasured::kBeyondMaxAngle, &measured);
+  const Fit fit(measured, Spec(2));
+  FactorModel start = fit.model;
+  for (size_t k = 0; k < start.parameters().size(); ++k) {
+    if (!(fit.objective.coverage()[k] > 0)) start.parameters()[k] = 1e3;
+  }
+  int judged = 0;
+  const ModelChoiceOptions options = {
+      .max_parameters = kPlenty, .judge = [&](const FactorModel& model) {
+        if (++judged == 1) return 0.0;  // the start, as it was given
+        const Objective objective(fit.objective, model.spec());
+        FactorModel canonical = model;
+        Canonicalize(objective.coverage(), &canonical);
+        for (size_t k = 0; k < model.parameters().size(); ++k) {
+          EXPECT_NEAR(model.parameters()[k], canonical.parameters()[k],
+                      1e-6 * canonical.parameters()[k])
+              << "candidate " << judged << ", parameter " << k;
+        }
+        return 0.0;
+      }};
+  ChooseModel(fit.objective, start, options);
+  EXPECT_GT(judged, 3);
 }
 
 // Where data end G falls about as the cosine does; a constant one lets the BRDF grow.
