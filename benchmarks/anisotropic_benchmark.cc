@@ -23,7 +23,7 @@
 namespace trilobe {
 namespace {
 
-// A reference takes long for each of them; a fast solver's many are over before it is warm.
+// Many of a fast solver, whose first ones are slower than the rest.
 constexpr int kIterations = 8, kFastIterations = 40;
 
 const Objective& FullSize(int num_threads) {

@@ -17,11 +17,8 @@ namespace trilobe {
 // too: d, then s of each lobe, with an entry for each channel, which is a cell of its own.
 class ReadingSums {
  public:
-  // Of the tables [first, last) of a kind, which one reading reads.
+  // Of the tables [first, last) of a kind, which one reading reads; of amplitudes of all.
   ReadingSums(const SampleReadings& readings, Kind kind, int first, int last);
-  // Of all amplitudes.
-  explicit ReadingSums(const SampleReadings& readings)
-      : ReadingSums(readings, Kind::kAmplitudes, 0, 1 + readings.spec().lobes) {}
 
   // The sums around a model whose tables are read. The same bits for any number of threads.
   void Accumulate(const FactorModel& model);

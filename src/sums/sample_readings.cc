@@ -108,6 +108,15 @@ void SampleReadings::ForChunks(const std::function<void(int, int)>& work) const 
               [&](int k) { work(k * kChunk, std::min((k + 1) * kChunk, samples_.size())); });
 }
 
+int SampleReadings::EndOfStretch(int d_table) const {
+  int end = d_table + 1;
+  while (end < spec_.num_tables(Factor::kD) &&
+         spec_.StretchOfTable(end) == spec_.StretchOfTable(d_table)) {
+    ++end;
+  }
+  return end;
+}
+
 void SampleReadings::Read(const FactorModel& model) {
   for (const Factor factor : kFactors) Read(model, factor, 0, spec_.num_tables(factor));
 }
@@ -116,12 +125,10 @@ void SampleReadings::Read(const FactorModel& model, Factor factor, int first, in
   const ReadingOrder& order = samples_.order;
   switch (factor) {
     case Factor::kD:
-      for (int t = first; t < last; ++t) {
-        // Those that are read by one stretch together.
-        int end = t + 1;
-        while (end < last && spec_.StretchOfTable(end) == spec_.StretchOfTable(t)) ++end;
+      for (int t = first; t < last;) {
+        const int end = std::min(last, EndOfStretch(t));
         ReadBy(spec_.StretchOfTable(t), model, t, end, &D_);
-        t = end - 1;
+        t = end;
       }
       break;
     case Factor::kF:

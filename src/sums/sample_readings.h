@@ -36,6 +36,9 @@ class SampleReadings {
   // The samples must outlive this.
   SampleReadings(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
 
+  // The end of the tables of D, from this one on, that are read by one stretch.
+  int EndOfStretch(int d_table) const;
+
   // Reads all tables, or those of a factor [first, last), anew.
   void Read(const FactorModel& model);
   void Read(const FactorModel& model, Factor factor, int first, int last);

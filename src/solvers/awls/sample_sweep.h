@@ -33,11 +33,10 @@ class SampleSweep : public Sweep {
   // Reads and sums around the model, calls `update`, which moves it, and reads what has moved.
   void UpdateFrom(ReadingSums* sums, FactorModel* model, const std::function<void()>& update);
 
-  const ModelSpec spec_;
   PhaseSeconds* const phases_;
   SampleReadings readings_;
-  ReadingSums amplitudes_;
-  std::vector<ReadingSums> tables_;  // of D, those that follow each other with one stretch; of F
+  // Of amplitudes, of the tables of D that follow each other and are read by one stretch, and of F.
+  std::vector<ReadingSums> sums_;
   SampleShadowing shadowing_;
 };
 
