@@ -7,9 +7,11 @@ Those are the sources that have changed since this branch left BASE (origin/main
 that has, one source that includes it, however indirectly, its own if it has one; all that include
 a header that used to include what it no longer does, since they may have relied on it; and those
 that are compiled otherwise than there: where it has changed how things are built, the preset that
-BUILD_DIR is named after is configured as it was at BASE, too. All sources where it cannot be told:
-if BASE is empty or unknown, if nothing has changed since, as on BASE itself, if the former preset
-cannot be configured, or if what has changed says what is checked, or with what.
+BUILD_DIR is named after is configured as it was at BASE, too. On BASE itself, where nothing has
+changed since, as in a fresh clone of what has just landed, BASE is the last commit that is
+LANDING_HOURS older. All sources where it cannot be told: if BASE is empty or unknown, if nothing is
+that old, if the former preset cannot be configured, or if what has changed says what is checked, or
+with what.
 """
 
 import json
@@ -24,6 +26,8 @@ CONCERNS_ALL = re.compile(
     r"(^|/)(\.clang-tidy|dependencies\.txt)$|^scripts/(tidy\.sh|reached\.py)$")
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
+# What has landed together was written within fewer.
+LANDING_HOURS = 8
 INCLUDE = re.compile(rb'^#include "([^"]+)"', re.MULTILINE)
 ANY_INCLUDE = re.compile(rb"^#include (\S+)", re.MULTILINE)
 
@@ -62,18 +66,30 @@ def compiled_otherwise(commit, build_dir):
 
 
 def since(base):
-    """The commit at which this branch left BASE; None where there is none, or no git."""
+    """The commit at which this branch left BASE, or one that is older where nothing has changed
+    since; None where there is none, or no git."""
     try:
-        return git("merge-base", "HEAD", base).strip()
+        commit = git("merge-base", "HEAD", base).strip()
+        if not differing(commit):
+            written = int(git("show", "--no-patch", "--format=%ct", commit))
+            before = written - LANDING_HOURS * 3600
+            commit = git("rev-list", "--max-count=1", f"--before={before}", commit).strip()
+        return commit or None
     except (subprocess.CalledProcessError, FileNotFoundError):
         return None
 
 
-def changes(commit, build_dir):
-    """Paths below ROOT that differ from a commit, committed or not; None where it cannot be told."""
+def differing(commit):
+    """Paths that differ from a commit, committed or not."""
     # Without renames: what included a file by its former name has changed itself, or does not build.
     paths = set(git("diff", "--name-only", "--no-renames", commit).splitlines())
     paths.update(git("ls-files", "--others", "--exclude-standard").splitlines())
+    return paths
+
+
+def changes(commit, build_dir):
+    """Paths below ROOT that differ from a commit, committed or not; None where it cannot be told."""
+    paths = differing(commit)
     if not paths or any(CONCERNS_ALL.search(path) for path in paths):
         return None
     changed = {(ROOT / path).resolve() for path in paths}

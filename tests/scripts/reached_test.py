@@ -2,6 +2,7 @@
 """scripts/reached.py in a small repository of its own."""
 
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -55,13 +56,14 @@ class Reached(unittest.TestCase):
         (self.root / name).parent.mkdir(parents=True, exist_ok=True)
         (self.root / name).write_text(text)
 
-    def git(self, *arguments):
+    def git(self, *arguments, environment=None):
         who = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org"]
-        subprocess.run(["git", *who, *arguments], cwd=self.root, check=True, capture_output=True)
+        subprocess.run(["git", *who, *arguments], cwd=self.root, check=True, capture_output=True,
+                       env={**os.environ, **(environment or {})})
 
-    def commit(self):
+    def commit(self, date="2026-01-01T12:00:00"):
         self.git("add", "--all")
-        self.git("commit", "--message=x")
+        self.git("commit", "--message=x", environment={"GIT_COMMITTER_DATE": date})
 
     def reached(self, base="main"):
         done = subprocess.run([self.root / "scripts/reached.py", "build", base], cwd=self.root,
@@ -107,8 +109,17 @@ class Reached(unittest.TestCase):
         self.git("switch", "branch")
         self.assertEqual(self.reached(), [])
 
+    def test_takes_what_landed_last_where_nothing_has_changed_since(self):
+        self.write("src/base/error.h", "// changed\n")
+        self.commit("2026-01-02T01:00:00")
+        self.write("tests/math/beside.h", "// changed\n")
+        self.commit("2026-01-02T08:00:00")
+        self.write("src/math/stencil.cc", "// changed\n")
+        self.commit("2026-01-02T09:30:00")
+        self.assertEqual(self.reached("HEAD"), ["src/math/stencil.cc", "tests/math/stencil_test.cc"])
+
     def test_takes_all_where_it_cannot_tell(self):
-        self.assertEqual(self.reached(), SOURCES)  # nothing has changed
+        self.assertEqual(self.reached(), SOURCES)  # nothing has changed, and nothing is older
         self.write("src/math/stencil.cc", "// changed\n")
         self.assertEqual(self.reached(), ["src/math/stencil.cc"])
         self.assertEqual(self.reached("nowhere"), SOURCES)
