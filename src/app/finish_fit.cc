@@ -42,7 +42,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
       tied = of.Value(model) / before - 1;
     }
   }
-  Canonicalize(objective.coverage(), &model);
+  Canonicalize(objective.coverage(), &model, LobeOrder::kByLight, objective.num_threads());
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
   if (options.max_parameters > 0 && !options.stop()) {
     const auto psnr_by = [](const SphereJudge& sphere) {

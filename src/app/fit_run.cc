@@ -98,7 +98,7 @@ ModelSpec WithFileBins(ModelSpec spec) {
 // The model on the axes of this objective, in its canonical form.
 FactorModel InForm(const Objective& objective, const FactorModel& model) {
   FactorModel canonical = WithAxes(model, objective.spec());
-  Canonicalize(objective.coverage(), &canonical);
+  Canonicalize(objective.coverage(), &canonical, LobeOrder::kByLight, objective.num_threads());
   return canonical;
 }
 
@@ -248,7 +248,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (measured.anisotropic && !report.spec.anisotropic()) {
     report.left_out = AnisotropyOf(measured).share;
   }
-  report.light = ComputeLobeLight(fit.objective.coverage(), fit.model);
+  report.light = ComputeLobeLight(fit.objective.coverage(), fit.model, fit.objective.num_threads());
   report.seconds.score = stopwatch.Lap();
   report.peak_memory = PeakMemory();
   report.interrupted = InterruptGuard::signal() != 0;

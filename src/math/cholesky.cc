@@ -1,7 +1,10 @@
 #include "trilobe/math/cholesky.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <span>
+#include <thread>
 #include <vector>
 
 #include "trilobe/base/parallel.h"
@@ -27,11 +30,13 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
 namespace trilobe {
 namespace {
 
-void SolveTriangular(const char* trans, int n, const double* L, int columns, double* B) {
-  const int stride = std::max(1, n);
+// From row `first` of all n.
+void SolveTriangular(const char* trans, int n, int first, const double* L, int columns, double* B) {
+  const int stride = std::max(1, n), rows = n - first;
   int info = 0;
   const BlasCall call;
-  dtrtrs_("L", trans, "N", &n, &columns, L, &stride, B, &stride, &info);
+  dtrtrs_("L", trans, "N", &rows, &columns, L + static_cast<size_t>(first) * (n + 1), &stride,
+          B + first, &stride, &info);
 }
 
 // Below this tiles are not worth their while.
@@ -50,11 +55,6 @@ bool AnyNot0(int rows, int columns, size_t stride, const double* A) {
 // The lower triangle of a matrix in tiles, and which of them have any numbers in them.
 class Tiles {
  public:
-  // Tiles of a column that follow each other: [begin, end).
-  struct Run {
-    int begin, end;
-  };
-
   Tiles(int n, double* A) : n_(n), A_(A), full_((n + kTile - 1) / kTile) {
     for (int j = 0; j < count(); ++j) {
       full_[j].resize(count());
@@ -64,13 +64,12 @@ class Tiles {
 
   int count() const { return static_cast<int>(full_.size()); }
   int size(int i) const { return std::min(kTile, n_ - i * kTile); }
-  int rows(const Run& run) const { return std::min(n_, run.end * kTile) - run.begin * kTile; }
   double* at(int i, int j) const {
     return A_ + static_cast<size_t>(j) * kTile * n_ + static_cast<size_t>(i) * kTile;
   }
 
-  // Those below the diagonal that are not all 0; what a column takes from the tiles right of it
-  // fills these, wherever both of two are among its own.
+  // Those of a column below the diagonal that are not all 0, in L as well: what a column takes from
+  // those right of it fills these, wherever both of two are among its own.
   std::vector<int> Below(int k) {
     std::vector<int> below;
     for (int i = k + 1; i < count(); ++i) {
@@ -87,48 +86,74 @@ class Tiles {
   std::vector<std::vector<bool>> full_;  // by column and row
 };
 
-// Right-looking, a column of tiles at a time: its tile on the diagonal, those below it, and what
-// these take from the tiles right of it. Tiles that are 0, and stay so, are left out. Each tile is
-// one thread's, whatever the number of threads.
-bool FactorByTiles(int n, double* A, int num_threads) {
-  const double one = 1, minus_one = -1;
-  Tiles tiles(n, A);
-  for (int k = 0; k < tiles.count(); ++k) {
-    const int width = tiles.size(k);
-    int info = 0;
-    {
-      const BlasCall call;
-      dpotrf_("L", &width, tiles.at(k, k), &n, &info);
-    }
-    if (info != 0) return false;
-    const std::vector<int> below = tiles.Below(k);
-    const int count = static_cast<int>(below.size());
-    ParallelFor(count, num_threads, [&](int t) {
-      const int i = below[t], height = tiles.size(i);
-      const BlasCall call;
-      dtrsm_("R", "L", "T", "N", &height, &width, &one, tiles.at(k, k), &n, tiles.at(i, k), &n);
-    });
-    ParallelFor(count, num_threads, [&](int t) {
-      const int j = below[t], columns = tiles.size(j);
-      const BlasCall call;
-      dsyrk_("L", "N", &columns, &width, &minus_one, tiles.at(j, k), &n, &one, tiles.at(j, j), &n);
-      // Those below it in one call for each run.
-      for (int i = t + 1; i < count;) {
-        Tiles::Run run{below[i], below[i] + 1};
-        while (++i < count && below[i] == run.end) ++run.end;
-        const int rows = tiles.rows(run);
-        dgemm_("N", "T", &rows, &columns, &width, &minus_one, tiles.at(run.begin, k), &n,
-               tiles.at(j, k), &n, &one, tiles.at(run.begin, j), &n);
-      }
-    });
+// Left-looking, a column of tiles at a time: from it is taken what those left of it ask, one after
+// the other, then it is factored. Tiles that are 0, and stay so, are left out. A column is one
+// thread's, and waits for those left of it, which threads have begun before: the same bits for any
+// number of threads. Threads wait awake, since there are some fifty waits in some milliseconds.
+class FactorizationByTiles {
+ public:
+  FactorizationByTiles(int n, double* A) : n_(n), tiles_(n, A), done_(tiles_.count()) {
+    for (int k = 0; k < tiles_.count(); ++k) below_.push_back(tiles_.Below(k));
   }
-  return true;
-}
+
+  bool Run(int num_threads) {
+    ParallelFor(tiles_.count(), num_threads, [&](int j) {
+      for (int k = 0; k < j; ++k) {
+        const auto first = std::ranges::lower_bound(below_[k], j);
+        if (first == below_[k].end() || *first != j) continue;
+        while (!done_[k].load(std::memory_order_acquire)) std::this_thread::yield();
+        if (!failed_) TakeFrom(j, k, {first, below_[k].end()});
+      }
+      if (!failed_ && !Factor(j)) failed_ = true;
+      done_[j].store(true, std::memory_order_release);
+    });
+    return !failed_;
+  }
+
+ private:
+  // Column j from row j on, less what the tiles [j, ...) of column k make.
+  void TakeFrom(int j, int k, std::span<const int> rows) {
+    const double one = 1, minus_one = -1;
+    const int columns = tiles_.size(j), width = tiles_.size(k);
+    const BlasCall call;
+    dsyrk_("L", "N", &columns, &width, &minus_one, tiles_.at(j, k), &n_, &one, tiles_.at(j, j),
+           &n_);
+    // Those below it in one call for each run of tiles that follow each other.
+    for (size_t t = 1; t < rows.size();) {
+      const int begin = rows[t];
+      int end = begin + 1;
+      while (++t < rows.size() && rows[t] == end) ++end;
+      const int height = std::min(n_, end * kTile) - begin * kTile;
+      dgemm_("N", "T", &height, &columns, &width, &minus_one, tiles_.at(begin, k), &n_,
+             tiles_.at(j, k), &n_, &one, tiles_.at(begin, j), &n_);
+    }
+  }
+
+  bool Factor(int j) {
+    const double one = 1;
+    const int width = tiles_.size(j);
+    int info = 0;
+    const BlasCall call;
+    dpotrf_("L", &width, tiles_.at(j, j), &n_, &info);
+    if (info != 0) return false;
+    for (const int i : below_[j]) {
+      const int height = tiles_.size(i);
+      dtrsm_("R", "L", "T", "N", &height, &width, &one, tiles_.at(j, j), &n_, tiles_.at(i, j), &n_);
+    }
+    return true;
+  }
+
+  const int n_;
+  Tiles tiles_;
+  std::vector<std::vector<int>> below_;
+  std::vector<std::atomic<bool>> done_;
+  std::atomic<bool> failed_ = false;
+};
 
 }  // namespace
 
 bool FactorCholesky(int n, double* A, int num_threads) {
-  if (n > kMinTiled) return FactorByTiles(n, A, num_threads);
+  if (n > kMinTiled) return FactorizationByTiles(n, A).Run(num_threads);
   const int stride = std::max(1, n);
   int info = 0;
   const BlasCall call;
@@ -146,10 +171,12 @@ void InvertFactored(int n, double* L) {
   MirrorTriangle(Triangle::kUpper, n, L);  // by rows it is the upper one that LAPACK has set
 }
 
-void SolveLower(int n, const double* L, int columns, double* B) {
-  SolveTriangular("N", n, L, columns, B);
+void SolveLower(int n, const double* L, int columns, double* B, int first_row) {
+  SolveTriangular("N", n, first_row, L, columns, B);
 }
 
-void SolveLowerTransposed(int n, const double* L, double* b) { SolveTriangular("T", n, L, 1, b); }
+void SolveLowerTransposed(int n, const double* L, double* b) {
+  SolveTriangular("T", n, 0, L, 1, b);
+}
 
 }  // namespace trilobe

@@ -16,8 +16,9 @@ bool FactorCholesky(int n, double* A, int num_threads = 1);
 // Overwrites the factor L by both triangles of the inverse of L L'.
 void InvertFactored(int n, double* L);
 
-// Overwrites B [n][columns] with L^-1 B, b [n] with L^-T b.
-void SolveLower(int n, const double* L, int columns, double* B);
+// Overwrites B [n][columns] with L^-1 B, b [n] with L^-T b. Rows of B before `first_row` are 0, and
+// so are those of L^-1 B.
+void SolveLower(int n, const double* L, int columns, double* B, int first_row = 0);
 void SolveLowerTransposed(int n, const double* L, double* b);
 
 }  // namespace trilobe

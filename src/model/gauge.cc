@@ -200,21 +200,22 @@ void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
   }
 }
 
-void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrder order) {
+void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrder order,
+                  int num_threads) {
   // Brings parameters into a range in which products neither overflow nor vanish.
   NormalizeScale(coverage, model);
   const ModelSpec& spec = model->spec();
-  LobeLight light = ComputeLobeLight(coverage, *model);
+  const LobeLight light = ComputeLobeLight(coverage, *model, num_threads);
+  FactorModel through = *model;  // with the light through each entry in its place
+  std::ranges::copy(light.through, through.parameters().begin());
   // The coverage of D is that of its lobe's stretch.
   const bool may_change_places = !spec.stretches.several();
   if (order == LobeOrder::kByLight && spec.lobes > 1 && may_change_places) {
     std::vector<int> lobes(spec.lobes);
     std::iota(lobes.begin(), lobes.end(), 0);
     std::ranges::stable_sort(lobes, std::greater(), [&](int m) { return light.Share(m); });
-    if (!std::ranges::is_sorted(lobes)) {
-      *model = WithLobes(*model, lobes);
-      light = ComputeLobeLight(coverage, *model);
-    }
+    *model = WithLobes(*model, lobes);
+    through = WithLobes(through, lobes);
   }
   const std::vector<double> half_vectors =
       spec.d_axis.polar() ? ProjectedAngles(spec.d_axis) : VisibleSolidAngles(spec.d_axis.size);
@@ -234,7 +235,7 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
         Normalize(factor, t, half_vectors, 1, model);
         continue;
       }
-      std::span<const double> weights = std::span(light.through).subspan(offset, table.size());
+      std::span<const double> weights = through.table(factor, t);
       double total = std::accumulate(weights.begin(), weights.end(), 0.0);
       if (spec.anisotropic() || !(total > 0)) {  // or no light at all
         weights = covered;

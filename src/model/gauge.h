@@ -28,7 +28,7 @@ namespace trilobe {
 // order of model->parameters(); these functions throw Error if it has another size.
 enum class LobeOrder { kByLight, kAsTheyAre };
 void Canonicalize(std::span<const double> coverage, FactorModel* model,
-                  LobeOrder order = LobeOrder::kByLight);
+                  LobeOrder order = LobeOrder::kByLight, int num_threads = 1);
 
 // The same for work inside a fit, which compares models of one run: cheaper, as F and G are
 // weighted by coverage and D by the projected solid angle; lobes keep their places.

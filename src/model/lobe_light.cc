@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/base/parallel.h"
 #include "trilobe/brdf/merl_grid.h"
 #include "trilobe/math/catmull_rom.h"
 
@@ -96,52 +97,73 @@ double Total(const LobeLight& light) {
   return total;
 }
 
-// Adds what the lobes of a stretch reflect, over the places where they read D; with the first one
-// what is diffuse.
-void AddLight(std::span<const double> coverage, const FactorModel& model, int stretch,
-              LobeLight* light) {
+// Which entries of the tables that these lobes read are observed, by factor and entry: in all
+// tables of F and G, and of D in those of these lobes, alike, but for channels without weight.
+using Observed = std::array<std::vector<bool>, std::size(kFactors)>;
+Observed ObservedBy(std::span<const int> lobes, std::span<const double> coverage,
+                    const FactorModel& model) {
   const ModelSpec& spec = model.spec();
-  const Cells cells(spec);
-  std::vector<int> lobes;
-  for (int m = 0; m < spec.lobes; ++m) {
-    if (spec.stretches.index(m) == stretch) lobes.push_back(m);
-  }
-  // Entries are observed or unobserved in all tables of F and G, and of D in those of these lobes,
-  // alike, but for channels without weight.
-  const auto observed = [&](Factor factor, int entry) {
+  Observed observed;
+  for (const Factor factor : kFactors) {
+    std::vector<bool>& entries = observed[static_cast<size_t>(factor)];
+    entries.assign(spec.table_size(factor), lobes.empty());
     for (const int m : lobes) {
       for (int c = 0; c < kChannels; ++c) {
-        const int t = spec.table(factor, m, c);
-        if (coverage[model.TableOffset(factor, t) + entry] > 0) return true;
+        const int offset = model.TableOffset(factor, spec.table(factor, m, c));
+        for (size_t k = 0; k < entries.size(); ++k) {
+          if (coverage[offset + k] > 0) entries[k] = true;
+        }
       }
     }
-    return lobes.empty();
-  };
-  const auto all_live = [&](const Stencil& stencil) {
-    for (int k = 0; k < stencil.size; ++k) {
-      if (stencil.weight[k] != 0 && !observed(Factor::kG, stencil.index[k])) return false;
-    }
-    return true;
-  };
+  }
+  return observed;
+}
+
+bool AllOf(const std::vector<bool>& observed, const Stencil& stencil) {
+  for (int k = 0; k < stencil.size; ++k) {
+    if (stencil.weight[k] != 0 && !observed[stencil.index[k]]) return false;
+  }
+  return true;
+}
+
+// What lobes of one stretch reflect, and what is diffuse, over some of the places where they read
+// D: `all` is what a white diffuse surface does there, in the same unit.
+struct Part {
+  explicit Part(const FactorModel& model)
+      : lobes(model.spec().lobes), through(model.parameters().size()) {}
+
   double all = 0;
   Rgb diffuse{};
-  const int G_tables = spec.num_tables(Factor::kG);
+  std::vector<Rgb> lobes;
+  std::vector<double> through;  // as LobeLight has it
+};
+
+void Add(const Part& part, Part* sum) {
+  sum->all += part.all;
+  for (int c = 0; c < kChannels; ++c) sum->diffuse[c] += part.diffuse[c];
+  for (size_t m = 0; m < part.lobes.size(); ++m) {
+    for (int c = 0; c < kChannels; ++c) sum->lobes[m][c] += part.lobes[m][c];
+  }
+  for (size_t k = 0; k < part.through.size(); ++k) sum->through[k] += part.through[k];
+}
+
+// The part of the entries of D that have a ring's theta_h.
+void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lobes,
+             const Observed& observed, const FactorModel& model, int ring, Part* sum) {
+  const ModelSpec& spec = model.spec();
+  const auto& [D_observed, F_observed, G_observed] = observed;
+  const int G_tables = spec.num_tables(Factor::kG), phi_nodes = spec.d_axis.phi_nodes;
   std::array<double, kChannels * kMaxLobes> shadowing{}, through_G{};  // by table of G
-  std::vector<Cells::Pair> pairs;
-  int pairs_ring = -1;
-  for (int h = 0; h < spec.d_axis.size; ++h) {
-    if (!observed(Factor::kD, h)) continue;
-    if (const int ring = h / spec.d_axis.phi_nodes; ring != pairs_ring) {
-      pairs = cells.PairsAt(h, spec.stretches.distinct()[stretch]);
-      pairs_ring = ring;
-    }
+  const std::vector<Cells::Pair> pairs = cells.PairsAt(ring * phi_nodes, stretch);
+  for (int h = ring * phi_nodes; h < (ring + 1) * phi_nodes; ++h) {
+    if (!D_observed[h]) continue;
     for (const Cells::Pair& pair : pairs) {
-      if (!observed(Factor::kF, pair.d)) continue;
+      if (!F_observed[pair.d]) continue;
       const auto [G_i, G_o] = cells.ReadG(h, pair);
-      if (!all_live(G_i) || !all_live(G_o)) continue;
+      if (!AllOf(G_observed, G_i) || !AllOf(G_observed, G_o)) continue;
       const double solid_angle = cells.SolidAngle(h, pair.d) * pair.half_vectors;
       const double white = solid_angle * pair.cosines.i * pair.cosines.o;
-      all += white;
+      sum->all += white;
       // The cosines of a lobe's denominator and those of the integral cancel.
       for (int t = 0; t < G_tables; ++t) {
         const std::span<const double> G = model.table(Factor::kG, t);
@@ -149,21 +171,21 @@ void AddLight(std::span<const double> coverage, const FactorModel& model, int st
       }
       through_G.fill(0);
       for (int c = 0; c < kChannels; ++c) {
-        diffuse[c] += white * model.d()[c];
+        sum->diffuse[c] += white * model.d()[c];
         for (const int m : lobes) {
           const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
           const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
           const int G = spec.table(Factor::kG, m, c);
           const double part =
               shadowing[G] * model.s(m)[c] * model.parameters()[D] * model.parameters()[F];
-          light->lobes[m][c] += part;
-          light->through[D] += part;
-          light->through[F] += part;
+          sum->lobes[m][c] += part;
+          sum->through[D] += part;
+          sum->through[F] += part;
           through_G[G] += part;
         }
       }
       for (int t = 0; t < G_tables; ++t) {
-        double* const through = &light->through[model.TableOffset(Factor::kG, t)];
+        double* const through = &sum->through[model.TableOffset(Factor::kG, t)];
         for (const Stencil* const stencil : {&G_i, &G_o}) {
           for (int k = 0; k < stencil->size; ++k) {
             through[stencil->index[k]] += through_G[t] * std::abs(stencil->weight[k]);
@@ -172,13 +194,25 @@ void AddLight(std::span<const double> coverage, const FactorModel& model, int st
       }
     }
   }
-  // A Lambertian rho has the albedo pi rho.
-  const double scale = all > 0 ? kPi / all : 0;
-  for (const int m : lobes) {
-    for (double& x : light->lobes[m]) x *= scale;
-  }
-  if (stretch > 0) return;
-  for (int c = 0; c < kChannels; ++c) light->diffuse[c] = scale * diffuse[c];
+}
+
+// Of the lobes of a stretch, over all places where they read D.
+Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const double> coverage,
+            const FactorModel& model, int num_threads) {
+  const Cells cells(model.spec());
+  const Observed observed = ObservedBy(lobes, coverage, model);
+  const Axis& axis = model.spec().d_axis;
+  const int rings = axis.size / axis.phi_nodes;
+  // Sums of so many rings, each in its turn, whatever the number of threads.
+  constexpr int kSums = 6;
+  std::vector<Part> sums(kSums, Part(model));
+  ParallelFor(kSums, num_threads, [&](int k) {
+    for (int ring = k; ring < rings; ring += kSums) {
+      AddRing(cells, stretch, lobes, observed, model, ring, &sums[k]);
+    }
+  });
+  for (int k = 1; k < kSums; ++k) Add(sums[k], &sums[0]);
+  return sums[0];
 }
 
 }  // namespace
@@ -197,13 +231,26 @@ double LobeLight::DiffuseShare() const {
   return total > 0 ? Mean(diffuse) / total : 0;
 }
 
-LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model) {
+LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model,
+                           int num_threads) {
   CheckCoverage(coverage, model);
+  const ModelSpec& spec = model.spec();
   LobeLight light;
-  light.lobes.resize(model.spec().lobes);
+  light.lobes.resize(spec.lobes);
   light.through.assign(model.parameters().size(), 0.0);
-  for (size_t k = 0; k < model.spec().stretches.distinct().size(); ++k) {
-    AddLight(coverage, model, static_cast<int>(k), &light);
+  for (size_t k = 0; k < spec.stretches.distinct().size(); ++k) {
+    std::vector<int> lobes;
+    for (int m = 0; m < spec.lobes; ++m) {
+      if (spec.stretches.index(m) == static_cast<int>(k)) lobes.push_back(m);
+    }
+    const Part part = PartOf(lobes, spec.stretches.distinct()[k], coverage, model, num_threads);
+    // A Lambertian rho has the albedo pi rho.
+    const double scale = part.all > 0 ? kPi / part.all : 0;
+    for (int c = 0; c < kChannels; ++c) {
+      for (const int m : lobes) light.lobes[m][c] = scale * part.lobes[m][c];
+      if (k == 0) light.diffuse[c] = scale * part.diffuse[c];
+    }
+    for (size_t j = 0; j < light.through.size(); ++j) light.through[j] += part.through[j];
   }
   return light;
 }

@@ -28,8 +28,9 @@ struct LobeLight {
 };
 
 // `coverage` (Objective::coverage(), or no more than > 0 for observed and 0 for unobserved entries)
-// is in the order of model.parameters().
-LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model);
+// is in the order of model.parameters(). The same bits for any number of threads.
+LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model,
+                           int num_threads = 1);
 
 // How much of the directions with a half vector in each bin of theta_h lies above the surface,
 // times the solid angle of the bin: 2 pi sin theta_h dtheta_h v(theta_h), v(0) = 1. What a D

@@ -94,10 +94,25 @@ TEST(FactorCholesky, MayBeCalledFromSeveralThreads) {
 
 TEST(FactorCholesky, TellsAMatrixThatIsNotPositiveDefinite) {
   for (const int n : {20, 1300}) {
-    std::vector<double> A = PositiveDefinite(n);
-    A[static_cast<size_t>(n - 1) * n + n - 1] = -1;
-    EXPECT_FALSE(FactorCholesky(n, A.data(), 2));
+    for (const int row : {0, n / 2, n - 1}) {  // what comes after it is given up
+      std::vector<double> A = PositiveDefinite(n);
+      A[static_cast<size_t>(row) * n + row] = -1;
+      EXPECT_FALSE(FactorCholesky(n, A.data(), 2)) << row;
+    }
   }
+}
+
+TEST(SolveLower, LeavesOutRowsThatAre0) {
+  const int n = 30, columns = 2, first = 11;
+  std::vector<double> L = PositiveDefinite(n);
+  ASSERT_TRUE(FactorCholesky(n, L.data()));
+  std::vector<double> B(static_cast<size_t>(n) * columns, 0.0);
+  for (int j = 0; j < columns; ++j) B[j * n + first + 3 * j] = 1 + j;
+  std::vector<double> all = B;
+  SolveLower(n, L.data(), columns, B.data(), first);
+  SolveLower(n, L.data(), columns, all.data());
+  EXPECT_THAT(B, testing::Pointwise(testing::DoubleNear(1e-14), all));
+  EXPECT_NE(B[n - 1], 0);
 }
 
 }  // namespace

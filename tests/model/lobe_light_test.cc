@@ -86,6 +86,17 @@ TEST(LobeLight, AgreesWithTheDirectionalAlbedosOfEachPart) {
 }
 
 // Four times s is the albedo of a lobe with constant F and G and a D of integral 1.
+TEST(LobeLight, SameBitsForAnyNumberOfThreads) {
+  const FactorModel model = SmoothModel();
+  const LobeLight one = ComputeLobeLight(AllObserved(model), model, 1);
+  for (const int threads : {2, 3}) {
+    const LobeLight other = ComputeLobeLight(AllObserved(model), model, threads);
+    EXPECT_EQ(one.diffuse, other.diffuse);
+    EXPECT_EQ(one.lobes, other.lobes);
+    EXPECT_EQ(one.through, other.through);
+  }
+}
+
 TEST(LobeLight, FourTimesSIsTheAlbedo) {
   FactorModel model = SmoothModel();
   for (double& d : model.d()) d = 0;

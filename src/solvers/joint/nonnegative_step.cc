@@ -14,9 +14,10 @@ namespace {
 // Holding and freeing at once converges in few rounds, but may cycle; holding alone ends.
 constexpr int kExchangeRounds = 4;
 constexpr int kMaxRounds = 10;
-// A factor is used again while no more parameters than this have changed sides: beyond, a new one
-// is faster.
-constexpr size_t kMaxBorder = 64;
+// A factor of n rows is used again while no more than n / 12 parameters have changed sides, which
+// costs at most a quarter of a new one.
+constexpr size_t kRowsForOneBorder = 12;
+constexpr int kNone = -1;
 
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
@@ -64,16 +65,31 @@ NonnegativeStep::Result NonnegativeStep::Solve(double lambda) {
   }
   const int size = static_cast<int>(n);
   const ConstVectorMap g(g_.data(), size), p(p_.data(), size), u(u_.data(), size);
-  const Eigen::Map<const Eigen::MatrixXd> H(at_->H.data(), size, size);
-  const Eigen::VectorXd H_u = H.selfadjointView<Eigen::Lower>() * u;
-  result.predicted_decrease = -(g.dot(p) + u.dot(H_u) / 2);
+  const std::vector<double> H_u = HTimesU([&](size_t k) { return u_[k] != 0; });
+  result.predicted_decrease = -(g.dot(p) + u.dot(ConstVectorMap(H_u.data(), size)) / 2);
   return result;
 }
 
-// Row k of the scaled H times p.
-double NonnegativeStep::H_p(size_t k) const {
-  const int n = static_cast<int>(u_.size());
-  return unit_[k] * ConstVectorMap(&at_->H[k * u_.size()], n).dot(ConstVectorMap(u_.data(), n));
+// H u in the rows that are wanted, 0 in the others.
+std::vector<double> NonnegativeStep::HTimesU(const std::function<bool(size_t)>& wanted) const {
+  const size_t n = u_.size();
+  const int size = static_cast<int>(n);
+  const ConstVectorMap u(u_.data(), size);
+  std::vector<double> H_u(n, 0.0);
+  ForChunks(n, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      if (wanted(k)) H_u[k] = ConstVectorMap(&at_->H[k * n], size).dot(u);
+    }
+  });
+  return H_u;
+}
+
+// Calls work(begin, end) for all of [0, count), on all threads.
+void NonnegativeStep::ForChunks(size_t count,
+                                const std::function<void(size_t, size_t)>& work) const {
+  constexpr size_t kChunk = 64;
+  ParallelFor(static_cast<int>((count + kChunk - 1) / kChunk), num_threads_,
+              [&](int chunk) { work(chunk * kChunk, std::min((chunk + 1) * kChunk, count)); });
 }
 
 // Factors the scaled H + lambda of the parameters that are free now.
@@ -90,17 +106,48 @@ bool NonnegativeStep::Factor(double lambda) {
   }
   const size_t size = base_.size();
   L_.resize(size * size);
-  constexpr size_t kColumns = 64;
-  ParallelFor(static_cast<int>((size + kColumns - 1) / kColumns), num_threads_, [&](int chunk) {
-    const size_t begin = chunk * kColumns;
-    for (size_t j = begin; j < std::min(begin + kColumns, size); ++j) {
+  ForChunks(size, [&](size_t begin, size_t end) {
+    for (size_t j = begin; j < end; ++j) {
       const double* const H_k = &at_->H[base_[j] * n];
       double* const column = &L_[j * size];
       for (size_t i = j; i < size; ++i) column[i] = units_[j] * H_k[base_[i]] * units_[i];
       column[j] += lambda;
     }
   });
+  column_of_.assign(n, kNone);
+  solved_.clear();
   return FactorCholesky(static_cast<int>(size), L_.data(), num_threads_);
+}
+
+// Finds the columns of U and V, below, that were not asked for before.
+void NonnegativeStep::SolveBorder() {
+  const size_t size = base_.size(), n = x_.size();
+  std::vector<size_t> before;  // the rows that are 0 before the first that is not, by column
+  const size_t first = solved_.size() / size;
+  for (const size_t j : removed_) {
+    int& column = column_of_[base_[j]];
+    if (column != kNone) continue;
+    column = static_cast<int>(first + before.size());
+    before.push_back(j);
+    solved_.resize(solved_.size() + size, 0.0);
+    solved_[solved_.size() - size + j] = 1;
+  }
+  for (const size_t k : added_) {
+    if (column_of_[k] != kNone) continue;
+    column_of_[k] = static_cast<int>(first + before.size());
+    before.push_back(0);
+    for (size_t j = 0; j < size; ++j) {
+      solved_.push_back(-unit_[k] * at_->H[k * n + base_[j]] * units_[j]);
+    }
+  }
+  constexpr size_t kColumns = 8;
+  const size_t count = before.size();
+  ParallelFor(static_cast<int>((count + kColumns - 1) / kColumns), num_threads_, [&](int chunk) {
+    const size_t begin = chunk * kColumns, end = std::min(begin + kColumns, count);
+    const size_t row = *std::min_element(before.begin() + begin, before.begin() + end);
+    SolveLower(static_cast<int>(size), L_.data(), static_cast<int>(end - begin),
+               &solved_[(first + begin) * size], static_cast<int>(row));
+  });
 }
 
 // Sets p by the present active set. That differs from the one of the factor LL' = A by the
@@ -121,7 +168,7 @@ bool NonnegativeStep::SetStep(double lambda) {
   for (size_t j = 0; j < base_.size(); ++j) {
     if (binding_[base_[j]]) removed_.push_back(j);
   }
-  if (!factored_ || removed_.size() + added_.size() > kMaxBorder) {
+  if (!factored_ || kRowsForOneBorder * (removed_.size() + added_.size()) > base_.size()) {
     removed_.clear();
     added_.clear();
     factored_ = Factor(lambda);
@@ -139,28 +186,29 @@ bool NonnegativeStep::SetStep(double lambda) {
   const int size = static_cast<int>(base_.size());
   const int num_removed = static_cast<int>(removed_.size());
   const int num_added = static_cast<int>(added_.size());
-  W_.assign(static_cast<size_t>(size) * (1 + num_removed + num_added), 0.0);
-  Eigen::Map<Eigen::MatrixXd> W(W_.data(), size, 1 + num_removed + num_added);
-  auto y = W.col(0);
-  auto U = W.middleCols(1, num_removed);
-  auto V = W.rightCols(num_added);
-  Eigen::VectorXd b_R(num_removed), b_N(num_added);
+  Eigen::VectorXd y(size), b_R(num_removed), b_N(num_added);
   Eigen::MatrixXd A_NN(num_added, num_added);
   for (int j = 0; j < size; ++j) y(j) = right_hand_side(base_[j]);
-  for (int r = 0; r < num_removed; ++r) {
-    U(removed_[r], r) = 1;
-    b_R(r) = -z_[base_[removed_[r]]];
-  }
-  for (int a = 0; a < num_added; ++a) {
-    const size_t k = added_[a];
-    const double* const H_k = &at_->H[k * n];
-    for (int j = 0; j < size; ++j) V(j, a) = -unit_[k] * H_k[base_[j]] * units_[j];
-    for (int e = 0; e < num_added; ++e) A_NN(e, a) = unit_[k] * H_k[added_[e]] * unit_[added_[e]];
-    A_NN(a, a) += lambda;
-    b_N(a) = right_hand_side(k);
-  }
-  SolveLower(size, L_.data(), 1 + num_removed + num_added, W_.data());
+  SolveLower(size, L_.data(), 1, y.data());
   if (num_removed + num_added > 0) {
+    SolveBorder();
+    Eigen::MatrixXd U(size, num_removed), V(size, num_added);
+    const auto column = [&](size_t k) {
+      return ConstVectorMap(&solved_[static_cast<size_t>(column_of_[k]) * size], size);
+    };
+    for (int r = 0; r < num_removed; ++r) {
+      const size_t k = base_[removed_[r]];
+      U.col(r) = column(k);
+      b_R(r) = -z_[k];
+    }
+    for (int a = 0; a < num_added; ++a) {
+      const size_t k = added_[a];
+      const double* const H_k = &at_->H[k * n];
+      V.col(a) = column(k);
+      for (int e = 0; e < num_added; ++e) A_NN(e, a) = unit_[k] * H_k[added_[e]] * unit_[added_[e]];
+      A_NN(a, a) += lambda;
+      b_N(a) = right_hand_side(k);
+    }
     b_R -= U.transpose() * y;
     b_N += V.transpose() * y;
     const Eigen::MatrixXd U_V = U.transpose() * V;
@@ -172,7 +220,7 @@ bool NonnegativeStep::SetStep(double lambda) {
     y += U * SolveBy(of_R, b_R - U_V * p_N) + V * p_N;
     for (int a = 0; a < num_added; ++a) p_[added_[a]] = p_N(a);
   }
-  SolveLowerTransposed(size, L_.data(), W_.data());
+  SolveLowerTransposed(size, L_.data(), y.data());
   for (int j = 0; j < size; ++j) p_[base_[j]] = y(j);
   for (const size_t j : removed_) p_[base_[j]] = -z_[base_[j]];
   for (size_t k = 0; k < n; ++k) u_[k] = unit_[k] * p_[k];
@@ -182,13 +230,15 @@ bool NonnegativeStep::SetStep(double lambda) {
 // Sets p by the present active set, then changes that.
 NonnegativeStep::Outcome NonnegativeStep::SolveFree(double lambda, bool release) {
   if (!SetStep(lambda)) return Outcome::kIndefinite;
+  std::vector<double> H_u;
+  if (release) H_u = HTimesU([&](size_t k) { return unit_[k] != 0 && binding_[k]; });
   bool changed = false;
   for (size_t k = 0; k < x_.size(); ++k) {
     if (unit_[k] == 0) continue;
     if (!binding_[k]) {
       if (z_[k] + p_[k] >= 0) continue;
       binding_[k] = changed = true;
-    } else if (release && g_[k] + H_p(k) + lambda * p_[k] < 0) {
+    } else if (release && g_[k] + unit_[k] * H_u[k] + lambda * p_[k] < 0) {
       binding_[k] = false;
       changed = true;
     }

@@ -2,6 +2,7 @@
 #define TRILOBE_SOLVERS_JOINT_NONNEGATIVE_STEP_H_
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -49,7 +50,9 @@ class NonnegativeStep {
   Outcome SolveFree(double lambda, bool release);
   bool SetStep(double lambda);
   bool Factor(double lambda);
-  double H_p(size_t k) const;
+  void SolveBorder();
+  std::vector<double> HTimesU(const std::function<bool(size_t)>& wanted) const;
+  void ForChunks(size_t count, const std::function<void(size_t, size_t)>& work) const;
 
   const QuadraticModel* at_ = nullptr;
   // Of all parameters; scale, its entry of S, is 0 for one that cannot move, and so are
@@ -61,9 +64,11 @@ class NonnegativeStep {
   std::vector<size_t> base_;
   std::vector<bool> in_base_;
   std::vector<double> units_, L_;
-  // Those that changed sides since, the former by number in base_; and what they ask of the factor.
+  // Those that changed sides since, the former by number in base_.
   std::vector<size_t> removed_, added_;
-  std::vector<double> W_;
+  // What each that did asks of the factor, from when it first did: its column in solved_.
+  std::vector<int> column_of_;
+  std::vector<double> solved_;
 };
 
 }  // namespace trilobe
