@@ -26,7 +26,7 @@ CONCERNS_ALL = re.compile(
     r"(^|/)(\.clang-tidy|dependencies\.txt)$|^scripts/(tidy\.sh|reached\.py)$")
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
-# What has landed together was written within fewer.
+# What lands together is taken to have been written within so many; scripts/nightly.sh checks all.
 LANDING_HOURS = 8
 INCLUDE = re.compile(rb'^#include "([^"]+)"', re.MULTILINE)
 ANY_INCLUDE = re.compile(rb"^#include (\S+)", re.MULTILINE)
@@ -73,7 +73,8 @@ def since(base):
         if not differing(commit):
             written = int(git("show", "--no-patch", "--format=%ct", commit))
             before = written - LANDING_HOURS * 3600
-            commit = git("rev-list", "--max-count=1", f"--before={before}", commit).strip()
+            commit = git("rev-list", "--first-parent", "--max-count=1", f"--before={before}",
+                         commit).strip()
         return commit or None
     except (subprocess.CalledProcessError, FileNotFoundError):
         return None

@@ -87,9 +87,10 @@ class Tiles {
 };
 
 // Left-looking, a column of tiles at a time: from it is taken what those left of it ask, one after
-// the other, then it is factored. Tiles that are 0, and stay so, are left out. A column is one
-// thread's, and waits for those left of it, which threads have begun before: the same bits for any
-// number of threads. Threads wait awake, since there are some fifty waits in some milliseconds.
+// the other from left to right, whatever the number of threads; then it is factored. Tiles that are
+// 0, and stay so, are left out. A column is one item of ParallelFor, which must not throw: it waits
+// for those left of it, that were begun before. It waits busily, since there are some fifty waits
+// in some milliseconds.
 class FactorizationByTiles {
  public:
   FactorizationByTiles(int n, double* A) : n_(n), tiles_(n, A), done_(tiles_.count()) {

@@ -206,7 +206,7 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
   NormalizeScale(coverage, model);
   const ModelSpec& spec = model->spec();
   const LobeLight light = ComputeLobeLight(coverage, *model, num_threads);
-  FactorModel through = *model;  // with the light through each entry in its place
+  FactorModel through = *model;  // its numbers are the light that goes through these entries
   std::ranges::copy(light.through, through.parameters().begin());
   // The coverage of D is that of its lobe's stretch.
   const bool may_change_places = !spec.stretches.several();

@@ -25,7 +25,8 @@ namespace trilobe {
 // last five; of G it is G / cos theta that is continued so, since that keeps the BRDF from growing
 // towards the horizon, and rings of nodes beyond the last two observed ones have
 // G / cos theta = 1 / (a + b cos theta) through these. `coverage` is Objective::coverage(), in the
-// order of model->parameters(); these functions throw Error if it has another size.
+// order of model->parameters(); these functions throw Error if it has another size. The same bits
+// for any number of threads.
 enum class LobeOrder { kByLight, kAsTheyAre };
 void Canonicalize(std::span<const double> coverage, FactorModel* model,
                   LobeOrder order = LobeOrder::kByLight, int num_threads = 1);

@@ -147,7 +147,7 @@ void Add(const Part& part, Part* sum) {
   for (size_t k = 0; k < part.through.size(); ++k) sum->through[k] += part.through[k];
 }
 
-// The part of the entries of D that have a ring's theta_h.
+// Adds what lobes reflect where they read the entries of D at one theta_h, a ring.
 void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lobes,
              const Observed& observed, const FactorModel& model, int ring, Part* sum) {
   const ModelSpec& spec = model.spec();
@@ -203,7 +203,7 @@ Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const 
   const Observed observed = ObservedBy(lobes, coverage, model);
   const Axis& axis = model.spec().d_axis;
   const int rings = axis.size / axis.phi_nodes;
-  // Sums of so many rings, each in its turn, whatever the number of threads.
+  // So many sums, each over every kSums-th ring, whatever the number of threads.
   constexpr int kSums = 6;
   std::vector<Part> sums(kSums, Part(model));
   ParallelFor(kSums, num_threads, [&](int k) {
@@ -212,7 +212,7 @@ Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const 
     }
   });
   for (int k = 1; k < kSums; ++k) Add(sums[k], &sums[0]);
-  return sums[0];
+  return std::move(sums[0]);
 }
 
 }  // namespace

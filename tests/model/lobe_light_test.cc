@@ -85,18 +85,23 @@ TEST(LobeLight, AgreesWithTheDirectionalAlbedosOfEachPart) {
               1e-12);
 }
 
-// Four times s is the albedo of a lobe with constant F and G and a D of integral 1.
+// Whatever a ring of D is.
 TEST(LobeLight, SameBitsForAnyNumberOfThreads) {
-  const FactorModel model = SmoothModel();
-  const LobeLight one = ComputeLobeLight(AllObserved(model), model, 1);
-  for (const int threads : {2, 3}) {
-    const LobeLight other = ComputeLobeLight(AllObserved(model), model, threads);
-    EXPECT_EQ(one.diffuse, other.diffuse);
-    EXPECT_EQ(one.lobes, other.lobes);
-    EXPECT_EQ(one.through, other.through);
+  FactorModel anisotropic(ModelSpec::Anisotropic(2));
+  for (double& x : anisotropic.parameters()) x = 0.5;
+  for (const FactorModel& model : {SmoothModel(), anisotropic}) {
+    const LobeLight one = ComputeLobeLight(AllObserved(model), model, 1);
+    EXPECT_GT(one.Share(1), 0);
+    for (const int threads : {2, 3}) {
+      const LobeLight other = ComputeLobeLight(AllObserved(model), model, threads);
+      EXPECT_EQ(one.diffuse, other.diffuse);
+      EXPECT_EQ(one.lobes, other.lobes);
+      EXPECT_EQ(one.through, other.through);
+    }
   }
 }
 
+// Four times s is the albedo of a lobe with constant F and G and a D of integral 1.
 TEST(LobeLight, FourTimesSIsTheAlbedo) {
   FactorModel model = SmoothModel();
   for (double& d : model.d()) d = 0;

@@ -118,6 +118,14 @@ class Reached(unittest.TestCase):
         self.commit("2026-01-02T09:30:00")
         self.assertEqual(self.reached("HEAD"), ["src/math/stencil.cc", "tests/math/stencil_test.cc"])
 
+    def test_takes_all_of_a_branch_that_was_merged_last(self):
+        self.write("src/math/stencil.cc", "// changed\n")
+        self.commit("2026-01-02T00:00:00")
+        self.git("switch", "main")
+        self.git("merge", "--no-ff", "--message=x", "branch",
+                 environment={"GIT_COMMITTER_DATE": "2026-01-02T09:30:00"})
+        self.assertEqual(self.reached("HEAD"), ["src/math/stencil.cc"])
+
     def test_takes_all_where_it_cannot_tell(self):
         self.assertEqual(self.reached(), SOURCES)  # nothing has changed, and nothing is older
         self.write("src/math/stencil.cc", "// changed\n")

@@ -15,7 +15,7 @@ namespace {
 constexpr int kExchangeRounds = 4;
 constexpr int kMaxRounds = 10;
 // A factor of n rows is used again while no more than n / 12 parameters have changed sides, which
-// costs at most a quarter of a new one.
+// costs at most a quarter of a new one, if that has no tiles of zeros.
 constexpr size_t kRowsForOneBorder = 12;
 constexpr int kNone = -1;
 
@@ -136,9 +136,9 @@ void NonnegativeStep::SolveBorder() {
     if (column_of_[k] != kNone) continue;
     column_of_[k] = static_cast<int>(first + before.size());
     before.push_back(0);
-    for (size_t j = 0; j < size; ++j) {
-      solved_.push_back(-unit_[k] * at_->H[k * n + base_[j]] * units_[j]);
-    }
+    solved_.resize(solved_.size() + size);
+    double* const V_k = &solved_[solved_.size() - size];
+    for (size_t j = 0; j < size; ++j) V_k[j] = -unit_[k] * at_->H[k * n + base_[j]] * units_[j];
   }
   constexpr size_t kColumns = 8;
   const size_t count = before.size();

@@ -41,7 +41,7 @@ class NonnegativeStep {
   void SetBinding(std::vector<bool> binding) { binding_ = std::move(binding); }
 
  private:
-  int num_threads_;  // for the factors of large ones
+  int num_threads_;
   std::vector<size_t> order_;
 
   // How the active set was, seen from its solution.
