@@ -211,8 +211,9 @@ Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const 
       AddRing(cells, stretch, lobes, observed, model, ring, &sums[k]);
     }
   });
-  for (int k = 1; k < kSums; ++k) Add(sums[k], &sums[0]);
-  return std::move(sums[0]);
+  Part sum = std::move(sums.front());
+  for (int k = 1; k < kSums; ++k) Add(sums[k], &sum);
+  return sum;
 }
 
 }  // namespace
