@@ -4,8 +4,8 @@
 benchmarks/compare.py BEFORE AFTER [--program=fit_benchmark] [--rounds=5] [--filter=REGEX]
                       [--rename=OLD=NEW ...]
 
-BEFORE and AFTER are build folders. They take turns, so that what else the machine does falls on both;
-times are medians over the rounds. A benchmark that only one of them has is left out. Those of
+BEFORE and AFTER are build folders. They take turns, so that what else the machine does falls on both,
+as it does not with Google Benchmark's own compare.py; times are medians over the rounds. A benchmark that only one of them has is left out. Those of
 anisotropic_benchmark compare within themselves, and are not for this.
 
     git worktree add ../before COMMIT

@@ -129,28 +129,32 @@ bool AllOf(const std::vector<bool>& observed, const Stencil& stencil) {
 // What lobes of one stretch reflect, and what is diffuse, over some of the places where they read
 // D: `all` is what a white diffuse surface does there, in the same unit.
 struct Part {
-  explicit Part(const FactorModel& model)
-      : lobes(model.spec().lobes), through(model.parameters().size()) {}
-
   double all = 0;
-  Rgb diffuse{};
-  std::vector<Rgb> lobes;
-  std::vector<double> through;  // as LobeLight has it
+  LobeLight light;
 };
+
+LobeLight Darkness(const FactorModel& model) {
+  return {.diffuse = {},
+          .lobes = std::vector<Rgb>(model.spec().lobes),
+          .through = std::vector<double>(model.parameters().size())};
+}
 
 void Add(const Part& part, Part* sum) {
   sum->all += part.all;
-  for (int c = 0; c < kChannels; ++c) sum->diffuse[c] += part.diffuse[c];
-  for (size_t m = 0; m < part.lobes.size(); ++m) {
-    for (int c = 0; c < kChannels; ++c) sum->lobes[m][c] += part.lobes[m][c];
+  const LobeLight& from = part.light;
+  LobeLight& to = sum->light;
+  for (int c = 0; c < kChannels; ++c) to.diffuse[c] += from.diffuse[c];
+  for (size_t m = 0; m < from.lobes.size(); ++m) {
+    for (int c = 0; c < kChannels; ++c) to.lobes[m][c] += from.lobes[m][c];
   }
-  for (size_t k = 0; k < part.through.size(); ++k) sum->through[k] += part.through[k];
+  for (size_t k = 0; k < from.through.size(); ++k) to.through[k] += from.through[k];
 }
 
 // Adds what lobes reflect where they read the entries of D at one theta_h, a ring.
 void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lobes,
              const Observed& observed, const FactorModel& model, int ring, Part* sum) {
   const ModelSpec& spec = model.spec();
+  LobeLight& light = sum->light;
   const auto& [D_observed, F_observed, G_observed] = observed;
   const int G_tables = spec.num_tables(Factor::kG), phi_nodes = spec.d_axis.phi_nodes;
   std::array<double, kChannels * kMaxLobes> shadowing{}, through_G{};  // by table of G
@@ -171,21 +175,21 @@ void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lo
       }
       through_G.fill(0);
       for (int c = 0; c < kChannels; ++c) {
-        sum->diffuse[c] += white * model.d()[c];
+        light.diffuse[c] += white * model.d()[c];
         for (const int m : lobes) {
           const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
           const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
           const int G = spec.table(Factor::kG, m, c);
           const double part =
               shadowing[G] * model.s(m)[c] * model.parameters()[D] * model.parameters()[F];
-          sum->lobes[m][c] += part;
-          sum->through[D] += part;
-          sum->through[F] += part;
+          light.lobes[m][c] += part;
+          light.through[D] += part;
+          light.through[F] += part;
           through_G[G] += part;
         }
       }
       for (int t = 0; t < G_tables; ++t) {
-        double* const through = &sum->through[model.TableOffset(Factor::kG, t)];
+        double* const through = &light.through[model.TableOffset(Factor::kG, t)];
         for (const Stencil* const stencil : {&G_i, &G_o}) {
           for (int k = 0; k < stencil->size; ++k) {
             through[stencil->index[k]] += through_G[t] * std::abs(stencil->weight[k]);
@@ -205,7 +209,7 @@ Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const 
   const int rings = axis.size / axis.phi_nodes;
   // So many sums, each over every kSums-th ring, whatever the number of threads.
   constexpr int kSums = 6;
-  std::vector<Part> sums(kSums, Part(model));
+  std::vector<Part> sums(kSums, {.all = 0, .light = Darkness(model)});
   ParallelFor(kSums, num_threads, [&](int k) {
     for (int ring = k; ring < rings; ring += kSums) {
       AddRing(cells, stretch, lobes, observed, model, ring, &sums[k]);
@@ -236,17 +240,16 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
                            int num_threads) {
   CheckCoverage(coverage, model);
   const ModelSpec& spec = model.spec();
-  LobeLight light;
-  light.lobes.resize(spec.lobes);
-  light.through.assign(model.parameters().size(), 0.0);
+  LobeLight light = Darkness(model);
   for (size_t k = 0; k < spec.stretches.distinct().size(); ++k) {
     std::vector<int> lobes;
     for (int m = 0; m < spec.lobes; ++m) {
       if (spec.stretches.index(m) == static_cast<int>(k)) lobes.push_back(m);
     }
-    const Part part = PartOf(lobes, spec.stretches.distinct()[k], coverage, model, num_threads);
+    const auto [all, part] =
+        PartOf(lobes, spec.stretches.distinct()[k], coverage, model, num_threads);
     // A Lambertian rho has the albedo pi rho.
-    const double scale = part.all > 0 ? kPi / part.all : 0;
+    const double scale = all > 0 ? kPi / all : 0;
     for (int c = 0; c < kChannels; ++c) {
       for (const int m : lobes) light.lobes[m][c] = scale * part.lobes[m][c];
       if (k == 0) light.diffuse[c] = scale * part.diffuse[c];
