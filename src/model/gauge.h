@@ -20,13 +20,9 @@ namespace trilobe {
 //   vanish gets s = 0, its vanished tables 1 everywhere before normalisation;
 // - the lobe that reflects most comes first; but lobes that are stretched differently stay in their
 //   places.
-// Unobserved bins (coverage 0) are filled for display and for directions beyond the data first,
-// from their nearest observed neighbours: linearly between two, beyond the last the median of the
-// last five; of G it is G / cos theta that is continued so, since that keeps the BRDF from growing
-// towards the horizon, and rings of nodes beyond the last two observed ones have
-// G / cos theta = 1 / (a + b cos theta) through these. `coverage` is Objective::coverage(), in the
-// order of model->parameters(); these functions throw Error if it has another size. The same bits
-// for any number of threads.
+// Entries that no data touch are filled first, as ContinueBeyondData says. `coverage` is
+// Objective::coverage(), in the order of model->parameters(); these functions throw Error if it has
+// another size. The same bits for any number of threads.
 enum class LobeOrder { kByLight, kAsTheyAre };
 void Canonicalize(std::span<const double> coverage, FactorModel* model,
                   LobeOrder order = LobeOrder::kByLight, int num_threads = 1);

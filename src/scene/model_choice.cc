@@ -11,12 +11,12 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
-#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/model_forms.h"
 #include "trilobe/scene/prune.h"
+#include "trilobe/scene/unmeasured_guide.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/joint/reduction.h"
@@ -59,6 +59,8 @@ FactorModel GoOn(const Objective& objective, const FactorModel& start,
 class Objectives {
  public:
   explicit Objectives(const Objective& own) : made_({own}) {}
+
+  const Objective& own() const { return made_.front(); }
 
   Objective For(const ModelSpec& spec, const Weighting& weighting) {
     const auto alike = std::ranges::find_if(made_, [&](const Objective& other) {
@@ -106,42 +108,6 @@ bool SharesLess(const Objective& few, const FactorModel& fitted, const SteppedMo
       });
 }
 
-// The last observed entry of each G; that of the table where data go on to its end.
-std::vector<int> LastLiveNodes(const Objective& objective) {
-  const ModelSpec& spec = objective.spec();
-  const FactorModel layout(spec);
-  std::vector<int> last;
-  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    int node = spec.g_axis.size - 1;
-    while (node > 0 && !(objective.coverage()[layout.TableOffset(Factor::kG, t) + node] > 0)) {
-      --node;
-    }
-    last.push_back(node);
-  }
-  return last;
-}
-
-// A thinned G is constant beyond its last node, which makes the BRDF grow as 1 / cos^2 theta where
-// no data are. Two more nodes, at the last observed entry and at the end, make it fall about as the
-// cosine.
-void ContinueShadowing(const std::vector<int>& last_live, PrunedModel* pruned) {
-  const ModelSpec& spec = pruned->model.spec();
-  const CatmullRom spline(spec.g_axis.size);
-  const int end = spec.g_axis.size - 1;
-  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    const int last = last_live[t];
-    std::vector<int>& nodes = pruned->layout.of(Factor::kG, t);
-    if (last == end || nodes.front() > last) continue;
-    while (nodes.back() > last) nodes.pop_back();
-    const std::span<double> G = pruned->model.table(Factor::kG, t);
-    if (nodes.back() != last) nodes.push_back(last);
-    nodes.push_back(end);
-    G[end] = G[last] * std::cos(spline.NodeAngle(end)) / std::cos(spline.NodeAngle(last));
-  }
-  ExpandStored(pruned->layout, &pruned->model);
-  pruned->num_parameters = pruned->layout.num_parameters(spec);
-}
-
 // The search of ChooseModel. Forms are fitted to some samples; only what is thinned of them, to
 // all.
 class ModelSearch {
@@ -153,7 +119,10 @@ class ModelSearch {
         options_(options),
         all_(objective),
         some_(Some(objective)),
-        few_(Few(objective)) {}
+        few_(Few(objective)),
+        guide_(objective, fitted),
+        guided_some_(guide_.With(some_.own())),
+        guided_few_(guide_.With(few_.own())) {}
 
   ChosenModel Run() {
     const TableLayout full = TableLayout::Full(fitted_.spec());
@@ -196,7 +165,7 @@ class ModelSearch {
     if (last.num_parameters > options_.max_parameters) return;
     if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
     if (options_.judge_beyond && best_.chosen >= 0) {
-      constexpr double kMayLose = 1.5, kOfGain = 0.5;  // [dB]
+      constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
       const double gain = last.score - best_.candidates.front().score;
       last.wild = !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
       if (last.wild) return;
@@ -217,22 +186,16 @@ class ModelSearch {
     return ScoreValues(objective_, values).objective;
   }
 
+  // Beyond the data it goes on about as the whole model does.
   void Thin(const std::string& name, const Weighting& weighting, const FactorModel& model) {
-    const Objective of = all_.For(model.spec(), weighting);
-    const std::vector<int> last_live = LastLiveNodes(of);
-    const auto continued = 2 * static_cast<int>(std::ranges::count_if(last_live, [&](int k) {
-                             return k < of.spec().g_axis.size - 1;
-                           }));
+    const UnmeasuredGuide guide(objective_, model);
     PruneOptions prune;
     prune.lobes = prune.colour = false;
-    // Not where next to nothing would be left.
-    const bool continues = continued > 0 && options_.max_parameters > 4 * continued;
-    prune.max_parameters = options_.max_parameters - (continues ? continued : 0);
-    PrunedModel pruned = Prune(few_.For(model.spec(), weighting), model, prune);
-    const Objective to(of, pruned.model.spec());
+    prune.max_parameters = options_.max_parameters;
+    PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
+    const Objective to = guide.With(all_.For(pruned.model.spec(), weighting));
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
-    if (continues) ContinueShadowing(last_live, &pruned);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
     Choose(pruned.model, pruned.layout);
   }
@@ -255,13 +218,13 @@ class ModelSearch {
     if (options_.stop()) return false;
     const ModelSpec& spec = form.start.spec();
     constexpr int kStepsOnFew = 12;
-    const Objective of_few = few_.For(spec, form.weighting);
-    form.start = JointSteps(of_few, form.start, kStepsOnFew, options_.stop).model;
-    const Objective of_some = some_.For(spec, form.weighting);
-    form.start = GoOn(of_some, form.start, options_.stop);
+    form.start =
+        JointSteps(guided_few_.For(spec, form.weighting), form.start, kStepsOnFew, options_.stop)
+            .model;
+    form.start = GoOn(guided_some_.For(spec, form.weighting), form.start, options_.stop);
     // Entries that no sample reads are what they were in the start, next to others that have moved
     // far away; a picture reads between the two.
-    Canonicalize(of_some.coverage(), &form.start);
+    Canonicalize(some_.For(spec, form.weighting).coverage(), &form.start);
     const double E = ValueOf(form.start);
     const double score = Judge(form.name, form.start, TableLayout::Full(spec), E);
     forms_.push_back({std::move(form), score});
@@ -274,7 +237,7 @@ class ModelSearch {
     bool stretched = false;
     if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
         !fitted_.spec().stretches.any()) {
-      const Objective of = few_.For(fitted_.spec(), objective_.weighting());
+      const Objective of = guided_few_.For(fitted_.spec(), objective_.weighting());
       const SteppedModel start = FitStretches(of, fitted_, options_.stop);
       if (!Fit({"stretched", start.model, objective_.weighting()})) return false;
       // Under other weights it may look better even where it does not under these.
@@ -296,10 +259,10 @@ class ModelSearch {
     }
     // From starts of its own, since it ends in another minimum.
     ModelForm form{"weighed by channel anew",
-                   FitAnew(some_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
+                   FitAnew(guided_some_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
                    by_channel};
     if (stretched) {
-      const Objective of = few_.For(fitted_.spec(), by_channel);
+      const Objective of = guided_few_.For(fitted_.spec(), by_channel);
       form = {"stretched, weighed by channel anew",
               FitStretches(of, form.start, options_.stop).model, by_channel};
     }
@@ -310,7 +273,7 @@ class ModelSearch {
 
   // From the first base that looks best, and any that looks nearly as good.
   bool FitForms() {
-    constexpr double kNearly = 1;  // [dB]
+    constexpr double kNearly = 2;  // [dB]
     const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;
     for (const Fitted& base : bases_) {
       if (base.score < best_base - kNearly) continue;
@@ -329,12 +292,11 @@ class ModelSearch {
       auto& [name, model, weighting] = fitted_form.form;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
-        TieEntriesAtDataEdge(some_.For(model.spec(), weighting), &model, options_.stop);
+        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score);
         Thin(name, weighting, model);
       } else {
         const Objective of = all_.For(model.spec(), weighting);
-        model = GoOn(of, model, options_.stop);
-        TieEntriesAtDataEdge(of, &model, options_.stop);
+        model = Tied(of, GoOn(of, model, options_.stop), fitted_form.score);
         Canonicalize(of.coverage(), &model);
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout);
@@ -342,10 +304,21 @@ class ModelSearch {
     }
   }
 
+  // The model with entries at the edge of the data tied, unless that is seen where data are.
+  FactorModel Tied(const Objective& of, const FactorModel& model, double score) {
+    constexpr double kNotSeen = 0.2;  // [dB]
+    FactorModel tied = model;
+    if (!TieEntriesAtDataEdge(of, &tied, options_.stop)) return model;
+    Canonicalize(of.coverage(), &tied);
+    return options_.judge(tied) >= score - kNotSeen ? tied : model;
+  }
+
   const Objective& objective_;
   const FactorModel& fitted_;
   const ModelChoiceOptions& options_;
   Objectives all_, some_, few_;
+  const UnmeasuredGuide guide_;  // for forms that go on from the fit
+  Objectives guided_some_, guided_few_;
   Stopwatch stopwatch_;  // since the last candidate
   double beyond_ = 0;    // the data, the score of the fit
   std::vector<Fitted> bases_, forms_;

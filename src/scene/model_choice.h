@@ -14,11 +14,11 @@ namespace trilobe {
 struct ModelChoiceOptions {
   int max_parameters = 822;  // stored: values, without the places of nodes
 
-  // How good a model is to the eye; the highest wins, the first of equals. Asked once a candidate.
+  // How good a model is to the eye [dB]; the highest wins, the first of equals.
   std::function<double(const FactorModel&)> judge;
 
   // How good one is in all directions, where some were not measured. One that is more than
-  // 1 (dB) below the fitted model there, and more than half of what it gains where data are, runs
+  // 3 dB below the fitted model there, and more than half of what it gains where data are, runs
   // wild where they end, and is not taken.
   std::function<double(const FactorModel&)> judge_beyond = nullptr;
 

@@ -173,7 +173,7 @@ TEST(Gauge, UnobservedBinsAreFilledFromTheirNeighbours) {
   Canonicalize(objective.coverage(), &model);
   for (int t = 0; t < 2; ++t) {
     const auto D = model.table(Factor::kD, t);
-    for (const int k : {0, 1, 4, 5, 9}) {
+    for (const int k : {0, 1, 4, 5, 8, 9}) {
       EXPECT_TRUE(unobserved[model.TableOffset(Factor::kD, t) + k]);
     }
     EXPECT_FALSE(unobserved[model.TableOffset(Factor::kD, t) + 2]);
@@ -181,9 +181,12 @@ TEST(Gauge, UnobservedBinsAreFilledFromTheirNeighbours) {
     EXPECT_DOUBLE_EQ(D[1], D[2]);
     EXPECT_DOUBLE_EQ(D[4], (2 * D[3] + D[6]) / 3);
     EXPECT_DOUBLE_EQ(D[5], (D[3] + 2 * D[6]) / 3);
-    std::vector<double> observed = {D[2], D[3], D[6], D[7], D[8]};
+    std::vector<double> observed = {D[2], D[3], D[6], D[7]};
     std::ranges::sort(observed);
-    EXPECT_DOUBLE_EQ(D[9], observed[2]);
+    for (const int k : {8, 9}) {  // or less, where more would be reflected there (Continuation)
+      EXPECT_LE(D[k], observed[2] * (1 + 1e-12));
+      EXPECT_GT(D[k], 0);
+    }
   }
   const auto F = model.table(Factor::kF, 0);
   EXPECT_DOUBLE_EQ(F[3], (F[2] + F[4]) / 2);

@@ -193,7 +193,8 @@ Vector StretchStepper::ExponentStep(double lambda) const {
   return step;
 }
 
-std::optional<FactorModel> StretchStepper::Step(double lambda, double max_step) const {
+std::optional<FactorModel> StretchStepper::Step(double lambda, double max_step,
+                                                double follow) const {
   const Vector from = ExponentsOf(model_.spec()), step = ExponentStep(lambda);
   if (step.empty()) return std::nullopt;
   Vector to = from;
@@ -207,7 +208,7 @@ std::optional<FactorModel> StretchStepper::Step(double lambda, double max_step) 
     double change = follows_[0][a];
     for (size_t k = 0; k < from.size(); ++k) change += follows_[1 + k][a] * (to[k] - from[k]);
     double& x = model.parameters()[free_[a]];
-    x = std::max(x - change, 0.0);
+    x = std::max(x - follow * change, 0.0);
   }
   return model;
 }

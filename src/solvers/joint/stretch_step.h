@@ -20,9 +20,10 @@ class StretchStepper {
   // Prepares steps from an isotropic model. For few samples: it passes over them one by one.
   StretchStepper(const Objective& objective, const FactorModel& model);
 
-  // The model after such a step, exponents in whole hundredths, each at most `max_step` away. Lobes
-  // that share D have one stretch together. None if no exponent would move.
-  std::optional<FactorModel> Step(double lambda, double max_step) const;
+  // The model after such a step, exponents in whole hundredths, each at most `max_step` away, and
+  // x moved by the share `follow` of its own step, from 0 to 1. Lobes that share D have one stretch
+  // together. None if no exponent would move.
+  std::optional<FactorModel> Step(double lambda, double max_step, double follow = 1) const;
 
  private:
   std::vector<double> ExponentStep(double lambda) const;

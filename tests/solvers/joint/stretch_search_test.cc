@@ -9,6 +9,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/lobes.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/joint/stretch_step.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -95,6 +96,25 @@ TEST(FitStretches, IsTheSameForAnyNumberOfThreads) {
   const FactorModel one = found(1), three = found(3);
   EXPECT_EQ(one.spec(), three.spec());
   EXPECT_TRUE(std::ranges::equal(one.parameters(), three.parameters()));
+}
+
+// Where parameters follow a step too far, they need not follow it at all.
+TEST(StretchStepper, ParametersFollowAsFarAsAsked) {
+  const Objective objective = MakeObjective(TableOf(Glossy({.along = 0.2, .across = 0.4}), kGrid),
+                                            ModelSpec::SharedFactors(1, kGrid), "appearance");
+  const FactorModel start = Glossy({});
+  const StretchStepper stepper(objective, start);
+  const FactorModel whole = *stepper.Step(1e-2, 0.4), half = *stepper.Step(1e-2, 0.4, 0.5),
+                    none = *stepper.Step(1e-2, 0.4, 0);
+  EXPECT_TRUE(whole.spec().stretches.any());
+  EXPECT_EQ(none.spec(), whole.spec());
+  EXPECT_TRUE(std::ranges::equal(none.parameters(), start.parameters()));
+  EXPECT_FALSE(std::ranges::equal(whole.parameters(), start.parameters()));
+  for (size_t k = 0; k < start.parameters().size(); ++k) {
+    if (whole.parameters()[k] == 0) continue;  // at its bound
+    const double x = start.parameters()[k], expected = (x + whole.parameters()[k]) / 2;
+    EXPECT_NEAR(half.parameters()[k], expected, 1e-12 * (1 + std::abs(expected))) << k;
+  }
 }
 
 TEST(FitStretches, StoppedItLeavesWhatItHas) {
