@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "trilobe/model/axis.h"
@@ -125,41 +126,43 @@ void ForEachObservedTable(std::span<const double> coverage, FactorModel* model, 
   }
 }
 
-// The entries from this one on are beyond the last observed one.
-int FirstBeyond(std::span<const double> coverage) {
-  int first = static_cast<int>(coverage.size());
-  while (first > 0 && !(coverage[first - 1] > 0)) --first;
-  return first;
-}
-
 // Beyond the last observed half vector D stays as it is, while G^2 / (cos cos) may grow a
 // thousandfold: F and G trade for each other along a highlight, and a lobe that is dark where it
 // was measured outshines all others next to it. So D falls there, as far as it takes for a lobe to
 // reflect no more per solid angle of half vectors than about the last observed ones.
 void DimBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model) {
   const ModelSpec& spec = model->spec();
-  const int size = spec.d_axis.size;
-  if (spec.d_axis.polar()) return;
-  std::vector<int> beyond(spec.num_tables(Factor::kD));
+  if (spec.d_axis.polar() || spec.lobes == 0) return;
+  std::vector<std::vector<int>> observed(spec.num_tables(Factor::kD));
   bool any = false;
   for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
-    beyond[t] = FirstBeyond(coverage.subspan(model->TableOffset(Factor::kD, t), size));
-    if (beyond[t] == 0) beyond[t] = size;  // none is observed
-    any = any || beyond[t] < size;
+    const int offset = model->TableOffset(Factor::kD, t);
+    for (int k = 0; k < spec.d_axis.size; ++k) {
+      if (coverage[offset + k] > 0) observed[t].push_back(k);
+    }
+    any = any || (!observed[t].empty() && observed[t].back() < spec.d_axis.size - 1);
   }
   if (!any) return;
+  // A lobe whose factors are 1 tells how many half vectors read an entry.
+  FactorModel flat(spec);
+  std::ranges::fill(flat.parameters(), 1.0);
   const std::vector<double> everywhere(coverage.size(), 1);
   const LobeLight light = ComputeLobeLight(everywhere, *model, num_threads);
-  const std::vector<double> solid_angles = VisibleSolidAngles(size);
+  const LobeLight of_flat = ComputeLobeLight(everywhere, flat, num_threads);
   for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
-    std::vector<double> reflected(size);
-    for (int k = 0; k < size; ++k) {
-      reflected[k] = light.through[model->TableOffset(Factor::kD, t) + k] / solid_angles[k];
+    const int offset = model->TableOffset(Factor::kD, t);
+    const auto reflected = [&](int k) {
+      const double half_vectors = of_flat.through[offset + k];
+      return half_vectors > 0 ? light.through[offset + k] / half_vectors : 0;
+    };
+    if (observed[t].empty()) continue;
+    std::vector<double> last;
+    for (size_t k = 0; k < observed[t].size() && k < kLookedAt; ++k) {
+      last.push_back(reflected(*(observed[t].rbegin() + static_cast<std::ptrdiff_t>(k))));
     }
-    const int end = beyond[t], begin = std::max(end - kLookedAt, 0);
-    const double most = Median({reflected.begin() + begin, reflected.begin() + end});
-    for (int k = end; k < size; ++k) {
-      if (reflected[k] > most) model->table(Factor::kD, t)[k] *= most / reflected[k];
+    const double most = Median(last);
+    for (int k = observed[t].back() + 1; k < spec.d_axis.size; ++k) {
+      if (reflected(k) > most) model->table(Factor::kD, t)[k] *= most / reflected(k);
     }
   }
 }

@@ -91,11 +91,11 @@ FactorModel FitAnew(const Objective& some, const FactorModel& start,
 }
 
 // Whether the data rather have a form that shares less: a stretch may look like one. What more
-// parameters fit of few samples by chance is taken off.
-bool SharesLess(const Objective& few, const FactorModel& fitted, const SteppedModel& stretched,
-                const std::function<bool()>& stop) {
+// parameters fit of few samples by chance is taken off; those of the guide tell nothing.
+bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
+                const SteppedModel& stretched, const std::function<bool()>& stop) {
   constexpr int kSteps = 5;
-  const double values = kChannels * few.samples().size() / 2.0;  // exchanged ones say the same
+  const double values = kChannels * num_measured / 2.0;  // exchanged ones say the same
   const auto expected = [&](double E, const ModelSpec& spec) {
     const double share = std::min(spec.num_parameters() / values, 0.9);
     return E * (1 + share) / (1 - share);
@@ -222,8 +222,8 @@ class ModelSearch {
         JointSteps(guided_few_.For(spec, form.weighting), form.start, kStepsOnFew, options_.stop)
             .model;
     form.start = GoOn(guided_some_.For(spec, form.weighting), form.start, options_.stop);
-    // Entries that no sample reads are what they were in the start, next to others that have moved
-    // far away; a picture reads between the two.
+    // Entries that no measured sample reads are what the guide makes of them, next to others that
+    // have moved far away; a picture reads between the two.
     Canonicalize(some_.For(spec, form.weighting).coverage(), &form.start);
     const double E = ValueOf(form.start);
     const double score = Judge(form.name, form.start, TableLayout::Full(spec), E);
@@ -243,7 +243,7 @@ class ModelSearch {
       // Under other weights it may look better even where it does not under these.
       stretched = start.model.spec().stretches.any() &&
                   best_.candidates.back().E < (1 - kWorthwhile) * best_.candidates.front().E &&
-                  !SharesLess(of, fitted_, start, options_.stop);
+                  !SharesLess(of, few_.own().samples().size(), fitted_, start, options_.stop);
       if (stretched) bases_.push_back(forms_.back());
     }
     if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
@@ -292,25 +292,27 @@ class ModelSearch {
       auto& [name, model, weighting] = fitted_form.form;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
-        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score);
+        model = Tied(some_.For(model.spec(), weighting), model);
         Thin(name, weighting, model);
       } else {
         const Objective of = all_.For(model.spec(), weighting);
-        model = Tied(of, GoOn(of, model, options_.stop), fitted_form.score);
-        Canonicalize(of.coverage(), &model);
+        model = Tied(of, GoOn(of, model, options_.stop));
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout);
       }
     }
   }
 
-  // The model with entries at the edge of the data tied, unless that is seen where data are.
-  FactorModel Tied(const Objective& of, const FactorModel& model, double score) {
+  // The model in canonical form, with entries at the edge of the data tied, unless that is seen
+  // where data are.
+  FactorModel Tied(const Objective& of, FactorModel model) {
     constexpr double kNotSeen = 0.2;  // [dB]
     FactorModel tied = model;
-    if (!TieEntriesAtDataEdge(of, &tied, options_.stop)) return model;
+    const bool any = TieEntriesAtDataEdge(of, &tied, options_.stop);
+    Canonicalize(of.coverage(), &model);
+    if (!any) return model;
     Canonicalize(of.coverage(), &tied);
-    return options_.judge(tied) >= score - kNotSeen ? tied : model;
+    return options_.judge(tied) >= options_.judge(model) - kNotSeen ? tied : model;
   }
 
   const Objective& objective_;

@@ -1,6 +1,7 @@
 #include "trilobe/scene/unmeasured_guide.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,8 @@ constexpr double kWeight = 0.01;  // of what it says of a bin, where a measured 
 // Said for so many bins, but by so many samples at least of each theta_h, theta_d, theta_i and
 // theta_o.
 constexpr int kStride = 32, kLeast = 64;
-constexpr double kAbsurd = 100;  // times the largest value that was measured
+constexpr double kAbsurd = 100;    // times the largest value that was measured
+constexpr double kLargest = 1e50;  // that an objective takes
 
 }  // namespace
 
@@ -34,10 +36,18 @@ UnmeasuredGuide::UnmeasuredGuide(const Objective& objective, const FactorModel& 
   for (const Rgb& rho : measured.rho) {
     for (int c = 0; c < kChannels; ++c) most[c] = std::max(most[c], rho[c]);
   }
-  for (Rgb& rho : said_.rho) {
+  std::vector<int> finite;
+  for (int j = 0; j < said_.size(); ++j) {
+    Rgb& rho = said_.rho[j];
+    if (!std::ranges::all_of(rho, [](double x) { return std::isfinite(x); })) continue;
+    finite.push_back(j);
     // A spline may undershoot, and a model be absurd.
-    for (int c = 0; c < kChannels; ++c) rho[c] = std::clamp(rho[c], 0.0, kAbsurd * most[c]);
+    for (int c = 0; c < kChannels; ++c) {
+      rho[c] = std::clamp(rho[c], 0.0, std::min(kAbsurd * most[c], kLargest));
+    }
   }
+  said_ = Selected(said_, finite);
+  if (said_.bins.empty()) return;
   said_ = ThinnedByPlace(said_, kStride, kLeast);
   for (double& times : said_.multiplicity) times *= kWeight;
 }

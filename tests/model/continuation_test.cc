@@ -52,13 +52,17 @@ std::vector<double> Coverage(const FactorModel& model) {
   return coverage;
 }
 
-// What the lobes of a table of D reflect per solid angle of half vectors.
+// What the lobes of a table of D reflect per half vector that reads an entry.
 std::vector<double> Reflected(const FactorModel& model, int table) {
   const std::vector<double> everywhere(model.parameters().size(), 1);
-  const LobeLight light = ComputeLobeLight(everywhere, model);
-  std::vector<double> reflected = VisibleSolidAngles(model.spec().d_axis.size);
+  FactorModel flat(model.spec());
+  std::ranges::fill(flat.parameters(), 1.0);
+  const LobeLight light = ComputeLobeLight(everywhere, model),
+                  of_flat = ComputeLobeLight(everywhere, flat);
+  const int offset = model.TableOffset(Factor::kD, table);
+  std::vector<double> reflected(model.spec().d_axis.size);
   for (size_t k = 0; k < reflected.size(); ++k) {
-    reflected[k] = light.through[model.TableOffset(Factor::kD, table) + k] / reflected[k];
+    reflected[k] = light.through[offset + k] / of_flat.through[offset + k];
   }
   return reflected;
 }
@@ -72,18 +76,20 @@ double MedianOfLastFive(std::span<const double> values) {
 TEST(Continuation, NoLobeShinesBesideTheHalfVectorsThatWereMeasured) {
   ModelSpec by_channel = ModelSpec::SharedFactors(2, kGrid);
   by_channel.D.per_channel = true;
-  for (const ModelSpec& spec : {ModelSpec::SharedFactors(2, kGrid), by_channel}) {
+  ModelSpec stretched = ModelSpec::SharedFactors(2, kGrid);
+  stretched.stretches = Stretches({{.along = -1.2, .across = 0.5}, {.along = -2, .across = -1}});
+  for (const ModelSpec& spec : {ModelSpec::SharedFactors(2, kGrid), by_channel, stretched}) {
     FactorModel model = Trading(30, spec);
     const std::vector<double> coverage = Coverage(model);
     for (int t = 0; t < spec.num_tables(Factor::kD); ++t) {
-      // Kept as it is, D would let it reflect several times as much there.
+      // Kept as it is, D would let it reflect twice as much there and more.
       FactorModel kept = model;
       const auto D = kept.table(Factor::kD, t);
       const double last = MedianOfLastFive(D);
       std::fill(D.begin() + kLast + 1, D.end(), last);
       const std::vector<double> reflected = Reflected(kept, t);
       EXPECT_GT(*std::max_element(reflected.begin() + kLast + 1, reflected.end()),
-                3 * MedianOfLastFive(reflected));
+                2 * MedianOfLastFive(reflected));
     }
     const FactorModel before = model;
     ContinueBeyondData(coverage, 1, &model);
@@ -113,6 +119,19 @@ TEST(Continuation, WhatReflectsLessStaysAsItIs) {
   ContinueBeyondData(Coverage(model), 1, &model);
   for (int k = kLast + 1; k < spec.d_axis.size; ++k) {
     EXPECT_EQ(model.table(Factor::kD, 0)[k], expected) << k;
+  }
+}
+
+// Where all factors are alike there is nothing to keep down, however half vectors read D.
+TEST(Continuation, AFlatLobeStaysFlat) {
+  ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  spec.stretches = Stretches({{.along = -2, .across = -2}, {.along = 0.5, .across = 0.2}});
+  FactorModel model(spec);
+  std::ranges::fill(model.parameters(), 1.0);
+  const std::vector<double> coverage = Coverage(model);
+  ContinueBeyondData(coverage, 1, &model);
+  for (int t = 0; t < 2; ++t) {
+    for (const double x : model.table(Factor::kD, t)) EXPECT_NEAR(x, 1, 1e-12);
   }
 }
 

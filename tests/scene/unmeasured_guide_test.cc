@@ -85,6 +85,49 @@ TEST(UnmeasuredGuide, IsSilentWhereAllWasMeasuredOrNothingIsOnAGrid) {
   EXPECT_EQ(UnmeasuredGuide(objective, model).With(objective).samples().size(), scattered.size());
 }
 
+// G so rough that its spline undershoots, and factors whose product overflows.
+TEST(UnmeasuredGuide, SaysNothingThatNoMeasurementCouldSay) {
+  const Objective objective = Measured();
+  FactorModel model = RandomModel(Spec(), 2);
+  for (int k = 0; k < Spec().g_axis.size; ++k) {
+    model.table(Factor::kG, 0)[k] = model.table(Factor::kG, 1)[k] = k % 3 == 0 ? 1 : 0;
+  }
+  std::ranges::fill(model.d(), 0.0);
+  const auto rho = EvaluateSamples(model, objective.samples(), 1);
+  EXPECT_TRUE(std::ranges::any_of(rho, [](const Rgb& x) { return x[0] < 0; }));
+  const auto expect_valid = [&] {
+    const Objective guided = UnmeasuredGuide(objective, model).With(objective);
+    EXPECT_GT(guided.samples().size(), objective.samples().size());
+    EXPECT_TRUE(std::isfinite(guided.Value(RandomModel(Spec(), 3))));
+  };
+  expect_valid();
+  // So large at the largest theta_h that its samples have no value.
+  model.table(Factor::kD, 0)[kGrid.theta_h - 1] = 1e308;
+  model.s(0)[0] = 1e10;
+  expect_valid();
+  // All of them.
+  std::ranges::fill(model.table(Factor::kD, 0), 1e308);
+  EXPECT_EQ(UnmeasuredGuide(objective, model).With(objective).samples().size(),
+            objective.samples().size());
+}
+
+// A sample that counts several times goes on to do so.
+TEST(UnmeasuredGuide, KeepsHowOftenSamplesCount) {
+  BrdfSamples samples = Measured().samples();
+  samples.multiplicity.assign(samples.size(), 1);
+  for (int j = 0; j < samples.size(); ++j) samples.multiplicity[j] += j % 4;
+  const Objective objective(samples, Spec(), FindWeighting("appearance"));
+  const BrdfSamples both =
+      UnmeasuredGuide(objective, RandomModel(Spec(), 2)).With(objective).samples();
+  int j = 0;
+  for (int k = 0; k < both.size() && j < samples.size(); ++k) {
+    if (both.bins[k] == samples.bins[j]) {
+      EXPECT_EQ(both.multiplicity[k], samples.multiplicity[j++]);
+    }
+  }
+  EXPECT_EQ(j, samples.size());
+}
+
 TEST(UnmeasuredGuide, TheSameBitsForAnyNumberOfThreads) {
   const FactorModel model = RandomModel(Spec(), 2);
   const Objective one = Measured(1), three = Measured(3);
