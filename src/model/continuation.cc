@@ -129,7 +129,7 @@ void ForEachObservedTable(std::span<const double> coverage, FactorModel* model, 
 // Beyond the last observed half vector D stays as it is, while G^2 / (cos cos) may grow a
 // thousandfold: F and G trade for each other along a highlight, and a lobe that is dark where it
 // was measured outshines all others next to it. So D falls there, as far as it takes for a lobe to
-// reflect no more per solid angle of half vectors than about the last observed ones.
+// reflect no more per half vector there than about the last observed ones.
 void DimBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   if (spec.d_axis.polar() || spec.lobes == 0) return;
