@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <vector>
 
 #include "trilobe/model/axis.h"
@@ -129,7 +128,7 @@ void ForEachObservedTable(std::span<const double> coverage, FactorModel* model, 
 // Beyond the last observed half vector D stays as it is, while G^2 / (cos cos) may grow a
 // thousandfold: F and G trade for each other along a highlight, and a lobe that is dark where it
 // was measured outshines all others next to it. So D falls there, as far as it takes for a lobe to
-// reflect no more per half vector there than about the last observed ones.
+// reflect no more per half vector than about the last observed ones.
 void DimBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   if (spec.d_axis.polar() || spec.lobes == 0) return;
@@ -157,8 +156,9 @@ void DimBeyondData(std::span<const double> coverage, int num_threads, FactorMode
     };
     if (observed[t].empty()) continue;
     std::vector<double> last;
-    for (size_t k = 0; k < observed[t].size() && k < kLookedAt; ++k) {
-      last.push_back(reflected(*(observed[t].rbegin() + static_cast<std::ptrdiff_t>(k))));
+    for (const int k :
+         std::span(observed[t]).last(std::min<size_t>(observed[t].size(), kLookedAt))) {
+      last.push_back(reflected(k));
     }
     const double most = Median(last);
     for (int k = observed[t].back() + 1; k < spec.d_axis.size; ++k) {

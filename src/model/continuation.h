@@ -19,8 +19,8 @@ void FillFromNeighbors(std::span<const double> coverage, FactorModel* model);
 // last five. Of G it is G / cos theta that is continued so, since that keeps the BRDF from growing
 // towards the horizon, and rings of nodes beyond the last two observed ones have
 // G / cos theta = 1 / (a + b cos theta) through these. Of D, where it is a table over theta_h
-// alone, what its lobe reflects per half vector stays below the median of the last
-// five, too. The same bits for any number of threads.
+// alone, what its lobe reflects per half vector stays below the median of the last five, too. The
+// same bits for any number of threads.
 void ContinueBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model);
 
 }  // namespace trilobe

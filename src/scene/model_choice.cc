@@ -292,27 +292,27 @@ class ModelSearch {
       auto& [name, model, weighting] = fitted_form.form;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
-        model = Tied(some_.For(model.spec(), weighting), model);
+        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score);
         Thin(name, weighting, model);
       } else {
         const Objective of = all_.For(model.spec(), weighting);
-        model = Tied(of, GoOn(of, model, options_.stop));
+        model = GoOn(of, model, options_.stop);
+        Canonicalize(of.coverage(), &model);
+        model = Tied(of, model, options_.judge(model));
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout);
       }
     }
   }
 
-  // The model in canonical form, with entries at the edge of the data tied, unless that is seen
-  // where data are.
-  FactorModel Tied(const Objective& of, FactorModel model) {
+  // The model, in canonical form and of this score, with entries at the edge of the data tied,
+  // unless that is seen where data are.
+  FactorModel Tied(const Objective& of, const FactorModel& model, double score) {
     constexpr double kNotSeen = 0.2;  // [dB]
     FactorModel tied = model;
-    const bool any = TieEntriesAtDataEdge(of, &tied, options_.stop);
-    Canonicalize(of.coverage(), &model);
-    if (!any) return model;
+    if (!TieEntriesAtDataEdge(of, &tied, options_.stop)) return model;
     Canonicalize(of.coverage(), &tied);
-    return options_.judge(tied) >= options_.judge(model) - kNotSeen ? tied : model;
+    return options_.judge(tied) >= score - kNotSeen ? tied : model;
   }
 
   const Objective& objective_;

@@ -46,9 +46,7 @@ UnmeasuredGuide::UnmeasuredGuide(const Objective& objective, const FactorModel& 
       rho[c] = std::clamp(rho[c], 0.0, std::min(kAbsurd * most[c], kLargest));
     }
   }
-  said_ = Selected(said_, finite);
-  if (said_.bins.empty()) return;
-  said_ = ThinnedByPlace(said_, kStride, kLeast);
+  said_ = ThinnedByPlace(Selected(said_, finite), kStride, kLeast);
   for (double& times : said_.multiplicity) times *= kWeight;
 }
 
