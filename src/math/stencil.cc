@@ -22,9 +22,9 @@ Stencil LinearStencil(double coordinate, int bins) {
   if (std::isnan(coordinate)) throw Error("a direction or an angle is not a number");
   const double x = std::clamp(coordinate - 0.5, 0.0, bins - 1.0);
   const int i = std::min(static_cast<int>(x), bins - 2);
-  double t = x - i;
-  if (t < kAtEntry) t = 0;
-  if (t > 1 - kAtEntry) t = 1;
+  const double t = x - i;
+  if (t < kAtEntry) return PointStencil(i);
+  if (t > 1 - kAtEntry) return PointStencil(i + 1);
   return {2, {i, i + 1}, {1 - t, t}};
 }
 

@@ -2,6 +2,7 @@
 #define TRILOBE_OBJECTIVE_FOLDED_SAMPLES_H_
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "trilobe/brdf/channels.h"
@@ -23,6 +24,8 @@ struct WeightedSample {
 struct Cell {
   int size = 0;
   std::array<int, Stencil::kMaxSize> entry{};
+
+  std::span<const int> entries() const { return std::span(entry).first(size); }
 };
 
 // A sample's readings from tables, by number: from D, once for each of the lobes' stretches, from

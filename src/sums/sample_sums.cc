@@ -1,18 +1,16 @@
 #include "trilobe/sums/sample_sums.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "trilobe/base/multiversion.h"
+#include "trilobe/sums/sample_run.h"
 
 namespace trilobe {
 namespace {
 
 constexpr int kMaxLanes = kChannels * PaddedToVectors(kMaxLobes);
-constexpr int kMaxOwnLines = SampleRows::kFirstAmplitude + kChannels * (1 + kMaxLobes);
-constexpr int kMaxTables = kChannels * kMaxLobes;
 
 // The tables that a reading reads, as columns of products: in what order, the lane of each, and the
 // first channel that it serves.
@@ -21,7 +19,9 @@ struct Columns {
     int lane, channel;
   };
   std::vector<Column> of;
-  std::vector<int> place;  // by the number of the table; -1 where another stretch reads it
+  // Where a lobe's products with itself lie in those with a later reading; -1 where another stretch
+  // reads that lobe. [order.count()][kChannels][lobes]
+  std::vector<int> of_lobe;
 };
 
 // What is the same for all samples.
@@ -36,8 +36,7 @@ struct SumJob {
 // One reading of a sample: how its value moves with it in each channel, and the same times w.
 struct Slopes {
   const Cell* cell;
-  int cell_number;
-  double weight[Stencil::kMaxSize];                               // of the stencil
+  const double* weight;                                           // of the cell's entries
   const double* reading;                                          // [lanes]
   const double* slope;                                            // [kChannels][lanes]
   alignas(sizeof(Lanes8)) double w_slope[kChannels * kMaxLanes];  // slope times w
@@ -82,51 +81,10 @@ TRILOBE_ALWAYS_INLINE int LaneOf(const TableLanes& lanes, int m, int c) {
   return lanes.First(c) + (lanes.per_lobe ? m : 0);
 }
 
-// Adds the same numbers, times a weight, to the blocks of a cell's entries.
-template <int kEntries>
-TRILOBE_ALWAYS_INLINE void AddToBlocks(const double* from, int size, double scale,
-                                       const double* weight, const int* entry, ptrdiff_t stride,
-                                       double* blocks) {
-  std::array<Lanes4, kEntries> weights;
-  std::array<ptrdiff_t, kEntries> begin;
-  for (int k = 0; k < kEntries; ++k) {
-    weights[k] = Lanes4{} + scale * weight[k];
-    begin[k] = entry[k] * stride;
-  }
-  for (int i = 0; i < size; i += kVector) {
-    Lanes4 x;
-    LoadLanes(from + i, &x);
-    for (int k = 0; k < kEntries; ++k) {
-      Lanes4 y;
-      LoadLanes(blocks + begin[k] + i, &y);
-      StoreLanes(y + weights[k] * x, blocks + begin[k] + i);
-    }
-  }
-}
-
-// To those of the entries that a reading reads.
-TRILOBE_ALWAYS_INLINE void AddToEntries(const double* from, int size, double scale,
-                                        const Slopes& to, const int* entry, ptrdiff_t stride,
-                                        double* blocks) {
-  switch (to.cell->size) {
-    case 4:
-      AddToBlocks<4>(from, size, scale, to.weight, entry, stride, blocks);
-      break;
-    case 3:
-      AddToBlocks<1>(from, size, scale, to.weight + 2, entry + 2, stride, blocks);
-      [[fallthrough]];
-    case 2:
-      AddToBlocks<2>(from, size, scale, to.weight, entry, stride, blocks);
-      break;
-    default:
-      AddToBlocks<1>(from, size, scale, to.weight, entry, stride, blocks);
-  }
-}
-
 // What multiplies in a lobe: s and the readings of D, F, G_i and G_o, in their order.
-constexpr int kS = 0, kParts = 5;
+enum Part { kS, kOfD, kOfF, kOfG_i, kOfG_o, kParts };
 TRILOBE_ALWAYS_INLINE int PartOf(const ReadingOrder& order, int reading) {
-  return reading < order.F() ? 1 : 2 + reading - order.F();
+  return reading < order.F() ? kOfD : kOfF + reading - order.F();
 }
 
 struct Sample {
@@ -135,44 +93,50 @@ struct Sample {
   double w_residual[kChannels];
   const double* amplitude;  // [kChannels][amplitude lanes]
   Slopes of[ReadingOrder::kMost];
-  // Of the lobes, for second derivatives alone.
-  alignas(sizeof(Lanes8)) double part[kParts][kChannels][PaddedToVectors(kMaxLobes)];
+  // w (rho - rho*) d2 rho / (d a d b) of each lobe and channel, for two of its parts, a < b: what
+  // is left of s D F G_i G_o / (cos cos) without these. Set for second derivatives alone.
+  alignas(sizeof(Lanes8)) double second[kParts][kParts][kChannels][PaddedToVectors(kMaxLobes)];
 };
 
-// Sets what second derivatives ask for.
 template <bool kOneVector>
-TRILOBE_ALWAYS_INLINE void SetParts(const SumJob& job, Sample* at) {
+TRILOBE_ALWAYS_INLINE void SetSecondDerivatives(const SumJob& job, Sample* at) {
   const SampleReader& reader = *job.reader;
   const int lobe_lanes = Lanes<kOneVector>(reader.lobe_lanes());
   for (int c = 0; c < kChannels; ++c) {
-    for (int b = 0; b < lobe_lanes; ++b) at->part[kS][c][b] = reader.s()[c * lobe_lanes + b];
+    const double scale = at->w_residual[c] * reader.samples().inverse_cosines[at->j];
     // One reading of D has those of all stretches.
-    for (int r = job.order.F() - 1; r < job.order.count(); ++r) {
-      const TableLanes& lanes = reader.lanes(job.order.factor(r));
-      const double* const reading = at->of[r].reading + lanes.First(c);
-      double* const to = at->part[PartOf(job.order, r)][c];
-      for (int b = 0; b < lobe_lanes; ++b) to[b] = reading[lanes.per_lobe ? b : 0];
+    const auto load = [&](int reading, int v, Lanes4* part) {
+      const TableLanes& lanes = reader.lanes(job.order.factor(reading));
+      const double* const from = at->of[reading].reading + lanes.First(c);
+      if (lanes.per_lobe) {
+        LoadLanes(from + v, part);
+      } else {
+        *part = Lanes4{} + *from;
+      }
+    };
+    for (int v = 0; v < lobe_lanes; v += kVector) {
+      Lanes4 s, D, F, G_i, G_o;
+      LoadLanes(reader.s() + c * lobe_lanes + v, &s);
+      load(job.order.F() - 1, v, &D);
+      load(job.order.F(), v, &F);
+      load(job.order.G_i(), v, &G_i);
+      load(job.order.G_o(), v, &G_o);
+      const auto set = [&](Part a, Part b, const Lanes4& value) {
+        StoreLanes(value, at->second[a][b][c] + v);
+      };
+      const Lanes4 scaled_s = scale * s, sD = scaled_s * D, sF = scaled_s * F;
+      const Lanes4 DF = scale * D * F, G = scale * G_i * G_o;
+      set(kS, kOfD, F * G);
+      set(kS, kOfF, D * G);
+      set(kS, kOfG_i, DF * G_o);
+      set(kS, kOfG_o, DF * G_i);
+      set(kOfD, kOfF, s * G);
+      set(kOfD, kOfG_i, sF * G_o);
+      set(kOfD, kOfG_o, sF * G_i);
+      set(kOfF, kOfG_i, sD * G_o);
+      set(kOfF, kOfG_o, sD * G_i);
+      set(kOfG_i, kOfG_o, sD * F);
     }
-  }
-}
-
-// w (rho - rho*) d2 rho / (d a d b) of the lobes in a channel, for two of their parts: what is left
-// of s D F G_i G_o / (cos cos) without these.
-template <bool kOneVector>
-TRILOBE_ALWAYS_INLINE void SecondDerivatives(const SumJob& job, const Sample& at, int a, int b,
-                                             int c, double* of_lobes) {
-  const SampleReader& reader = *job.reader;
-  const int lobe_lanes = Lanes<kOneVector>(reader.lobe_lanes());
-  const double scale = at.w_residual[c] * reader.samples().inverse_cosines[at.j];
-  for (int v = 0; v < lobe_lanes; v += kVector) {
-    Lanes4 product = Lanes4{} + scale;
-    for (int p = 0; p < kParts; ++p) {
-      if (p == a || p == b) continue;
-      Lanes4 part;
-      LoadLanes(at.part[p][c] + v, &part);
-      product *= part;
-    }
-    StoreLanes(product, of_lobes + v);
   }
 }
 
@@ -195,43 +159,36 @@ TRILOBE_ALWAYS_INLINE void AddAmplitudes(const SumJob& job, const Sample& at, bo
   }
 }
 
-// The table entries of reading r, with themselves and all that come before.
+// Sets what entries that reading r reads have with amplitudes, with each other, and with those of
+// all readings before.
 template <bool kOneVector, bool kNewton>
-TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
+TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int r, SampleRun* run) {
   const SampleReader& reader = *job.reader;
   const ModelSpec& spec = reader.spec();
   const SampleRows& rows = job.layout->of(r);
   const SampleRows& amplitudes = job.layout->amplitudes();
   const int lanes = Lanes<kOneVector>(rows.lanes);
   const TableLanes& row_lanes = reader.lanes(job.order.factor(r));
-  const Slopes& own = at->of[r];
-  const int first_own = std::min(r, job.order.G_i());  // reading of the same table
-  alignas(sizeof(Lanes8)) double second[PaddedToVectors(kMaxLobes)] = {};  // derivatives
+  const Slopes& own = at.of[r];
 
-  alignas(sizeof(Lanes8)) double lines[kMaxOwnLines * kMaxLanes];
-  double* to = lines;
-  if (kNewton) {
-    for (int b = 0; b < lanes; ++b) to[b] = 0;  // the squared length: below
-    to += lanes;
-  }
-  Combine<kOneVector>(at->residual, 1, own.w_slope, lanes, to);
+  double* to = run->Lines(r);
+  Combine<kOneVector>(at.residual, 1, own.w_slope, lanes, to);
   to += lanes;
   const int own_part = PartOf(job.order, r);
   for (int c = 0; c < kChannels; ++c) {
-    if (kNewton) SecondDerivatives<kOneVector>(job, *at, kS, own_part, c, second);
+    double* of_lobe = to + row_lanes.First(c);
     for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
-      Scale<kOneVector>(c, at->amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
-      if (kNewton && a < spec.lobes) to[LaneOf(row_lanes, a, c)] += second[a];
+      Scale<kOneVector>(c, at.amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
+    }
+    if (!kNewton) continue;
+    const double* const second = at.second[kS][own_part][c];
+    for (int m = 0; m < spec.lobes; ++m, of_lobe += lanes + (row_lanes.per_lobe ? 1 : 0)) {
+      *of_lobe += second[m];
     }
   }
-  double* const of_entry = job.sums + rows.own + (kNewton ? 0 : SampleRows::kGradient * lanes);
-  const auto own_size = static_cast<ptrdiff_t>(rows.own_size());
-  const int* const entry = own.cell->entry.data();
-  AddToEntries(lines, static_cast<int>(to - lines), 1, own, entry, own_size, of_entry);
-
-  alignas(sizeof(Lanes8)) double products[kMaxTables * kMaxLanes];  // [tables][lanes]
   for (int q = 0; q <= r; ++q) {
-    const Slopes& of = at->of[q];
+    double* const products = run->Products(q, r);  // [tables][lanes]
+    const Slopes& of = at.of[q];
     const Columns& columns = job.columns[q];
     const Factor factor = job.order.factor(q);
     const int of_lanes = Lanes<kOneVector>(reader.lanes(factor).size);
@@ -249,44 +206,54 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
     }
     // Stretches of D are those of different lobes, whose readings are not multiplied.
     if (kNewton && q != r && r >= job.order.F()) {
-      for (int c = 0; c < kChannels; ++c) {
-        SecondDerivatives<kOneVector>(job, *at, PartOf(job.order, q), own_part, c, second);
+      const auto& second = at.second[PartOf(job.order, q)][own_part];
+      const int* place = &columns.of_lobe[static_cast<size_t>(r) * kChannels * spec.lobes];
+      if (spec.sharing(factor).per_channel || spec.sharing(job.order.factor(r)).per_channel) {
+        for (const auto& of_channel : second) {
+          for (int m = 0; m < spec.lobes; ++m, ++place) {
+            if (*place >= 0) products[*place] += of_channel[m];
+          }
+        }
+      } else {
         for (int m = 0; m < spec.lobes; ++m) {
-          const int place = columns.place[spec.table(factor, m, c)];
-          if (place >= 0) products[place * lanes + LaneOf(row_lanes, m, c)] += second[m];
+          if (place[m] >= 0) products[place[m]] += second[0][m] + second[1][m] + second[2][m];
         }
       }
     }
-    const int size = static_cast<int>(to - products);
-    double* const blocks = job.sums + rows.blocks[job.layout->RowsOf(q)];
-    const bool by_cell = q == r && rows.by_cell;
-    constexpr int kInCell[] = {0, 1, 2, 3};
-    static_assert(std::size(kInCell) == Stencil::kMaxSize);
-    for (int l = 0; l < of.cell->size; ++l) {
-      AddToEntries(
-          products, size, q == r ? 0.5 * of.weight[l] : of.weight[l], own,
-          by_cell ? kInCell : entry, size,
-          blocks + (by_cell ? rows.InCell(own.cell_number, l)
-                            : static_cast<size_t>(of.cell->entry[l]) * rows.entries * size));
-    }
   }
-  if (!kNewton) return;
-  // The squared length of an entry that both directions read has a product of the two.
-  for (int q = first_own; q <= r; ++q) {
-    const Slopes& of = at->of[q];
-    for (int b = 0; b < lanes; ++b) {
-      double sum = 0;
-      for (int c = 0; c < kChannels; ++c) {
-        sum += of.slope[c * lanes + b] * own.w_slope[c * lanes + b];
-      }
-      products[b] = sum;
-    }
-    for (int k = 0; k < own.cell->size; ++k) {
-      for (int l = 0; l < of.cell->size; ++l) {
-        if (q == r ? k != l : own.cell->entry[k] != of.cell->entry[l]) continue;
-        AddScaled(lanes, (q == r ? 1 : 2) * own.weight[k] * of.weight[l], products,
-                  of_entry + own.cell->entry[k] * own_size);
-      }
+}
+
+// y = sum_c slope_c w_slope_c of two readings of one table, lane by lane.
+TRILOBE_ALWAYS_INLINE void Multiply(const Slopes& a, const Slopes& b, int lanes, double* y) {
+  static_assert(kChannels == 3);
+  for (int k = 0; k < lanes; ++k) {
+    y[k] = a.slope[k] * b.w_slope[k] + a.slope[lanes + k] * b.w_slope[lanes + k] +
+           a.slope[2 * lanes + k] * b.w_slope[2 * lanes + k];
+  }
+}
+
+// The squared lengths of entries that reading r reads: that of an entry which both directions read
+// has a product of the two.
+template <bool kOneVector>
+TRILOBE_ALWAYS_INLINE void AddSquaredLengths(const SumJob& job, const Sample& at, int r) {
+  const SampleRows& rows = job.layout->of(r);
+  const int lanes = Lanes<kOneVector>(rows.lanes);
+  const Slopes &own = at.of[r], &other = at.of[job.order.G_i()];
+  double* const lengths =
+      job.sums + rows.own + static_cast<ptrdiff_t>(SampleRows::kSquaredLength) * lanes;
+  alignas(sizeof(Lanes8)) double product[kMaxLanes];
+  Multiply(own, own, lanes, product);
+  for (int k = 0; k < own.cell->size; ++k) {
+    AddScaled(lanes, own.weight[k] * own.weight[k], product,
+              lengths + own.cell->entry[k] * rows.own_size());
+  }
+  if (r != job.order.G_o()) return;
+  for (int k = 0; k < own.cell->size; ++k) {
+    for (int l = 0; l < other.cell->size; ++l) {
+      if (own.cell->entry[k] != other.cell->entry[l]) continue;
+      Multiply(other, own, lanes, product);
+      AddScaled(lanes, 2 * own.weight[k] * other.weight[l], product,
+                lengths + own.cell->entry[k] * rows.own_size());
     }
   }
 }
@@ -294,7 +261,8 @@ TRILOBE_ALWAYS_INLINE void AddReading(const SumJob& job, int r, Sample* at) {
 // Samples [begin, end) of a batch that begins at `first`.
 template <bool kOneVector, bool kNewton>
 TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
-                                      const SampleReader::Batch& batch, Sample* at) {
+                                      const SampleReader::Batch& batch, Sample* at,
+                                      SampleRun* run) {
   const SampleReader& reader = *job.reader;
   const FoldedSamples& samples = reader.samples();
   const ReadingOrder& order = job.order;
@@ -303,6 +271,7 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
   alignas(sizeof(Lanes8)) double G_slope[2][kChannels * kMaxLanes];
   for (int j = begin; j < end; ++j) {
     const int n = j - begin;
+    run->Next();
     at->j = j;
     at->residual = batch.residual.data() + n * kChannels;
     at->amplitude = batch.amplitude.data() + n * kChannels * reader.amplitude_lanes();
@@ -317,9 +286,10 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
       const Factor factor = order.factor(r);
       const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
       Slopes& of = at->of[r];
-      of.cell_number = readings.cell[j];
-      of.cell = &samples.cells_of(factor)[of.cell_number];
-      for (int k = 0; k < of.cell->size; ++k) of.weight[k] = readings.weight[k][j];
+      of.cell = &samples.cells_of(factor)[readings.cell[j]];
+      double* const weight = run->Read(r, readings.cell[j], *of.cell);
+      for (int k = 0; k < of.cell->size; ++k) weight[k] = readings.weight[k][j];
+      of.weight = weight;
       if (factor != Factor::kG) {
         const bool is_D = factor == Factor::kD;
         of.reading = (is_D ? batch.D : batch.F).data() + n * lanes;
@@ -342,35 +312,38 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
         for (int b = 0; b < lanes; ++b) of.w_slope[c * lanes + b] = w[c] * of.slope[c * lanes + b];
       }
     }
-    if (kNewton) SetParts<kOneVector>(job, at);
+    if (kNewton) SetSecondDerivatives<kOneVector>(job, at);
     AddAmplitudes(job, *at, kNewton);
     for (int r = 0; r < order.count(); ++r) {
-      if (job.layout->of(r).tables > 0) AddReading<kOneVector, kNewton>(job, r, at);
+      if (job.layout->of(r).tables == 0) continue;
+      SetProducts<kOneVector, kNewton>(job, *at, r, run);
+      if (kNewton) AddSquaredLengths<kOneVector>(job, *at, r);
     }
   }
   return objective;
 }
 
-using AddBatchFunction = double (*)(const SumJob&, int, int, const SampleReader::Batch&, Sample*);
+using AddBatchFunction = double (*)(const SumJob&, int, int, const SampleReader::Batch&, Sample*,
+                                    SampleRun*);
 TRILOBE_MULTIVERSION
 double AddGaussNewton(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
-                      Sample* at) {
-  return AddBatch<false, false>(job, begin, end, batch, at);
+                      Sample* at, SampleRun* run) {
+  return AddBatch<false, false>(job, begin, end, batch, at, run);
 }
 TRILOBE_MULTIVERSION
 double AddGaussNewtonOfOneVector(const SumJob& job, int begin, int end,
-                                 const SampleReader::Batch& batch, Sample* at) {
-  return AddBatch<true, false>(job, begin, end, batch, at);
+                                 const SampleReader::Batch& batch, Sample* at, SampleRun* run) {
+  return AddBatch<true, false>(job, begin, end, batch, at, run);
 }
 TRILOBE_MULTIVERSION
 double AddNewton(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
-                 Sample* at) {
-  return AddBatch<false, true>(job, begin, end, batch, at);
+                 Sample* at, SampleRun* run) {
+  return AddBatch<false, true>(job, begin, end, batch, at, run);
 }
 TRILOBE_MULTIVERSION
 double AddNewtonOfOneVector(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
-                            Sample* at) {
-  return AddBatch<true, true>(job, begin, end, batch, at);
+                            Sample* at, SampleRun* run) {
+  return AddBatch<true, true>(job, begin, end, batch, at, run);
 }
 
 }  // namespace
@@ -387,10 +360,20 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
     const Factor factor = job.order.factor(r);
     one_vector = one_vector && reader.lanes(factor).size == kVector;
     const SampleRows& rows = layout.of(r);
-    Columns columns{{}, std::vector<int>(reader.spec().num_tables(factor), -1)};
+    Columns columns;
+    std::vector<int> place(reader.spec().num_tables(factor), -1);
     for (int k = 0; k < rows.tables; ++k) {
-      columns.place[rows.table[k]] = k;
+      place[rows.table[k]] = k;
       columns.of.push_back({rows.lane[k], reader.spec().channels(factor, rows.table[k]).begin});
+    }
+    for (int later = 0; later < job.order.count(); ++later) {
+      const TableLanes& lanes = reader.lanes(job.order.factor(later));
+      for (int c = 0; c < kChannels; ++c) {
+        for (int m = 0; m < reader.spec().lobes; ++m) {
+          const int column = place[reader.spec().table(factor, m, c)];
+          columns.of_lobe.push_back(column < 0 ? -1 : column * lanes.size + LaneOf(lanes, m, c));
+        }
+      }
     }
     job.columns.push_back(std::move(columns));
   }
@@ -401,13 +384,15 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
                                               : AddGaussNewton;
   SampleReader::Batch batch(reader);
   Sample at{};
+  SampleRun run(job.order, layout, sums);
   double objective = 0;
   while (begin < end) {
     const int batch_end = std::min(begin + SampleReader::kBatch, end);
     reader.Read(begin, batch_end, SampleReader::Slopes::kAll, &batch);
-    objective += add_batch(job, begin, batch_end, batch, &at);
+    objective += add_batch(job, begin, batch_end, batch, &at, &run);
     begin = batch_end;
   }
+  run.Flush();
   return objective;
 }
 

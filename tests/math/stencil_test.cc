@@ -45,13 +45,24 @@ TEST(Stencil, LinearIsConstantBeyondTheOuterCentres) {
 TEST(Stencil, LinearWeightsAddUpToOneInsideTheTable) {
   for (double x = 0; x <= 5; x += 0.01) {
     const Stencil stencil = LinearStencil(x, 5);
-    ASSERT_EQ(stencil.size, 2);
-    EXPECT_GE(stencil.index[0], 0);
-    EXPECT_LT(stencil.index[1], 5);
-    EXPECT_GE(stencil.weight[0], 0);
-    EXPECT_GE(stencil.weight[1], 0);
-    EXPECT_DOUBLE_EQ(stencil.weight[0] + stencil.weight[1], 1);
-    EXPECT_EQ(stencil.WeightOf(stencil.index[1]), stencil.weight[1]);
+    double sum = 0;
+    for (int k = 0; k < stencil.size; ++k) {
+      EXPECT_GE(stencil.index[k], 0);
+      EXPECT_LT(stencil.index[k], 5);
+      EXPECT_GE(stencil.weight[k], 0);
+      EXPECT_EQ(stencil.WeightOf(stencil.index[k]), stencil.weight[k]);
+      sum += stencil.weight[k];
+    }
+    EXPECT_DOUBLE_EQ(sum, 1);
+  }
+}
+
+TEST(Stencil, LinearReadsNothingBesideWhatItStandsAt) {
+  for (const double x : {0.0, 0.3, 0.5, 2.5, 2.5 + 0.9 * kAtEntry, 4.5 - 0.9 * kAtEntry, 5.0}) {
+    EXPECT_EQ(LinearStencil(x, 5).size, 1) << x;
+  }
+  for (const double x : {0.5 + 2 * kAtEntry, 2.0, 4.5 - 2 * kAtEntry}) {
+    EXPECT_EQ(LinearStencil(x, 5).size, 2) << x;
   }
 }
 

@@ -1,0 +1,169 @@
+#include "trilobe/sums/sample_run.h"
+
+#include <cstddef>
+
+#include "trilobe/base/multiversion.h"
+#include "trilobe/objective/sample_reader.h"
+
+namespace trilobe {
+namespace {
+
+// Numbers of samples, to be added to several places, each by weights of its own.
+struct Addition {
+  int samples, size;
+  const double* from;     // [samples][size]
+  const double* weights;  // [samples][Stencil::kMaxSize]
+  std::array<double*, Stencil::kMaxSize> to;
+};
+
+// Vectors of these numbers, from the i-th number on. The sums stay in registers.
+static_assert(Stencil::kMaxSize == kVector);
+template <int kEntries, int kVectors>
+TRILOBE_ALWAYS_INLINE void AddVectors(const Addition& add, int i) {
+  std::array<std::array<Lanes4, kVectors>, kEntries> sums;
+  for (int k = 0; k < kEntries; ++k) {
+    for (int v = 0; v < kVectors; ++v) LoadLanes(add.to[k] + i + v * kVector, &sums[k][v]);
+  }
+  for (int n = 0; n < add.samples; ++n) {
+    std::array<Lanes4, kVectors> x;
+    for (int v = 0; v < kVectors; ++v) {
+      LoadLanes(add.from + static_cast<ptrdiff_t>(n) * add.size + i + v * kVector, &x[v]);
+    }
+    for (int k = 0; k < kEntries; ++k) {
+      const double weight = add.weights[n * Stencil::kMaxSize + k];
+      for (int v = 0; v < kVectors; ++v) sums[k][v] += weight * x[v];
+    }
+  }
+  for (int k = 0; k < kEntries; ++k) {
+    for (int v = 0; v < kVectors; ++v) StoreLanes(sums[k][v], add.to[k] + i + v * kVector);
+  }
+}
+
+template <int kEntries>
+TRILOBE_ALWAYS_INLINE void AddToEntries(const Addition& add) {
+  int i = 0;
+  for (; i + 2 * kVector <= add.size; i += 2 * kVector) AddVectors<kEntries, 2>(add, i);
+  if (i < add.size) AddVectors<kEntries, 1>(add, i);
+}
+
+TRILOBE_ALWAYS_INLINE void AddTo(int entries, const Addition& add) {
+  switch (entries) {
+    case 4:
+      AddToEntries<4>(add);
+      break;
+    case 3:
+      AddToEntries<3>(add);
+      break;
+    case 2:
+      AddToEntries<2>(add);
+      break;
+    default:
+      AddToEntries<1>(add);
+  }
+}
+
+// The end of the samples from `begin` on that `begins` has no bit for.
+TRILOBE_ALWAYS_INLINE int EndOfRun(uint32_t begins, int begin, int size) {
+  int end = begin + 1;
+  while (end < size && (begins >> end & 1) == 0) ++end;
+  return end;
+}
+
+}  // namespace
+
+SampleRun::SampleRun(const ReadingOrder& order, const SampleLayout& layout, double* sums)
+    : sums_(sums) {
+  for (int r = 0; r < order.count(); ++r) {
+    const SampleRows& rows = layout.of(r);
+    OfReading& of = readings_.emplace_back();
+    of.rows = &rows;
+    of.lines_size = (rows.own_lines - SampleRows::kGradient) * rows.lanes;
+    of.lines.resize(static_cast<size_t>(kMost) * of.lines_size);
+    for (int q = 0; q <= r; ++q) {
+      OfPair& pair = pairs_.emplace_back();
+      pair.size = layout.of(q).tables * rows.lanes;
+      pair.blocks = sums + rows.blocks[layout.RowsOf(q)];
+      pair.products.resize(static_cast<size_t>(kMost) * pair.size);
+    }
+  }
+}
+
+double* SampleRun::Read(int r, int number, const Cell& cell) {
+  OfReading& of = readings_[r];
+  const int n = size_ - 1;
+  if (n == 0) {
+    of.begins = 1;
+  } else if (of.number[n - 1] != number) {
+    of.begins |= uint32_t{1} << n;
+  }
+  of.number[n] = number;
+  of.cell[n] = &cell;
+  return of.weights[n].data();
+}
+
+TRILOBE_ALWAYS_INLINE void SampleRun::AddLines(const OfReading& of) const {
+  const SampleRows& rows = *of.rows;
+  double* const own = sums_ + rows.own + static_cast<ptrdiff_t>(SampleRows::kGradient) * rows.lanes;
+  for (int begin = 0, end = 0; begin < size_; begin = end) {
+    end = EndOfRun(of.begins, begin, size_);
+    const Cell& cell = *of.cell[begin];
+    Addition add{};
+    add.samples = end - begin;
+    add.size = of.lines_size;
+    add.from = &of.lines[static_cast<size_t>(begin) * add.size];
+    add.weights = of.weights[begin].data();
+    for (int k = 0; k < cell.size; ++k) add.to[k] = own + cell.entry[k] * rows.own_size();
+    AddTo(cell.size, add);
+  }
+}
+
+TRILOBE_ALWAYS_INLINE void SampleRun::AddProducts(const OfReading& of, const OfReading& own,
+                                                  const OfPair& pair) const {
+  const SampleRows& rows = *own.rows;
+  const bool same = &of == &own;
+  for (int begin = 0, end = 0; begin < size_; begin = end) {
+    end = EndOfRun(of.begins | own.begins, begin, size_);
+    const Cell &of_cell = *of.cell[begin], &cell = *own.cell[begin];
+    Addition add{};
+    std::array<Weights, kMost> weights;
+    add.samples = end - begin;
+    add.size = pair.size;
+    add.from = &pair.products[static_cast<size_t>(begin) * add.size];
+    for (int l = 0; l < of_cell.size; ++l) {
+      // Within a reading, those of two entries in the other order are the same.
+      const int first = same ? l : 0;
+      for (int n = begin; n < end; ++n) {
+        Lanes4 own_weights;
+        LoadLanes(own.weights[n].data(), &own_weights);
+        StoreLanes(of.weights[n][l] * own_weights, weights[n - begin].data());
+        if (same) weights[n - begin][l] *= 0.5;
+      }
+      add.weights = &weights[0][first];
+      for (int k = first; k < cell.size; ++k) {
+        add.to[k - first] =
+            same && rows.by_cell
+                ? pair.blocks + rows.InCell(own.number[begin], l) + k * pair.size
+                : pair.blocks +
+                      (static_cast<ptrdiff_t>(of_cell.entry[l]) * rows.entries + cell.entry[k]) *
+                          pair.size;
+      }
+      AddTo(cell.size - first, add);
+    }
+  }
+}
+
+TRILOBE_MULTIVERSION
+void SampleRun::Flush() {
+  if (size_ == 0) return;
+  for (int r = 0; r < static_cast<int>(readings_.size()); ++r) {
+    const OfReading& own = readings_[r];
+    if (own.rows->tables == 0) continue;
+    AddLines(own);
+    for (int q = 0; q <= r; ++q) {
+      AddProducts(readings_[q], own, pairs_[PairOf(q, r)]);
+    }
+  }
+  size_ = 0;
+}
+
+}  // namespace trilobe
