@@ -276,7 +276,8 @@ SphereError SphereJudge::operator()(const AngularBrdf& fitted) const {
 }
 
 RenderedImage SphereJudge::Render(const AngularBrdf& brdf) const {
-  return std::move(RenderSpheres({&brdf, 1}, lights_, size_, counts_, num_threads_)[0]);
+  constexpr int kEvery = 4;
+  return std::move(RenderSpheres({&brdf, 1}, lights_, size_, counts_, num_threads_, kEvery)[0]);
 }
 
 RenderedImage RenderSphere(const Material& material, const AppearanceOptions& options) {

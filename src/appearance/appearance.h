@@ -85,7 +85,7 @@ AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf
 void CheckFinite(const AppearanceReport& report, const std::string& source);
 
 // The part of it that says most, for comparing many materials with one measurement, whose sphere is
-// rendered once.
+// rendered once: on a quarter of the pixels, which tells them apart in a quarter of the time.
 class SphereJudge {
  public:
   // Throws Error when no bin is valid or the environment is black.

@@ -40,8 +40,9 @@ HalfDiffAngles AnglesOver(const Direction& n, const PreparedLight& light, const 
 
 std::vector<RenderedImage> RenderSpheres(
     std::span<const AngularBrdf> materials, std::span<const Light> lights, int size,
-    const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads) {
-  const View view = ViewSphere(size);
+    const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads,
+    int every) {
+  const View view = ViewSphere(size, every);
   std::vector<PreparedLight> prepared;
   for (const Light& light : lights) prepared.push_back(Prepare(light));
   return RenderBy(

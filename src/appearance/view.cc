@@ -82,11 +82,12 @@ Thread AlongLight(std::span<const Light> lights) {
 
 }  // namespace
 
-View ViewSphere(int size) {
+View ViewSphere(int size, int every) {
   View view{size, size, {}};
   for (int index = 0; index < size * size; ++index) {
-    const int row = index / size;
-    const double x = (index % size + 0.5) / size * 2 - 1;
+    const int row = index / size, column = index % size;
+    if ((column + every / 2 * row) % every != 0) continue;
+    const double x = (column + 0.5) / size * 2 - 1;
     const double y = 1 - (row + 0.5) / size * 2;
     const double z2 = 1 - x * x - y * y;
     if (!(z2 > 0)) continue;

@@ -25,8 +25,9 @@ struct View {
   std::vector<SurfacePoint> points;
 };
 
-// A sphere that touches the sides of a square, x along its parallels, to the right.
-View ViewSphere(int size);
+// A sphere that touches the sides of a square, x along its parallels, to the right. Of its pixels
+// one in `every`, evenly spread.
+View ViewSphere(int size, int every = 1);
 
 // A piece of cloth that leans back, in soft folds, and fills two squares, one above the other. The
 // thread, x, runs along the light in the upper one and across it in the lower; the light's

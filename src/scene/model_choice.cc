@@ -26,6 +26,9 @@
 namespace trilobe {
 namespace {
 
+// What nobody sees of a picture [dB].
+constexpr double kNotSeen = 0.2;
+
 // A stretch that lowers E by less than this fraction is none.
 constexpr double kWorthwhile = 0.05;
 
@@ -45,6 +48,10 @@ Objective Some(const Objective& objective) { return Thinned(objective, 100, 24);
 
 // So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
 Objective Few(const Objective& objective) { return Thinned(objective, 32, 72); }
+
+void PutIntoCanonicalForm(const Objective& of, FactorModel* model) {
+  Canonicalize(of.coverage(), model, LobeOrder::kByLight, of.num_threads());
+}
 
 // Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
 // read may be anything.
@@ -127,6 +134,7 @@ class ModelSearch {
   ChosenModel Run() {
     const TableLayout full = TableLayout::Full(fitted_.spec());
     Judge("as fitted", fitted_, full, objective_.Value(fitted_));
+    some_of_fit_ = some_.own().Value(fitted_);
     if (options_.judge_beyond) beyond_ = options_.judge_beyond(fitted_);
     Choose(fitted_, full);
     if (best_.chosen < 0) Thin("as fitted", objective_.weighting(), fitted_);
@@ -175,8 +183,15 @@ class ModelSearch {
     best_.layout = layout;
   }
 
-  // E, as it is quoted, is of the objective that was asked for. All samples would have to be
-  // prepared for a stretch, which takes longer than to evaluate them once.
+  // E, as it is quoted, is of the objective that was asked for; of a form on its way, as these
+  // samples tell it.
+  double ValueOfSome(const FactorModel& model) {
+    const double E = some_.For(model.spec(), objective_.weighting()).Value(model);
+    return some_of_fit_ > 0 ? E * (best_.candidates.front().E / some_of_fit_) : E;
+  }
+
+  // All samples would have to be prepared for a stretch, which takes longer than to evaluate them
+  // once.
   double ValueOf(const FactorModel& model) {
     if (!model.spec().stretches.any()) {
       return all_.For(model.spec(), objective_.weighting()).Value(model);
@@ -193,7 +208,7 @@ class ModelSearch {
     prune.lobes = prune.colour = false;
     prune.max_parameters = options_.max_parameters;
     PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
-    const Objective to = guide.With(all_.For(pruned.model.spec(), weighting));
+    const Objective to = guide.With(some_.For(pruned.model.spec(), weighting));
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
@@ -218,15 +233,16 @@ class ModelSearch {
     if (options_.stop()) return false;
     const ModelSpec& spec = form.start.spec();
     constexpr int kStepsOnFew = 12;
-    form.start =
-        JointSteps(guided_few_.For(spec, form.weighting), form.start, kStepsOnFew, options_.stop)
-            .model;
+    constexpr double kSmall = 2e-3;  // a decrease of E, relative, that no picture shows
+    form.start = JointSteps(guided_few_.For(spec, form.weighting), form.start, kStepsOnFew,
+                            options_.stop, /*reduction=*/nullptr, kSmall)
+                     .model;
     form.start = GoOn(guided_some_.For(spec, form.weighting), form.start, options_.stop);
     // Entries that no measured sample reads are what the guide makes of them, next to others that
     // have moved far away; a picture reads between the two.
-    Canonicalize(some_.For(spec, form.weighting).coverage(), &form.start);
-    const double E = ValueOf(form.start);
-    const double score = Judge(form.name, form.start, TableLayout::Full(spec), E);
+    PutIntoCanonicalForm(some_.For(spec, form.weighting), &form.start);
+    const double score =
+        Judge(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
     forms_.push_back({std::move(form), score});
     return true;
   }
@@ -259,7 +275,7 @@ class ModelSearch {
     }
     // From starts of its own, since it ends in another minimum.
     ModelForm form{"weighed by channel anew",
-                   FitAnew(guided_some_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
+                   FitAnew(guided_few_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
                    by_channel};
     if (stretched) {
       const Objective of = guided_few_.For(fitted_.spec(), by_channel);
@@ -288,7 +304,8 @@ class ModelSearch {
   void FinishBestForms() {
     std::ranges::stable_sort(forms_, std::greater(), &Fitted::score);
     for (Fitted& fitted_form : forms_) {
-      if (options_.stop() || fitted_form.score <= best_.candidates[best_.chosen].score) break;
+      if (options_.stop()) break;
+      if (fitted_form.score <= best_.candidates[best_.chosen].score + kNotSeen) break;
       auto& [name, model, weighting] = fitted_form.form;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
@@ -297,7 +314,7 @@ class ModelSearch {
       } else {
         const Objective of = all_.For(model.spec(), weighting);
         model = GoOn(of, model, options_.stop);
-        Canonicalize(of.coverage(), &model);
+        PutIntoCanonicalForm(of, &model);
         model = Tied(of, model, options_.judge(model));
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout);
@@ -308,10 +325,9 @@ class ModelSearch {
   // The model, in canonical form and of this score, with entries at the edge of the data tied,
   // unless that is seen where data are.
   FactorModel Tied(const Objective& of, const FactorModel& model, double score) {
-    constexpr double kNotSeen = 0.2;  // [dB]
     FactorModel tied = model;
     if (!TieEntriesAtDataEdge(of, &tied, options_.stop)) return model;
-    Canonicalize(of.coverage(), &tied);
+    PutIntoCanonicalForm(of, &tied);
     return options_.judge(tied) >= score - kNotSeen ? tied : model;
   }
 
@@ -321,8 +337,9 @@ class ModelSearch {
   Objectives all_, some_, few_;
   const UnmeasuredGuide guide_;  // for forms that go on from the fit
   Objectives guided_some_, guided_few_;
-  Stopwatch stopwatch_;  // since the last candidate
-  double beyond_ = 0;    // the data, the score of the fit
+  Stopwatch stopwatch_;     // since the last candidate
+  double beyond_ = 0;       // the data, the score of the fit
+  double some_of_fit_ = 0;  // of E of the fit
   std::vector<Fitted> bases_, forms_;
   ChosenModel best_;
 };

@@ -11,7 +11,7 @@
 #include "tests/app/run_program.h"
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using nlohmann::json;
@@ -227,4 +227,4 @@ TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -13,7 +13,7 @@
 #include "tests/io/tensor_bytes.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using nlohmann::json;
@@ -656,4 +656,4 @@ TEST(PlotTest, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

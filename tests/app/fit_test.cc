@@ -18,7 +18,7 @@
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/trace_file.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -226,7 +226,8 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
         candidate["numbers"] == parameters && candidate["objective"] == report["objective"];
   }
   EXPECT_EQ(like_the_chosen, 1);
-  EXPECT_EQ(report["appearance"]["psnr_db"].get<double>(), best);  // what the judge saw
+  // What the judge saw of it, on a quarter of the pixels.
+  EXPECT_NEAR(report["appearance"]["psnr_db"].get<double>(), best, 0.5);
   EXPECT_THAT(result.out, HasSubstr("\ncandidates   as fitted: PSNR "));
   EXPECT_THAT(result.out, HasSubstr("   <- chosen\n"));
   EXPECT_THAT(result.out, HasSubstr("\ndata edge    "));
@@ -443,4 +444,4 @@ TEST(Fit, KeepsEarlierResultsWhenTheFolderIsAFile) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

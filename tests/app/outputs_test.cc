@@ -15,7 +15,7 @@
 #include "tests/app/run_program.h"
 #include "trilobe/io/model_file.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -337,4 +337,4 @@ TEST(FitMany, BadUseIsAnError) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

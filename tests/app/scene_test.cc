@@ -16,7 +16,7 @@
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -251,4 +251,4 @@ TEST(Scene, BadUseIsAnError) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -13,7 +13,7 @@
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/synth.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 30, .theta_d = 30, .phi_d = 60};
@@ -370,4 +370,4 @@ TEST(RenderSpherePair, ShowsAllAndTellsWhatWasMeasured) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 void ExpectLab(const Rgb& linear, const Lab& expected) {
@@ -64,4 +64,4 @@ TEST(ColorTest, SrgbCurveIsInvertedEverywhere) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,7 +12,7 @@
 #include "trilobe/appearance/color.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 Environment Black(int width, int height) {
@@ -197,4 +197,4 @@ TEST(EnvironmentTest, TheStudioHasLightFromAllSides) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "trilobe/io/picture_data.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 AppearanceOptions Quick(int num_threads = 1) {
@@ -142,4 +142,4 @@ TEST(MaterialOf, IsTheModel) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,7 +12,7 @@
 #include "trilobe/brdf/albedo.h"
 #include "trilobe/io/synth.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 Direction Normalized(const Direction& v) {
@@ -152,4 +152,4 @@ TEST(Render, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

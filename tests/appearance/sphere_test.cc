@@ -9,7 +9,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 10, .theta_d = 12, .phi_d = 16};
@@ -202,6 +202,27 @@ TEST(SphereTest, WithoutMaterialsOrLightsThereIsNothingToSee) {
   EXPECT_TRUE(std::ranges::all_of(image.radiance, [](const Rgb& x) { return x == Rgb{}; }));
 }
 
+// Of the pixels one in four, in all parts of the sphere, as it is among all of them.
+TEST(SphereTest, FewerPixelsAreSomeOfAll) {
+  const BrdfTable table = RandomTable(kGrid, 4);
+  const TabulatedBrdf brdf(table);
+  const std::vector<Light> lights = TestLights();
+  const AngularBrdf materials[] = {Interpolated(brdf)};
+  constexpr int kWide = 36;
+  const RenderedImage all = RenderSpheres(materials, lights, kWide, Everything, 1).at(0);
+  const RenderedImage some = RenderSpheres(materials, lights, kWide, Everything, 1, 4).at(0);
+  int quarters[4] = {}, of_all[4] = {};
+  for (int k = 0; k < kWide * kWide; ++k) {
+    const int quarter = k / kWide / (kWide / 2) * 2 + k % kWide / (kWide / 2);
+    if (all.coverage[k] >= 0) ++of_all[quarter];
+    if (some.coverage[k] < 0) continue;
+    ++quarters[quarter];
+    EXPECT_EQ(some.radiance[k], all.radiance[k]) << k;
+    EXPECT_EQ(some.coverage[k], all.coverage[k]) << k;
+  }
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(quarters[k], of_all[k] / 4.0, 5) << k;
+}
+
 TEST(SphereTest, IsTheSameForAnyNumberOfThreads) {
   const BrdfTable table = RandomTable(kGrid, 4);
   const TabulatedBrdf brdf(table);
@@ -216,4 +237,4 @@ TEST(SphereTest, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,7 +12,7 @@
 #include "tests/io/test_directory.h"
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -191,4 +191,4 @@ TEST(ParseHistogram, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

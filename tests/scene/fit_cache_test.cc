@@ -11,7 +11,7 @@
 
 #include "tests/io/test_directory.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 std::string Content(int k) { return std::string(10000 + k, static_cast<char>('a' + k % 26)); }
@@ -131,4 +131,4 @@ TEST(FitCache, FolderFollowsTheXdgSpecification) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

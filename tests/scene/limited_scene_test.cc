@@ -8,7 +8,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 15, .theta_d = 15, .phi_d = 24};
@@ -64,4 +64,4 @@ TEST(LimitedScene, LeavesOutTheEntriesThatNothingReads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -5,7 +5,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 7, .phi_d = 12};
@@ -41,4 +41,4 @@ TEST(Luminance, OfAModelIsThatOfItsValues) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

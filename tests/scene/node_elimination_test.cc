@@ -13,7 +13,7 @@
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
@@ -118,4 +118,4 @@ TEST(NodeElimination, KeepsItsLimits) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -14,7 +14,7 @@
 #include "trilobe/model/with_axes.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -181,4 +181,4 @@ TEST(PruneAnisotropic, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

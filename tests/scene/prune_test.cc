@@ -14,7 +14,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
@@ -319,4 +319,4 @@ TEST(Prune, BadBudgets) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/io/json_value.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::AllOf;
@@ -219,4 +219,4 @@ TEST(SceneFile, CutOffOnesAreErrors) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

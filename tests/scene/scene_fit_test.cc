@@ -7,7 +7,7 @@
 
 #include "tests/io/test_directory.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // Few steps of a fast solver with one lobe: this is not about how well it fits.
@@ -194,4 +194,4 @@ TEST(FitScene, OneThatFailsDoesNotStopTheOthers) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -8,7 +8,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr int kSize = 60;
@@ -126,4 +126,4 @@ TEST(Tableau, OfAMatrixThatIsNotPositiveDefiniteIsOfNoUse) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/reconstruct.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 30, .theta_d = 30, .phi_d = 60};
@@ -139,4 +139,4 @@ TEST(UnmeasuredGuide, TheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -190,13 +190,17 @@ double JointStepper::Optimality() {
 }
 
 SteppedModel JointSteps(const Objective& objective, const FactorModel& start, int steps,
-                        const std::function<bool()>& stop, const Reduction* reduction) {
+                        const std::function<bool()>& stop, const Reduction* reduction,
+                        double small) {
   PhaseSeconds phases;
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        reduction ? JointStepper::Trial::kAsItIs : JointStepper::Trial::kProjected,
                        &phases, reduction);
   stepper.Restart(start);
-  for (int k = 0; k < steps && !stepper.exhausted() && !stop(); ++k) stepper.Step();
+  for (int k = 0; k < steps && !stepper.exhausted() && !stop(); ++k) {
+    const double before = stepper.E();
+    if (stepper.Step() && stepper.E() > (1 - small) * before) break;
+  }
   return {stepper.current(), stepper.E()};
 }
 

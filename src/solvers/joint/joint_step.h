@@ -92,14 +92,15 @@ class JointStepper {
 };
 
 // The point after so many steps of curvature kByProgress from this one, and E there; after fewer
-// where no damping leads lower, and once `stop` is true. Trials are projected, unless there is a
-// reduction.
+// where no damping leads lower, after a step that lowers E by less than the fraction `small` of it,
+// and once `stop` is true. Trials are projected, unless there is a reduction.
 struct SteppedModel {
   FactorModel model;
   double E;
 };
 SteppedModel JointSteps(const Objective& objective, const FactorModel& start, int steps,
-                        const std::function<bool()>& stop, const Reduction* reduction = nullptr);
+                        const std::function<bool()>& stop, const Reduction* reduction = nullptr,
+                        double small = 0);
 
 // The metric S of the damping of steps in parameters that make up these parts, from the squared
 // lengths of the columns of J. 0 where that is 0.

@@ -15,7 +15,7 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
   constexpr int kMaxRejected = 5;   // in a row
   constexpr double kMaxStep = 0.4;  // of an exponent
   constexpr double kMinLambda = 1e-4;
-  constexpr double kSmall = 1e-3;  // a decrease of E, relative, that ends the search
+  constexpr double kSmall = 3e-3;  // a decrease of E, relative, that ends the search
   // Where the samples are prepared for the stretches of the best point, steps from it are, too.
   Objective at_best(objective, fitted.spec());
   SteppedModel best = JointSteps(at_best, fitted, kJointSteps, stop);

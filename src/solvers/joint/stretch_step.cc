@@ -39,7 +39,7 @@ Stretches StretchesOf(const Vector& e) {
 struct ExponentEquations {
   Vector K_r;  // K'r. [exponents]
   Vector K_K;  // [exponents][exponents]
-  Vector J_K;  // column by column. [exponents][parameters]
+  Vector J_K;  // [parameters][exponents]
 };
 
 // d rho_c / de at one sample, by central differences of what each lobe reads of D.
@@ -108,9 +108,11 @@ ExponentEquations SumsOver(const Objective& objective, const FactorModel& model,
       for (int k = 0; k < size; ++k) {
         sums.K_r[k] += K[k] * w_r;
         for (int l = 0; l < size; ++l) sums.K_K[k * size + l] += w * K[k] * K[l];
-        for (const int p : parameters.touched()) {
-          sums.J_K[static_cast<size_t>(k) * n + p] += w * K[k] * parameters[p];
-        }
+      }
+      for (const int p : parameters.touched()) {
+        double* const J_K = &sums.J_K[static_cast<size_t>(p) * size];
+        const double w_J = w * parameters[p];
+        for (int k = 0; k < size; ++k) J_K[k] += w_J * K[k];
       }
     }
   }
@@ -161,7 +163,7 @@ StretchStepper::StretchStepper(const Objective& objective, const FactorModel& mo
   Vector half(f * columns);  // L^-1 of J'r and of the columns of J'K
   for (size_t a = 0; a < f; ++a) {
     half[a] = at.gradient[free_[a]];
-    for (int k = 0; k < size_; ++k) half[(1 + k) * f + a] = sums.J_K[k * n + free_[a]];
+    for (int k = 0; k < size_; ++k) half[(1 + k) * f + a] = sums.J_K[free_[a] * size_ + k];
   }
   SolveLower(rows, A.data(), columns, half.data());
   const auto dot = [&](int k, int l) {
