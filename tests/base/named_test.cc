@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 struct Choice {
@@ -38,4 +38,4 @@ TEST(FindNamed, ListsTheKnownNamesOtherwise) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

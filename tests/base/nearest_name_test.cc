@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(NearestName, TakesTheFewestEdits) {
@@ -19,4 +19,4 @@ TEST(NearestName, TakesTheFirstOfSeveral) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

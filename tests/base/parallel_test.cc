@@ -14,7 +14,7 @@
 
 #include "tests/base/no_threads.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(ParallelFor, CallsEveryItemOnce) {
@@ -147,4 +147,4 @@ TEST(ParallelJobs, RethrowsAndGoesOnLendingAfterwards) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(PeakMemory, CountsWhatWasTouchedAndKeepsIt) {
@@ -16,4 +16,4 @@ TEST(PeakMemory, CountsWhatWasTouchedAndKeepsIt) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 std::vector<double> Angles() {
@@ -70,4 +70,4 @@ TEST(AlbedoPassesOneTest, InterpolatesTheFirstCrossing) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

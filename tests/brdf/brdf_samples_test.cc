@@ -9,7 +9,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kEven{.theta_h = 10, .theta_d = 9, .phi_d = 24};
@@ -165,4 +165,4 @@ TEST(Thinned, BeginsNeighbouringRowsApart) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/brdf_samples.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kSmall{.theta_h = 4, .theta_d = 5, .phi_d = 6};
@@ -136,4 +136,4 @@ TEST(BrdfSamples, ScatteredOnesHaveAngles) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -7,7 +7,7 @@
 
 #include "trilobe/brdf/merl_grid.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 double Dot(const Direction& a, const Direction& b) {
@@ -133,4 +133,4 @@ TEST(Directions, DegreesAndRadians) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

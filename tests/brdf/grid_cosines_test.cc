@@ -4,7 +4,7 @@
 
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(GridCosines, AreThoseOfTheCentersToTheBit) {
@@ -24,4 +24,4 @@ TEST(GridCosines, AreNotOfAGridThatIsNone) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 6, .theta_d = 6, .phi_d = 8};
@@ -137,4 +137,4 @@ TEST(ErrorOfPairsTest, IsFiniteForTheSmallestAndLargestValues) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

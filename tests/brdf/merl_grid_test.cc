@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(MerlGrid, IndexIsPhiFastestThetaHSlowest) {
@@ -86,4 +86,4 @@ TEST(MerlGrid, AnglesJustInsideAnEdgeAndAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,7 +9,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 NodeTable RandomTable(int thetas, int phis) {
@@ -112,4 +112,4 @@ TEST(NodeBrdf, WantsAValueForEachPair) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -4,7 +4,7 @@
 
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 8, .theta_d = 9, .phi_d = 10};
@@ -84,4 +84,4 @@ TEST(TabulatedBrdfTest, RejectsATableWithoutAValidBin) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -16,7 +16,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 const Certificate& CertificateOf(const std::string& name) {
@@ -178,4 +178,4 @@ TEST(CheckCertifies, RefusesOtherSamples) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -7,7 +7,7 @@
 #include "trilobe/io/hemisphere_grid.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // rho = 1 + a cos(2 phi_i) in red and 1 elsewhere: of the energy 3 + a^2 / 2 the mean over all
@@ -49,4 +49,4 @@ TEST(Anisotropy, OfSyntheticMaterials) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

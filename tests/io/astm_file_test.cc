@@ -12,7 +12,7 @@
 #include "trilobe/io/cornell_file.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(AstmFile, ErrorsSayWhereAndWhatIsExpected) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

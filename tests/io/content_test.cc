@@ -11,7 +11,7 @@
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using Kind = Content::Kind;
@@ -126,4 +126,4 @@ TEST(Content, AByteOrderMarkBeforeAModelDoesNoHarm) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,7 +9,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::Each;
@@ -95,4 +95,4 @@ TEST(CornellFile, ReadsPublishedMeasurements) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

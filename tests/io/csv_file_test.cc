@@ -11,7 +11,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -183,4 +183,4 @@ TEST(CsvFile, ErrorsSayWhereAndWhatIsExpected) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

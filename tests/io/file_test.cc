@@ -22,7 +22,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -282,4 +282,4 @@ TEST(MakeDirectories, RefusesAFileInTheWay) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

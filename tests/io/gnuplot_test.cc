@@ -19,7 +19,7 @@
 #include "trilobe/io/source.h"
 #include "trilobe/io/synth.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 class GnuplotTest : public testing::Test {
@@ -317,4 +317,4 @@ TEST_F(GnuplotTest, DrawsSpheresThatWereMeasuredInPart) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,7 +9,7 @@
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -55,4 +55,4 @@ TEST(AtNodes, InterpolatesATableWhereItHasValues) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

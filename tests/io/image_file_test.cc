@@ -17,7 +17,7 @@
 #define STBI_NO_STDIO
 #include <stb/stb_image.h>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -202,4 +202,4 @@ TEST(WritePngTest, NoFolderIsAnError) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -14,7 +14,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/base/peak_memory.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::HasSubstr;
@@ -197,4 +197,4 @@ TEST(JsonValue, ErrorsSayWhere) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,7 +12,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -117,4 +117,4 @@ TEST(MbsdfFile, ReadsPublishedMeasurements) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

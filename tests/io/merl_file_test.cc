@@ -16,7 +16,7 @@
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/brdf/brdf_table.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::AllOf;
@@ -170,4 +170,4 @@ TEST(MerlFile, AFileNeedsOneValidBin) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

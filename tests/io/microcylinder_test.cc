@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 Direction At(double theta_deg, double phi_deg) {
@@ -74,4 +74,4 @@ TEST(Microcylinder, IsTheGeometricMeanOfBothOrders) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -18,7 +18,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/io/json_value.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using nlohmann::json;
@@ -477,4 +477,4 @@ TEST(ModelFile, WritesNothingThatItCouldNotRead) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,7 +12,7 @@
 #include "trilobe/brdf/directions.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -222,4 +222,4 @@ TEST(LimitThetaD, MarksBinsOfATable) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "trilobe/io/node_reconstruction.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(ReconstructAtNodes, IsTheModelAtUtiasDirections) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -20,7 +20,7 @@
 #include "trilobe/io/hemisphere_grid.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::AllOf;
@@ -705,4 +705,4 @@ TEST(TabulateRgl, FillsTheWholeMerlGridFromARealMeasurement) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

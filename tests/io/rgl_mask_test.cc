@@ -17,7 +17,7 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/rgl_file.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::AllOf;
@@ -191,4 +191,4 @@ TEST(RglMask, RealMeasurementsTellWhatWasMeasured) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -14,7 +14,7 @@
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/rgl_file.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::AllOf;
@@ -180,4 +180,4 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,7 +9,7 @@
 
 #include "tests/io/test_directory.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -107,4 +107,4 @@ TEST(SpectralColor, RejectsWavelengthsThatMakeNoColour) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kSmallGrid = {.theta_h = 20, .theta_d = 18, .phi_d = 24};
@@ -297,4 +297,4 @@ TEST(FindSynthMaterialTest, ListsTheKnownNames) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

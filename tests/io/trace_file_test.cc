@@ -9,7 +9,7 @@
 
 #include "tests/io/test_directory.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -79,4 +79,4 @@ TEST(TraceFile, RefusesNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -15,7 +15,7 @@
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::AllOf;
@@ -230,4 +230,4 @@ TEST(UtiaFile, NoNoteWhereNoOrderIsBetter) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -10,7 +10,7 @@
 #include "tests/io/test_directory.h"
 #include "trilobe/io/source.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -142,4 +142,4 @@ TEST(ZemaxFile, ReadsARealMeasurement) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

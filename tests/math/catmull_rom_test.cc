@@ -7,7 +7,7 @@
 #include "tests/test_util.h"
 #include "trilobe/brdf/directions.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 const std::vector<double> kValues = {1, 2, 4, 3, 7};
@@ -179,4 +179,4 @@ TEST(CatmullRom, SplinedCosineStaysAboveThatOfTheLastNode) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

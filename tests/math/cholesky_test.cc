@@ -11,7 +11,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/parallel.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // B B' + 1, whose size is on both sides of where tiles begin, and no multiple of theirs.
@@ -116,4 +116,4 @@ TEST(SolveLower, LeavesOutRowsThatAre0) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

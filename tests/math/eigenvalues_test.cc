@@ -7,7 +7,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(SymmetricEigenvalues, AreThoseOfEigen) {
@@ -36,4 +36,4 @@ TEST(SymmetricEigenvalues, AreOfTheLowerTriangleAndMayBeZeroOrNone) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -8,7 +8,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // change(delta) = A (x + delta - u)^2 (x + delta - v)^2 - its value at delta = 0: wells at u and v,
@@ -137,4 +137,4 @@ TEST(ElementStep, CoefficientsThatAreNoNumbersChangeNothing) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

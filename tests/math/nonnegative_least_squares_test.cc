@@ -11,7 +11,7 @@
 #include "tests/test_util.h"
 #include "trilobe/math/element_step.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -196,4 +196,4 @@ TEST(NonnegativeLeastSquares, SurvivesWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // What this processor's kernels are called by OpenBLAS, empty where BLAS is another one.
@@ -36,4 +36,4 @@ TEST(OpenBlas, HasTheVectorsOfTheProcessor) {
 #endif
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 const std::vector<double> kTable = {1, 3, 2, 10, 4};
@@ -67,4 +67,4 @@ TEST(Stencil, LinearReadsNothingBesideWhatItStandsAt) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

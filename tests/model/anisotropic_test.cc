@@ -16,7 +16,7 @@
 #include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -302,4 +302,4 @@ TEST(Anisotropic, GContinuesToTheHorizon) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

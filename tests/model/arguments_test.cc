@@ -21,7 +21,7 @@
 #include "trilobe/objective/parameter_blocks.h"
 #include "trilobe/objective/score.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -229,4 +229,4 @@ TEST(Arguments, SizesOfArrays) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

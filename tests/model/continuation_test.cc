@@ -12,7 +12,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/model/lobe_light.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 20, .theta_d = 18, .phi_d = 20};
@@ -169,4 +169,4 @@ TEST(Continuation, RefusesAnotherCoverage) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

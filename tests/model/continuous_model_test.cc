@@ -8,7 +8,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 12, .theta_d = 10, .phi_d = 16};
@@ -109,4 +109,4 @@ TEST(ContinuousModelTest, DoesNotClamp) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

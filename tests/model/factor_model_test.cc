@@ -10,7 +10,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/math/catmull_rom.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 8, .phi_d = 10};
@@ -136,4 +136,4 @@ TEST(FactorModel, TheCosinesNeverVanish) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

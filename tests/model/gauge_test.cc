@@ -12,7 +12,7 @@
 #include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 10, .theta_d = 9, .phi_d = 15};
@@ -247,4 +247,4 @@ TEST(Gauge, AVanishedTableBecomesConstantAndItsLobeDark) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -10,7 +10,7 @@
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 45, .theta_d = 30, .phi_d = 36};
@@ -160,4 +160,4 @@ TEST(LobeLight, VisibleSolidAnglesFallTowardsGrazing) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -13,7 +13,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 9, .theta_d = 8, .phi_d = 6};
@@ -185,4 +185,4 @@ TEST(MergeLobes, NamesLobesThatAreNotThere) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -10,7 +10,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(ModelSpec, ParameterCountsOfThePaper) {
@@ -122,4 +122,4 @@ TEST(ModelSpec, SplinesForFewThetaHaveANodeWhereDataEnd) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

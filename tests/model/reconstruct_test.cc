@@ -7,7 +7,7 @@
 
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 12, .theta_d = 10, .phi_d = 16};
@@ -80,4 +80,4 @@ TEST(ReconstructTest, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -17,7 +17,7 @@
 #include "trilobe/model/lobes.h"
 #include "trilobe/model/model_spec.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr double kTheta = 0.3, kHalfTurn = kPi / 2;
@@ -165,4 +165,4 @@ TEST(Stretch, BadOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -7,7 +7,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 4};
@@ -59,4 +59,4 @@ TEST(TableLayout, RefusesNodesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

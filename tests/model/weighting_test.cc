@@ -13,7 +13,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 const std::vector<double> kValues = {0,     5e-324, 2.2e-308, 1e-200, 1e-100, 1e-20,
@@ -397,4 +397,4 @@ TEST(PowerWeighting, IsTheSameOnTheFoldedGrid) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

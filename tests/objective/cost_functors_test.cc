@@ -13,7 +13,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 5, .theta_d = 6, .phi_d = 8};
@@ -179,4 +179,4 @@ TEST(SampleResidual, DerivativesAreThoseOfItsValues) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

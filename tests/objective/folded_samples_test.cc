@@ -9,7 +9,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 10, .theta_d = 12, .phi_d = 16};
@@ -122,4 +122,4 @@ TEST(FoldedSamples, CellsOfAnyStencils) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -10,7 +10,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kEven{.theta_h = 12, .theta_d = 12, .phi_d = 24};
@@ -257,4 +257,4 @@ TEST(Objective, StaysFiniteForTheLargestValues) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

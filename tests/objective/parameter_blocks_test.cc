@@ -7,7 +7,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 5, .theta_d = 6, .phi_d = 8};
@@ -59,4 +59,4 @@ TEST(ParameterBlocks, RowsAreOneEntryOfEveryTable) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

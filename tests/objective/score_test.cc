@@ -10,7 +10,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/model/reconstruct.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid = {.theta_h = 8, .theta_d = 8, .phi_d = 10};
@@ -163,4 +163,4 @@ TEST(ScoreTest, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -15,7 +15,7 @@
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 12, .theta_d = 12, .phi_d = 24};
@@ -106,4 +106,4 @@ TEST(RacesInScenes, OfMaterialsSideBySide) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,9 +12,13 @@
 
 namespace trilobe {
 
+// Of the page.
 SolverEntry CompassSearchEntry();
 SolverSummary FitByCompassSearch(const Objective& objective, FactorModel* model);
 
+}  // namespace trilobe
+
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 5, .theta_d = 5, .phi_d = 8};
@@ -70,4 +74,4 @@ TEST(AddingASolver, HonoursLimitsAndStopsWhereNothingLowersE) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -15,7 +15,7 @@
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // Few nodes, so that the reference solvers take their time in a test.
@@ -170,4 +170,4 @@ TEST(Anisotropic, StartsAreOfTheDataAndPositive) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -15,7 +15,7 @@
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::HasSubstr;
@@ -118,4 +118,4 @@ TEST(SolverRoom, ModelsOfAnotherSpec) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

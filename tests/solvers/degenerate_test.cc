@@ -13,7 +13,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 5, .theta_d = 5, .phi_d = 8};
@@ -123,4 +123,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Degenerate, testing::ValuesIn(SolverNames()),
                          [](const auto& param) { return param.param; });
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

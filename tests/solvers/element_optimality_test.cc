@@ -9,7 +9,7 @@
 #include "tests/test_util.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(ElementOptimality, NoOtherValueIsBetter) {
@@ -43,4 +43,4 @@ TEST(ElementOptimality, NoOtherValueIsBetter) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,7 +9,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 5, .theta_d = 7, .phi_d = 8};
@@ -111,4 +111,4 @@ TEST(GaussianFilter, AnyWidth) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -16,7 +16,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 7, .theta_d = 6, .phi_d = 9};
@@ -150,4 +150,4 @@ TEST(Invariance, UnobservedBinsStayAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

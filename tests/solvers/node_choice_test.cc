@@ -16,7 +16,7 @@
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::ElementsAre;
@@ -150,4 +150,4 @@ TEST(ChooseNodes, AsksForALadderAndEnoughSamples) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

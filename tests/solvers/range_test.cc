@@ -16,7 +16,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 6, .phi_d = 12};
@@ -117,4 +117,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Range, testing::ValuesIn(SolverNames()),
                          [](const auto& param) { return param.param; });
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

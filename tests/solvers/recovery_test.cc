@@ -9,7 +9,7 @@
 #include "trilobe/model/gauge.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 struct Case {
@@ -74,4 +74,4 @@ TEST(Recovery, AwlsLiteral) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

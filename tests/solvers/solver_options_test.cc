@@ -15,7 +15,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // All values of all options, in their order.
@@ -132,4 +132,4 @@ TEST(SolverOptions, AreThereWhereASolverNamesThem) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -7,7 +7,7 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(Solver, KnowsItsNames) {
@@ -127,4 +127,4 @@ TEST(Solver, AllFitScatteredSamples) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -20,7 +20,7 @@
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using Eigen::MatrixXd;
@@ -187,4 +187,4 @@ TEST(SquaredCondition, IsWarnedOfWhereItIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -10,7 +10,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
@@ -185,4 +185,4 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Filtering, testing::ValuesIn(SolverNames(Filte
                          [](const auto& param) { return param.param; });
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -7,7 +7,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 7, .phi_d = 12};
@@ -169,4 +169,4 @@ TEST(NormalEquations, UnobservedBinsAreZero) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

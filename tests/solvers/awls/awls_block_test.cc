@@ -16,7 +16,7 @@
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/grid/cell_sums.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
@@ -220,4 +220,4 @@ TEST(AwlsAccelerated, WithoutMemoryIsAwlsBlock) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -12,7 +12,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 SolverOptions Sweeps(int count, double g_filter_sigma = 0) {
@@ -161,4 +161,4 @@ TEST(AwlsEquality, FullSizeSweep) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -11,7 +11,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
@@ -124,4 +124,4 @@ TEST(AwlsGss, TheFilterDoesNotRaiseE) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

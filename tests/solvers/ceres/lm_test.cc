@@ -10,7 +10,7 @@
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 SolverOptions Iterations(int count) {
@@ -145,4 +145,4 @@ TEST(Lm, GoesOnWhereNumbersAreOnTheirBounds) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -13,7 +13,7 @@
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // Fine enough that the coverage falls steeply towards the edge of the data.
@@ -350,4 +350,4 @@ TEST(DataEdge, ScatteredSamplesToo) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -9,7 +9,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // B B' + 0.1 around a point that is at its bounds every third time, with a gradient of any sign.
@@ -96,4 +96,4 @@ TEST(NonnegativeStep, TakesTheSameStepInAnyOrderOfElimination) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -7,7 +7,7 @@
 #include "tests/test_util.h"
 #include "trilobe/sums/normal_equations.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 8};
@@ -94,4 +94,4 @@ TEST(Reduction, TheReducedProblemIsTheProblemInTheReducedNumbers) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

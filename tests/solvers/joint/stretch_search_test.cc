@@ -12,7 +12,7 @@
 #include "trilobe/solvers/joint/stretch_step.h"
 #include "trilobe/solvers/solver.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 20, .theta_d = 15, .phi_d = 30};
@@ -127,4 +127,4 @@ TEST(FitStretches, StoppedItLeavesWhatItHas) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

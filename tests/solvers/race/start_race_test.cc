@@ -8,7 +8,7 @@
 #include "tests/test_util.h"
 #include "trilobe/solvers/awls/grid_sweep.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kFine{.theta_h = 24, .theta_d = 24, .phi_d = 96};
@@ -111,4 +111,4 @@ TEST(StartRace, SweepsAsAwlsDoes) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

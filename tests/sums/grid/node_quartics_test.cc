@@ -8,7 +8,7 @@
 #include "tests/test_util.h"
 #include "trilobe/math/catmull_rom.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 // A sample of weight w at two places on the spline, whose value is rest + y G(theta_i) G(theta_o).
@@ -71,4 +71,4 @@ TEST(NodeQuartics, NodesGoWhereTheSamplesSendThem) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE

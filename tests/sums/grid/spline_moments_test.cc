@@ -7,7 +7,7 @@
 
 #include "tests/test_util.h"
 
-namespace trilobe {
+namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 TEST(SplineMoments, AreTheSumsOfTheirTerms) {
@@ -62,4 +62,4 @@ TEST(SplineMoments, VanishAtTheEndsExactly) {
 }
 
 }  // namespace
-}  // namespace trilobe
+}  // namespace trilobe::TRILOBE_TEST_FILE
