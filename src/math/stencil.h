@@ -46,9 +46,8 @@ Between OnCircle(double radians, int count);
 Stencil PointStencil(int index);
 
 // Linear between the centres of `bins` unit bins (centre of bin i at i + 1/2), constant beyond the
-// outer centres; within kAtEntry of a centre that entry alone. `coordinate` is in [0, bins], bins
-// >=
-// 2. Throws Error where it is not a number.
+// outer centres; within kAtEntry of a centre that entry alone. `coordinate` is in [0, bins], where
+// bins >= 2. Throws Error where it is not a number.
 Stencil LinearStencil(double coordinate, int bins);
 
 }  // namespace trilobe

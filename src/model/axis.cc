@@ -18,10 +18,11 @@ namespace {
 // whatever G / cos theta is, so it takes the first as well to let that grow.
 constexpr double kTowardsHorizon[] = {84, 89.9};
 
-// What is next to a node stands at it.
+// What is next to a node stands at it, and so does what is between a node and itself, the only one
+// of a circle: no entry is read twice.
 Between Snapped(Between at) {
   if (at.t > 1 - kAtEntry) return {at.upper, at.upper, 0};
-  return at.t < kAtEntry ? Between{at.lower, at.lower, 0} : at;
+  return at.t < kAtEntry || at.lower == at.upper ? Between{at.lower, at.lower, 0} : at;
 }
 
 Between LocateTheta(const std::vector<double>& nodes, double degrees) {

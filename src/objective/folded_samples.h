@@ -2,7 +2,6 @@
 #define TRILOBE_OBJECTIVE_FOLDED_SAMPLES_H_
 
 #include <array>
-#include <span>
 #include <vector>
 
 #include "trilobe/brdf/channels.h"
@@ -23,9 +22,7 @@ struct WeightedSample {
 // sample to sample where the entries do not.
 struct Cell {
   int size = 0;
-  std::array<int, Stencil::kMaxSize> entry{};
-
-  std::span<const int> entries() const { return std::span(entry).first(size); }
+  std::array<int, Stencil::kMaxSize> entry{};  // each once
 };
 
 // A sample's readings from tables, by number: from D, once for each of the lobes' stretches, from

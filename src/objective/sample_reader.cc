@@ -226,7 +226,7 @@ void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
               .D_slope = batch->D_slope.data(),
               .F_slope = batch->F_slope.data(),
               .shadow = batch->shadow.data()};
-  bool one_vector = true;
+  bool one_vector = lobe_lanes_ == kVector;
   const ReadingOrder& order = samples_.order;
   for (int r = 0; r < order.count(); ++r) {
     const Factor factor = order.factor(r);

@@ -61,7 +61,6 @@ Selection Select(const BrdfSamples& samples, const DirectionList& list) {
     for (const int p : {(below + grid.phi_d) % grid.phi_d, (below + 1) % grid.phi_d}) {
       for (int a = 0; a < h.size; ++a) {
         for (int b = 0; b < d.size; ++b) {
-          if (h.weight[a] * d.weight[b] == 0) continue;  // beyond the outer centres
           used[grid.Index(h.index[a], d.index[b], p)] = true;
           used[grid.Index(h.index[a], d.index[b], grid.phi_d - 1 - p)] = true;
         }

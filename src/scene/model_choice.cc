@@ -87,13 +87,13 @@ class Objectives {
 };
 
 // What the default solver makes of few samples from its own starts.
-FactorModel FitAnew(const Objective& some, const FactorModel& start,
+FactorModel FitAnew(const Objective& few, const FactorModel& start,
                     const std::function<bool()>& stop) {
   FactorModel model = start;
   SolverOptions options;
   options.diagnose = false;
   options.on_iteration = [&stop](const IterationRecord&, const FactorModel&) { return !stop(); };
-  MakeSolver("auto")->Solve(some, options, &model);
+  MakeSolver("auto")->Solve(few, options, &model);
   return model;
 }
 
@@ -115,8 +115,8 @@ bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitte
       });
 }
 
-// The search of ChooseModel. Forms are fitted to some samples; only what is thinned of them, to
-// all.
+// The search of ChooseModel. Forms are fitted to some samples; only those that are stored as a
+// whole, to all.
 class ModelSearch {
  public:
   ModelSearch(const Objective& objective, const FactorModel& fitted,

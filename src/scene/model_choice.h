@@ -30,7 +30,7 @@ struct ModelChoiceOptions {
 struct ModelCandidate {
   std::string name;        // "as fitted", "F by lobe", "F by lobe, thinned", ...
   int num_parameters = 0;  // stored
-  double E = 0;            // Objective::Value
+  double E = 0;            // Objective::Value; of a form that is not stored, about that
   double score = 0;        // by the judge; -infinity where that says NaN
   bool wild = false;       // beyond the data, and not chosen for that
   double seconds = 0;      // that it took to make, from the one that it came from

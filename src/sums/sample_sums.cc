@@ -258,7 +258,7 @@ TRILOBE_ALWAYS_INLINE void AddSquaredLengths(const SumJob& job, const Sample& at
   }
 }
 
-// Samples [begin, end) of a batch that begins at `first`.
+// Samples [begin, end), those of the batch.
 template <bool kOneVector, bool kNewton>
 TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
                                       const SampleReader::Batch& batch, Sample* at,
@@ -355,7 +355,7 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
   job.layout = &layout;
   job.order = reader.samples().order;
   job.sums = &sums[0];
-  bool one_vector = true;
+  bool one_vector = reader.lobe_lanes() == kVector;
   for (int r = 0; r < job.order.count(); ++r) {
     const Factor factor = job.order.factor(r);
     one_vector = one_vector && reader.lanes(factor).size == kVector;

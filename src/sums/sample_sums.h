@@ -53,10 +53,10 @@ struct SampleLayout {
 //
 // A sample moves with its readings: in each channel with d, s and what it reads from the tables of
 // D, F and, twice, G. Products of two readings are summed over the channels first; then each goes,
-// by the weights of both stencils, to the pairs of entries that were read. Products within one
-// reading go to both places of the pair by halves, so that the two add up to them. For
-// Hessian::kNewton, second derivatives are added to the products of readings, and squared lengths
-// are summed apart.
+// by the weights of both stencils, to the pairs of entries that were read. Products of two entries
+// of one reading go to one of the pair's two places, those of an entry with itself by half: who
+// reads them adds both places. For Hessian::kNewton, second derivatives are added to the products
+// of readings, and squared lengths are summed apart.
 double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hessian hessian,
                      int begin, int end, double* sums);
 

@@ -301,5 +301,17 @@ TEST(Anisotropic, GContinuesToTheHorizon) {
   }
 }
 
+// Sums of samples keep entries of a stencil apart.
+TEST(Anisotropic, OfOneAzimuthNoEntryIsReadTwice) {
+  const Axis axis = Axis::Polar({0, 30, 60}, 1);
+  for (const double phi : {0.0, 0.3, 3.0, -2.0}) {
+    const Stencil between = axis.At(DegreesToRadians(15), phi);
+    EXPECT_EQ(between.size, 2) << phi;
+    EXPECT_NEAR(between.WeightOf(0), 0.5, 1e-12) << phi;
+    EXPECT_NEAR(between.WeightOf(1), 0.5, 1e-12) << phi;
+    EXPECT_EQ(axis.At(DegreesToRadians(60), phi).size, 1) << phi;
+  }
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE
