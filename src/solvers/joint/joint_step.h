@@ -93,7 +93,8 @@ class JointStepper {
 
 // The point after so many steps of curvature kByProgress from this one, and E there; after fewer
 // where no damping leads lower, after a step that lowers E by less than the fraction `small` of it,
-// and once `stop` is true. Trials are projected, unless there is a reduction.
+// be it that damping held it back, and once `stop` is true. Trials are projected, unless there is a
+// reduction.
 struct SteppedModel {
   FactorModel model;
   double E;
