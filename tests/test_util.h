@@ -89,7 +89,7 @@ inline std::vector<NamedSpec> TestSpecs(const MerlGrid& grid) {
   add("G a channel, shared by the lobes", 3, kLobe, kLobe, kChannel);
   add("F a lobe", 2, kLobe, kLobe, kLobe);
   add("D shared by all", 2, kAll, kChannel, kLobe);
-  add("everything shared by all", 5, kAll, kAll, kAll);
+  add("everything shared by all", 2, kAll, kAll, kAll);
   add("nothing shared", 2, kEach, kEach, kEach);
   add("stretched highlights", 2, kLobe, kChannel, kLobe);
   specs.back().spec.stretches = Stretch{.along = -0.4, .across = 0.3};

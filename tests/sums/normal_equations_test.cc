@@ -109,6 +109,23 @@ TEST(NormalEquations, OfLobesThatAreAllStretchedDifferently) {
   }
 }
 
+// Lobes need two vectors, each factor's tables one.
+TEST(NormalEquations, OfManyLobesThatShareAllTables) {
+  ModelSpec spec = ModelSpec::SharedFactors(5, kGrid);
+  spec.D = spec.F = spec.G = {.per_lobe = false, .per_channel = false};
+  const Objective objective(Scattered(ValidSamples(RandomTable(kGrid, 3))), spec,
+                            FindWeighting("compressive"));
+  const FactorModel model = RandomModel(spec, 4);
+  EXPECT_NEAR(objective.Value(model), static_cast<double>(ExactObjective(objective, model)),
+              1e-12 * objective.Value(model));
+  QuadraticModel actual, expected;
+  for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
+    NormalEquations(objective).Evaluate(model, hessian, &actual);
+    EvaluateReference(objective, model, hessian, &expected);
+    ExpectEqual(actual, expected, "five lobes");
+  }
+}
+
 TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
