@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "trilobe/model/continuous_model.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/robust.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
@@ -42,7 +42,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
       tied = of.Value(model) / before - 1;
     }
   }
-  Canonicalize(objective.coverage(), &model, LobeOrder::kByLight, objective.num_threads());
+  Canonicalize(objective, &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
   if (options.max_parameters > 0 && !options.stop()) {
     const auto psnr_by = [](const SphereJudge& sphere) {

@@ -27,6 +27,7 @@
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/model/with_axes.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/fit_cache.h"
 #include "trilobe/solvers/guide.h"
@@ -98,7 +99,7 @@ ModelSpec WithFileBins(ModelSpec spec) {
 // The model on the axes of this objective, in its canonical form.
 FactorModel InForm(const Objective& objective, const FactorModel& model) {
   FactorModel canonical = WithAxes(model, objective.spec());
-  Canonicalize(objective.coverage(), &canonical, LobeOrder::kByLight, objective.num_threads());
+  Canonicalize(objective, &canonical);
   return canonical;
 }
 

@@ -176,12 +176,14 @@ SampleReader::SampleReader(const FoldedSamples& samples, const ModelSpec& spec)
     : samples_(samples),
       spec_(spec),
       lobe_lanes_(std::max(PaddedToVectors(spec.lobes), kVector)),
+      one_vector_(lobe_lanes_ == kVector),
       s_(kChannels * lobe_lanes_) {
   for (const Factor factor : kFactors) {
     const TableLanes lanes(spec, factor);
     const int count = factor == Factor::kD ? samples.order.of_D : 1;
     for (int k = 0; k < count; ++k) tables_.emplace_back(spec.table_size(factor) * lanes.size);
     lanes_[static_cast<int>(factor)] = lanes;
+    one_vector_ = one_vector_ && lanes.size == kVector;
   }
 }
 
@@ -226,7 +228,6 @@ void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
               .D_slope = batch->D_slope.data(),
               .F_slope = batch->F_slope.data(),
               .shadow = batch->shadow.data()};
-  bool one_vector = lobe_lanes_ == kVector;
   const ReadingOrder& order = samples_.order;
   for (int r = 0; r < order.count(); ++r) {
     const Factor factor = order.factor(r);
@@ -243,11 +244,10 @@ void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
                        .adds = r > 0 && r < order.F()};
     const std::vector<std::vector<double>>& weight = samples_.readings[r].weight;
     for (size_t k = 0; k < weight.size(); ++k) job.readings[r].weight[k] = weight[k].data();
-    one_vector = one_vector && lanes(factor).size == kVector;
   }
-  if (one_vector && job.D == kByLobe && job.F == kByChannel && job.G == kByLobe) {
+  if (one_vector_ && job.D == kByLobe && job.F == kByChannel && job.G == kByLobe) {
     ReadPaperSharing(job);
-  } else if (one_vector) {
+  } else if (one_vector_) {
     ReadOneVector(job);
   } else if (lobe_lanes_ == kVector) {
     ReadFourLobes(job);

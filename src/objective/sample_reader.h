@@ -69,6 +69,8 @@ class SampleReader {
   const ModelSpec& spec() const { return spec_; }
   const TableLanes& lanes(Factor factor) const { return lanes_[static_cast<int>(factor)]; }
   int lobe_lanes() const { return lobe_lanes_; }
+  // Whether the lobes, and the tables of each factor, have their lanes in one vector.
+  bool one_vector() const { return one_vector_; }
   const double* s() const { return s_.data(); }  // of the model. [kChannels][lobe_lanes]
   int amplitude_lanes() const { return PaddedToVectors(1 + spec_.lobes); }
 
@@ -79,6 +81,7 @@ class SampleReader {
   const FoldedSamples& samples_;
   const ModelSpec spec_;
   const int lobe_lanes_;
+  bool one_vector_;
   std::array<TableLanes, 3> lanes_;
   // Of D for each stretch, with zeros for the lobes that have another; then of F and G.
   std::vector<std::vector<double>> tables_;  // [entry][lanes]

@@ -11,8 +11,8 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
-#include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/model_forms.h"
 #include "trilobe/scene/prune.h"
@@ -48,10 +48,6 @@ Objective Some(const Objective& objective) { return Thinned(objective, 100, 24);
 
 // So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
 Objective Few(const Objective& objective) { return Thinned(objective, 32, 72); }
-
-void PutIntoCanonicalForm(const Objective& of, FactorModel* model) {
-  Canonicalize(of.coverage(), model, LobeOrder::kByLight, of.num_threads());
-}
 
 // Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
 // read may be anything.
@@ -240,7 +236,7 @@ class ModelSearch {
     form.start = GoOn(guided_some_.For(spec, form.weighting), form.start, options_.stop);
     // Entries that no measured sample reads are what the guide makes of them, next to others that
     // have moved far away; a picture reads between the two.
-    PutIntoCanonicalForm(some_.For(spec, form.weighting), &form.start);
+    Canonicalize(some_.For(spec, form.weighting), &form.start);
     const double score =
         Judge(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
     forms_.push_back({std::move(form), score});
@@ -314,7 +310,7 @@ class ModelSearch {
       } else {
         const Objective of = all_.For(model.spec(), weighting);
         model = GoOn(of, model, options_.stop);
-        PutIntoCanonicalForm(of, &model);
+        Canonicalize(of, &model);
         model = Tied(of, model, options_.judge(model));
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout);
@@ -327,7 +323,7 @@ class ModelSearch {
   FactorModel Tied(const Objective& of, const FactorModel& model, double score) {
     FactorModel tied = model;
     if (!TieEntriesAtDataEdge(of, &tied, options_.stop)) return model;
-    PutIntoCanonicalForm(of, &tied);
+    Canonicalize(of, &tied);
     return options_.judge(tied) >= score - kNotSeen ? tied : model;
   }
 

@@ -6,6 +6,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/sums/normal_equations.h"
@@ -108,7 +109,7 @@ PrunedModel Pruning::Result(LobeOrder order) const {
                      .layout = state_.layout,
                      .decisions = decisions_,
                      .num_parameters = state_.num_parameters()};
-  Canonicalize(state_.objective->coverage(), &result.model, order);
+  Canonicalize(*state_.objective, &result.model, order);
   ExpandStored(result.layout, &result.model);
   result.E = state_.objective->Value(result.model);
   return result;

@@ -16,6 +16,7 @@
 #include "trilobe/io/picture_data.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
 #include "trilobe/scene/prune_anisotropic.h"
@@ -262,7 +263,7 @@ class MaterialFitter {
     const SolverSummary summary = MakeSolver(settings_.solver)->Solve(objective, options, &model);
     if (summary.stop_reason == StopReason::kInterrupted) return std::nullopt;
     const Objective& measured = MeasuredObjective();
-    Canonicalize(measured.coverage(), &model);
+    Canonicalize(measured, &model);
     fit.file.unobserved = UnobservedParameters(measured.coverage());
     fit.file.fit = {.solver = settings_.solver,
                     .init = settings_.init,

@@ -8,6 +8,7 @@
 #include "trilobe/base/named.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/with_axes.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -310,7 +311,7 @@ FactorModel FreedModel(const Objective& objective, uint64_t seed) {
   const FactorModel start = HighlightModel(thinned, seed);
   FactorModel model = start;
   MakeSolver("awls")->Solve(thinned, {.max_iterations = kSweeps, .diagnose = false}, &model);
-  Canonicalize(thinned.coverage(), &model);  // which gives unobserved entries a value
+  Canonicalize(thinned, &model);  // which gives unobserved entries a value
   model = WithAxes(model, spec);
   LiftZeros(WithAxes(start, spec), &model);
   return model;

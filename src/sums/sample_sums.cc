@@ -355,10 +355,8 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
   job.layout = &layout;
   job.order = reader.samples().order;
   job.sums = &sums[0];
-  bool one_vector = reader.lobe_lanes() == kVector;
   for (int r = 0; r < job.order.count(); ++r) {
     const Factor factor = job.order.factor(r);
-    one_vector = one_vector && reader.lanes(factor).size == kVector;
     const SampleRows& rows = layout.of(r);
     Columns columns;
     std::vector<int> place(reader.spec().num_tables(factor), -1);
@@ -378,7 +376,7 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
     job.columns.push_back(std::move(columns));
   }
   const bool newton = hessian == Hessian::kNewton;
-  const AddBatchFunction add_batch = one_vector
+  const AddBatchFunction add_batch = reader.one_vector()
                                          ? newton ? AddNewtonOfOneVector : AddGaussNewtonOfOneVector
                                      : newton ? AddNewton
                                               : AddGaussNewton;

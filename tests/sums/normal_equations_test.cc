@@ -32,6 +32,19 @@ void ExpectEqual(const QuadraticModel& actual, const QuadraticModel& expected,
   EXPECT_EQ(wrong, 0) << what;
 }
 
+// E and both kinds of equations at a random model.
+void ExpectEqualReference(const Objective& objective, const std::string& what) {
+  const FactorModel model = RandomModel(objective.spec(), 4);
+  EXPECT_NEAR(objective.Value(model), static_cast<double>(ExactObjective(objective, model)),
+              1e-12 * objective.Value(model));
+  QuadraticModel actual, expected;
+  for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
+    NormalEquations(objective).Evaluate(model, hessian, &actual);
+    EvaluateReference(objective, model, hessian, &expected);
+    ExpectEqual(actual, expected, what);
+  }
+}
+
 // Sets a third of all parameters to 0, the bound.
 void PutSomeAtZero(FactorModel* model) {
   Random random(5);
@@ -96,16 +109,8 @@ TEST(NormalEquations, OfLobesThatAreAllStretchedDifferently) {
       stretches.push_back({.along = 0.2 * m - 0.5, .across = 0.4 - 0.1 * m});
     }
     spec.stretches = Stretches(stretches);
-    const Objective objective = MakeObjective(RandomTable(kGrid, 3), spec, "compressive");
-    const FactorModel model = RandomModel(spec, 4);
-    EXPECT_NEAR(objective.Value(model), static_cast<double>(ExactObjective(objective, model)),
-                1e-12 * objective.Value(model));
-    QuadraticModel actual, expected;
-    for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
-      NormalEquations(objective).Evaluate(model, hessian, &actual);
-      EvaluateReference(objective, model, hessian, &expected);
-      ExpectEqual(actual, expected, per_channel ? "D by channel" : "eight lobes");
-    }
+    ExpectEqualReference(MakeObjective(RandomTable(kGrid, 3), spec, "compressive"),
+                         per_channel ? "D by channel" : "eight lobes");
   }
 }
 
@@ -113,17 +118,9 @@ TEST(NormalEquations, OfLobesThatAreAllStretchedDifferently) {
 TEST(NormalEquations, OfManyLobesThatShareAllTables) {
   ModelSpec spec = ModelSpec::SharedFactors(5, kGrid);
   spec.D = spec.F = spec.G = {.per_lobe = false, .per_channel = false};
-  const Objective objective(Scattered(ValidSamples(RandomTable(kGrid, 3))), spec,
-                            FindWeighting("compressive"));
-  const FactorModel model = RandomModel(spec, 4);
-  EXPECT_NEAR(objective.Value(model), static_cast<double>(ExactObjective(objective, model)),
-              1e-12 * objective.Value(model));
-  QuadraticModel actual, expected;
-  for (const Hessian hessian : {Hessian::kGaussNewton, Hessian::kNewton}) {
-    NormalEquations(objective).Evaluate(model, hessian, &actual);
-    EvaluateReference(objective, model, hessian, &expected);
-    ExpectEqual(actual, expected, "five lobes");
-  }
+  ExpectEqualReference(
+      {Scattered(ValidSamples(RandomTable(kGrid, 3))), spec, FindWeighting("compressive")},
+      "five lobes");
 }
 
 TEST(NormalEquations, AreTheDerivativesOfTheObjective) {
