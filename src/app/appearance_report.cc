@@ -19,7 +19,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The mean log error, or a dash where there is no point.
+std::string LogError(const PointErrors& errors) {
+  return errors.points > 0 ? Text(errors.log, 3) : "-";
+}
+
 Json ToJson(const PointErrors& errors) {
+  if (errors.points == 0) return nullptr;
   return {{"mean_log_error", errors.log}, {"mean_relative_error", errors.relative}};
 }
 
@@ -42,9 +48,9 @@ std::string Describe(const AppearanceReport& report) {
                      Text(100 * sphere.mean_color_error, 2) + " %\n" +
                      "             albedo off by " + Text(report.albedo.mean, 2) + " mean, " +
                      Text(report.albedo.max, 2) + " at most; mean log error " +
-                     Text(report.at_centers.log, 3) + " at " +
+                     LogError(report.at_centers) + " at " +
                      (report.at_nodes ? "nodes" : "bin centres") + ", " +
-                     Text(report.between_centers.log, 3) + " between them\n";
+                     LogError(report.between_centers) + " between them\n";
   if (report.from_formula) {
     text += "             from the material's own formula, which was measured: PSNR " +
             Text(report.from_formula->fitted.psnr_db) + " dB; of the measurement, interpolated, " +

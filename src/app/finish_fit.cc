@@ -1,11 +1,15 @@
 #include "trilobe/app/finish_fit.h"
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/robust.h"
+#include "trilobe/objective/score.h"
 #include "trilobe/solvers/joint/data_edge.h"
+#include "trilobe/solvers/joint/reflectance.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -28,6 +32,77 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
   return reweighted;
 }
 
+// Whether one model is as good as another in all but E: on a sphere of the measurement, on one of
+// all directions, and in mean log error.
+class NoHarm {
+ public:
+  NoHarm(const Objective& objective, const BrdfTable& measured, const AppearanceOptions& options,
+         const FactorModel& before)
+      : objective_(objective),
+        judges_{SphereJudge(measured, options)},
+        log_error_(LogError(before)) {
+    if (!measured.unmeasured.empty()) {
+      judges_.push_back(SphereJudge::OfAllDirections(measured, options));
+    }
+    for (const SphereJudge& judge : judges_) {
+      psnr_.push_back(judge(ContinuousModel(before)).psnr_db);
+    }
+  }
+
+  bool operator()(const FactorModel& after) const {
+    constexpr double kMayLose[] = {0.2, 1};  // [dB], where data are and everywhere
+    constexpr double kMayGrow = 0.1;
+    for (size_t k = 0; k < judges_.size(); ++k) {
+      if (!(judges_[k](ContinuousModel(after)).psnr_db >= psnr_[k] - kMayLose[k])) return false;
+    }
+    return LogError(after) <= (1 + kMayGrow) * log_error_;
+  }
+
+ private:
+  double LogError(const FactorModel& model) const {
+    return ScoreModel(objective_, model).mean_log_error;
+  }
+
+  const Objective& objective_;
+  std::vector<SphereJudge> judges_;
+  double log_error_;
+  std::vector<double> psnr_;
+};
+
+// As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
+// the fit's spec.
+void MatchReflectanceOf(const Objective& of, const BrdfTable& measured,
+                        const FinishOptions& options, FinishedFit* fit) {
+  constexpr double kPrices[] = {30, 10, 3};
+  constexpr double kWorthwhile = 0.75;  // what remains of the error
+  const FactorModel& model = fit->model;
+  const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
+  const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
+  // What a thinned table stores beyond the data stays: it was fitted to more than these.
+  const std::vector<double> all_covered(model.parameters().size(), 1.0);
+  std::optional<NoHarm> no_harm;
+  for (const double price : kPrices) {
+    std::optional<FactorModel> matched = MatchReflectance(of, model, layout, price, options.stop);
+    if (!matched) return;
+    if (thinned) {
+      Canonicalize(all_covered, &*matched, LobeOrder::kAsTheyAre, of.num_threads());
+    } else {
+      Canonicalize(of, &*matched);
+    }
+    if (!no_harm) no_harm.emplace(fit->objective, measured, options.appearance, model);
+    if (!(*no_harm)(*matched)) continue;
+    const double before = ReflectanceOf(of, model).Error(),
+                 after = ReflectanceOf(of, *matched).Error();
+    if (after > kWorthwhile * before) return;  // still less for a lower price
+    const double E = fit->objective.Value(model);
+    fit->matched = {.error_before = before,
+                    .error_after = after,
+                    .rise = E > 0 ? fit->objective.Value(*matched) / E - 1 : 0};
+    fit->model = std::move(*matched);
+    return;
+  }
+}
+
 }  // namespace
 
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
@@ -44,6 +119,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   }
   Canonicalize(objective, &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
+  Weighting weighting = objective.weighting();
   if (options.max_parameters > 0 && !options.stop()) {
     const auto psnr_by = [](const SphereJudge& sphere) {
       return [sphere](const FactorModel& candidate) {
@@ -64,6 +140,16 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     fit.layout = std::move(chosen.layout);
     fit.candidates = std::move(chosen.candidates);
     fit.chosen = chosen.chosen;
+    weighting = chosen.weighting;
+  }
+  // A robust fit has given up on some of the light.
+  if (options.match_reflectance && options.robust == 0 && measured != nullptr &&
+      !fit.model.spec().anisotropic() && !options.stop()) {
+    const Objective weighed =
+        weighting.name == objective.weighting().name
+            ? fit.objective
+            : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
+    MatchReflectanceOf(weighed, *measured, options, &fit);
   }
   return fit;
 }

@@ -36,6 +36,10 @@ DEFINE_double(
     robust, 0,
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
     "by reweighting; 0 for none");
+DEFINE_bool(match_reflectance, true,
+            "of a table: where a fit that has converged reflects more or less light than was "
+            "measured, by more than 1 %, let E rise a little to mend that, as far as neither the "
+            "sphere nor the mean log error gets worse");
 DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
 DEFINE_bool(reconstruction, false,
             "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
@@ -80,8 +84,8 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
                                             "cache",   "nocache", "probe"};
 
 std::vector<std::string> FitFlags() {
-  std::vector<std::string> flags =
-      WithSourceFlags({"solver", "init", "weighting", "guide", "robust", "max_numbers"});
+  std::vector<std::string> flags = WithSourceFlags(
+      {"solver", "init", "weighting", "guide", "robust", "match_reflectance", "max_numbers"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "probe", "shard", "scene",
@@ -115,6 +119,7 @@ FitSettings SettingsFromFlags() {
   }
   settings.finish = {.robust = FLAGS_robust,
                      .max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0,
+                     .match_reflectance = FLAGS_match_reflectance,
                      .appearance = AppearanceOptionsFromFlags()};
   settings.spec = SpecFromFlags;
   settings.nodes = NodeLadderFromFlags;
@@ -184,7 +189,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   }
   for (const char* const flag :
        {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "guide", "max_numbers",
-        "robust", "probe", "course", "reconstruction", "plots", "diagnose", "shard"}) {
+        "robust", "match_reflectance", "probe", "course", "reconstruction", "plots", "diagnose",
+        "shard"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

@@ -135,6 +135,12 @@ std::string Describe(const FitReport::Finished& finished) {
             (candidate.wild ? ", but runs wild beyond the data" : "") +
             (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
   }
+  if (finished.matched) {
+    const FinishedFit::Matched& matched = *finished.matched;
+    text += "reflectance  was off by " + Text(100 * matched.error_before, 3) + " %, now by " +
+            Text(100 * matched.error_after, 3) + " %; E " + (matched.rise < 0 ? "fell" : "rose") +
+            " by " + Text(100 * std::abs(matched.rise), 3) + " %\n";
+  }
   return text;
 }
 
@@ -175,6 +181,11 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"guide", report.guide
                         ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
                         : Json()},
+          {"matched_reflectance",
+           report.finished.matched ? Json{{"error_before", report.finished.matched->error_before},
+                                          {"error_after", report.finished.matched->error_after},
+                                          {"objective_rise", report.finished.matched->rise}}
+                                   : Json()},
           {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
           {"threads", fit.threads},
           {"options",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/app/finish_fit.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/model_file.h"
@@ -48,6 +49,7 @@ struct FitReport {
     std::optional<double> tied;
     std::vector<ModelCandidate> candidates;
     int chosen = -1;
+    std::optional<FinishedFit::Matched> matched;
   } finished;
   int stored_parameters = 0;
   ScoreReport score;

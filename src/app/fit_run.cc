@@ -96,6 +96,12 @@ ModelSpec WithFileBins(ModelSpec spec) {
   return spec;
 }
 
+// Whether a solver had found what it looks for.
+bool HasEnded(StopReason reason) {
+  return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
+         reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
+}
+
 // The model on the axes of this objective, in its canonical form.
 FactorModel InForm(const Objective& objective, const FactorModel& model) {
   FactorModel canonical = WithAxes(model, objective.spec());
@@ -225,13 +231,15 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   FinishOptions finish = settings.finish;
   finish.appearance.num_threads = num_threads;
   finish.stop = interrupted;
+  // One that was stopped early gains more by going on.
+  finish.match_reflectance = finish.match_reflectance && HasEnded(summary.stop_reason);
   FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
   // Data alone, in the file's bins.
   if (guided || file_spec != report.spec) {
     fit.model = InForm(in_file, fit.model);
     fit.objective = in_file;
   }
-  report.finished = {fit.tied, fit.candidates, fit.chosen};
+  report.finished = {fit.tied, fit.candidates, fit.chosen, fit.matched};
   report.spec = fit.model.spec();
   report.stored_parameters =
       fit.layout.value_or(TableLayout::Full(report.spec)).num_parameters(report.spec);

@@ -13,6 +13,7 @@ namespace trilobe {
 // |rho - rho*| / (rho* + 1e-3).
 struct PointErrors {
   double log = 0, relative = 0;
+  int points = 0;  // that were compared; of 0, the errors say nothing
 };
 
 struct PointErrorSum {
@@ -36,7 +37,7 @@ inline PointErrors MeanOf(std::span<const PointErrorSum> sums) {
     total.values += sum.values;
   }
   const double n = std::max(total.values, 1);
-  return {total.log / n, total.relative / n};
+  return {total.log / n, total.relative / n, total.values / kChannels};
 }
 
 }  // namespace trilobe

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
+#include "trilobe/io/measurement_format.h"
 #include "trilobe/io/spectrum.h"
 #include "trilobe/io/text_lines.h"
 
@@ -113,6 +115,15 @@ Measurement ParseAstm(std::string_view text, const std::string& source) {
                 points + "; get the file once more");
   }
   return collector.TakeByAzimuths();
+}
+
+MeasurementFormat AstmFormat() {
+  return {.name = "astm",
+          .description = "an ASTM E1392 .astm file",
+          .ending = ".astm",
+          .is_text = true,
+          .recognise = IsContent<Content::Kind::kAstm>,
+          .read = ReadBy<ParseAstm>};
 }
 
 }  // namespace trilobe

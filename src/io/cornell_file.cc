@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
+#include "trilobe/io/measurement_format.h"
 #include "trilobe/io/spectrum.h"
 #include "trilobe/io/text_lines.h"
 
@@ -64,6 +66,15 @@ Measurement ParseCornell(std::string_view text, const std::string& source) {
                 &collector);
   }
   return collector.Take();
+}
+
+MeasurementFormat CornellFormat() {
+  return {.name = "cornell",
+          .description = "a Cornell .brdf file of spectra",
+          .ending = ".brdf",
+          .is_text = true,
+          .recognise = IsContent<Content::Kind::kCornell>,
+          .read = ReadBy<ParseCornell>};
 }
 
 }  // namespace trilobe

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/measurement_format.h"
 #include "trilobe/io/text_lines.h"
 
 namespace trilobe {
@@ -93,6 +95,15 @@ int WriteCsv(const Measurement& measurement, const std::string& path) {
     }
   });
   return samples.size();
+}
+
+MeasurementFormat CsvFormat() {
+  return {.name = "csv",
+          .description = "a .csv file of samples",
+          .ending = ".csv",
+          .is_text = true,
+          .recognise = IsContent<Content::Kind::kCsv>,
+          .read = ReadBy<ParseCsv>};
 }
 
 }  // namespace trilobe

@@ -7,6 +7,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/content.h"
 #include "trilobe/io/little_endian.h"
+#include "trilobe/io/measurement_format.h"
 
 namespace trilobe {
 namespace {
@@ -106,6 +107,15 @@ Measurement ParseMbsdf(std::string_view bytes, const std::string& source) {
     }
   }
   return collector.Take();
+}
+
+MeasurementFormat MbsdfFormat() {
+  return {.name = "mbsdf",
+          .description = "an MDL .mbsdf file",
+          .ending = ".mbsdf",
+          .is_text = false,
+          .recognise = IsContent<Content::Kind::kMbsdf>,
+          .read = ReadBy<ParseMbsdf>};
 }
 
 }  // namespace trilobe

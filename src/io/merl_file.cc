@@ -9,6 +9,7 @@
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/little_endian.h"
+#include "trilobe/io/measurement_format.h"
 
 namespace trilobe {
 namespace {
@@ -86,6 +87,18 @@ void WriteMerl(const BrdfTable& table, const std::string& path) {
                 static_cast<std::streamsize>(PlaneSize(table.grid)));
     }
   });
+}
+
+MeasurementFormat MerlFormat() {
+  return {.name = "merl",
+          .description = "a MERL .binary file",
+          .ending = ".binary",
+          .is_text = false,
+          .recognise = IsContent<Content::Kind::kMerl>,
+          .read = [](std::string_view bytes, const std::string& source, const SourceOptions&) {
+            return Measurement{
+                .source = source, .kind = "MERL measurement", .table = ParseMerl(bytes, source)};
+          }};
 }
 
 }  // namespace trilobe

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "trilobe/base/parallel.h"
 #include "trilobe/io/bilinear_warp.h"
 #include "trilobe/io/content.h"
+#include "trilobe/io/measurement_format.h"
 #include "trilobe/io/rgl_mask.h"
 #include "trilobe/io/tensor_file.h"
 
@@ -307,6 +309,27 @@ BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const Merl
     }
   });
   return table;
+}
+
+MeasurementFormat RglFormat() {
+  return {.name = "rgl",
+          .description = "an RGL *_rgb.bsdf file",
+          .ending = ".bsdf",
+          .is_text = false,
+          .recognise = IsContent<Content::Kind::kTensor>,
+          .read = [](std::string_view bytes, const std::string& source,
+                     const SourceOptions& options) -> Measurement {
+            auto rgl = std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source));
+            if (!rgl->isotropic()) {
+              Measurement measurement = rgl->Sample(source, options.extrapolated);
+              measurement.rgl = std::move(rgl);
+              return measurement;
+            }
+            return {.source = source,
+                    .kind = "RGL measurement, at MERL bins",
+                    .table = TabulateRgl(*rgl, source, {}, options.num_threads),
+                    .rgl = rgl};
+          }};
 }
 
 }  // namespace trilobe

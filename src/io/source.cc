@@ -1,65 +1,40 @@
 #include "trilobe/io/source.h"
 
 #include <algorithm>
-#include <memory>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/astm_file.h"
 #include "trilobe/io/content.h"
-#include "trilobe/io/cornell_file.h"
-#include "trilobe/io/csv_file.h"
 #include "trilobe/io/file.h"
-#include "trilobe/io/mbsdf_file.h"
-#include "trilobe/io/merl_file.h"
 #include "trilobe/io/synth.h"
 #include "trilobe/io/utia_file.h"
-#include "trilobe/io/zemax_file.h"
+
+// The formats of the library, in the order in which they are asked whether a file is theirs. NAME
+// stands for the function NAMEFormat(), which the reader's own file defines: to add a format is one
+// file, and one line here.
+#define TRILOBE_FOR_EACH_FORMAT(X) \
+  X(Merl)                          \
+  TRILOBE_RGL_FORMAT(X)            \
+  X(Mbsdf)                         \
+  X(Utia)                          \
+  X(Zemax)                         \
+  X(Cornell)                       \
+  X(Astm)                          \
+  X(Csv)
 #ifdef TRILOBE_RGL
-#include "trilobe/io/rgl_file.h"
+#define TRILOBE_RGL_FORMAT(X) X(Rgl)
+#else
+#define TRILOBE_RGL_FORMAT(X)
 #endif
 
 namespace trilobe {
+
+#define TRILOBE_DECLARE(NAME) MeasurementFormat NAME##Format();
+TRILOBE_FOR_EACH_FORMAT(TRILOBE_DECLARE)
+#undef TRILOBE_DECLARE
+
 namespace {
 
 constexpr std::string_view kSynth = "synth:";
-
-template <Content::Kind kKind>
-bool Is(std::string_view bytes) {
-  return RecogniseContent(bytes).kind == kKind;
-}
-
-Measurement ReadMerl(std::string_view bytes, const std::string& source,
-                     const SourceOptions& /*options*/) {
-  return {.source = source, .kind = "MERL measurement", .table = ParseMerl(bytes, source)};
-}
-
-#ifdef TRILOBE_RGL
-Measurement ReadRgl(std::string_view bytes, const std::string& source,
-                    const SourceOptions& options) {
-  auto rgl = std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source));
-  if (!rgl->isotropic()) {
-    Measurement measurement = rgl->Sample(source, options.extrapolated);
-    measurement.rgl = std::move(rgl);
-    return measurement;
-  }
-  return {.source = source,
-          .kind = "RGL measurement, at MERL bins",
-          .table = TabulateRgl(*rgl, source, {}, options.num_threads),
-          .rgl = rgl};
-}
-#endif
-
-Measurement ReadUtia(std::string_view bytes, const std::string& source,
-                     const SourceOptions& options) {
-  return ParseUtia(bytes, source, options.radiometry);
-}
-
-// A reader that has no use for options.
-template <Measurement (*kParse)(std::string_view, const std::string&)>
-Measurement Read(std::string_view bytes, const std::string& source,
-                 const SourceOptions& /*options*/) {
-  return kParse(bytes, source);
-}
 
 // "a MERL .binary file, ... or synth:NAME".
 std::string WhatMeasurementsAre() {
@@ -92,19 +67,10 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
 }  // namespace
 
 const std::vector<MeasurementFormat>& MeasurementFormats() {
-  using Kind = Content::Kind;
   static const std::vector<MeasurementFormat> formats = {
-      {"merl", "a MERL .binary file", ".binary", false, Is<Kind::kMerl>, ReadMerl},
-#ifdef TRILOBE_RGL
-      {"rgl", "an RGL *_rgb.bsdf file", ".bsdf", false, Is<Kind::kTensor>, ReadRgl},
-#endif
-      {"mbsdf", "an MDL .mbsdf file", ".mbsdf", false, Is<Kind::kMbsdf>, Read<ParseMbsdf>},
-      {"utia", "a UTIA .bin file", ".bin", false, Is<Kind::kUtia>, ReadUtia},
-      {"zemax", "a Zemax .bsdf file", ".bsdf", true, Is<Kind::kZemax>, Read<ParseZemax>},
-      {"cornell", "a Cornell .brdf file of spectra", ".brdf", true, Is<Kind::kCornell>,
-       Read<ParseCornell>},
-      {"astm", "an ASTM E1392 .astm file", ".astm", true, Is<Kind::kAstm>, Read<ParseAstm>},
-      {"csv", "a .csv file of samples", ".csv", true, Is<Kind::kCsv>, Read<ParseCsv>},
+#define TRILOBE_LIST(NAME) NAME##Format(),
+      TRILOBE_FOR_EACH_FORMAT(TRILOBE_LIST)
+#undef TRILOBE_LIST
   };
   return formats;
 }

@@ -10,6 +10,7 @@
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/little_endian.h"
+#include "trilobe/io/measurement_format.h"
 
 namespace trilobe {
 namespace {
@@ -174,6 +175,18 @@ void WriteUtia(const Measurement& scattered, const std::string& path) {
                 static_cast<std::streamsize>(sizeof(double) * plane.size()));
     }
   });
+}
+
+MeasurementFormat UtiaFormat() {
+  return {
+      .name = "utia",
+      .description = "a UTIA .bin file",
+      .ending = ".bin",
+      .is_text = false,
+      .recognise = IsContent<Content::Kind::kUtia>,
+      .read = [](std::string_view bytes, const std::string& source, const SourceOptions& options) {
+        return ParseUtia(bytes, source, options.radiometry);
+      }};
 }
 
 }  // namespace trilobe

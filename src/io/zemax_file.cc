@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/io/content.h"
+#include "trilobe/io/measurement_format.h"
 #include "trilobe/io/text_lines.h"
 
 namespace trilobe {
@@ -168,6 +170,15 @@ Measurement ParseZemax(std::string_view text, const std::string& source) {
   Measurement measurement = collector.Take();
   measurement.anisotropic = Distinct(rotations) > 1;
   return measurement;
+}
+
+MeasurementFormat ZemaxFormat() {
+  return {.name = "zemax",
+          .description = "a Zemax .bsdf file",
+          .ending = ".bsdf",
+          .is_text = true,
+          .recognise = IsContent<Content::Kind::kZemax>,
+          .read = ReadBy<ParseZemax>};
 }
 
 }  // namespace trilobe

@@ -186,7 +186,8 @@ Weighting ForSamples(Weighting weighting, const BrdfSamples& samples) {
 }
 
 double MeanReflectance(const BrdfSamples& samples) {
-  // Every few are enough, and so few that the sum costs nothing. An odd stride visits all phi_d.
+  // Every few are enough, and so few that the sum costs nothing; an odd stride visits odd and even
+  // phi_d.
   constexpr int kSamplesLookedAt = 1 << 15;
   const int stride = std::max(1, samples.size() / kSamplesLookedAt) | 1;
   double light = 0, reflected = 0;

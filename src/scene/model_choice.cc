@@ -132,7 +132,7 @@ class ModelSearch {
     Judge("as fitted", fitted_, full, objective_.Value(fitted_));
     some_of_fit_ = some_.own().Value(fitted_);
     if (options_.judge_beyond) beyond_ = options_.judge_beyond(fitted_);
-    Choose(fitted_, full);
+    Choose(fitted_, full, objective_.weighting());
     if (best_.chosen < 0) Thin("as fitted", objective_.weighting(), fitted_);
     if (best_.chosen < 0) {
       PruneTheFit();
@@ -164,7 +164,7 @@ class ModelSearch {
   }
 
   // The last candidate, if it is the best that keeps to the budget.
-  void Choose(const FactorModel& model, const TableLayout& layout) {
+  void Choose(const FactorModel& model, const TableLayout& layout, const Weighting& weighting) {
     ModelCandidate& last = best_.candidates.back();
     if (last.num_parameters > options_.max_parameters) return;
     if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
@@ -177,6 +177,7 @@ class ModelSearch {
     best_.chosen = static_cast<int>(best_.candidates.size()) - 1;
     best_.model = model;
     best_.layout = layout;
+    best_.weighting = weighting;
   }
 
   // E, as it is quoted, is of the objective that was asked for; of a form on its way, as these
@@ -208,7 +209,7 @@ class ModelSearch {
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
-    Choose(pruned.model, pruned.layout);
+    Choose(pruned.model, pruned.layout, weighting);
   }
 
   // For where one parameter a table is still too much: lobes and colours have to go, and no form
@@ -217,7 +218,7 @@ class ModelSearch {
     const PrunedModel pruned =
         Prune(objective_, fitted_, {.max_parameters = options_.max_parameters});
     Judge("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
-    Choose(pruned.model, pruned.layout);
+    Choose(pruned.model, pruned.layout, objective_.weighting());
     if (best_.chosen >= 0) return;
     throw Error("no form of the model keeps to " + std::to_string(options_.max_parameters) +
                 " parameters; its values overflow");
@@ -313,7 +314,7 @@ class ModelSearch {
         Canonicalize(of, &model);
         model = Tied(of, model, options_.judge(model));
         Judge(name + ", finished", model, layout, ValueOf(model));
-        Choose(model, layout);
+        Choose(model, layout, weighting);
       }
     }
   }

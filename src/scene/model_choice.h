@@ -7,6 +7,7 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/model/weighting.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {
@@ -37,8 +38,9 @@ struct ModelCandidate {
 };
 
 struct ChosenModel {
-  FactorModel model;   // of full-size tables, in canonical form but for the order of its lobes
-  TableLayout layout;  // which of its parameters are stored
+  FactorModel model;    // of full-size tables, in canonical form but for the order of its lobes
+  TableLayout layout;   // which of its parameters are stored
+  Weighting weighting;  // by which the form was fitted; that of the objective or by channel
   std::vector<ModelCandidate> candidates;  // in the order in which they were tried
   int chosen = -1;                         // which of them; there is always one
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -17,6 +18,8 @@
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/trace_file.h"
+#include "trilobe/math/angles.h"
+#include "trilobe/model/stretch.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -26,10 +29,11 @@ using ::testing::StartsWith;
 
 nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
 
+// Of a fifth of the bins, which is as good for most and takes half of the time.
 std::vector<std::string> Fit(const std::string& out, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"fit",           "synth:plastic",      "--noise=0.02",
-                                        "--solver=awls", "--max_iterations=3", "--nodiagnose",
-                                        "--out=" + out};
+  std::vector<std::string> arguments = {"fit",           "synth:plastic", "--noise=0.02",
+                                        "--missing=0.8", "--solver=awls", "--max_iterations=3",
+                                        "--nodiagnose",  "--out=" + out};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -37,7 +41,8 @@ std::vector<std::string> Fit(const std::string& out, const std::vector<std::stri
 TEST(Fit, WritesModelTraceAndReport) {
   const TemporaryFolder folder;
   const std::string out = folder / "a/b";  // parents are made
-  const ProgramResult result = RunProgram(Fit(out, {"--reconstruction", "--diagnose"}));
+  const ProgramResult result =
+      RunProgram(Fit(out, {"--reconstruction", "--diagnose", "--missing=0"}));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");  // no progress line in a pipe
 
@@ -57,6 +62,7 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
   EXPECT_EQ(report["stop_reason"], "max_iterations");
   EXPECT_EQ(report["best_iteration"], 3);
+  EXPECT_TRUE(report["matched_reflectance"].is_null());  // it has not converged
   EXPECT_EQ(report["rejected_steps"], 0);
   EXPECT_EQ(report["options"]["given"]["max_iterations"], 3);
   EXPECT_TRUE(report["options"]["given"]["max_seconds"].is_null());  // no limit
@@ -108,7 +114,8 @@ TEST(Fit, WritesModelTraceAndReport) {
 TEST(Fit, SaysWhatItLeftOutAndWhy) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  const ProgramResult result = RunProgram(Fit(out, {"--max_angle=60", "--noise=0", "--plots"}));
+  const ProgramResult result =
+      RunProgram(Fit(out, {"--max_angle=60", "--noise=0", "--missing=0", "--plots"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json report = Json(out + "/report.json"), bins = report["bins"];
   const int valid = report["valid_samples"];
@@ -151,7 +158,8 @@ TEST(Fit, CourseScoresTheModelsOnTheWay) {
     EXPECT_EQ(objective, trace[iteration].objective);
   }
   EXPECT_EQ(iteration, trace.back().iteration);
-  EXPECT_NEAR(psnr_db, report["psnr_db"].get<double>(), 1e-9);  // that one is in canonical form
+  EXPECT_NEAR(psnr_db, report["psnr_db"].get<double>(), 1e-9);     // that one is in canonical form
+  EXPECT_TRUE(report["appearance"]["between_centers"].is_null());  // no whole cell was measured
 }
 
 TEST(Fit, RepeatsToTheBitAndThreadsAgree) {
@@ -252,8 +260,8 @@ TEST(Fit, WithoutABudgetThereAreNoCandidates) {
 // edge of the data, does not win it back.
 TEST(Fit, ARobustFitWeighsLargeErrorsLess) {
   const TemporaryFolder folder;
-  const std::vector<std::string> few = {"--lobes=1", "--solver=varpro", "--max_iterations=15",
-                                        "--noise=0.3", "--max_angle=40"};
+  const std::vector<std::string> few = {"--lobes=1",   "--solver=varpro", "--max_iterations=15",
+                                        "--noise=0.3", "--max_angle=40",  "--nomatch_reflectance"};
   std::vector<double> E;
   for (const char* const robust : {"0", "1e6", "0.01"}) {
     std::vector<std::string> flags = few;
@@ -266,6 +274,49 @@ TEST(Fit, ARobustFitWeighsLargeErrorsLess) {
   }
   EXPECT_NEAR(E[1], E[0], 1e-5 * E[0]);  // no error is so large: the same loss
   EXPECT_GT(E[2], 1.00005 * E[1]);
+}
+
+// A highlight that gets narrower along the plane of both directions, which D of theta_h cannot
+// follow: the least E leaves it too dark.
+TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
+  const TemporaryFolder folder;
+  ModelSpec spec = ModelSpec::SharedFactors(1);
+  spec.stretches = Stretch{.along = -1, .across = 0};
+  FactorModel material(spec);
+  std::ranges::fill(material.d(), 0.02);
+  std::ranges::fill(material.s(0), 10.0);
+  for (int k = 0; k < spec.d_axis.size; ++k) {
+    material.table(Factor::kD, 0)[k] = std::exp(-std::pow(k / 25.0, 4));
+  }
+  for (int c = 0; c < kChannels; ++c)
+    std::ranges::fill(material.table(Factor::kF, c), 0.3 + 0.2 * c);
+  for (int k = 0; k < spec.g_axis.size; ++k) {
+    material.table(Factor::kG, 0)[k] = std::cos(DegreesToRadians(k + 0.5));
+  }
+  WriteModel({material, {}, {}}, folder / "material.json");
+  const std::string table = folder / "narrowing.binary";
+  ASSERT_EQ(RunProgram({"convert", folder / "material.json", "--out=" + table}).status, 0);
+  const auto fit = [&](const char* name, const char* match) {
+    return RunProgram({"fit", table, "--lobes=1", "--solver=varpro", "--tolerance=1e-3",
+                       "--nodiagnose", match, "--out=" + folder / name});
+  };
+  const ProgramResult matched = fit("with", "--match_reflectance"),
+                      unmatched = fit("without", "--nomatch_reflectance");
+  ASSERT_EQ(matched.status, 0) << matched.err;
+  ASSERT_EQ(unmatched.status, 0) << unmatched.err;
+  const nlohmann::json report = Json(folder / "with/report.json"),
+                       plain = Json(folder / "without/report.json");
+  ASSERT_EQ(report["stop_reason"], "converged");  // or it is left as it is
+  EXPECT_TRUE(plain["matched_reflectance"].is_null());
+  EXPECT_THAT(matched.out, HasSubstr("reflectance  was off by "));
+  const nlohmann::json& how = report["matched_reflectance"];
+  EXPECT_GT(how["error_before"], 0.01);
+  EXPECT_LT(how["error_after"], 0.6 * how["error_before"].get<double>());
+  const double E = report["objective"], before = plain["objective"];
+  EXPECT_NEAR(how["objective_rise"], E / before - 1, 1e-9);
+  EXPECT_LT(report["appearance"]["mean_color_error"],
+            plain["appearance"]["mean_color_error"].get<double>());
+  EXPECT_GE(report["appearance"]["psnr_db"], plain["appearance"]["psnr_db"].get<double>() - 0.3);
 }
 
 TEST(Fit, CtrlCKeepsTheBestModelSoFar) {

@@ -13,6 +13,7 @@
 #include "tests/test_util.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/joint/data_edge.h"
+#include "trilobe/solvers/joint/reflectance.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -115,6 +116,14 @@ TEST(SolverRoom, ModelsOfAnotherSpec) {
   FactorModel bad(objective.spec());
   bad.d()[1] = kNaN;
   EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("parameter 1"));
+  EXPECT_THAT(ErrorOf([&] { ReflectanceOf(objective, other); }), HasSubstr("another spec"));
+  const TableLayout layout = TableLayout::Full(other.spec());
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, other, layout, 30); }),
+              HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, bad, layout, 30); }),
+              HasSubstr("parameter 1"));
+  bad.d()[1] = 1;
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, bad, layout, 30); }), HasSubstr("layout"));
 }
 
 }  // namespace

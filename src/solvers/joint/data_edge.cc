@@ -1,6 +1,7 @@
 #include "trilobe/solvers/joint/data_edge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -115,6 +116,29 @@ bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
   return Tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
          Tie(Rule::kCoverage, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
          Tie(Rule::kCoverage, {Factor::kG}, objective, stop, model);
+}
+
+TableLayout UntiedEntries(std::span<const double> coverage, const FactorModel& model) {
+  CheckCoverage(coverage, model);
+  constexpr double kRounding = 1e-12;
+  const ModelSpec& spec = model.spec();
+  TableLayout layout = TableLayout::Full(spec);
+  for (const Factor factor : kFactors) {
+    if (spec.axis(factor).polar()) continue;
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const auto table = model.table(factor, t);
+      const auto of_table = coverage.subspan(model.TableOffset(factor, t), table.size());
+      int end = spec.table_size(factor);
+      while (end > 0 && !(of_table[end - 1] > 0)) --end;
+      int kept = end;
+      while (kept > 1 && of_table[kept - 2] > 0 &&
+             std::abs(table[kept - 1] - table[kept - 2]) <= kRounding * table[kept - 2]) {
+        --kept;
+      }
+      if (kept < end) layout.of(factor, t).resize(kept);
+    }
+  }
+  return layout;
 }
 
 }  // namespace trilobe

@@ -2,8 +2,10 @@
 #define TRILOBE_SOLVERS_JOINT_DATA_EDGE_H_
 
 #include <functional>
+#include <span>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {
@@ -24,6 +26,12 @@ namespace trilobe {
 bool TieEntriesAtDataEdge(
     const Objective& objective, FactorModel* model,
     const std::function<bool()>& stop = [] { return false; });
+
+// The entries of a model with this coverage (Objective::coverage) that are not tied: all but those
+// that, at the end of what is observed of a table, equal the one before them, as those of a tail of
+// zeros do, and unobserved ones behind such. What moves these and expands them keeps the others
+// tied.
+TableLayout UntiedEntries(std::span<const double> coverage, const FactorModel& model);
 
 }  // namespace trilobe
 

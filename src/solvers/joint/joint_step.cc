@@ -199,7 +199,7 @@ SteppedModel JointSteps(const Objective& objective, const FactorModel& start, in
   stepper.Restart(start);
   for (int k = 0; k < steps && !stepper.exhausted() && !stop(); ++k) {
     const double before = stepper.E();
-    if (stepper.Step() && stepper.E() > (1 - small) * before) break;
+    if (stepper.Step() && !stepper.held_back() && stepper.E() > (1 - small) * before) break;
   }
   return {stepper.current(), stepper.E()};
 }

@@ -1,0 +1,179 @@
+#include "trilobe/solvers/joint/reflectance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "trilobe/base/parallel.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/objective/sample_derivatives.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/nonnegative_step.h"
+#include "trilobe/solvers/joint/reduction.h"
+#include "trilobe/sums/normal_equations.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kNotSeen = 0.01;  // of the reflectance
+constexpr int kTrials = 8;
+constexpr double kFirstLambda = 1e-3, kFall = 1.0 / 3, kRise = 4;
+constexpr double kHardlyLower = 2e-3;
+
+double Length(const Rgb& rgb) { return std::hypot(rgb[0], rgb[1], rgb[2]); }
+
+// The reflectance, and how it moves with the parameters.
+struct Light {
+  Reflectance reflectance;
+  std::array<std::vector<double>, kChannels> slope;  // of what is fitted. [num_parameters]
+};
+
+enum class Slopes { kNone, kAll };
+
+// Every few samples are enough: what is measured and what is fitted are summed over the same ones.
+// A stride that has no factor in common with the number of bins of phi_d visits all of these.
+int StrideOf(const BrdfSamples& samples) {
+  constexpr int kSamplesLookedAt = 1 << 16;
+  int stride = std::max(1, samples.size() / kSamplesLookedAt);
+  while (std::gcd(stride, samples.grid.phi_d) > 1) ++stride;
+  return stride;
+}
+
+Light LightOf(const Objective& objective, const FactorModel& model, Slopes slopes) {
+  constexpr int kParts = 16;
+  const BrdfSamples& samples = objective.samples();
+  const int stride = StrideOf(samples);
+  const int num_parameters = slopes == Slopes::kAll ? model.spec().num_parameters() : 0;
+  struct Part {
+    double through = 0;
+    Light light;
+  };
+  std::vector<Part> parts(kParts);
+  const int size = (samples.size() + stride - 1) / stride;
+  ParallelFor(kParts, objective.num_threads(), [&](int k) {
+    Part part;
+    for (auto& slope : part.light.slope) slope.assign(num_parameters, 0.0);
+    SampleDerivatives derivatives(num_parameters);
+    const auto begin = static_cast<int>(static_cast<int64_t>(size) * k / kParts);
+    const auto end = static_cast<int>(static_cast<int64_t>(size) * (k + 1) / kParts);
+    for (int j = begin * stride; j < end * stride; j += stride) {
+      const Cosines cosines = samples.CosinesOf(j);
+      const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
+      const SampleStencils at = objective.Sample(j).stencils;
+      part.through += through;
+      for (int c = 0; c < kChannels; ++c) {
+        part.light.reflectance.measured[c] += through * samples.rho[j][c];
+        part.light.reflectance.fitted[c] += through * Evaluate(model, at, c);
+        if (slopes == Slopes::kNone) continue;
+        derivatives.Set(model, at, c);
+        for (const int x : derivatives.touched()) {
+          part.light.slope[c][x] += through * derivatives[x];
+        }
+      }
+    }
+    parts[k] = std::move(part);
+  });
+  Light light = std::move(parts[0].light);
+  double through = parts[0].through;
+  for (int k = 1; k < kParts; ++k) {
+    const Light& part = parts[k].light;
+    through += parts[k].through;
+    for (int c = 0; c < kChannels; ++c) {
+      light.reflectance.measured[c] += part.reflectance.measured[c];
+      light.reflectance.fitted[c] += part.reflectance.fitted[c];
+      for (int x = 0; x < num_parameters; ++x) light.slope[c][x] += part.slope[c][x];
+    }
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    light.reflectance.measured[c] /= through;
+    light.reflectance.fitted[c] /= through;
+    for (double& x : light.slope[c]) x /= through;
+  }
+  return light;
+}
+
+// Adds price / 2 |fitted - measured|^2 / |measured|^2 to a problem in the stored parameters.
+void AddPrice(double price, const Light& light, const Reduction& reduction, QuadraticModel* at) {
+  const Reflectance& reflectance = light.reflectance;
+  const double of_squares = price / std::pow(Length(reflectance.measured), 2);
+  const auto n = static_cast<size_t>(reduction.size());
+  for (int c = 0; c < kChannels; ++c) {
+    const std::vector<double> slope = reduction.Transpose(light.slope[c]);
+    const double off = reflectance.fitted[c] - reflectance.measured[c];
+    for (size_t a = 0; a < n; ++a) {
+      if (slope[a] == 0) continue;
+      at->gradient[a] += of_squares * off * slope[a];
+      for (size_t b = 0; b < n; ++b) at->H[a * n + b] += of_squares * slope[a] * slope[b];
+    }
+  }
+}
+
+}  // namespace
+
+double Reflectance::Error() const {
+  const double length = Length(measured);
+  if (!(length > 0)) return 0;
+  return std::hypot(fitted[0] - measured[0], fitted[1] - measured[1], fitted[2] - measured[2]) /
+         length;
+}
+
+Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) {
+  CheckSameSpec(model.spec(), objective.spec());
+  return LightOf(objective, model, Slopes::kNone).reflectance;
+}
+
+std::optional<FactorModel> MatchReflectance(const Objective& objective, const FactorModel& model,
+                                            const TableLayout& layout, double price,
+                                            const std::function<bool()>& stop) {
+  CheckSameSpec(model.spec(), objective.spec());
+  CheckParameters(model);
+  CheckLayout(layout, objective.spec());
+  if (!(ReflectanceOf(objective, model).Error() > kNotSeen)) return std::nullopt;
+  const Reduction reduction(objective.spec(), layout);
+  FactorModel at = model;
+  Light light = LightOf(objective, at, Slopes::kAll);
+  const double E0 = objective.Value(model);
+  const auto total = [&](double E, const Light& of) {
+    return E + price * E0 * std::pow(of.reflectance.Error(), 2);
+  };
+  double lowest = total(E0, light), lambda = kFirstLambda;
+  NormalEquations equations(objective);
+  NonnegativeStep step(objective.num_threads());
+  QuadraticModel problem;
+  bool moved = false, linearized = false;
+  for (int trial = 0; trial < kTrials && !stop(); ++trial) {
+    if (!linearized) {
+      equations.Evaluate(at, Hessian::kGaussNewton, &problem);
+      problem = reduction(problem);
+      const std::vector<double> metric = DampingMetric(reduction.parts(), problem.squared_lengths);
+      AddPrice(price * E0, light, reduction, &problem);
+      step.MoveTo(problem, metric, reduction.Restrict(at.parameters()));
+      linearized = true;
+    }
+    FactorModel to = at;
+    std::ranges::copy(reduction.Expand(step.Solve(lambda).x), to.parameters().begin());
+    Light there = LightOf(objective, to, Slopes::kAll);
+    const double lower = total(objective.Value(to), there);
+    if (!(lower < lowest)) {
+      lambda *= kRise;
+      continue;
+    }
+    const bool small = lower > (1 - kHardlyLower) * lowest;
+    at = std::move(to);
+    light = std::move(there);
+    lowest = lower;
+    lambda *= kFall;
+    moved = true;
+    linearized = false;
+    if (small) break;
+  }
+  if (!moved) return std::nullopt;
+  return at;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,44 @@
+#ifndef TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
+#define TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
+
+#include <functional>
+#include <optional>
+
+#include "trilobe/brdf/channels.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/table_layout.h"
+#include "trilobe/objective/objective.h"
+
+namespace trilobe {
+
+// How much light the measured directions send into each other, under light from all of them: the
+// mean of rho over samples, weighted by cos theta_i cos theta_o and their solid angle [1/sr], as
+// MeanReflectance has it, by channel. Some 65,000 samples, evenly spread, stand for all. The
+// bihemispherical reflectance (Nicodemus et al. 1977) over pi, where all directions were measured.
+struct Reflectance {
+  Rgb measured{}, fitted{};
+
+  // |fitted - measured| / |measured| over the channels, as one sees by how much the colour of a
+  // surface is off under a grey sky; 0 where nothing is reflected.
+  double Error() const;
+};
+Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model);
+
+// E of values relative to what was measured hardly sees the light of a narrow highlight: a fit that
+// cannot follow it ends near the geometric mean of what it should be, and the whole surface is
+// too dark. This moves a fit of the objective, where its Reflectance is off by more than 1 %,
+// towards the minimum of
+//   E + price E0 |fitted - measured|^2 / |measured|^2,
+// E0 being E of the fit: with a price of 30 an error of 1 % costs 0.3 % of E. By damped
+// Gauss-Newton steps in the parameters that `layout` stores, all of them moving a little, each
+// where E minds it least. Nothing if the fit is not off by so much, or if none of the steps lowers
+// that. Solid angles of scattered samples are not known; all count alike. `stop` is asked before
+// each step. The same bits for any number of threads. Throws Error for a model or a layout of
+// another spec.
+std::optional<FactorModel> MatchReflectance(
+    const Objective& objective, const FactorModel& model, const TableLayout& layout, double price,
+    const std::function<bool()>& stop = [] { return false; });
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
