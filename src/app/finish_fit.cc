@@ -32,30 +32,46 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
   return reweighted;
 }
 
-// Whether one model is as good as another in all but E: on a sphere of the measurement, on one of
-// all directions, and in mean log error.
-class NoHarm {
+// How models look on a sphere: of what was measured and, where some was not, of all directions.
+// Made when it is first asked for.
+class Looks {
  public:
-  NoHarm(const Objective& objective, const BrdfTable& measured, const AppearanceOptions& options,
-         const FactorModel& before)
-      : objective_(objective),
-        judges_{SphereJudge(measured, options)},
-        log_error_(LogError(before)) {
-    if (!measured.unmeasured.empty()) {
-      judges_.push_back(SphereJudge::OfAllDirections(measured, options));
-    }
-    for (const SphereJudge& judge : judges_) {
-      psnr_.push_back(judge(ContinuousModel(before)).psnr_db);
-    }
+  Looks(const BrdfTable& measured, const AppearanceOptions& options)
+      : table_(measured), options_(options) {}
+
+  bool has_beyond() const { return !table_.unmeasured.empty(); }
+
+  double Measured(const FactorModel& model) {
+    if (!measured_) measured_.emplace(table_, options_);
+    return (*measured_)(ContinuousModel(model)).psnr_db;
+  }
+  double Beyond(const FactorModel& model) {
+    if (!beyond_) beyond_.emplace(SphereJudge::OfAllDirections(table_, options_));
+    return (*beyond_)(ContinuousModel(model)).psnr_db;
   }
 
+ private:
+  const BrdfTable& table_;
+  const AppearanceOptions& options_;
+  std::optional<SphereJudge> measured_, beyond_;
+};
+
+// Whether one model is as good as another in all but E.
+class NoHarm {
+ public:
+  NoHarm(const Objective& objective, const FactorModel& before, Looks* looks)
+      : objective_(objective),
+        looks_(*looks),
+        measured_(looks->Measured(before)),
+        beyond_(looks->has_beyond() ? looks->Beyond(before) : 0),
+        log_error_(LogError(before)) {}
+
   bool operator()(const FactorModel& after) const {
-    constexpr double kMayLose[] = {0.2, 1};  // [dB], where data are and everywhere
+    constexpr double kMayLose = 0.2, kMayLoseBeyond = 1;  // [dB]
     constexpr double kMayGrow = 0.1;
-    for (size_t k = 0; k < judges_.size(); ++k) {
-      if (!(judges_[k](ContinuousModel(after)).psnr_db >= psnr_[k] - kMayLose[k])) return false;
-    }
-    return LogError(after) <= (1 + kMayGrow) * log_error_;
+    return looks_.Measured(after) >= measured_ - kMayLose &&
+           (!looks_.has_beyond() || looks_.Beyond(after) >= beyond_ - kMayLoseBeyond) &&
+           LogError(after) <= (1 + kMayGrow) * log_error_;
   }
 
  private:
@@ -64,15 +80,14 @@ class NoHarm {
   }
 
   const Objective& objective_;
-  std::vector<SphereJudge> judges_;
-  double log_error_;
-  std::vector<double> psnr_;
+  Looks& looks_;
+  double measured_, beyond_, log_error_;
 };
 
 // As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
 // the fit's spec.
-void MatchReflectanceOf(const Objective& of, const BrdfTable& measured,
-                        const FinishOptions& options, FinishedFit* fit) {
+void MatchReflectanceOf(const Objective& of, const std::function<bool()>& stop, Looks* looks,
+                        FinishedFit* fit) {
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error
   const FactorModel& model = fit->model;
@@ -80,20 +95,20 @@ void MatchReflectanceOf(const Objective& of, const BrdfTable& measured,
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
   // What a thinned table stores beyond the data stays: it was fitted to more than these.
   const std::vector<double> all_covered(model.parameters().size(), 1.0);
+  const double before = ReflectanceOf(of, model).Error();
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
-    std::optional<FactorModel> matched = MatchReflectance(of, model, layout, price, options.stop);
+    std::optional<FactorModel> matched = MatchReflectance(of, model, layout, price, stop);
     if (!matched) return;
     if (thinned) {
       Canonicalize(all_covered, &*matched, LobeOrder::kAsTheyAre, of.num_threads());
     } else {
       Canonicalize(of, &*matched);
     }
-    if (!no_harm) no_harm.emplace(fit->objective, measured, options.appearance, model);
-    if (!(*no_harm)(*matched)) continue;
-    const double before = ReflectanceOf(of, model).Error(),
-                 after = ReflectanceOf(of, *matched).Error();
+    const double after = ReflectanceOf(of, *matched).Error();
     if (after > kWorthwhile * before) return;  // still less for a lower price
+    if (!no_harm) no_harm.emplace(fit->objective, model, looks);
+    if (!(*no_harm)(*matched)) continue;
     const double E = fit->objective.Value(model);
     fit->matched = {.error_before = before,
                     .error_after = after,
@@ -119,22 +134,20 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   }
   Canonicalize(objective, &model);
   FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
+  std::optional<Looks> looks;
+  if (measured != nullptr) looks.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();
   if (options.max_parameters > 0 && !options.stop()) {
-    const auto psnr_by = [](const SphereJudge& sphere) {
-      return [sphere](const FactorModel& candidate) {
-        return sphere(ContinuousModel(candidate)).psnr_db;
+    ModelChoiceOptions choice;
+    choice.max_parameters = options.max_parameters;
+    choice.stop = options.stop;
+    choice.judge = [&looks](const FactorModel& candidate) { return looks->Measured(candidate); };
+    if (looks->has_beyond()) {
+      choice.judge_beyond = [&looks](const FactorModel& candidate) {
+        return looks->Beyond(candidate);
       };
-    };
-    std::function<double(const FactorModel&)> judge_beyond;
-    if (!measured->unmeasured.empty()) {
-      judge_beyond = psnr_by(SphereJudge::OfAllDirections(*measured, options.appearance));
     }
-    ChosenModel chosen = ChooseModel(of, fit.model,
-                                     {.max_parameters = options.max_parameters,
-                                      .judge = psnr_by(SphereJudge(*measured, options.appearance)),
-                                      .judge_beyond = judge_beyond,
-                                      .stop = options.stop});
+    ChosenModel chosen = ChooseModel(of, fit.model, choice);
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
     fit.layout = std::move(chosen.layout);
@@ -143,13 +156,13 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     weighting = chosen.weighting;
   }
   // A robust fit has given up on some of the light.
-  if (options.match_reflectance && options.robust == 0 && measured != nullptr &&
+  if (options.match_reflectance && options.robust == 0 && looks &&
       !fit.model.spec().anisotropic() && !options.stop()) {
     const Objective weighed =
         weighting.name == objective.weighting().name
             ? fit.objective
             : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
-    MatchReflectanceOf(weighed, *measured, options, &fit);
+    MatchReflectanceOf(weighed, options.stop, &*looks, &fit);
   }
   return fit;
 }
