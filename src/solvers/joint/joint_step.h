@@ -93,8 +93,8 @@ class JointStepper {
 
 // The point after so many steps of curvature kByProgress from this one, and E there; after fewer
 // where no damping leads lower, after a step that lowers E by less than the fraction `small` of it
-// though damping did not hold it back, and once `stop` is true. Trials are projected, unless there is a
-// reduction.
+// though damping did not hold it back, and once `stop` is true. Trials are projected, unless there
+// is a reduction.
 struct SteppedModel {
   FactorModel model;
   double E;
