@@ -95,25 +95,23 @@ void MatchReflectanceOf(const Objective& of, const std::function<bool()>& stop, 
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
   // What a thinned table stores beyond the data stays: it was fitted to more than these.
   const std::vector<double> all_covered(model.parameters().size(), 1.0);
-  const double before = ReflectanceOf(of, model).Error();
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
-    std::optional<FactorModel> matched = MatchReflectance(of, model, layout, price, stop);
-    if (!matched) return;
+    std::optional<MatchedModel> matched = MatchReflectance(of, model, layout, price, stop);
+    // A lower price mends still less.
+    if (!matched || matched->error_after > kWorthwhile * matched->error_before) return;
     if (thinned) {
-      Canonicalize(all_covered, &*matched, LobeOrder::kAsTheyAre, of.num_threads());
+      Canonicalize(all_covered, &matched->model, LobeOrder::kAsTheyAre, of.num_threads());
     } else {
-      Canonicalize(of, &*matched);
+      Canonicalize(of, &matched->model);
     }
-    const double after = ReflectanceOf(of, *matched).Error();
-    if (after > kWorthwhile * before) return;  // still less for a lower price
     if (!no_harm) no_harm.emplace(fit->objective, model, looks);
-    if (!(*no_harm)(*matched)) continue;
+    if (!(*no_harm)(matched->model)) continue;
     const double E = fit->objective.Value(model);
-    fit->matched = {.error_before = before,
-                    .error_after = after,
-                    .rise = E > 0 ? fit->objective.Value(*matched) / E - 1 : 0};
-    fit->model = std::move(*matched);
+    fit->matched = {.error_before = matched->error_before,
+                    .error_after = matched->error_after,
+                    .rise = E > 0 ? fit->objective.Value(matched->model) / E - 1 : 0};
+    fit->model = std::move(matched->model);
     return;
   }
 }

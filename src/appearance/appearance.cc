@@ -188,13 +188,7 @@ SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& f
   const double exposure = kMeanLuminance / (Luminance(mean_measured) / n);
   if (std::isfinite(exposure)) error.exposure = exposure;
   const auto exposed = [&](double x) { return x > 0 ? std::min(exposure * x, 1.0) : 0.0; };
-  const double length = std::hypot(mean_measured[0], mean_measured[1], mean_measured[2]);
-  if (length > 0) {
-    error.mean_color_error =
-        std::hypot(mean_fitted[0] - mean_measured[0], mean_fitted[1] - mean_measured[1],
-                   mean_fitted[2] - mean_measured[2]) /
-        length;
-  }
+  error.mean_color_error = RelativeDistance(mean_fitted, mean_measured);
   double squares = 0;
   std::vector<double> delta_e;
   for (const size_t k : pixels) {

@@ -2,6 +2,7 @@
 #define TRILOBE_BRDF_CHANNELS_H_
 
 #include <array>
+#include <cmath>
 
 namespace trilobe {
 
@@ -13,6 +14,12 @@ inline constexpr const char* kChannelNames[kChannels] = {"red", "green", "blue"}
 using Rgb = std::array<double, kChannels>;
 
 inline double Mean(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
+// |a - b| / |b|, b being what a should be; 0 where that is black.
+inline double RelativeDistance(const Rgb& a, const Rgb& b) {
+  const double length = std::hypot(b[0], b[1], b[2]);
+  return length > 0 ? std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) / length : 0;
+}
 
 }  // namespace trilobe
 

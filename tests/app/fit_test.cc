@@ -288,8 +288,9 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
   for (int k = 0; k < spec.d_axis.size; ++k) {
     material.table(Factor::kD, 0)[k] = std::exp(-std::pow(k / 25.0, 4));
   }
-  for (int c = 0; c < kChannels; ++c)
+  for (int c = 0; c < kChannels; ++c) {
     std::ranges::fill(material.table(Factor::kF, c), 0.3 + 0.2 * c);
+  }
   for (int k = 0; k < spec.g_axis.size; ++k) {
     material.table(Factor::kG, 0)[k] = std::cos(DegreesToRadians(k + 0.5));
   }

@@ -25,8 +25,6 @@ constexpr int kTrials = 8;
 constexpr double kFirstLambda = 1e-3, kFall = 1.0 / 3, kRise = 4;
 constexpr double kHardlyLower = 2e-3;
 
-double Length(const Rgb& rgb) { return std::hypot(rgb[0], rgb[1], rgb[2]); }
-
 // The reflectance, and how it moves with the parameters.
 struct Light {
   Reflectance reflectance;
@@ -100,11 +98,12 @@ Light LightOf(const Objective& objective, const FactorModel& model, Slopes slope
 // Adds price / 2 |fitted - measured|^2 / |measured|^2 to a problem in the stored parameters.
 void AddPrice(double price, const Light& light, const Reduction& reduction, QuadraticModel* at) {
   const Reflectance& reflectance = light.reflectance;
-  const double of_squares = price / std::pow(Length(reflectance.measured), 2);
+  const Rgb& measured = reflectance.measured;
+  const double of_squares = price / std::pow(std::hypot(measured[0], measured[1], measured[2]), 2);
   const auto n = static_cast<size_t>(reduction.size());
   for (int c = 0; c < kChannels; ++c) {
     const std::vector<double> slope = reduction.Transpose(light.slope[c]);
-    const double off = reflectance.fitted[c] - reflectance.measured[c];
+    const double off = reflectance.fitted[c] - measured[c];
     for (size_t a = 0; a < n; ++a) {
       if (slope[a] == 0) continue;
       at->gradient[a] += of_squares * off * slope[a];
@@ -115,57 +114,50 @@ void AddPrice(double price, const Light& light, const Reduction& reduction, Quad
 
 }  // namespace
 
-double Reflectance::Error() const {
-  const double length = Length(measured);
-  if (!(length > 0)) return 0;
-  return std::hypot(fitted[0] - measured[0], fitted[1] - measured[1], fitted[2] - measured[2]) /
-         length;
-}
+double Reflectance::Error() const { return RelativeDistance(fitted, measured); }
 
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) {
   CheckSameSpec(model.spec(), objective.spec());
   return LightOf(objective, model, Slopes::kNone).reflectance;
 }
 
-std::optional<FactorModel> MatchReflectance(const Objective& objective, const FactorModel& model,
-                                            const TableLayout& layout, double price,
-                                            const std::function<bool()>& stop) {
+std::optional<MatchedModel> MatchReflectance(const Objective& objective, const FactorModel& model,
+                                             const TableLayout& layout, double price,
+                                             const std::function<bool()>& stop) {
   CheckSameSpec(model.spec(), objective.spec());
   CheckParameters(model);
   CheckLayout(layout, objective.spec());
-  if (!(ReflectanceOf(objective, model).Error() > kNotSeen)) return std::nullopt;
+  const double before = ReflectanceOf(objective, model).Error();
+  if (!(before > kNotSeen)) return std::nullopt;
   const Reduction reduction(objective.spec(), layout);
-  FactorModel at = model;
-  Light light = LightOf(objective, at, Slopes::kAll);
   const double E0 = objective.Value(model);
-  const auto total = [&](double E, const Light& of) {
-    return E + price * E0 * std::pow(of.reflectance.Error(), 2);
-  };
-  double lowest = total(E0, light), lambda = kFirstLambda;
+  const auto total = [&](double E, double error) { return E + price * E0 * std::pow(error, 2); };
+  MatchedModel at{.model = model, .error_before = before, .error_after = before};
+  double lowest = total(E0, before), lambda = kFirstLambda;
   NormalEquations equations(objective);
   NonnegativeStep step(objective.num_threads());
   QuadraticModel problem;
   bool moved = false, linearized = false;
   for (int trial = 0; trial < kTrials && !stop(); ++trial) {
     if (!linearized) {
-      equations.Evaluate(at, Hessian::kGaussNewton, &problem);
+      equations.Evaluate(at.model, Hessian::kGaussNewton, &problem);
       problem = reduction(problem);
       const std::vector<double> metric = DampingMetric(reduction.parts(), problem.squared_lengths);
-      AddPrice(price * E0, light, reduction, &problem);
-      step.MoveTo(problem, metric, reduction.Restrict(at.parameters()));
+      AddPrice(price * E0, LightOf(objective, at.model, Slopes::kAll), reduction, &problem);
+      step.MoveTo(problem, metric, reduction.Restrict(at.model.parameters()));
       linearized = true;
     }
-    FactorModel to = at;
+    FactorModel to = at.model;
     std::ranges::copy(reduction.Expand(step.Solve(lambda).x), to.parameters().begin());
-    Light there = LightOf(objective, to, Slopes::kAll);
-    const double lower = total(objective.Value(to), there);
+    const double error = ReflectanceOf(objective, to).Error();
+    const double lower = total(objective.Value(to), error);
     if (!(lower < lowest)) {
       lambda *= kRise;
       continue;
     }
     const bool small = lower > (1 - kHardlyLower) * lowest;
-    at = std::move(to);
-    light = std::move(there);
+    at.model = std::move(to);
+    at.error_after = error;
     lowest = lower;
     lambda *= kFall;
     moved = true;

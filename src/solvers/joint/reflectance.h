@@ -35,7 +35,11 @@ Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model);
 // that. Solid angles of scattered samples are not known; all count alike. `stop` is asked before
 // each step. The same bits for any number of threads. Throws Error for a model or a layout of
 // another spec.
-std::optional<FactorModel> MatchReflectance(
+struct MatchedModel {
+  FactorModel model;
+  double error_before, error_after;  // Reflectance::Error of the fit, and of this
+};
+std::optional<MatchedModel> MatchReflectance(
     const Objective& objective, const FactorModel& model, const TableLayout& layout, double price,
     const std::function<bool()>& stop = [] { return false; });
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
@@ -45,17 +46,7 @@ BrdfTable Measured(int lobes, double max_degrees, double noise = 0.01) {
   return table;
 }
 
-FactorModel Fitted(const Objective& objective) {
-  FactorModel model(objective.spec());
-  std::ranges::fill(model.parameters(), 0.5);
-  for (int m = 0; m < model.spec().lobes; ++m) {  // or they stay equal
-    for (double& x : model.s(m)) x *= 1 + m;
-    const auto D = model.table(Factor::kD, objective.spec().table(Factor::kD, m, 0));
-    for (size_t k = 0; k < D.size(); ++k) D[k] = std::exp(-static_cast<double>(k) / (2 + 4 * m));
-  }
-  MakeSolver("varpro")->Solve(objective, {.max_iterations = 25, .diagnose = false}, &model);
-  return model;
-}
+FactorModel Fitted(const Objective& objective) { return trilobe::Fitted(objective, 25); }
 
 bool SameBits(const FactorModel& a, const FactorModel& b) {
   return std::ranges::equal(a.parameters(), b.parameters());

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/reconstruct.h"
-#include "trilobe/model/weighting.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/solvers/joint/data_edge.h"
-#include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -39,20 +38,13 @@ BrdfTable Narrowing(double along, double max_degrees = 90, const MerlGrid& grid 
 }
 
 FactorModel Fitted(const Objective& objective) {
-  FactorModel model(objective.spec());
-  std::ranges::fill(model.parameters(), 0.5);
-  for (int m = 0; m < model.spec().lobes; ++m) {
-    const auto D = model.table(Factor::kD, m);
-    for (size_t k = 0; k < D.size(); ++k) D[k] = std::exp(-static_cast<double>(k) / (2 + 3 * m));
-  }
-  MakeSolver("varpro")->Solve(objective, {.max_iterations = 40, .diagnose = false}, &model);
+  FactorModel model = trilobe::Fitted(objective, 40);
   Canonicalize(objective, &model);
   return model;
 }
 
 Objective ObjectiveOf(const BrdfTable& table, int num_threads = 1) {
-  return {ValidSamples(table), ModelSpec::SharedFactors(1, kGrid), FindWeighting("log_relative"),
-          num_threads};
+  return MakeObjective(table, ModelSpec::SharedFactors(1, table.grid), "log_relative", num_threads);
 }
 
 TableLayout Full(const FactorModel& model) { return TableLayout::Full(model.spec()); }
@@ -97,9 +89,7 @@ TEST(Reflectance, IsTheMeanByCosinesAndSolidAngle) {
 // Of many samples every few are looked at, which tell by how much a model is off.
 TEST(Reflectance, SomeSamplesStandForAll) {
   constexpr MerlGrid kFine{.theta_h = 60, .theta_d = 60, .phi_d = 90};
-  const BrdfTable table = Narrowing(-1, 80, kFine);
-  const Objective objective(ValidSamples(table), ModelSpec::SharedFactors(1, kFine),
-                            FindWeighting("log_relative"));
+  const Objective objective = ObjectiveOf(Narrowing(-1, 80, kFine));
   ASSERT_GT(objective.samples().size(), 3 << 16);
   FactorModel model(objective.spec());
   std::ranges::fill(model.parameters(), 1.0);
@@ -121,13 +111,14 @@ TEST(Reflectance, ComesBackForLittleOfE) {
     const FactorModel fitted = Fitted(objective);
     const double E = objective.Value(fitted), error = ReflectanceOf(objective, fitted).Error();
     ASSERT_GT(error, 0.012) << along;
-    const std::optional<FactorModel> matched =
+    const std::optional<MatchedModel> matched =
         MatchReflectance(objective, fitted, Full(fitted), 30);
     ASSERT_TRUE(matched) << along;
-    CheckParameters(*matched);
-    const double after = ReflectanceOf(objective, *matched).Error();
+    CheckParameters(matched->model);
+    const double after = ReflectanceOf(objective, matched->model).Error();
     EXPECT_LT(after, 0.6 * error) << along;
-    EXPECT_LT(objective.Value(*matched) + 30 * E * after * after, (1 + 30 * error * error) * E)
+    EXPECT_LT(objective.Value(matched->model) + 30 * E * after * after,
+              (1 + 30 * error * error) * E)
         << along;
     // Where it ends, neither more light nor less would lower that.
     const auto slope_by_s = [&](const FactorModel& at) {
@@ -141,7 +132,7 @@ TEST(Reflectance, ComesBackForLittleOfE) {
       }
       return (total[1] - total[0]) / (2 * kStep);
     };
-    EXPECT_LT(std::abs(slope_by_s(*matched)), 0.05 * std::abs(slope_by_s(fitted))) << along;
+    EXPECT_LT(std::abs(slope_by_s(matched->model)), 0.05 * std::abs(slope_by_s(fitted))) << along;
   }
 }
 
@@ -170,10 +161,10 @@ TEST(Reflectance, TiedEntriesStayTied) {
   const TableLayout untied = UntiedEntries(objective.coverage(), model);
   const int tied = Full(model).num_parameters(model.spec()) - untied.num_parameters(model.spec());
   ASSERT_GT(tied, 0);
-  std::optional<FactorModel> matched = MatchReflectance(objective, model, untied, 30);
+  std::optional<MatchedModel> matched = MatchReflectance(objective, model, untied, 30);
   ASSERT_TRUE(matched);
-  Canonicalize(objective, &*matched);
-  EXPECT_EQ(UntiedEntries(objective.coverage(), *matched), untied);
+  Canonicalize(objective, &matched->model);
+  EXPECT_EQ(UntiedEntries(objective.coverage(), matched->model), untied);
 }
 
 TEST(Reflectance, StopsBeforeAStepAndAgreesForAnyNumberOfThreads) {
@@ -181,11 +172,11 @@ TEST(Reflectance, StopsBeforeAStepAndAgreesForAnyNumberOfThreads) {
   const Objective objective = ObjectiveOf(table);
   const FactorModel fitted = Fitted(objective);
   EXPECT_FALSE(MatchReflectance(objective, fitted, Full(fitted), 30, [] { return true; }));
-  const std::optional<FactorModel> one = MatchReflectance(objective, fitted, Full(fitted), 30);
-  const std::optional<FactorModel> three =
+  const std::optional<MatchedModel> one = MatchReflectance(objective, fitted, Full(fitted), 30);
+  const std::optional<MatchedModel> three =
       MatchReflectance(ObjectiveOf(table, 3), fitted, Full(fitted), 30);
   ASSERT_TRUE(one && three);
-  EXPECT_TRUE(std::ranges::equal(one->parameters(), three->parameters()));
+  EXPECT_TRUE(std::ranges::equal(one->model.parameters(), three->model.parameters()));
 }
 
 }  // namespace

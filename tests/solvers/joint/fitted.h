@@ -1,0 +1,29 @@
+#ifndef TRILOBE_TESTS_SOLVERS_JOINT_FITTED_H_
+#define TRILOBE_TESTS_SOLVERS_JOINT_FITTED_H_
+
+#include <algorithm>
+#include <cmath>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// What joint steps make of lobes of several widths, for tests of what comes after a fit.
+inline FactorModel Fitted(const Objective& objective, int max_iterations) {
+  FactorModel model(objective.spec());
+  std::ranges::fill(model.parameters(), 0.5);
+  for (int m = 0; m < model.spec().lobes; ++m) {  // or they stay equal
+    for (double& x : model.s(m)) x *= 1 + m;
+    const auto D = model.table(Factor::kD, objective.spec().table(Factor::kD, m, 0));
+    for (size_t k = 0; k < D.size(); ++k) D[k] = std::exp(-static_cast<double>(k) / (2 + 4 * m));
+  }
+  MakeSolver("varpro")->Solve(objective, {.max_iterations = max_iterations, .diagnose = false},
+                              &model);
+  return model;
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_TESTS_SOLVERS_JOINT_FITTED_H_
