@@ -4,12 +4,15 @@
 #   whether the compiler found an FMA instruction to use.
 # -fopenmp-simd: `#pragma omp simd reduction` lets one named loop reassociate its sum, where
 #   -ffast-math would let all of them. No OpenMP runtime is involved.
+# -fmacro-prefix-map: __FILE__ is relative to the repository, so that what is compiled does not depend
+#   on where it lies: the same bits, and a compiler's cache serves any checkout.
 # -Wno-restrict: g++ 12 warns of "literal" + std::string(...) for no reason (GCC bug 105651).
 # -Wno-shadow, -Wno-subobject-linkage: in a unity build names of one file shadow those of another, and
 #   g++ takes the files for headers, whose classes should not hold what is in an unnamed namespace.
 # -Wno-pass-failed: clang warns where a `simd` loop is not vectorised, as under sanitizers none is.
 function(trilobe_compile_options target)
-  target_compile_options(${target} PRIVATE -ffp-contract=off -fopenmp-simd -Wall -Wextra -Wshadow
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fopenmp-simd
+    -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/= -Wall -Wextra -Wshadow
     -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict)

@@ -10,23 +10,23 @@ source scripts/setup.sh
 setup_packages run check ci
 
 step "Checking all of the code with clang-tidy"
-quietly configure-tidy cmake --preset tidy
+configure tidy
 quietly tidy scripts/tidy.sh build/tidy ""
 
 step "Building what may race with the thread sanitizer"
-quietly configure-tsan cmake --preset tsan
+configure tsan
 build tsan
 step "Running it"
 run_tests tsan
 
 step "Building a shared library with the address and undefined-behaviour sanitizers"
-quietly configure-asan-ubsan cmake --preset asan-ubsan
+configure asan-ubsan
 build asan-ubsan
 step "Running the longest tests with them"
 run_tests asan-ubsan-long
 
 step "Building the program and the tests"
-quietly configure-release cmake --preset release -DTRILOBE_BUILD_TESTS=ON
+configure release -DTRILOBE_BUILD_TESTS=ON
 build release
 step "Running the tests that go through choices, with all combinations"
 TRILOBE_ALL_CHOICES=1 run_tests release

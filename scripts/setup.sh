@@ -75,6 +75,15 @@ setup_packages() {
   quietly apt apt_install "${missing[@]}"
 }
 
+# configure PRESET [ARGUMENT...]: configures its folder. What was compiled before from the same text, in
+# this checkout or another, comes from ccache where that is installed (.ci/run installs it).
+configure() {
+  if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=$PWD/scripts/cached_compiler.sh
+  fi
+  quietly "configure-$1" cmake --preset "$@"
+}
+
 # build PRESET [TARGET...]: builds a configured preset, with ninja's progress line on a terminal.
 build() {
   local preset=$1 command=(cmake --build --preset "$1" --parallel "$(nproc)")

@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "experiments/program.h"
+#include "experiments/stiff/answers.h"
 #include "experiments/stiff/certificate.h"
 
 DEFINE_string(case, "all", "name of a case, or all; other answers in the file are kept");
 DEFINE_int32(random_starts, 24, "starts besides the truth and the deterministic ones");
-DEFINE_string(out, TRILOBE_STIFF_ANSWERS, "file of the answers");
+DEFINE_string(out, trilobe::CertifiedAnswers(), "file of the answers");
 
 namespace trilobe {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "experiments/program.h"
 #include "experiments/stiff/agreement.h"
+#include "experiments/stiff/answers.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/reference_problem.h"
 #include "trilobe/base/error.h"
@@ -24,7 +25,7 @@ DEFINE_bool(list, false, "print the cases and what is hard about each, and end")
 DEFINE_int32(max_iterations, 500,
              "iterations of each; no other stopping rule but that of a solver"
              " that finds no lower E, or an exact fit");
-DEFINE_string(answers, TRILOBE_STIFF_ANSWERS, "the certified answers");
+DEFINE_string(answers, trilobe::CertifiedAnswers(), "the certified answers");
 DEFINE_string(out, "", "file for the results, JSON");
 
 namespace trilobe {

@@ -280,8 +280,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
     if (model.spec().anisotropic()) {
       WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(kAtNodesName));
     } else {
-      WriteMerl(Reconstruct(model, source, objective.samples().grid, threads),
-                folder->PathOf(kReconstructionName));
+      WriteMerl(Reconstruct(model, source, {}, threads), folder->PathOf(kReconstructionName));
     }
   }
   const PictureData pictured =

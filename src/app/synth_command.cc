@@ -43,7 +43,7 @@ Command SynthCommand() {
   return {
       .name = "synth",
       .summary = "write a synthetic measurement, or list the materials",
-      .arguments = "[NAME[@THETASxPHIS]]",
+      .arguments = "[NAME[@GRID]]",
       .min_arguments = 0,
       .max_arguments = 1,
       .details =
@@ -54,9 +54,10 @@ Command SynthCommand() {
           "at random. Wherever a "
           "SOURCE is asked\nfor, synth:NAME gives the same data without a file.\nAnisotropic "
           "materials come at the 288 x 288 pairs of directions of the UTIA database, to a FILE "
-          "that\nends in .bin or .csv. @THETASxPHIS makes another grid of directions, for a .csv: "
-          "synth:linen@9x36 has\ntheta every 10 and phi every 10 degrees. Isotropic materials "
-          "take it, too.",
+          "that\nends in .bin or .csv. @GRID is another grid: of THETASxPHIS directions, for a "
+          ".csv, as synth:linen@9x36,\nwith theta every 10 and phi every 10 degrees, for isotropic "
+          "materials, too; or of theta_h x theta_d x\nphi_d bins, as synth:felt@30x30x60, for "
+          "tries that take a second.",
       .flags = {"out", "noise", "missing", "seed", "threads"},
       .run = RunSynth};
 }

@@ -6,6 +6,7 @@
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/synth.h"
+#include "trilobe/io/text_lines.h"
 #include "trilobe/io/utia_file.h"
 
 // The formats of the library, in the order in which they are asked whether a file is theirs. NAME
@@ -35,6 +36,24 @@ TRILOBE_FOR_EACH_FORMAT(TRILOBE_DECLARE)
 namespace {
 
 constexpr std::string_view kSynth = "synth:";
+
+// "30x30x60".
+MerlGrid ParseMerlGrid(std::string_view text) {
+  const size_t first = text.find('x'), second = text.find('x', first + 1);
+  const MerlGrid grid = {ToInteger(text.substr(0, first)).value_or(0),
+                         ToInteger(text.substr(first + 1, second - first - 1)).value_or(0),
+                         ToInteger(text.substr(second + 1)).value_or(0)};
+  constexpr int kFewest = 4, kMost = 360;
+  const auto [fewest, most] = std::minmax({grid.theta_h, grid.theta_d, grid.phi_d});
+  if (fewest < kFewest || most > kMost || 1.0 * grid.theta_h * grid.theta_d * grid.phi_d > 1e7) {
+    throw Error("'" + std::string(text) +
+                "' is no grid of bins; give the numbers of theta_h, theta_d and phi_d, as "
+                "30x30x60, each from " +
+                std::to_string(kFewest) + " to " + std::to_string(kMost) +
+                ", and no more than ten million in all");
+  }
+  return grid;
+}
 
 // "a MERL .binary file, ... or synth:NAME".
 std::string WhatMeasurementsAre() {
@@ -81,8 +100,13 @@ SynthSource SynthSourceOf(std::string_view source) {
   const std::string_view name = source.substr(kSynth.size());
   const size_t at = name.find('@');
   const SynthMaterial& material = FindSynthMaterial(name.substr(0, at));
-  if (at != std::string_view::npos) return {material, ParseHemisphereGrid(name.substr(at + 1))};
-  return {material, material.anisotropic ? std::optional(kUtiaGrid) : std::nullopt};
+  if (at == std::string_view::npos) {
+    if (material.anisotropic) return {material, kUtiaGrid};
+    return {material, MerlGrid()};
+  }
+  const std::string_view grid = name.substr(at + 1);
+  if (std::ranges::count(grid, 'x') == 2) return {material, ParseMerlGrid(grid)};
+  return {material, ParseHemisphereGrid(grid)};
 }
 
 void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
@@ -122,15 +146,15 @@ Measurement LoadMeasurement(const std::string& source, const SourceOptions& opti
   if (!IsSynthetic(source)) return ParseMeasurement(ReadFile(source), source, options);
   const auto [material, grid] = SynthSourceOf(source);
   Measurement measurement;
-  if (grid) {
+  if (const auto* const directions = std::get_if<HemisphereGrid>(&grid)) {
     measurement =
-        SynthesizeSamples(material, options.noise, options.seed, *grid, options.num_threads);
+        SynthesizeSamples(material, options.noise, options.seed, *directions, options.num_threads);
     measurement.source = measurement.samples.source = source;
   } else {
-    measurement = {
-        .source = source,
-        .kind = "synthetic measurement",
-        .table = Synthesize(material, options.noise, options.seed, {}, options.num_threads)};
+    measurement = {.source = source,
+                   .kind = "synthetic measurement",
+                   .table = Synthesize(material, options.noise, options.seed,
+                                       std::get<MerlGrid>(grid), options.num_threads)};
     measurement.table->source = source;
   }
   DecideMeasured(options, &measurement);

@@ -1,12 +1,13 @@
 #ifndef TRILOBE_IO_SOURCE_H_
 #define TRILOBE_IO_SOURCE_H_
 
-#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "trilobe/brdf/brdf_table.h"
+#include "trilobe/brdf/merl_grid.h"
 #include "trilobe/io/hemisphere_grid.h"
 #include "trilobe/io/measurement.h"
 #include "trilobe/io/measurement_format.h"
@@ -15,19 +16,20 @@
 namespace trilobe {
 
 // A measurement by the name that a user types: a path to a file of one of MeasurementFormats(), or
-// `synth:NAME`, or `synth:NAME@18x72`, at the directions of that HemisphereGrid. Throws Error.
+// `synth:NAME`, or `synth:NAME@18x72`, at the directions of that HemisphereGrid, or
+// `synth:NAME@30x30x60`, a table of that MerlGrid. Throws Error.
 Measurement LoadMeasurement(const std::string& source, const SourceOptions& options = {});
 
 // The same where a table is needed. Throws Error for scattered data, too.
 BrdfTable LoadSource(const std::string& source, const SourceOptions& options = {});
 
 // Whether the source is synth:NAME, and if it is, what it names: the material, and the grid of
-// directions where there is one, as all anisotropic materials have. Throws Error for an unknown
-// NAME.
+// directions or of bins; anisotropic materials have the former. Throws Error for an unknown NAME,
+// and for grids of more than ten million samples.
 bool IsSynthetic(std::string_view source);
 struct SynthSource {
   const SynthMaterial& material;
-  std::optional<HemisphereGrid> grid = {};
+  std::variant<MerlGrid, HemisphereGrid> grid;
 };
 SynthSource SynthSourceOf(std::string_view source);
 

@@ -15,6 +15,7 @@
 
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
+#include "tests/paths.h"
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/trace_file.h"
@@ -455,11 +456,12 @@ TEST(Fit, SaysSoWhenItsReportIsLost) {
   const TerminalResult result = RunOnTerminal({"synth"}, "", 0);
   EXPECT_EQ(result.status, 0);
   // The same with standard output on a full disk.
+  const std::string program = Program();
   const pid_t pid = fork();
   if (pid == 0) {
     const int full = open("/dev/full", O_WRONLY);
     if (dup2(full, STDOUT_FILENO) < 0 || dup2(full, STDERR_FILENO) < 0) _exit(126);
-    execl(TRILOBE_PROGRAM, TRILOBE_PROGRAM, "synth", nullptr);
+    execl(program.c_str(), program.c_str(), "synth", nullptr);
     _exit(127);
   }
   int status = 0;

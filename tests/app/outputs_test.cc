@@ -13,6 +13,7 @@
 
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
+#include "tests/paths.h"
 #include "trilobe/io/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -253,7 +254,7 @@ TEST(FitMany, FitsAFolderIntoItself) {
   EXPECT_THAT(RunProgram(command).out, HasSubstr("[1/1] few: kept"));
   // Another build of the same version may fit otherwise.
   const std::string program = folder / "program";
-  std::filesystem::copy(TRILOBE_PROGRAM, program);
+  std::filesystem::copy(Program(), program);
   EXPECT_THAT(RunProgram(command, {}, program).out, HasSubstr("[1/1] few: kept"));
   std::ofstream(program, std::ios::app) << "other bytes";
   EXPECT_THAT(RunProgram(command, {}, program).out, HasSubstr("[1/1] few: fitted"));

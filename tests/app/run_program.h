@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/contents.h"
+#include "tests/paths.h"
 
 namespace trilobe {
 
@@ -52,7 +53,7 @@ struct ProgramResult {
 // set for it. Or a copy of it.
 inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
                                 const std::vector<std::string>& environment = {},
-                                const std::string& program = TRILOBE_PROGRAM) {
+                                const std::string& program = Program()) {
   const TemporaryFolder folder;
   const std::string out = folder / "out", err = folder / "err";
   std::vector<std::string> words = {program};

@@ -9,6 +9,7 @@
 
 #include "experiments/stiff/agreement.h"
 #include "experiments/stiff/anisotropic_cases.h"
+#include "experiments/stiff/answers.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
@@ -20,7 +21,7 @@ namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 const Certificate& CertificateOf(const std::string& name) {
-  static const std::vector<Certificate> all = ReadCertificates(TRILOBE_STIFF_ANSWERS);
+  static const std::vector<Certificate> all = ReadCertificates(CertifiedAnswers());
   return *std::ranges::find(all, name, &Certificate::name);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/io/test_directory.h"
+#include "tests/paths.h"
 #include "trilobe/io/cornell_file.h"
 #include "trilobe/io/source.h"
 
@@ -63,7 +64,7 @@ TEST(AstmFile, ReadsSpectra) {
 
 // The same measurement in the other format of its authors.
 TEST(AstmFile, ReadsWhatCornellMeasured) {
-  const std::string path = std::string(TRILOBE_TEST_DATA_DIR) + "/cornell/mystique.brdf";
+  const std::string path = MeasuredData("cornell/mystique.brdf");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   std::ifstream file(path);
   std::string line, names, rows;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/io/test_directory.h"
+#include "tests/paths.h"
 #include "trilobe/io/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -55,7 +56,7 @@ TEST(CornellFile, ErrorsSayWhereAndWhatIsExpected) {
 // The samples and what is wrong with them, counted by another program. Blue enamel is mostly out of
 // the gamut of sRGB, but its spectra are all valid.
 TEST(CornellFile, ReadsPublishedMeasurements) {
-  const std::string folder = std::string(TRILOBE_TEST_DATA_DIR) + "/cornell/";
+  const std::string folder = MeasuredData("cornell/");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   struct Expected {
     const char* name;

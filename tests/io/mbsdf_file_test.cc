@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/io/test_directory.h"
+#include "tests/paths.h"
 #include "trilobe/io/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -88,7 +89,7 @@ TEST(MbsdfFile, ErrorsSayWhatIsWrong) {
 
 // Counted by another program.
 TEST(MbsdfFile, ReadsPublishedMeasurements) {
-  const std::string folder = std::string(TRILOBE_TEST_DATA_DIR) + "/mbsdf/";
+  const std::string folder = MeasuredData("mbsdf/");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   const std::string path = folder + "carpaint_blue.mbsdf";
   const Measurement blue = LoadMeasurement(path, {.min_theta_d_deg = 0});

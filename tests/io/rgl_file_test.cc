@@ -16,6 +16,7 @@
 
 #include "tests/io/tensor_bytes.h"
 #include "tests/io/test_directory.h"
+#include "tests/paths.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/hemisphere_grid.h"
 #include "trilobe/io/source.h"
@@ -653,8 +654,7 @@ TEST(RglFile, RefusesImpossibleNumbers) {
 std::vector<std::string> MeasuredFiles() {
   std::vector<std::string> paths;
   std::error_code error;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(TRILOBE_TEST_DATA_DIR "/rgl", error)) {
+  for (const auto& entry : std::filesystem::directory_iterator(MeasuredData("rgl"), error)) {
     if (entry.path().extension() == ".bsdf") paths.push_back(entry.path());
   }
   std::ranges::sort(paths);
@@ -663,7 +663,7 @@ std::vector<std::string> MeasuredFiles() {
 
 TEST(RglFile, RealMeasurementsAreFinitePositiveAndNearlyReciprocal) {
   const std::vector<std::string> paths = MeasuredFiles();
-  if (paths.empty()) GTEST_SKIP() << "no RGL files in " TRILOBE_TEST_DATA_DIR "/rgl";
+  if (paths.empty()) GTEST_SKIP() << "no RGL files in " << MeasuredData("rgl");
   std::vector<double> medians;
   for (const std::string& path : paths) {
     SCOPED_TRACE(path);
@@ -697,7 +697,7 @@ TEST(RglFile, RealMeasurementsAreFinitePositiveAndNearlyReciprocal) {
 
 TEST(TabulateRgl, FillsTheWholeMerlGridFromARealMeasurement) {
   const std::vector<std::string> paths = MeasuredFiles();
-  if (paths.empty()) GTEST_SKIP() << "no RGL files in " TRILOBE_TEST_DATA_DIR "/rgl";
+  if (paths.empty()) GTEST_SKIP() << "no RGL files in " << MeasuredData("rgl");
   const BrdfTable table =
       TabulateRgl(RglBrdf::Parse(ReadFile(paths[0]), paths[0]), paths[0], {}, 2);
   EXPECT_EQ(std::ranges::count_if(table.stored[0], [](double x) { return x >= 0; }), 1096216);

@@ -13,6 +13,7 @@
 
 #include "tests/io/tensor_bytes.h"
 #include "tests/io/test_directory.h"
+#include "tests/paths.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/rgl_file.h"
@@ -172,8 +173,7 @@ TEST(RglMask, RealMeasurementsTellWhatWasMeasured) {
   const MerlGrid grid{.theta_h = 30, .theta_d = 30, .phi_d = 60};
   int files = 0;
   std::error_code error;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(TRILOBE_TEST_DATA_DIR "/rgl", error)) {
+  for (const auto& entry : std::filesystem::directory_iterator(MeasuredData("rgl"), error)) {
     if (entry.path().extension() != ".bsdf") continue;
     SCOPED_TRACE(entry.path());
     ++files;
@@ -187,7 +187,7 @@ TEST(RglMask, RealMeasurementsTellWhatWasMeasured) {
     EXPECT_GT(RadiansToDegrees(table.max_theta), 75);
     EXPECT_LT(RadiansToDegrees(table.max_theta), 86);
   }
-  if (files == 0) GTEST_SKIP() << "no RGL files in " TRILOBE_TEST_DATA_DIR "/rgl";
+  if (files == 0) GTEST_SKIP() << "no RGL files in " << MeasuredData("rgl");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/io/test_directory.h"
+#include "tests/paths.h"
 #include "trilobe/io/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -131,7 +132,7 @@ TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
 }
 
 TEST(ZemaxFile, ReadsARealMeasurement) {
-  const std::string path = TRILOBE_TEST_DATA_DIR "/aniso/IMX455.bsdf";
+  const std::string path = MeasuredData("aniso/IMX455.bsdf");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   const Measurement measurement = LoadMeasurement(path);
   EXPECT_TRUE(measurement.anisotropic);

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/paths.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/io/synth.h"
@@ -47,8 +47,7 @@ TEST(RecordedModels, AreMadeAgain) {
   const char* const record = std::getenv("TRILOBE_RECORD");
   Json recorded = Json::object();
   if (record == nullptr) {
-    std::ifstream(std::filesystem::path(__FILE__).parent_path() / "recorded_models.json") >>
-        recorded;
+    std::ifstream(InRepository("tests/solvers/recorded_models.json")) >> recorded;
     ASSERT_EQ(recorded.size(), std::size(kMaterials));
   }
   for (const char* const material : kMaterials) {

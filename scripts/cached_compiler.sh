@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Compiles through ccache, so that what another checkout has compiled is found as well:
+# scripts/cached_compiler.sh COMPILER ARGUMENT..., which setup.sh makes CMake's compiler launcher.
+set -euo pipefail
+
+# Paths below the repository do not count, nor does the folder that the compiler runs in.
+CCACHE_BASEDIR=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
+export CCACHE_BASEDIR CCACHE_NOHASHDIR=1
+# What ccache asks for where headers are precompiled.
+export CCACHE_PCH_EXTSUM=1 CCACHE_SLOPPINESS=pch_defines,time_macros
+
+# ccache makes paths relative but for this one, of clang's precompiled headers:
+# -Xclang -include -Xclang PATH.
+arguments=()
+for argument in "$@"; do
+  if [[ ${arguments[*]: -3} == "-Xclang -include -Xclang" ]]; then
+    argument=$(realpath --relative-to=. "$argument")
+  fi
+  arguments+=("$argument")
+done
+ccache "${arguments[@]}"
+
+# A precompiled header of clang's names the folder that it was made in, so no other checkout makes the
+# same bytes. In place of those of FILE ccache looks at FILE.sum (CCACHE_PCH_EXTSUM): here, of all text
+# that is precompiled, macros included.
+[[ " $* " == *" -Xclang -emit-pch "* ]] || exit 0
+preprocess=() pch=
+for ((i = 0; i < ${#arguments[@]}; ++i)); do
+  case ${arguments[i]} in
+    -o) pch=${arguments[++i]} ;;
+    -MF | -MT) ((++i)) ;;
+    -MD | -c) ;;
+    -Xclang) [[ ${arguments[i + 1]} == -emit-pch ]] && ((++i)) || preprocess+=(-Xclang) ;;
+    *) preprocess+=("${arguments[i]}") ;;
+  esac
+done
+"${preprocess[@]}" -E -P -dD | sha256sum >"$pch.sum"
