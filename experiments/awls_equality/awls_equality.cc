@@ -60,7 +60,8 @@ int Main(const std::string& source) {
   const SourceOptions options = {
       .noise = FLAGS_noise, .max_angle_deg = FLAGS_max_angle, .extrapolated = FLAGS_extrapolated};
   const BrdfSamples samples = Thinned(ValidSamples(LoadSource(source, options)), FLAGS_stride);
-  const Objective objective(samples, ModelSpec::SharedFactors(3), FindWeighting(FLAGS_weighting));
+  const Objective objective(samples, ModelSpec::SharedFactors(3, samples.grid),
+                            FindWeighting(FLAGS_weighting));
   bool passed = true;
   for (const double sigma : {0.0, 1.0}) passed &= Compare(objective, sigma);
   if (!passed) {

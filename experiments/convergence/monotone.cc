@@ -51,7 +51,7 @@ int Main(const std::string& source) {
   const Measurement measured = LoadMeasurement(source, reading);
   const BrdfSamples samples = Thinned(SamplesOf(measured), FLAGS_stride);
   const ModelSpec spec =
-      measured.anisotropic ? ModelSpec::Anisotropic(3) : ModelSpec::SharedFactors(3);
+      measured.anisotropic ? ModelSpec::Anisotropic(3) : ModelSpec::SharedFactors(3, samples.grid);
   const Objective objective(samples, spec, FindWeighting(FLAGS_weighting));
   const double floor = ExactObjective(objective);  // below it E says nothing
 

@@ -116,7 +116,8 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
         .get<double>();
   };
   EXPECT_GT(psnr_from_formula("--guide=1"), psnr_from_formula("--guide=0") + 6);
-  ExpectRefusal({"fit", "synth:plastic", "--guide=2"}, "--guide is for scattered samples, and a ");
+  ExpectRefusal({"fit", "synth:plastic@30x30x60", "--guide=2"},
+                "--guide is for scattered samples, and a ");
 }
 
 // The solver's models have fewer bins of F than the file's.
@@ -151,9 +152,9 @@ TEST_F(AnisotropicCommands, FitOfManyMakesThumbnails) {
 
 TEST_F(AnisotropicCommands, WhatCannotBeIsOneLine) {
   const std::string model = In("fit/model.json");
-  ExpectRefusal({"plot", model, "synth:plastic", "--out=" + In("p")}, "knows no azimuths");
-  ExpectRefusal({"score", model, "synth:plastic"}, "knows no azimuths");
-  ExpectRefusal({"fit", "synth:plastic", "--init=" + model}, "knows no azimuths");
+  ExpectRefusal({"plot", model, "synth:plastic@30x30x60", "--out=" + In("p")}, "knows no azimuths");
+  ExpectRefusal({"score", model, "synth:plastic@30x30x60"}, "knows no azimuths");
+  ExpectRefusal({"fit", "synth:plastic@30x30x60", "--init=" + model}, "knows no azimuths");
   ExpectRefusal({"fit", kVelvet, "--model=auto"}, "--model=auto chooses among isotropic models");
   ExpectRefusal({"score", kVelvet, kVelvet}, "needs a table");
   ExpectRefusal({"compare", In("fit")}, "plan.json");
@@ -221,7 +222,8 @@ TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {
   ExpectRefusal({"fit", kVelvet, "--stretch=0.1,0.2"}, "--stretch is for isotropic models");
   ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--model=isotropic"},
                 "--nodes is for anisotropic models");
-  ExpectRefusal({"fit", "synth:plastic", "--nodes=held_out"}, "--nodes is for anisotropic models");
+  ExpectRefusal({"fit", "synth:plastic@30x30x60", "--nodes=held_out"},
+                "--nodes is for anisotropic models");
   ExpectRefusal({"fit", kVelvet, "--nodes=held_out", "--init=" + In("fit/model.json")},
                 "brings its own lobes and tables");
 }

@@ -68,7 +68,8 @@ TEST(HelpTest, IsTheSameInEveryPlaceAndNotThatOfGflags) {
   }
   const std::string fit = RunProgram({"help", "fit", "--solver=awls_literal"}).out;
   EXPECT_EQ(RunProgram({"fit", "--solver=awls_literal", "--help"}).out, fit);
-  EXPECT_EQ(RunProgram({"--help", "fit", "synth:plastic", "--solver=awls_literal"}).out, fit);
+  EXPECT_EQ(RunProgram({"--help", "fit", "synth:plastic@30x30x60", "--solver=awls_literal"}).out,
+            fit);
 }
 
 TEST(HelpTest, ShowsTheFlagsOfTheSolverGiven) {
@@ -244,10 +245,10 @@ TEST(ConvertTest, WritesSamplesAsCsv) {
   const TemporaryFolder folder;
   const std::string felt = folder / "felt.csv", copy = folder / "copy.csv";
   const ProgramResult result =
-      RunProgram({"convert", "synth:felt", "--max_angle=20", "--out=" + felt});
+      RunProgram({"convert", "synth:felt@30x30x60", "--max_angle=20", "--out=" + felt});
   EXPECT_EQ(result.status, 0) << result.err;
   const json table =
-      json::parse(RunProgram({"info", "synth:felt", "--max_angle=20", "--json"}).out);
+      json::parse(RunProgram({"info", "synth:felt@30x30x60", "--max_angle=20", "--json"}).out);
   const std::string valid = std::to_string(table["bins"]["valid"].get<int>());
   EXPECT_EQ(result.out, "wrote " + felt + ": CSV, " + valid + " samples\n");
   EXPECT_THAT(Contents(felt), StartsWith("# BRDF [1/sr] of " + valid + " pairs"));
@@ -280,7 +281,7 @@ TEST(ConvertTest, ScatteredSamplesHaveNoBins) {
   EXPECT_FALSE(std::filesystem::exists(folder / "y.binary"));
   ExpectError(RunProgram({"convert", folder / "x.csv", "--out=" + (folder / "x.csv")}), "x.csv");
   EXPECT_EQ(Contents(folder / "x.csv"), kCsv);
-  ExpectError(RunProgram({"score", folder / "x.csv", "synth:felt"}), "needs a table");
+  ExpectError(RunProgram({"score", folder / "x.csv", "synth:felt@30x30x60"}), "needs a table");
 }
 
 TEST(ConvertTest, WritesUtiasDirections) {
@@ -298,7 +299,7 @@ TEST(ConvertTest, WritesUtiasDirections) {
   EXPECT_EQ(RunProgram({"convert", folder / "velvet.csv", "--out=" + copy}).status, 0);
   EXPECT_TRUE(Contents(velvet) == Contents(copy));
   // A table is interpolated.
-  EXPECT_THAT(RunProgram({"convert", "synth:foam", "--max_angle=65", "--out=" + copy}).out,
+  EXPECT_THAT(RunProgram({"convert", "synth:foam@30x30x60", "--max_angle=65", "--out=" + copy}).out,
               HasSubstr("57600 of 82944 pairs"));
   // Numbers in another order are told, and read all the same.
   std::string bytes = Contents(velvet), other = bytes;
@@ -321,11 +322,11 @@ TEST(ConvertTest, WritesUtiasDirections) {
 }
 
 TEST(ConvertTest, RejectsBadInput) {
-  ExpectError(RunProgram({"convert", "synth:foam"}), "needs --out=FILE");
+  ExpectError(RunProgram({"convert", "synth:foam@30x30x60"}), "needs --out=FILE");
   const TemporaryFolder folder;
   for (const char* name : {"x.bsdf", "x.json", "x.png", "x.hdr", "x.exr", "x.binary.gz"}) {
     for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"convert", "synth:foam"}, {"synth", "foam"}}) {
+         {std::vector<std::string>{"convert", "synth:foam@30x30x60"}, {"synth", "foam"}}) {
       std::vector<std::string> arguments = words;
       arguments.push_back("--out=" + (folder / name));
       const ProgramResult result = RunProgram(arguments);
@@ -340,7 +341,8 @@ TEST(ConvertTest, RejectsBadInput) {
 TEST(ScoreTest, PrintsATableOrOneJsonObject) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
-  const std::vector<std::string> arguments = {"score", folder / "model.json", "synth:foam"};
+  const std::vector<std::string> arguments = {"score", folder / "model.json",
+                                              "synth:foam@30x30x60"};
   const ProgramResult table = RunProgram(arguments);
   EXPECT_EQ(table.status, 0) << table.err;
   EXPECT_THAT(table.out, AllOf(HasSubstr("PSNR"), HasSubstr("peak"), HasSubstr("worst bins"),
@@ -352,14 +354,14 @@ TEST(ScoreTest, PrintsATableOrOneJsonObject) {
   const json score = json::parse(RunProgram(with_json).out);
   EXPECT_EQ(score["weighting"], "uniform");
   EXPECT_TRUE(score["appearance"]["beyond"].is_null());  // all bins have a value
-  EXPECT_EQ(score["valid_samples"], 1096216);
+  EXPECT_EQ(score["valid_samples"], 40644);
   EXPECT_EQ(score["worst_bins"].size(), 10U);
   for (const char* key : {"objective", "relative_objective", "psnr_db", "psnr_peak", "rmse",
                           "mean_relative_error", "mean_log_error"}) {
     EXPECT_TRUE(score[key].is_number()) << key;
   }
   // Uniform weights: E is the sum of squares that RMSE is the root mean of.
-  const double mean = score["objective"].get<double>() / (3 * 1096216.0);
+  const double mean = score["objective"].get<double>() / (3 * 40644.0);
   EXPECT_NEAR(score["rmse"].get<double>(), std::sqrt(mean), 1e-9 * std::sqrt(mean));
 }
 
@@ -398,11 +400,11 @@ TEST(DataNotes, TellOfADetectorInItsOwnLight) {
     }
   }
   Write(csv, rows.str());
-  EXPECT_THAT(RunProgram({"score", "synth:foam", csv}).err,
+  EXPECT_THAT(RunProgram({"score", "synth:foam@30x30x60", csv}).err,
               StartsWith("trilobe: " + csv + ": the highlight is 100 times darker"));
   EXPECT_THAT(RunProgram({"convert", csv, "--out=" + folder / "lit.csv"}).err,
               HasSubstr("120 samples below 10 deg"));
-  EXPECT_EQ(RunProgram({"score", "synth:foam", csv, "--min_theta_d=0"}).err, "");
+  EXPECT_EQ(RunProgram({"score", "synth:foam@30x30x60", csv, "--min_theta_d=0"}).err, "");
 
   const auto notes_of = [](const json& from) { return from["data_notes"].dump(); };
   const std::string out = folder / "fit";
@@ -430,7 +432,8 @@ TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
     probe += k < 4 ? std::string("\x80\x10\x10\x84", 4) : std::string(4, '\0');
   }
   Write(folder / "red.hdr", probe);
-  const std::vector<std::string> arguments = {"score", folder / "model.json", "synth:foam"};
+  const std::vector<std::string> arguments = {"score", folder / "model.json",
+                                              "synth:foam@30x30x60"};
   std::vector<std::string> lit = arguments;
   lit.insert(lit.end(),
              {"--json", "--probe=" + (folder / "red.hdr"), "--out=" + (folder / "pair.png")});
@@ -450,30 +453,33 @@ TEST(ScoreTest, TakesAProbeAndWritesBothSpheres) {
 TEST(ScoreTest, RejectsBadInput) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
-  ExpectError(RunProgram({"score", "nothing.json", "synth:foam"}), "nothing.json");
+  ExpectError(RunProgram({"score", "nothing.json", "synth:foam@30x30x60"}), "nothing.json");
   ExpectError(RunProgram({"score", folder / "model.json", "nothing.binary"}), "nothing.binary");
-  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=heavy"}),
-              "known: appearance, appearance_channel, log_relative, log_relative_channel, "
-              "cube_root, percentage, "
-              "compressive, log, ");
-  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--weighting=power:x=1"}),
-              "unknown key 'x'");
-  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam", "--probe=missing"}),
-              "missing");
-  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam",
+  ExpectError(
+      RunProgram({"score", folder / "model.json", "synth:foam@30x30x60", "--weighting=heavy"}),
+      "known: appearance, appearance_channel, log_relative, log_relative_channel, "
+      "cube_root, percentage, "
+      "compressive, log, ");
+  ExpectError(
+      RunProgram({"score", folder / "model.json", "synth:foam@30x30x60", "--weighting=power:x=1"}),
+      "unknown key 'x'");
+  ExpectError(
+      RunProgram({"score", folder / "model.json", "synth:foam@30x30x60", "--probe=missing"}),
+      "missing");
+  ExpectError(RunProgram({"score", folder / "model.json", "synth:foam@30x30x60",
                           "--probe=" + (folder / "model.json")}),
               "not a Radiance picture");
   ExpectError(RunProgram({"score", folder / "model.json", folder / "model.json"}), "JSON");
 }
 
 TEST(InfoTest, DescribesAMeasurement) {
-  const ProgramResult text = RunProgram({"info", "synth:chrome", "--noise=0.02"});
+  const ProgramResult text = RunProgram({"info", "synth:chrome@30x30x60", "--noise=0.02"});
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, AllOf(HasSubstr("exchange error"), HasSubstr("directional albedo")));
   EXPECT_THAT(text.out, Not(HasSubstr("nan")));
-  const json info = json::parse(RunProgram({"info", "synth:foam", "--json"}).out);
-  EXPECT_EQ(info["bins"]["valid"], 1096216);
-  EXPECT_EQ(info["bins"]["below_surface"], 1458000 - 1096216);
+  const json info = json::parse(RunProgram({"info", "synth:foam@30x30x60", "--json"}).out);
+  EXPECT_EQ(info["bins"]["valid"], 40644);
+  EXPECT_EQ(info["bins"]["below_surface"], 54000 - 40644);
   EXPECT_LT(info["exchange_error"]["median"], 1e-12);
   EXPECT_TRUE(info["albedo"]["passes_one_deg"]["red"].is_null());
 }
@@ -604,7 +610,7 @@ TEST(InfoTest, RejectsBadInput) {
   ExpectError(RunProgram({"info", folder / "broken.json"}), "broken.json");
   ExpectError(RunProgram({"info", folder / "empty"}), "empty");
   ExpectError(RunProgram({"info", folder / "."}), "directory");
-  ExpectError(RunProgram({"info", "synth:foam", "--max_angle=91"}), "up to 90");
+  ExpectError(RunProgram({"info", "synth:foam@30x30x60", "--max_angle=91"}), "up to 90");
   Write(folder / "model.json", kLambertianModel);
   ExpectError(RunProgram({"info", folder / "model.json", "--out=" + (folder / "p")}), "is a model");
   TinyRgl file;
@@ -627,8 +633,8 @@ TEST(PlotTest, DrawsWhatTheInputsAllow) {
   ExpectPng(folder / "alone/factors.png");
   EXPECT_FALSE(std::filesystem::exists(folder / "alone/slices.png"));
   const ProgramResult all =
-      RunProgram({"plot", folder / "model.json", "synth:foam", "--trace=" + (folder / "trace.csv"),
-                  "--out=" + (folder / "all")});
+      RunProgram({"plot", folder / "model.json", "synth:foam@30x30x60",
+                  "--trace=" + (folder / "trace.csv"), "--out=" + (folder / "all")});
   EXPECT_EQ(all.status, 0) << all.err;
   for (const char* name : {"factors.png", "slices.png", "spheres.png", "trace.png"}) {
     ExpectPng(folder / ("all/" + std::string(name)));

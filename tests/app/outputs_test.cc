@@ -47,8 +47,8 @@ void ExpectRefusal(const ProgramResult& result, const std::string& part) {
 TEST(FitFolder, HoldsTheFilesOfOneRun) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--plots", "--reconstruction", "--course",
-                              "--out=" + out}))
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--plots", "--reconstruction",
+                              "--course", "--out=" + out}))
                 .status,
             0);
   EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
@@ -59,7 +59,7 @@ TEST(FitFolder, HoldsTheFilesOfOneRun) {
   EXPECT_EQ(ReadModel(out + "/model.json").fit.run, first["run"]);
 
   std::ofstream(out + "/notes.txt") << "mine";
-  ASSERT_EQ(RunProgram(Quick({"fit", "synth:rubber", "--out=" + out})).status, 0);
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:rubber@30x30x60", "--out=" + out})).status, 0);
   EXPECT_THAT(Names(out),
               UnorderedElementsAre("model.json", "trace.csv", "report.json", "notes.txt"));
   const nlohmann::json second = Json(out + "/report.json");
@@ -73,12 +73,12 @@ TEST(FitFolder, HoldsTheFilesOfOneRun) {
 TEST(FitFolder, KeepsTheEarlierRunUntilThereIsANewModel) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--out=" + out})).status, 0);
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + out})).status, 0);
   const std::string before = Contents(out + "/report.json");
   std::ofstream(folder / "bad.binary") << "no measurement";
   EXPECT_EQ(RunProgram(Quick({"fit", folder / "bad.binary", "--out=" + out})).status, 1);
   std::filesystem::create_directory(out + "/factors.png");
-  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt", "--out=" + out})),
+  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + out})),
                 "factors.png': it is a directory");
   EXPECT_EQ(Contents(out + "/report.json"), before);
 }
@@ -86,8 +86,8 @@ TEST(FitFolder, KeepsTheEarlierRunUntilThereIsANewModel) {
 TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  const ProgramResult result =
-      RunProgram(Quick({"fit", "synth:felt", "--plots", "--out=" + out}), {"PATH=/nowhere"});
+  const ProgramResult result = RunProgram(
+      Quick({"fit", "synth:felt@30x30x60", "--plots", "--out=" + out}), {"PATH=/nowhere"});
   ExpectRefusal(result, "gnuplot");
   EXPECT_THAT(result.err, HasSubstr("; the model is in '" + out + "/model.json'"));
   EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json"));
@@ -97,7 +97,9 @@ TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
 TEST(Outputs, AreNeverInputs) {
   const TemporaryFolder folder;
   const std::string out = folder / "out", model = out + "/model.json";
-  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--reconstruction", "--out=" + out})).status, 0);
+  ASSERT_EQ(
+      RunProgram(Quick({"fit", "synth:felt@30x30x60", "--reconstruction", "--out=" + out})).status,
+      0);
   const std::string table = out + "/reconstruction.binary";
   std::filesystem::create_symlink(model, folder / "link");
   std::filesystem::create_hard_link(model, folder / "hard");
@@ -107,12 +109,12 @@ TEST(Outputs, AreNeverInputs) {
       {"fit", table, "--out=" + out},
       {"fit", table, "--reconstruction", "--out=" + out + "/../out/."},
       {"fit", table, "--out=" + (folder / "linked")},
-      {"fit", table, "synth:felt", "--out=" + (folder / "")},
-      {"fit", "synth:felt", "--init=" + model, "--out=" + out},
-      {"fit", "synth:felt", "--init=" + (folder / "hard"), "--out=" + out},
+      {"fit", table, "synth:felt@30x30x60", "--out=" + (folder / "")},
+      {"fit", "synth:felt@30x30x60", "--init=" + model, "--out=" + out},
+      {"fit", "synth:felt@30x30x60", "--init=" + (folder / "hard"), "--out=" + out},
       {"convert", model, "--out=" + (folder / "link")},
       {"convert", table, "--out=" + table},
-      {"score", model, "synth:felt", "--out=" + (folder / "hard")},
+      {"score", model, "synth:felt@30x30x60", "--out=" + (folder / "hard")},
   };
   std::filesystem::create_directory(folder / "reconstruction");
   std::filesystem::create_symlink(table, folder / "reconstruction/pair.png");
@@ -141,7 +143,7 @@ TEST(Outputs, APictureOfAMeasurementDoesNotReplaceIt) {
 TEST(FitFolder, LeavesFilesOfNoRunAlone) {
   const TemporaryFolder folder;
   std::ofstream(folder / "course.csv") << "mine";
-  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt", "--out=" + (folder / "")})),
+  ExpectRefusal(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + (folder / "")})),
                 "course.csv' is not of a run of this command");
   EXPECT_EQ(Contents(folder / "course.csv"), "mine");
 }
@@ -150,8 +152,8 @@ TEST(Outputs, AreCheckedBeforeTheWork) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "model.json");
   std::filesystem::create_symlink("nothing", folder / "trace.csv");
-  const std::vector<std::string> endless = {"fit", "synth:felt", "--max_iterations=1000000",
-                                            "--tolerance=0"};
+  const std::vector<std::string> endless = {"fit", "synth:felt@30x30x60",
+                                            "--max_iterations=1000000", "--tolerance=0"};
   for (const std::string& out : {folder / "", std::string("/proc/nowhere")}) {
     std::vector<std::string> command = endless;
     command.push_back("--out=" + out);
@@ -164,7 +166,7 @@ TEST(Interrupt, TwiceKeepsTheModel) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   const TerminalResult result =
-      RunOnTerminal({"fit", "synth:felt", "--solver=awls", "--max_iterations=1000000",
+      RunOnTerminal({"fit", "synth:felt@30x30x60", "--solver=awls", "--max_iterations=1000000",
                      "--tolerance=0", "--plots", "--out=" + out},
                     "iteration 2", SIGINT, /*times=*/2);
   // A shell reports an end by SIGINT as 130, too.
@@ -181,7 +183,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   std::ofstream(data + "/torn.binary") << "no measurement";
   std::ofstream(data + "/notes.txt") << "no measurement, by its name";
   const std::vector<std::string> command =
-      Quick({"fit", data, "synth:felt", "--threads=2", "--out=" + out});
+      Quick({"fit", data, "synth:felt@30x30x60", "--threads=2", "--out=" + out});
   const ProgramResult result = RunProgram(command);
   EXPECT_EQ(result.status, 3);  // one failed
   EXPECT_EQ(result.err, "");
@@ -195,14 +197,15 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   }
   const std::string table = Contents(out + "/fits.csv"), page = Contents(out + "/index.html");
   EXPECT_EQ(std::ranges::count(table, '\n'), 4);
-  EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt,fitted,"));
+  EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt@30x30x60,fitted,"));
   EXPECT_THAT(table, HasSubstr("\ntorn," + data + "/torn.binary,failed,,,,,,,"));
   EXPECT_THAT(page, HasSubstr("<h1>2 of 3 measurements in pictures</h1>"));
   EXPECT_THAT(page, HasSubstr("src=\"a%20%26%20b/pair.png\""));
   EXPECT_THAT(page, HasSubstr("<b>a &amp; b</b>"));
 
   // A thread more or less, and alone or with others: the same model.
-  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--out=" + (folder / "alone")})).status, 0);
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + (folder / "alone")})).status,
+            0);
   EXPECT_THAT(
       ReadModel(out + "/felt/model.json").model.parameters(),
       ::testing::ElementsAreArray(ReadModel(folder / "alone/model.json").model.parameters()));
@@ -231,9 +234,9 @@ TEST(FitMany, WhatIsNotWholeIsFittedAgain) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   // By itself, without the thumbnail that a page needs.
-  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt", "--out=" + out + "/felt"})).status, 0);
+  ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + out + "/felt"})).status, 0);
   const std::vector<std::string> command =
-      Quick({"fit", "synth:felt", "--shard=1/1", "--plots", "--out=" + out});
+      Quick({"fit", "synth:felt@30x30x60", "--shard=1/1", "--plots", "--out=" + out});
   const ProgramResult without = RunProgram(command, {"PATH=/nowhere"});
   EXPECT_EQ(without.status, 3);
   EXPECT_THAT(without.out, HasSubstr("felt: failed: pictures need gnuplot"));
@@ -263,15 +266,22 @@ TEST(FitMany, FitsAFolderIntoItself) {
 TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  std::vector<std::string> command = {
-      "fit",           "synth:felt",         "synth:rubber", "synth:copper",   "--threads=1",
-      "--solver=awls", "--max_iterations=3", "--lobes=1",    "--max_angle=30", "--out=" + out};
+  std::vector<std::string> command = {"fit",
+                                      "synth:felt@30x30x60",
+                                      "synth:rubber@30x30x60",
+                                      "synth:copper@30x30x60",
+                                      "--threads=1",
+                                      "--solver=awls",
+                                      "--max_iterations=3",
+                                      "--lobes=1",
+                                      "--max_angle=30",
+                                      "--out=" + out};
   const TerminalResult result = RunOnTerminal(command, "1 of 3 measurements finished", SIGTERM);
   EXPECT_EQ(result.status, 128 + SIGTERM) << result.text;
   EXPECT_THAT(result.text, HasSubstr("the same command goes on"));
   EXPECT_TRUE(std::filesystem::exists(out + "/felt/report.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/copper"));
-  EXPECT_THAT(Contents(out + "/fits.csv"), HasSubstr("\ncopper,synth:copper,missing,"));
+  EXPECT_THAT(Contents(out + "/fits.csv"), HasSubstr("\ncopper,synth:copper@30x30x60,missing,"));
   const ProgramResult rest = RunProgram(command);
   EXPECT_EQ(rest.status, 0) << rest.err;
   EXPECT_THAT(rest.out, HasSubstr("] felt: kept"));
@@ -316,22 +326,24 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   ExpectRefusal(RunProgram({"score", out + "/model.json", csv, "--out=" + (folder / "x.png")}),
                 "needs a table");
   const ProgramResult many =
-      RunProgram({"fit", csv, "synth:copper", "--solver=awls", "--lobes=1", "--max_iterations=1",
-                  "--max_angle=30", "--out=" + (folder / "many")});
+      RunProgram({"fit", csv, "synth:copper@30x30x60", "--solver=awls", "--lobes=1",
+                  "--max_iterations=1", "--max_angle=30", "--out=" + (folder / "many")});
   EXPECT_EQ(many.status, 0) << many.out << many.err;
 }
 
 TEST(FitMany, BadUseIsAnError) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "empty");
-  ExpectRefusal(RunProgram({"fit", "synth:felt", "synth:rubber"}), "needs --out=DIR");
+  ExpectRefusal(RunProgram({"fit", "synth:felt@30x30x60", "synth:rubber@30x30x60"}),
+                "needs --out=DIR");
   ExpectRefusal(RunProgram({"fit", folder / "empty", "--out=" + (folder / "o")}),
                 "has no measurement");
-  ExpectRefusal(RunProgram({"fit", "synth:felt", "x/felt.binary", "--out=" + (folder / "o")}),
-                "'synth:felt' and 'x/felt.binary' would both be fitted into 'felt'");
+  ExpectRefusal(
+      RunProgram({"fit", "synth:felt@30x30x60", "x/felt.binary", "--out=" + (folder / "o")}),
+      "'synth:felt@30x30x60' and 'x/felt.binary' would both be fitted into 'felt'");
   for (const char* const shard : {"0/2", "3/2", "1", "1/2x", "-1/-1", "a/b"}) {
-    ExpectRefusal(RunProgram({"fit", "synth:felt", "synth:rubber", "--out=" + (folder / "o"),
-                              std::string("--shard=") + shard}),
+    ExpectRefusal(RunProgram({"fit", "synth:felt@30x30x60", "synth:rubber@30x30x60",
+                              "--out=" + (folder / "o"), std::string("--shard=") + shard}),
                   "is no i/n");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "o"));

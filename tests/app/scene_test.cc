@@ -26,8 +26,8 @@ constexpr const char* kScene = R"({
   "directions": {"theta_i": [0, 30], "theta_o": [0, 30]},
   "budget": {"relative_rise": 0.05},
   "materials": [
-    {"name": "wall", "source": "synth:rubber"},
-    {"name": "curtain", "source": "synth:felt", "channels": "luminance"}
+    {"name": "wall", "source": "synth:rubber@30x30x60"},
+    {"name": "curtain", "source": "synth:felt@30x30x60", "channels": "luminance"}
   ]
 })";
 
@@ -66,7 +66,7 @@ TEST(Scene, IsPlannedFittedAndCompared) {
   const ProgramResult plan = RunQuickly(folder, {"plan", scene});
   ASSERT_EQ(plan.status, 0) << plan.err;
   EXPECT_EQ(plan.err, "");
-  EXPECT_THAT(plan.out, HasSubstr("\nwall: synth:rubber; E may rise by 5 %\n"));
+  EXPECT_THAT(plan.out, HasSubstr("\nwall: synth:rubber@30x30x60; E may rise by 5 %\n"));
   EXPECT_THAT(plan.out, HasSubstr("in directions that the scene does not use"));
 
   const ProgramResult fit = RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
@@ -96,7 +96,7 @@ TEST(Scene, IsPlannedFittedAndCompared) {
   ASSERT_EQ(compared["materials"].size(), 2U);
   for (size_t k = 0; k < 2; ++k) {
     const auto& row = compared["materials"][k];
-    EXPECT_EQ(row["full"]["numbers"], ModelSpec::SharedFactors(1).num_parameters());
+    EXPECT_EQ(row["full"]["numbers"], ModelSpec::SharedFactors(1, {30, 30, 60}).num_parameters());
     EXPECT_EQ(row["pruned"]["numbers"], json["materials"][k]["numbers"]["pruned"]);
     const double planned = json["materials"][k]["objective"]["pruned"];
     EXPECT_NEAR(row["pruned"]["objective"].get<double>(), planned, 1e-10 * planned);
@@ -122,9 +122,9 @@ TEST(Scene, AnInterruptKeepsWhatIsFinished) {
   const TemporaryFolder folder;
   const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
       "materials": [
-        {"name": "quick", "source": "synth:rubber", "budget": {"seconds": 1},
+        {"name": "quick", "source": "synth:rubber@30x30x60", "budget": {"seconds": 1},
          "directions": {"theta_i": [0, 10], "theta_o": [0, 10]}},
-        {"name": "slow", "source": "synth:felt"}]})");
+        {"name": "slow", "source": "synth:felt@30x30x60"}]})");
   const std::string out = folder / "out";
   const TerminalResult result =
       RunOnTerminal({"fit", "--scene=" + scene, "--out=" + out, "--threads=1", "--solver=awls",
@@ -144,7 +144,7 @@ TEST(Scene, OneBadMaterialDoesNotStopTheOthers) {
   const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
       "directions": {"theta_i": [0, 10], "theta_o": [0, 10]},
       "materials": [{"name": "torn", "source": "torn.binary"},
-                    {"name": "wall", "source": "synth:rubber"}]})");
+                    {"name": "wall", "source": "synth:rubber@30x30x60"}]})");
   const std::string out = folder / "out";
   const ProgramResult fit = RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
   EXPECT_EQ(fit.status, 3);
@@ -168,7 +168,7 @@ TEST(Scene, ItsFolderHoldsOneScene) {
   const auto fit = [&](const std::string& name) {
     const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
         "directions": {"theta_i": [0, 10], "theta_o": [0, 10]},
-        "materials": [{"name": ")" + name + R"(", "source": "synth:rubber"}]})");
+        "materials": [{"name": ")" + name + R"(", "source": "synth:rubber@30x30x60"}]})");
     return RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + out});
   };
   ASSERT_EQ(fit("first").status, 0);
@@ -198,7 +198,7 @@ TEST(Scene, ItsFolderHoldsOneScene) {
 TEST(Scene, DoesNotOverwriteItsOwnFiles) {
   const TemporaryFolder folder;
   const std::string scene = MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
-      "materials": [{"name": "scene", "source": "synth:rubber"}]})");
+      "materials": [{"name": "scene", "source": "synth:rubber@30x30x60"}]})");
   const std::string before = Contents(scene);
   const ProgramResult result =
       RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + (folder / "")});
@@ -225,8 +225,8 @@ TEST(Scene, BadUseIsAnError) {
       {{"plan", scene, "--nocache", "--cache=x"}, "contradict"},
       {{"fit"}, "needs a SOURCE, or --scene"},
       {{"fit", "--scene=" + scene}, "needs --out=DIR"},
-      {{"fit", "synth:felt", "--scene=" + scene}, "leave out synth:felt"},
-      {{"fit", "synth:felt", "--nocache"}, "--nocache goes with --scene"},
+      {{"fit", "synth:felt@30x30x60", "--scene=" + scene}, "leave out synth:felt@30x30x60"},
+      {{"fit", "synth:felt@30x30x60", "--nocache"}, "--nocache goes with --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--plots"}, "not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--course"}, "not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--robust=0.1"},

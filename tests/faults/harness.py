@@ -81,11 +81,11 @@ class Command:
         self.out = os.path.join(harness.room, "out")
         if kind == "one":
             self.words = ["fit", harness.source, *QUICK, "--plots", "--reconstruction", f"--out={self.out}"]
-            self.earlier = ["fit", "synth:rubber", *QUICK, "--plots", "--course", f"--out={self.out}"]
+            self.earlier = ["fit", "synth:rubber@30x30x60", *QUICK, "--plots", "--course", f"--out={self.out}"]
             self.folders = ["."]
         elif kind == "many":
-            self.words = ["fit", harness.source, "synth:felt", *QUICK, f"--out={self.out}"]
-            self.earlier = ["fit", harness.source, "synth:felt", *QUICK, "--weighting=cosine", f"--out={self.out}"]
+            self.words = ["fit", harness.source, "synth:felt@30x30x60", *QUICK, f"--out={self.out}"]
+            self.earlier = ["fit", harness.source, "synth:felt@30x30x60", *QUICK, "--weighting=cosine", f"--out={self.out}"]
             self.folders = ["copper", "felt"]
         else:
             cache = "--cache=" + os.path.join(harness.room, "cache")
@@ -156,8 +156,8 @@ class Harness:
             self.source = os.path.join(room, "copper.binary")
             subprocess.run([self.program, "synth", "copper", "--noise=0.02", f"--out={self.source}"], check=True,
                            stdout=subprocess.DEVNULL)
-            self.scene = self._scene("scene.json", {"wall": "synth:rubber", "pot": "copper.binary"})
-            self.other_scene = self._scene("other.json", {"wall": "synth:felt", "door": "synth:rubber"})
+            self.scene = self._scene("scene.json", {"wall": "synth:rubber@30x30x60", "pot": "copper.binary"})
+            self.other_scene = self._scene("other.json", {"wall": "synth:felt@30x30x60", "door": "synth:rubber@30x30x60"})
             self.inputs = snapshot(room)
             yield
 
