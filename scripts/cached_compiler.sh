@@ -18,20 +18,21 @@ for argument in "$@"; do
   fi
   arguments+=("$argument")
 done
-ccache "${arguments[@]}"
+[[ " $* " == *" -x c++-header "* ]] || exec ccache "${arguments[@]}"
 
-# A precompiled header of clang's names the folder that it was made in, so no other checkout makes the
-# same bytes. In place of those of FILE ccache looks at FILE.sum (CCACHE_PCH_EXTSUM): here, of all text
+# To precompile headers. ccache would not see that a macro of theirs has changed, and what clang makes
+# names the folder that it was made in, so no other checkout makes the same bytes. They are made each
+# time, and in place of the bytes of FILE ccache looks at FILE.sum (CCACHE_PCH_EXTSUM): here, of all text
 # that is precompiled, macros included.
-[[ " $* " == *" -Xclang -emit-pch "* ]] || exit 0
-preprocess=() pch=
+"${arguments[@]}"
+preprocess=() file=
 for ((i = 0; i < ${#arguments[@]}; ++i)); do
   case ${arguments[i]} in
-    -o) pch=${arguments[++i]} ;;
+    -o) file=${arguments[++i]} ;;
     -MF | -MT) ((++i)) ;;
     -MD | -c) ;;
     -Xclang) [[ ${arguments[i + 1]} == -emit-pch ]] && ((++i)) || preprocess+=(-Xclang) ;;
     *) preprocess+=("${arguments[i]}") ;;
   esac
 done
-"${preprocess[@]}" -E -P -dD | sha256sum >"$pch.sum"
+"${preprocess[@]}" -E -P -dD | sha256sum >"$file.sum"

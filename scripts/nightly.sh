@@ -11,7 +11,7 @@ setup_packages run check ci
 
 step "Checking all of the code with clang-tidy"
 configure tidy
-quietly tidy scripts/tidy.sh build/tidy ""
+quietly tidy scripts/tidy.py build/tidy ""
 
 step "Building what may race with the thread sanitizer"
 configure tsan

@@ -23,7 +23,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CONCERNS_ALL = re.compile(
-    r"(^|/)(\.clang-tidy|dependencies\.txt)$|^scripts/(tidy\.sh|reached\.py)$")
+    r"(^|/)(\.clang-tidy|dependencies\.txt)$|^scripts/(tidy\.py|reached\.py)$")
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
 # What lands together is taken to have been written within so many; scripts/nightly.sh checks all.

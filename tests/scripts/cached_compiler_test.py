@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""scripts/cached_compiler.sh in two checkouts of a small project, with precompiled headers."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/cached_compiler.sh"
+FILES = {
+    "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
+project(some LANGUAGES CXX)
+add_library(one OBJECT one.cc)
+target_precompile_headers(one PRIVATE <vector> ${CMAKE_CURRENT_SOURCE_DIR}/one.h)
+add_library(two OBJECT two.cc)
+target_precompile_headers(two REUSE_FROM one)
+""",
+    "one.h": "#define ONE 1\n",
+    "one.cc": "std::vector<int> one{ONE};\n",
+    "two.cc": "std::vector<int> two{ONE, ONE};\n",
+}
+
+
+@unittest.skipUnless(shutil.which("ccache"), "no ccache")
+class CachedCompiler(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def checkout(self, name, changed=None):
+        root = self.folder / name
+        root.mkdir()
+        for path, text in {**FILES, **(changed or {})}.items():
+            (root / path).write_text(text)
+        (root / "scripts").mkdir()
+        shutil.copy(SCRIPT, root / "scripts")
+        return root
+
+    def built(self, root, compiler):
+        """How many of the two objects ccache had when all was built."""
+        environment = {**os.environ, "CCACHE_DIR": str(self.folder / "cache")}
+        subprocess.run(["cmake", "-S", root, "-B", root / "build", "-G", "Ninja",
+                        f"-DCMAKE_CXX_COMPILER={compiler}", "-DCMAKE_CXX_COMPILER_LAUNCHER="
+                        f"{root}/scripts/cached_compiler.sh"],
+                       check=True, capture_output=True, env=environment)
+        # Not those of what CMake tried above.
+        subprocess.run(["ccache", "--zero-stats"], check=True, capture_output=True,
+                       env=environment)
+        subprocess.run(["cmake", "--build", root / "build"], check=True, capture_output=True,
+                       env=environment)
+        printed = subprocess.run(["ccache", "--print-stats"], check=True, capture_output=True,
+                                 text=True, env=environment).stdout
+        statistics = dict(line.split("\t") for line in printed.splitlines())
+        return int(statistics["direct_cache_hit"]) + int(statistics["preprocessed_cache_hit"])
+
+    def check(self, compiler):
+        if not shutil.which(compiler):
+            self.skipTest(f"no {compiler}")
+        self.assertEqual(self.built(self.checkout("a"), compiler), 0)
+        self.assertEqual(self.built(self.checkout("b"), compiler), 2)
+        # What is precompiled counts, macros included.
+        other = {"one.h": "#define ONE 2\n"}
+        self.assertEqual(self.built(self.checkout("c", other), compiler), 0)
+
+    def test_of_gcc(self):
+        self.check("g++")
+
+    def test_of_clang(self):
+        self.check("clang++")
+
+
+if __name__ == "__main__":
+    unittest.main()
