@@ -4,8 +4,8 @@
 #   whether the compiler found an FMA instruction to use.
 # -fopenmp-simd: `#pragma omp simd reduction` lets one named loop reassociate its sum, where
 #   -ffast-math would let all of them. No OpenMP runtime is involved.
-# -fmacro-prefix-map: __FILE__ is relative to the repository, so that what is compiled does not depend
-#   on where it lies: the same bits, and a compiler's cache serves any checkout.
+# -fmacro-prefix-map: __FILE__ does not depend on where the repository lies, so that a compiler's cache
+#   serves any checkout.
 # -Wno-restrict: g++ 12 warns of "literal" + std::string(...) for no reason (GCC bug 105651).
 # -Wno-shadow, -Wno-subobject-linkage: in a unity build names of one file shadow those of another, and
 #   g++ takes the files for headers, whose classes should not hold what is in an unnamed namespace.

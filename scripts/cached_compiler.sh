@@ -3,6 +3,9 @@
 # scripts/cached_compiler.sh COMPILER ARGUMENT..., which setup.sh makes CMake's compiler launcher.
 set -euo pipefail
 
+# A build folder that was made with ccache goes on without.
+command -v ccache >/dev/null || exec "$@"
+
 # Paths below the repository do not count, nor does the folder that the compiler runs in.
 CCACHE_BASEDIR=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 export CCACHE_BASEDIR CCACHE_NOHASHDIR=1
@@ -23,7 +26,8 @@ done
 # To precompile headers. ccache would not see that a macro of theirs has changed, and what clang makes
 # names the folder that it was made in, so no other checkout makes the same bytes. They are made each
 # time, and in place of the bytes of FILE ccache looks at FILE.sum (CCACHE_PCH_EXTSUM): here, of all text
-# that is precompiled, macros included.
+# that is precompiled, macros included. (Lines are not counted: what a debugger says of these headers may
+# be off by some.)
 "${arguments[@]}"
 preprocess=() file=
 for ((i = 0; i < ${#arguments[@]}; ++i)); do

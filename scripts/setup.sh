@@ -49,8 +49,16 @@ apt_install() {
   "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"
 }
 
-# setup_packages GROUP...: installs what is missing of these groups.
+# setup_packages GROUP...: installs what is missing of these groups. From then on what was compiled before
+# from the same text, in this checkout or another, comes from ccache where that is installed.
 setup_packages() {
+  install_packages "$@"
+  if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=$PWD/scripts/cached_compiler.sh
+  fi
+}
+
+install_packages() {
   local package packages missing=()
   mapfile -t packages < <(packages_of "$@")
   if ! command -v apt-get dpkg-query >/dev/null; then
@@ -75,12 +83,8 @@ setup_packages() {
   quietly apt apt_install "${missing[@]}"
 }
 
-# configure PRESET [ARGUMENT...]: configures its folder. What was compiled before from the same text, in
-# this checkout or another, comes from ccache where that is installed (.ci/run installs it).
+# configure PRESET [ARGUMENT...]: configures its folder.
 configure() {
-  if command -v ccache >/dev/null; then
-    export CMAKE_CXX_COMPILER_LAUNCHER=$PWD/scripts/cached_compiler.sh
-  fi
   quietly "configure-$1" cmake --preset "$@"
 }
 

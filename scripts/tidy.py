@@ -5,16 +5,18 @@ the changes since BASE (scripts/reached.py), or on all where BASE is empty.
 scripts/tidy.py BUILD_DIR [BASE]     BUILD_DIR has a compile_commands.json
 
 clang parses each file with its compiler's flags and without precompiled headers, so this also shows
-clang's own warnings, and that each file and header includes what it needs. What it found nothing in
-is remembered in ~/.cache/trilobe-tidy by all that a run of it reads, so that the same text, in this
-checkout or another, is not checked again.
+clang's own warnings, and that each file and header includes what it needs. A file in which it found
+nothing is remembered in ~/.cache/trilobe-tidy by all that a run of it reads, so that the same is not
+checked again, in this checkout or another. scripts/nightly.sh, with another cache, forgets it all.
 """
 
 import concurrent.futures
+import functools
 import hashlib
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
@@ -34,27 +36,47 @@ def is_checked(source):
 
 
 def output_of(words, **options):
-    return subprocess.run(words, capture_output=True, check=True, **options).stdout
+    return subprocess.run(words, stdout=subprocess.PIPE, check=True, **options).stdout
 
 
-def key_of(entry, settings):
-    """A hash of all that clang-tidy reads of a file: its text and that of all that it includes, with
-    comments, some of which clang-tidy heeds, and how it is compiled, wherever ROOT lies."""
+@functools.cache
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+@functools.cache
+def tool():
+    """What checks: clang-tidy, whatever processor it runs on, and this script."""
+    version = output_of(["clang-tidy", "--version"]).decode()
+    return re.sub(r".*Host CPU.*\n", "", version) + digest(pathlib.Path(__file__).resolve())
+
+
+def read_for(entry):
+    """The files that are read to compile an entry of compile_commands.json."""
     words = shlex.split(entry["command"])
-    for option in ("-o", "-c"):
-        at = words.index(option)
-        del words[at:at + (2 if option == "-o" else 1)]
-    text = output_of([*words, "-E", "-CC"], cwd=entry["directory"])
-    whole = b"\n".join([settings, " ".join(words).encode(), text])
-    return hashlib.sha256(whole.replace(str(ROOT).encode() + b"/", b"")).hexdigest()
+    del words[words.index("-o"):words.index("-o") + 2]
+    rule = output_of([*words, "-M"], cwd=entry["directory"], stderr=subprocess.DEVNULL).decode()
+    names = shlex.split(rule.partition(":")[2].replace("\\\n", " "))
+    return [pathlib.Path(entry["directory"], name) for name in names]
 
 
-def check(entry, build_dir, settings):
+def key_of(entry):
+    """A hash of all that clang-tidy reads for a file: the bytes of it, of what it includes and of
+    the settings that hold there, and how it is compiled, wherever ROOT lies."""
+    source = pathlib.Path(entry["file"])
+    settings = [folder / ".clang-tidy" for folder in source.parents
+                if folder.is_relative_to(ROOT) and (folder / ".clang-tidy").is_file()]
+    lines = [tool(), entry["command"],
+             *(f"{file} {digest(file.resolve())}" for file in settings + read_for(entry))]
+    return hashlib.sha256("\n".join(lines).replace(str(ROOT), "").encode()).hexdigest()
+
+
+def check(entry, build_dir):
     """Whether clang-tidy has nothing against a file, and whether it had to look."""
     try:
-        known = CACHE / key_of(entry, settings)
+        known = CACHE / key_of(entry)
     except subprocess.CalledProcessError:
-        known = None  # it does not even preprocess: clang-tidy says why
+        known = None  # what it includes is not there: clang-tidy says so
     if known and known.exists():
         known.touch()
         return True, False
@@ -69,18 +91,22 @@ def check(entry, build_dir, settings):
 def main(build_dir, base="origin/main"):
     build_dir = pathlib.Path(build_dir).resolve()
     reached = set(output_of([ROOT / "scripts/reached.py", build_dir, base]).decode().split("\n"))
-    entries = {entry["file"]: entry
-               for entry in json.loads((build_dir / "compile_commands.json").read_text())
-               if entry["file"] in reached and is_checked(pathlib.Path(entry["file"]))}
-    settings = output_of(["clang-tidy", "--version"]) + (ROOT / ".clang-tidy").read_bytes()
+    commands = json.loads((build_dir / "compile_commands.json").read_text())
+    # clang-tidy itself looks at all that a file is compiled with.
+    entries = {str(pathlib.Path(entry["file"]).resolve()): entry for entry in commands}
+    entries = [entry for file, entry in entries.items()
+               if file in reached and is_checked(pathlib.Path(file))]
     CACHE.mkdir(parents=True, exist_ok=True)
     for known in CACHE.iterdir():
-        if known.stat().st_mtime < time.time() - UNUSED_DAYS * 86400:
-            known.unlink(missing_ok=True)
+        try:
+            if known.stat().st_mtime < time.time() - UNUSED_DAYS * 86400:
+                known.unlink()
+        except FileNotFoundError:  # another run was faster
+            pass
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = list(pool.map(lambda entry: check(entry, build_dir, settings), entries.values()))
+        results = list(pool.map(lambda entry: check(entry, build_dir), entries))
     print(f"clang-tidy looked at {sum(looked for _, looked in results)} files of {len(results)} "
-          f"that are to be checked; of the others it had seen the same text")
+          f"that are to be checked; in the others it had found nothing before")
     return 0 if all(good for good, _ in results) else 1
 
 

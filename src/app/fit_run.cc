@@ -280,6 +280,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
     if (model.spec().anisotropic()) {
       WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(kAtNodesName));
     } else {
+      // A MERL file has one grid, whatever that of the fit was.
       WriteMerl(Reconstruct(model, source, {}, threads), folder->PathOf(kReconstructionName));
     }
   }

@@ -105,7 +105,14 @@ SynthSource SynthSourceOf(std::string_view source) {
     return {material, MerlGrid()};
   }
   const std::string_view grid = name.substr(at + 1);
-  if (std::ranges::count(grid, 'x') == 2) return {material, ParseMerlGrid(grid)};
+  if (std::ranges::count(grid, 'x') == 2) {
+    if (material.anisotropic) {
+      throw Error("synth:" + std::string(name) + ": " + material.name +
+                  " is anisotropic, which a table by theta_h, theta_d and phi_d cannot hold; give "
+                  "the numbers of theta and phi of its directions, as 6x48");
+    }
+    return {material, ParseMerlGrid(grid)};
+  }
   return {material, ParseHemisphereGrid(grid)};
 }
 

@@ -22,8 +22,12 @@ void CheckReadable(const ModelSpec& spec, const BrdfSamples& samples) {
   const MerlGrid& grid = samples.grid;
   if (samples.on_grid()) {
     CheckIsotropic(spec, "a measurement on a MERL grid, which knows no azimuths,");
-    if (spec.lobes == 0) return;  // there are no tables
     if (spec.d_axis.size == grid.theta_h && spec.f_axis.size == grid.theta_d) return;
+    // Without lobes there are no tables to read; but lists are made that have a place for each
+    // entry.
+    if (spec.lobes == 0 && spec.d_axis.size >= grid.theta_h && spec.f_axis.size >= grid.theta_d) {
+      return;
+    }
     throw Error("the model has " + std::to_string(spec.d_axis.size) + " D bins and " +
                 std::to_string(spec.f_axis.size) + " F bins, but the measurement's grid has " +
                 std::to_string(grid.theta_h) + " and " + std::to_string(grid.theta_d) +

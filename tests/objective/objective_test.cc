@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -253,6 +254,23 @@ TEST(Objective, StaysFiniteForTheLargestValues) {
     const Objective objective = MakeObjective(table, spec, weighting.name);
     EXPECT_TRUE(std::isfinite(objective.MeasuredEnergy())) << weighting.name;
     EXPECT_TRUE(std::isfinite(objective.Value(RandomModel(spec, 1)))) << weighting.name;
+  }
+}
+
+// A model without lobes reads no table, so it goes with any grid that is not finer than its own.
+TEST(Objective, WithoutLobesAnyGridGoes) {
+  const BrdfSamples samples = ValidSamples(RandomTable(kEven, 12));
+  const Weighting weighting = FindWeighting("uniform");
+  const ModelSpec spec = ModelSpec::SharedFactors(0);
+  const Objective objective(samples, spec, weighting);
+  FactorModel model(spec);
+  std::ranges::fill(model.d(), 0.25);
+  const auto expected = static_cast<double>(ExactObjective(objective, model));
+  EXPECT_NEAR(objective.Value(model), expected, 1e-12 * expected);
+  const MerlGrid coarser{kEven.theta_h - 1, kEven.theta_d, kEven.phi_d};
+  for (const ModelSpec& other :
+       {ModelSpec::SharedFactors(1), ModelSpec::SharedFactors(0, coarser)}) {
+    EXPECT_THROW(Objective(samples, other, weighting), Error) << other.lobes;
   }
 }
 

@@ -32,7 +32,7 @@ class Tidy(unittest.TestCase):
         (root / "build/tidy").mkdir(parents=True, exist_ok=True)
         (root / "build/tidy/compile_commands.json").write_text(json.dumps([
             {"directory": str(root), "file": str(root / path),
-             "command": f"clang++ -I{root}/src -o x.o -c {root}/{path}"}
+             "command": f"clang++ -I{root} -I{root}/src -o x.o -c {root}/{path}"}
             for path in files if path.endswith(".cc")]))
         return root
 
@@ -68,8 +68,13 @@ class Tidy(unittest.TestCase):
         self.assertEqual(self.tidy(root), (False, 1))
         (root / "src/b.h").write_text(files["src/b.h"])
         self.assertEqual(self.tidy(root), (True, 0))
+        (root / "src/b.h").write_text("#define B(x) x * x\n" + files["src/b.h"])
+        self.assertEqual(self.tidy(root), (True, 1))
         settings = root / ".clang-tidy"
         settings.write_text(settings.read_text().replace("nullptr", "nullptr,modernize-use-auto"))
+        self.assertEqual(self.tidy(root), (True, 1))
+        nearer = "Checks: 'modernize-use-using'\nInheritParentConfig: true\n"
+        (root / "src/.clang-tidy").write_text(nearer)
         self.assertEqual(self.tidy(root), (True, 1))
 
     def test_says_what_does_not_compile(self):
