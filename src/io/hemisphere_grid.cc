@@ -47,9 +47,9 @@ MeasuredValue FunctionOf(const Measurement& measurement) {
 }  // namespace
 
 HemisphereGrid ParseHemisphereGrid(std::string_view text) {
-  const size_t x = std::min(text.find('x'), text.size());
-  const HemisphereGrid grid = {ToInteger(text.substr(0, x)).value_or(0),
-                               ToInteger(text.substr(std::min(x + 1, text.size()))).value_or(0)};
+  std::vector<int> numbers = IntegersByX(text);
+  if (numbers.size() != 2) numbers.assign(2, 0);
+  const HemisphereGrid grid = {numbers[0], numbers[1]};
   constexpr int64_t kMostPairs = 10'000'000;
   const int64_t nodes = int64_t{grid.thetas} * grid.phis;
   if (grid.thetas < 1 || grid.phis < 1 || nodes > 100'000 || nodes * nodes > kMostPairs) {

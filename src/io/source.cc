@@ -39,10 +39,9 @@ constexpr std::string_view kSynth = "synth:";
 
 // "30x30x60".
 MerlGrid ParseMerlGrid(std::string_view text) {
-  const size_t first = text.find('x'), second = text.find('x', first + 1);
-  const MerlGrid grid = {ToInteger(text.substr(0, first)).value_or(0),
-                         ToInteger(text.substr(first + 1, second - first - 1)).value_or(0),
-                         ToInteger(text.substr(second + 1)).value_or(0)};
+  std::vector<int> numbers = IntegersByX(text);
+  if (numbers.size() != 3) numbers.assign(3, 0);
+  const MerlGrid grid = {numbers[0], numbers[1], numbers[2]};
   constexpr int kFewest = 4, kMost = 360;
   const auto [fewest, most] = std::minmax({grid.theta_h, grid.theta_d, grid.phi_d});
   if (fewest < kFewest || most > kMost || 1.0 * grid.theta_h * grid.theta_d * grid.phi_d > 1e7) {

@@ -1,5 +1,6 @@
 #include "trilobe/io/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -90,6 +91,18 @@ std::optional<double> ToNumber(std::string_view cell) {
 }
 
 std::optional<int> ToInteger(std::string_view cell) { return Whole<int>(cell); }
+
+std::vector<int> IntegersByX(std::string_view text) {
+  std::vector<int> numbers;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find('x', begin), text.size());
+    const std::optional<int> number = ToInteger(text.substr(begin, end - begin));
+    if (!number) return {};
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  return numbers;
+}
 
 void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
                  const std::vector<std::string>& names, std::vector<double>* numbers) {

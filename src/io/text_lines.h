@@ -39,6 +39,9 @@ std::vector<std::string_view> SplitWords(std::string_view line);
 std::optional<double> ToNumber(std::string_view cell);
 std::optional<int> ToInteger(std::string_view cell);
 
+// Whole numbers with an x between each two, as "30x30x60"; none where the text is anything else.
+std::vector<int> IntegersByX(std::string_view text);
+
 // The numbers of the line where `lines` is, one for each name. Throws Error where they are more or
 // fewer, or no numbers.
 void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
