@@ -8,6 +8,7 @@
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/robust.h"
 #include "trilobe/objective/score.h"
+#include "trilobe/scene/unmeasured_guide.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/joint/reflectance.h"
 #include "trilobe/solvers/solver.h"
@@ -91,13 +92,16 @@ void MatchReflectanceOf(const Objective& of, const std::function<bool()>& stop, 
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error
   const FactorModel& model = fit->model;
+  if (ReflectanceOf(of, model).IsRight()) return;
   const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
   // What a thinned table stores beyond the data stays: it was fitted to more than these.
   const std::vector<double> all_covered(model.parameters().size(), 1.0);
+  // And where hardly a sample reads one, what it said there.
+  const Objective guided = thinned ? UnmeasuredGuide(of, model).With(of) : of;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
-    std::optional<MatchedModel> matched = MatchReflectance(of, model, layout, price, stop);
+    std::optional<MatchedModel> matched = MatchReflectance(of, model, layout, price, stop, &guided);
     // A lower price mends still less.
     if (!matched || matched->error_after > kWorthwhile * matched->error_before) return;
     if (thinned) {

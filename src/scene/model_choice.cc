@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -202,7 +203,7 @@ class ModelSearch {
   void Thin(const std::string& name, const Weighting& weighting, const FactorModel& model) {
     const UnmeasuredGuide guide(objective_, model);
     PruneOptions prune;
-    prune.lobes = prune.colour = false;
+    prune.lobes = prune.sharing = false;
     prune.max_parameters = options_.max_parameters;
     PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
     const Objective to = guide.With(some_.For(pruned.model.spec(), weighting));
@@ -284,17 +285,23 @@ class ModelSearch {
     return true;
   }
 
-  // From the first base that looks best, and any that looks nearly as good.
+  // Of the base that looks best, and any that looks nearly as good, that which shares less; then
+  // the best of all with a lobe more. Forms with more parameters may be thinned for longer, and
+  // those that are left are where they are needed.
   bool FitForms() {
     constexpr double kNearly = 2;  // [dB]
     const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;
-    for (const Fitted& base : bases_) {
-      if (base.score < best_base - kNearly) continue;
-      for (const ModelForm& form : FormsFrom(base.form)) {
-        if (!Fit(form)) return false;
-      }
+    std::vector<Fitted> near = bases_;
+    std::erase_if(near, [&](const Fitted& base) { return base.score < best_base - kNearly; });
+    for (size_t k = 0, num_bases = near.size(); k < num_bases; ++k) {
+      const std::optional<ModelForm> form = FormSharingNeither(near[k].form);
+      if (!form) continue;
+      if (!Fit(*form)) return false;
+      near.push_back(forms_.back());
     }
-    return true;
+    const Fitted& best = *std::ranges::max_element(near, {}, &Fitted::score);
+    const std::optional<ModelForm> form = FormWithALobeMore(best.form);
+    return !form || Fit(*form);
   }
 
   // Takes time, and changes little of what a form has gained: only the best ones.
@@ -306,13 +313,14 @@ class ModelSearch {
       auto& [name, model, weighting] = fitted_form.form;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
-        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score);
+        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score,
+                     TieRefit::kUntilBack);
         Thin(name, weighting, model);
       } else {
         const Objective of = all_.For(model.spec(), weighting);
         model = GoOn(of, model, options_.stop);
         Canonicalize(of, &model);
-        model = Tied(of, model, options_.judge(model));
+        model = Tied(of, model, options_.judge(model), TieRefit::kUntilSettled);
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout, weighting);
       }
@@ -321,9 +329,9 @@ class ModelSearch {
 
   // The model, in canonical form and of this score, with entries at the edge of the data tied,
   // unless that is seen where data are.
-  FactorModel Tied(const Objective& of, const FactorModel& model, double score) {
+  FactorModel Tied(const Objective& of, const FactorModel& model, double score, TieRefit refit) {
     FactorModel tied = model;
-    if (!TieEntriesAtDataEdge(of, &tied, options_.stop)) return model;
+    if (!TieEntriesAtDataEdge(of, &tied, options_.stop, refit)) return model;
     Canonicalize(of, &tied);
     return options_.judge(tied) >= score - kNotSeen ? tied : model;
   }

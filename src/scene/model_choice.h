@@ -29,7 +29,7 @@ struct ModelChoiceOptions {
 
 // One form that was tried.
 struct ModelCandidate {
-  std::string name;        // "as fitted", "F by lobe", "F by lobe, thinned", ...
+  std::string name;        // "as fitted", "stretched", "stretched, thinned", ...
   int num_parameters = 0;  // stored
   double E = 0;            // Objective::Value; of a form that is not stored, about that
   double score = 0;        // by the judge; -infinity where that says NaN
@@ -47,11 +47,11 @@ struct ChosenModel {
 
 // The form that looks best within a budget of parameters (docs/model-choice.md): the fitted model
 // itself, thinned if it has more parameters; or one whose lobes are stretched, that is weighed by
-// channel, shares less or has a lobe more, fitted from there by some joint steps and thinned to the
-// budget. Where one parameter a table is too much, what Prune makes of the fitted model, with fewer
-// lobes or colours. `fitted` is a fit of the objective, in canonical form, and has its spec. The
-// same bits for any number of threads, as long as `stop` stays false. Throws Error for a budget
-// below 1.
+// channel, shares neither F nor D, or has a lobe more besides, fitted from there by some joint
+// steps and thinned to the budget. Where one parameter a table is too much, what Prune makes of the
+// fitted model, with fewer lobes or colours. `fitted` is a fit of the objective, in canonical form,
+// and has its spec. The same bits for any number of threads, as long as `stop` stays false. Throws
+// Error for a budget below 1.
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options);
 

@@ -1,6 +1,7 @@
 #include "trilobe/scene/model_forms.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "trilobe/model/lobes.h"
 #include "trilobe/solvers/joint/reduction.h"
@@ -38,14 +39,20 @@ std::vector<ModelForm> FormsSharingLess(const ModelForm& base) {
   return forms;
 }
 
-std::vector<ModelForm> FormsFrom(const ModelForm& base) {
-  std::vector<ModelForm> forms = FormsSharingLess(base);
-  const ModelSpec& own = base.start.spec();
-  if (own.lobes > 0 && own.lobes < kMaxLobes && own.D.per_lobe) {
-    forms.push_back({NameOf(base, "a lobe more"), SplitLobe(base.start, StrongestLobe(base.start)),
-                     base.weighting});
+std::optional<ModelForm> FormSharingNeither(const ModelForm& base) {
+  std::optional<ModelForm> form;
+  while (true) {
+    std::vector<ModelForm> next = FormsSharingLess(form ? *form : base);
+    if (next.empty()) return form;
+    form = std::move(next.front());
   }
-  return forms;
+}
+
+std::optional<ModelForm> FormWithALobeMore(const ModelForm& base) {
+  const ModelSpec& own = base.start.spec();
+  if (own.lobes == 0 || own.lobes == kMaxLobes || !own.D.per_lobe) return std::nullopt;
+  return ModelForm{NameOf(base, "a lobe more"), SplitLobe(base.start, StrongestLobe(base.start)),
+                   base.weighting};
 }
 
 bool IsSaturated(const BrdfSamples& samples) {

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SCENE_MODEL_FORMS_H_
 #define TRILOBE_SCENE_MODEL_FORMS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,11 @@ struct ModelForm {
 // Those with the same values that share less than a form: F by lobe, D by channel.
 std::vector<ModelForm> FormsSharingLess(const ModelForm& base);
 
-// These, and that of a lobe more, the strongest one split.
-std::vector<ModelForm> FormsFrom(const ModelForm& base);
+// Both at once, as far as the form shares them; nothing if it shares neither.
+std::optional<ModelForm> FormSharingNeither(const ModelForm& base);
+
+// A lobe more, the strongest one split; nothing where none can be.
+std::optional<ModelForm> FormWithALobeMore(const ModelForm& base);
 
 // Whether much of what a material reflects has a channel near 0, where a picture shows errors that
 // are small beside the mean of the channels, by which samples are weighed.

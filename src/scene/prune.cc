@@ -61,7 +61,7 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
       pruning->Decide(what, std::move(to), true, "the others reflect nothing");
     }
   }
-  ShareWhatIsEqual(pruning);
+  if (pruning->options().sharing) ShareWhatIsEqual(pruning);
   PruneState to = pruning->state();
   const TableLayout needed =
       NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);

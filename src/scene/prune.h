@@ -28,6 +28,9 @@ struct PruneOptions {
   bool colour = true;     // tables, then d and s, shared by the channels
   bool shadowing = true;  // G: shared by the lobes, constant, or thinned
   bool tables = true;     // entries of D and F: dropped where no data are, and thinned
+  // False: no table is shared by more lobes or channels than it is, and no G becomes constant but
+  // by thinning. Saves the time to look what that would come to.
+  bool sharing = true;
   // More lobes than the full model's, where the budget asks for a lower E. 0: none.
   int max_lobes = 0;
 

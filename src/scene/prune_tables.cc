@@ -157,6 +157,7 @@ int CountWithin(const std::vector<Elimination>& order, double rise) {
 
 void ChooseShape(Pruning* pruning) {
   const PruneOptions& limits = pruning->options();
+  if (!limits.sharing) return;
   const std::vector<ModelShape> shapes = ShapesWithin(
       pruning->state().spec(), pruning->state().layout, limits.colour, limits.shadowing);
   // The shape as it is has the most parameters, and comes last.

@@ -242,6 +242,21 @@ TEST(Prune, EverySwitchLeavesItsPartAlone) {
   }
 }
 
+TEST(Prune, SharesOnlyWhatItMay) {
+  // One that would share all of G.
+  FactorModel model = Material(2, /*grey=*/false);
+  std::ranges::copy(model.table(Factor::kG, 0), model.table(Factor::kG, 1).begin());
+  const Objective objective = MakeObjective(Noisy(TableOf(model, kGrid), 0.01, 1), model.spec());
+  PruneOptions options;
+  options.lobes = false;
+  options.max_parameters = 40;
+  EXPECT_FALSE(Prune(objective, model, options).model.spec().G.per_lobe);
+  options.sharing = false;
+  const PrunedModel pruned = Prune(objective, model, options);
+  EXPECT_EQ(pruned.model.spec(), model.spec());
+  EXPECT_LE(pruned.num_parameters, 40);
+}
+
 TEST(Prune, AddsALobeWhereTheBudgetAsksForALowerE) {
   const BrdfTable measured = Noisy(TableOf(Material(2, false), kGrid), 0.01, 1);
   const Fit fit = MakeFit(measured, 1);

@@ -65,7 +65,7 @@ int NumKept(Rule rule, std::span<const double> coverage, std::span<const double>
 // Ties the ends of the tables of these factors. True if there was something to tie, and E came
 // back.
 bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& objective,
-         const std::function<bool()>& stop, FactorModel* model) {
+         const std::function<bool()>& stop, TieRefit refit, FactorModel* model) {
   if (stop()) return false;
   const ModelSpec& spec = model->spec();
   TableLayout layout = TableLayout::Full(spec);
@@ -95,6 +95,7 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
   for (int step = 0; step < kSteps && !stepper.exhausted() && !stop(); ++step) {
     const double before = stepper.E();
     if (!stepper.Step()) continue;
+    if (refit == TieRefit::kUntilBack && stepper.E() <= enough) break;
     const double decrease = before - stepper.E();
     // As much again in each step that is left would not bring E back.
     const bool hopeless = stepper.E() - (kSteps - 1 - step) * decrease > enough;
@@ -108,14 +109,17 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
 }  // namespace
 
 bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
-                          const std::function<bool()>& stop) {
+                          const std::function<bool()>& stop, TieRefit refit) {
   CheckSameSpec(model->spec(), objective.spec());
   CheckParameters(*model);
   // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the
   // spline reads.
-  return Tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
-         Tie(Rule::kCoverage, {Factor::kD, Factor::kF, Factor::kG}, objective, stop, model) ||
-         Tie(Rule::kCoverage, {Factor::kG}, objective, stop, model);
+  const auto tie = [&](Rule rule, std::initializer_list<Factor> factors) {
+    return Tie(rule, factors, objective, stop, refit, model);
+  };
+  return tie(Rule::kBoth, {Factor::kD, Factor::kF, Factor::kG}) ||
+         tie(Rule::kCoverage, {Factor::kD, Factor::kF, Factor::kG}) ||
+         tie(Rule::kCoverage, {Factor::kG});
 }
 
 TableLayout UntiedEntries(std::span<const double> coverage, const FactorModel& model) {

@@ -10,6 +10,10 @@
 
 namespace trilobe {
 
+// When the refit of what is left ends: once E settles, or already when it is back, for a model that
+// will be refitted anyway.
+enum class TieRefit { kUntilSettled, kUntilBack };
+
 // Towards grazing angles, and most of all where a measurement ends before 90 degrees, the last
 // entries of D, F and G are read by few samples of little weight, which leave them free to trade
 // huge values against tiny ones of each other. At the bins these fit; between them, and beyond the
@@ -25,7 +29,8 @@ namespace trilobe {
 // has.
 bool TieEntriesAtDataEdge(
     const Objective& objective, FactorModel* model,
-    const std::function<bool()>& stop = [] { return false; });
+    const std::function<bool()>& stop = [] { return false; },
+    TieRefit refit = TieRefit::kUntilSettled);
 
 // The entries of a model with this coverage (Objective::coverage) that are not tied: all but those
 // that, at the end of what is observed of a table, equal the one before them, as those of a tail of

@@ -20,7 +20,6 @@
 namespace trilobe {
 namespace {
 
-constexpr double kNotSeen = 0.01;  // of the reflectance
 constexpr int kTrials = 8;
 constexpr double kFirstLambda = 1e-3, kFall = 1.0 / 3, kRise = 4;
 constexpr double kHardlyLower = 2e-3;
@@ -123,18 +122,22 @@ Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) 
 
 std::optional<MatchedModel> MatchReflectance(const Objective& objective, const FactorModel& model,
                                              const TableLayout& layout, double price,
-                                             const std::function<bool()>& stop) {
+                                             const std::function<bool()>& stop,
+                                             const Objective* guided) {
+  const Objective& minimised = guided != nullptr ? *guided : objective;
   CheckSameSpec(model.spec(), objective.spec());
+  CheckSameSpec(model.spec(), minimised.spec());
   CheckParameters(model);
   CheckLayout(layout, objective.spec());
-  const double before = ReflectanceOf(objective, model).Error();
-  if (!(before > kNotSeen)) return std::nullopt;
+  const Reflectance reflectance = ReflectanceOf(objective, model);
+  if (reflectance.IsRight()) return std::nullopt;
+  const double before = reflectance.Error();
   const Reduction reduction(objective.spec(), layout);
   const double E0 = objective.Value(model);
   const auto total = [&](double E, double error) { return E + price * E0 * std::pow(error, 2); };
   MatchedModel at{.model = model, .error_before = before, .error_after = before};
-  double lowest = total(E0, before), lambda = kFirstLambda;
-  NormalEquations equations(objective);
+  double lowest = total(minimised.Value(model), before), lambda = kFirstLambda;
+  NormalEquations equations(minimised);
   NonnegativeStep step(objective.num_threads());
   QuadraticModel problem;
   bool moved = false, linearized = false;
@@ -150,7 +153,7 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const F
     FactorModel to = at.model;
     std::ranges::copy(reduction.Expand(step.Solve(lambda).x), to.parameters().begin());
     const double error = ReflectanceOf(objective, to).Error();
-    const double lower = total(objective.Value(to), error);
+    const double lower = total(minimised.Value(to), error);
     if (!(lower < lowest)) {
       lambda *= kRise;
       continue;

@@ -160,6 +160,28 @@ TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
   EXPECT_LT(LargestBeyond(objective, measured, tamed), 3 * Largest(measured));
 }
 
+// For a model that will be refitted anyway the refit ends once E is back.
+TEST(DataEdge, MayEndOnceEIsBack) {
+  const Objective objective = MakeObjective(Measured(2, 75), ModelSpec::SharedFactors(2, kGrid));
+  const FactorModel fitted = Fitted(objective);
+  int asked[2] = {};
+  double E[2];
+  for (const TieRefit refit : {TieRefit::kUntilSettled, TieRefit::kUntilBack}) {
+    const auto k = static_cast<int>(refit);
+    FactorModel model = fitted;
+    ASSERT_TRUE(TieEntriesAtDataEdge(
+        objective, &model, [&] { return ++asked[k] < 0; }, refit));
+    E[k] = objective.Value(model);
+    EXPECT_LE(E[k], 1.05 * objective.Value(fitted));
+    for (const Factor factor : kFactors) {
+      const Ties ties = CountTies(objective, model, factor);
+      EXPECT_EQ(ties.made, ties.wanted);
+    }
+  }
+  EXPECT_LT(asked[1], asked[0]);
+  EXPECT_GE(E[1], E[0]);
+}
+
 // A model that is as it was, or tied and no worse than it may be, whenever the stop comes.
 TEST(DataEdge, StopsBetweenSteps) {
   const Objective objective = MakeObjective(Measured(2, 75), ModelSpec::SharedFactors(2, kGrid));

@@ -167,6 +167,52 @@ TEST(Reflectance, TiedEntriesStayTied) {
   EXPECT_EQ(UntiedEntries(objective.coverage(), matched->model), untied);
 }
 
+// What samples besides the data say of other directions holds the model there, and moves nothing by
+// itself.
+TEST(Reflectance, AGuideHoldsWhatItSpeaksOf) {
+  const BrdfTable table = Narrowing(-2, 60);
+  const Objective objective =
+      MakeObjective(table, ModelSpec::SharedFactors(1, kGrid), "appearance");
+  FactorModel fitted = Fitted(objective);
+  ASSERT_TRUE(TieEntriesAtDataEdge(objective, &fitted));  // or it would undershoot 0 there
+  Canonicalize(objective, &fitted);
+  const BrdfTable said = Reconstruct(fitted, "model", kGrid);
+  const std::vector<bool> above = BinsAboveSurface(kGrid);
+  BrdfSamples both{"both", kGrid, {}, {}, {}};
+  for (int bin = 0; bin < kGrid.size(); ++bin) {
+    if (!above[bin]) continue;
+    const bool measured = table.Value(0, bin) >= 0 && ReasonOf(table, bin) == Unmeasured::kNo;
+    const BrdfTable& from = measured ? table : said;
+    Rgb rho;
+    for (int c = 0; c < kChannels; ++c) rho[c] = std::max(from.Value(c, bin), 0.0);
+    both.bins.push_back(bin);
+    both.rho.push_back(rho);
+    both.multiplicity.push_back(measured ? 1 : 0.01);
+  }
+  const Objective guided(both, objective.spec(), objective.weighting(), 1);
+  // By how much what it says of bins that were not measured changes, in the mean of logarithms.
+  const auto change = [&](const FactorModel& model) {
+    const BrdfTable now = Reconstruct(model, "model", kGrid);
+    double sum = 0;
+    int count = 0;
+    for (int bin = 0; bin < kGrid.size(); ++bin) {
+      if (!above[bin] || ReasonOf(table, bin) == Unmeasured::kNo) continue;
+      for (int c = 0; c < kChannels; ++c, ++count) {
+        sum += std::abs(std::log((now.Value(c, bin) + 1e-3) / (said.Value(c, bin) + 1e-3)));
+      }
+    }
+    return sum / count;
+  };
+  const TableLayout full = Full(fitted);
+  const std::optional<MatchedModel> alone = MatchReflectance(objective, fitted, full, 30);
+  const std::optional<MatchedModel> held = MatchReflectance(
+      objective, fitted, full, 30, [] { return false; }, &guided);
+  ASSERT_TRUE(alone && held);
+  EXPECT_EQ(held->error_before, alone->error_before);
+  EXPECT_LT(held->error_after, 0.8 * held->error_before);
+  EXPECT_LT(change(held->model), 0.5 * change(alone->model));
+}
+
 TEST(Reflectance, StopsBeforeAStepAndAgreesForAnyNumberOfThreads) {
   const BrdfTable table = Narrowing(-2);
   const Objective objective = ObjectiveOf(table);
