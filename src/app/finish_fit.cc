@@ -92,16 +92,16 @@ void MatchReflectanceOf(const Objective& of, const std::function<bool()>& stop, 
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error
   const FactorModel& model = fit->model;
-  if (ReflectanceOf(of, model).IsRight()) return;
+  if (!ReflectanceOf(of, model).IsOff()) return;  // and needs no guide
   const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
-  // What a thinned table stores beyond the data stays: it was fitted to more than these.
+  // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
+  // entries that hardly a sample reads are held by what the model says where nothing was measured.
   const std::vector<double> all_covered(model.parameters().size(), 1.0);
-  // And where hardly a sample reads one, what it said there.
-  const Objective guided = thinned ? UnmeasuredGuide(of, model).With(of) : of;
+  const Objective held = thinned ? UnmeasuredGuide(of, model).With(of) : of;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
-    std::optional<MatchedModel> matched = MatchReflectance(of, model, layout, price, stop, &guided);
+    std::optional<MatchedModel> matched = MatchReflectance(of, held, model, layout, price, stop);
     // A lower price mends still less.
     if (!matched || matched->error_after > kWorthwhile * matched->error_before) return;
     if (thinned) {

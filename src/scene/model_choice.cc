@@ -33,6 +33,15 @@ constexpr double kNotSeen = 0.2;
 // A stretch that lowers E by less than this fraction is none.
 constexpr double kWorthwhile = 0.05;
 
+// What thinning cannot go below: a node a table.
+int LeastStored(const ModelSpec& spec) {
+  TableLayout layout = TableLayout::Full(spec);
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) layout.of(factor, t).resize(1);
+  }
+  return layout.num_parameters(spec);
+}
+
 // So many samples for each parameter, more at angles that few have: an entry that is read by none
 // of those left could be anything, and for all samples the model would be far off.
 Objective Thinned(const Objective& objective, int samples_per_parameter, int max_stride) {
@@ -205,7 +214,10 @@ class ModelSearch {
     PruneOptions prune;
     prune.lobes = prune.sharing = false;
     prune.max_parameters = options_.max_parameters;
+    const bool may_stop = best_.chosen >= 0;  // else there is nothing yet that keeps to the budget
+    if (may_stop) prune.stop = options_.stop;
     PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
+    if (may_stop && options_.stop()) return;
     const Objective to = guide.With(some_.For(pruned.model.spec(), weighting));
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
@@ -285,22 +297,23 @@ class ModelSearch {
     return true;
   }
 
-  // Of the base that looks best, and any that looks nearly as good, that which shares less; then
-  // the best of all with a lobe more. Forms with more parameters may be thinned for longer, and
-  // those that are left are where they are needed.
+  // Of the best base, and any within 2 dB of it, the form that shares neither F nor D; then the
+  // best of all these with a lobe more. The more nodes there are to choose from, the better those
+  // that thinning leaves.
   bool FitForms() {
     constexpr double kNearly = 2;  // [dB]
     const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;
-    std::vector<Fitted> near = bases_;
-    std::erase_if(near, [&](const Fitted& base) { return base.score < best_base - kNearly; });
-    for (size_t k = 0, num_bases = near.size(); k < num_bases; ++k) {
-      const std::optional<ModelForm> form = FormSharingNeither(near[k].form);
+    std::vector<Fitted> good;
+    for (const Fitted& base : bases_) {
+      if (base.score < best_base - kNearly) continue;
+      good.push_back(base);
+      const std::optional<ModelForm> form = FormSharingNeither(base.form);
       if (!form) continue;
       if (!Fit(*form)) return false;
-      near.push_back(forms_.back());
+      good.push_back(forms_.back());
     }
-    const Fitted& best = *std::ranges::max_element(near, {}, &Fitted::score);
-    const std::optional<ModelForm> form = FormWithALobeMore(best.form);
+    const std::optional<ModelForm> form =
+        FormWithALobeMore(std::ranges::max(good, {}, &Fitted::score).form);
     return !form || Fit(*form);
   }
 
@@ -311,6 +324,7 @@ class ModelSearch {
       if (options_.stop()) break;
       if (fitted_form.score <= best_.candidates[best_.chosen].score + kNotSeen) break;
       auto& [name, model, weighting] = fitted_form.form;
+      if (LeastStored(model.spec()) > options_.max_parameters) continue;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
         model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score,

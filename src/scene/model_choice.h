@@ -47,7 +47,7 @@ struct ChosenModel {
 
 // The form that looks best within a budget of parameters (docs/model-choice.md): the fitted model
 // itself, thinned if it has more parameters; or one whose lobes are stretched, that is weighed by
-// channel, shares neither F nor D, or has a lobe more besides, fitted from there by some joint
+// channel, shares neither F nor D, or has a lobe more, fitted from there by some joint
 // steps and thinned to the budget. Where one parameter a table is too much, what Prune makes of the
 // fitted model, with fewer lobes or colours. `fitted` is a fit of the objective, in canonical form,
 // and has its spec. The same bits for any number of threads, as long as `stop` stays false. Throws

@@ -41,16 +41,16 @@ std::vector<ModelForm> FormsSharingLess(const ModelForm& base) {
 
 std::optional<ModelForm> FormSharingNeither(const ModelForm& base) {
   std::optional<ModelForm> form;
-  while (true) {
-    std::vector<ModelForm> next = FormsSharingLess(form ? *form : base);
-    if (next.empty()) return form;
+  for (std::vector<ModelForm> next = FormsSharingLess(base); !next.empty();
+       next = FormsSharingLess(*form)) {
     form = std::move(next.front());
   }
+  return form;
 }
 
 std::optional<ModelForm> FormWithALobeMore(const ModelForm& base) {
   const ModelSpec& own = base.start.spec();
-  if (own.lobes == 0 || own.lobes == kMaxLobes || !own.D.per_lobe) return std::nullopt;
+  if (own.lobes == 0 || own.lobes >= kMaxLobes || !own.D.per_lobe) return std::nullopt;
   return ModelForm{NameOf(base, "a lobe more"), SplitLobe(base.start, StrongestLobe(base.start)),
                    base.weighting};
 }

@@ -118,12 +118,17 @@ TEST(SolverRoom, ModelsOfAnotherSpec) {
   EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("parameter 1"));
   EXPECT_THAT(ErrorOf([&] { ReflectanceOf(objective, other); }), HasSubstr("another spec"));
   const TableLayout layout = TableLayout::Full(other.spec());
-  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, other, layout, 30); }),
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, other, layout, 30); }),
               HasSubstr("another spec"));
-  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, bad, layout, 30); }),
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
               HasSubstr("parameter 1"));
   bad.d()[1] = 1;
-  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, bad, layout, 30); }), HasSubstr("layout"));
+  EXPECT_THAT(ErrorOf([&] {
+                MatchReflectance(objective, Objective(objective, other.spec()), bad, layout, 30);
+              }),
+              HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
+              HasSubstr("layout"));
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace trilobe {
 
-// When the refit of what is left ends: once E settles, or already when it is back, for a model that
-// will be refitted anyway.
+// When the refit of what is left ends: once E settles, or after the first step that brings it back,
+// for a model that will be refitted anyway.
 enum class TieRefit { kUntilSettled, kUntilBack };
 
 // Towards grazing angles, and most of all where a measurement ends before 90 degrees, the last

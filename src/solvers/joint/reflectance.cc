@@ -120,17 +120,15 @@ Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) 
   return LightOf(objective, model, Slopes::kNone).reflectance;
 }
 
-std::optional<MatchedModel> MatchReflectance(const Objective& objective, const FactorModel& model,
-                                             const TableLayout& layout, double price,
-                                             const std::function<bool()>& stop,
-                                             const Objective* guided) {
-  const Objective& minimised = guided != nullptr ? *guided : objective;
+std::optional<MatchedModel> MatchReflectance(const Objective& objective, const Objective& minimised,
+                                             const FactorModel& model, const TableLayout& layout,
+                                             double price, const std::function<bool()>& stop) {
   CheckSameSpec(model.spec(), objective.spec());
   CheckSameSpec(model.spec(), minimised.spec());
   CheckParameters(model);
   CheckLayout(layout, objective.spec());
   const Reflectance reflectance = ReflectanceOf(objective, model);
-  if (reflectance.IsRight()) return std::nullopt;
+  if (!reflectance.IsOff()) return std::nullopt;
   const double before = reflectance.Error();
   const Reduction reduction(objective.spec(), layout);
   const double E0 = objective.Value(model);

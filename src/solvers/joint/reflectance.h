@@ -21,29 +21,30 @@ struct Reflectance {
   // |fitted - measured| / |measured| over the channels, as one sees by how much the colour of a
   // surface is off under a grey sky; 0 where nothing is reflected.
   double Error() const;
-  // To 1 %, which nobody sees.
-  bool IsRight() const { return !(Error() > 0.01); }
+  // By more than 1 %; less is not seen.
+  bool IsOff() const { return Error() > 0.01; }
 };
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model);
 
 // E of values relative to what was measured hardly sees the light of a narrow highlight: a fit that
 // cannot follow it ends near the geometric mean of what it should be, and the whole surface is
-// too dark. This moves a fit of the objective, where its Reflectance is not right, towards the
-// minimum of
+// too dark. This moves a fit, where its Reflectance is off, towards the minimum of
 //   E + price E0 |fitted - measured|^2 / |measured|^2,
 // E0 being E of the fit: with a price of 30 an error of 1 % costs 0.3 % of E. By damped
 // Gauss-Newton steps in the parameters that `layout` stores, all of them moving a little, each
-// where E minds it least. Nothing if it is right, or if none of the steps lowers that. Solid angles of scattered samples are not known; all count alike. `stop` is asked before
-// each step. `guided`, where given, is the objective with samples besides that say where the model
-// is to stay, which counts with E. The same bits for any number of threads. Throws Error for a
-// model, a layout or a guided objective of another spec.
+// where E minds it least. Nothing if it is not off, or if none of the steps lowers that. E0 and
+// what is reflected are those of `objective`, E that of `minimised`: the same, or one with samples
+// besides that say where the model is to stay. Solid angles of scattered samples are not known; all
+// count alike. `stop` is asked before each step. The same bits for any number of threads. Throws
+// Error for a model, a layout or an objective of another spec.
 struct MatchedModel {
   FactorModel model;
   double error_before, error_after;  // Reflectance::Error of the fit, and of this
 };
 std::optional<MatchedModel> MatchReflectance(
-    const Objective& objective, const FactorModel& model, const TableLayout& layout, double price,
-    const std::function<bool()>& stop = [] { return false; }, const Objective* guided = nullptr);
+    const Objective& objective, const Objective& minimised, const FactorModel& model,
+    const TableLayout& layout, double price,
+    const std::function<bool()>& stop = [] { return false; });
 
 }  // namespace trilobe
 

@@ -112,7 +112,7 @@ TEST(Reflectance, ComesBackForLittleOfE) {
     const double E = objective.Value(fitted), error = ReflectanceOf(objective, fitted).Error();
     ASSERT_GT(error, 0.012) << along;
     const std::optional<MatchedModel> matched =
-        MatchReflectance(objective, fitted, Full(fitted), 30);
+        MatchReflectance(objective, objective, fitted, Full(fitted), 30);
     ASSERT_TRUE(matched) << along;
     CheckParameters(matched->model);
     const double after = ReflectanceOf(objective, matched->model).Error();
@@ -140,7 +140,7 @@ TEST(Reflectance, OfAGoodFitIsLeftAsItIs) {
   const Objective objective = ObjectiveOf(Narrowing(0));
   const FactorModel fitted = Fitted(objective);
   EXPECT_LT(ReflectanceOf(objective, fitted).Error(), 0.01);
-  EXPECT_FALSE(MatchReflectance(objective, fitted, Full(fitted), 30));
+  EXPECT_FALSE(MatchReflectance(objective, objective, fitted, Full(fitted), 30));
 }
 
 TEST(Reflectance, OfABlackMeasurementIsRight) {
@@ -150,7 +150,7 @@ TEST(Reflectance, OfABlackMeasurementIsRight) {
   FactorModel model(objective.spec());
   std::ranges::fill(model.parameters(), 1.0);
   EXPECT_EQ(ReflectanceOf(objective, model).Error(), 0);
-  EXPECT_FALSE(MatchReflectance(objective, model, Full(model), 30));
+  EXPECT_FALSE(MatchReflectance(objective, objective, model, Full(model), 30));
 }
 
 TEST(Reflectance, TiedEntriesStayTied) {
@@ -161,14 +161,13 @@ TEST(Reflectance, TiedEntriesStayTied) {
   const TableLayout untied = UntiedEntries(objective.coverage(), model);
   const int tied = Full(model).num_parameters(model.spec()) - untied.num_parameters(model.spec());
   ASSERT_GT(tied, 0);
-  std::optional<MatchedModel> matched = MatchReflectance(objective, model, untied, 30);
+  std::optional<MatchedModel> matched = MatchReflectance(objective, objective, model, untied, 30);
   ASSERT_TRUE(matched);
   Canonicalize(objective, &matched->model);
   EXPECT_EQ(UntiedEntries(objective.coverage(), matched->model), untied);
 }
 
-// What samples besides the data say of other directions holds the model there, and moves nothing by
-// itself.
+// What samples besides the data say of other directions holds the model there.
 TEST(Reflectance, AGuideHoldsWhatItSpeaksOf) {
   const BrdfTable table = Narrowing(-2, 60);
   const Objective objective =
@@ -204,9 +203,9 @@ TEST(Reflectance, AGuideHoldsWhatItSpeaksOf) {
     return sum / count;
   };
   const TableLayout full = Full(fitted);
-  const std::optional<MatchedModel> alone = MatchReflectance(objective, fitted, full, 30);
-  const std::optional<MatchedModel> held = MatchReflectance(
-      objective, fitted, full, 30, [] { return false; }, &guided);
+  const std::optional<MatchedModel> alone =
+      MatchReflectance(objective, objective, fitted, full, 30);
+  const std::optional<MatchedModel> held = MatchReflectance(objective, guided, fitted, full, 30);
   ASSERT_TRUE(alone && held);
   EXPECT_EQ(held->error_before, alone->error_before);
   EXPECT_LT(held->error_after, 0.8 * held->error_before);
@@ -217,10 +216,13 @@ TEST(Reflectance, StopsBeforeAStepAndAgreesForAnyNumberOfThreads) {
   const BrdfTable table = Narrowing(-2);
   const Objective objective = ObjectiveOf(table);
   const FactorModel fitted = Fitted(objective);
-  EXPECT_FALSE(MatchReflectance(objective, fitted, Full(fitted), 30, [] { return true; }));
-  const std::optional<MatchedModel> one = MatchReflectance(objective, fitted, Full(fitted), 30);
+  EXPECT_FALSE(
+      MatchReflectance(objective, objective, fitted, Full(fitted), 30, [] { return true; }));
+  const std::optional<MatchedModel> one =
+      MatchReflectance(objective, objective, fitted, Full(fitted), 30);
+  const Objective three_threads = ObjectiveOf(table, 3);
   const std::optional<MatchedModel> three =
-      MatchReflectance(ObjectiveOf(table, 3), fitted, Full(fitted), 30);
+      MatchReflectance(three_threads, three_threads, fitted, Full(fitted), 30);
   ASSERT_TRUE(one && three);
   EXPECT_TRUE(std::ranges::equal(one->model.parameters(), three->model.parameters()));
 }
