@@ -212,12 +212,15 @@ class ModelSearch {
   void Thin(const std::string& name, const Weighting& weighting, const FactorModel& model) {
     const UnmeasuredGuide guide(objective_, model);
     PruneOptions prune;
-    prune.lobes = prune.sharing = false;
+    prune.lobes = prune.colour = false;
     prune.max_parameters = options_.max_parameters;
-    const bool may_stop = best_.chosen >= 0;  // else there is nothing yet that keeps to the budget
-    if (may_stop) prune.stop = options_.stop;
+    // The fit itself has to come down to the budget. Of forms it takes long to see whether G had
+    // better be shared, and hardly ever it had.
+    const bool of_fit = best_.chosen < 0;
+    prune.sharing = of_fit;
+    if (!of_fit) prune.stop = options_.stop;
     PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
-    if (may_stop && options_.stop()) return;
+    if (!of_fit && options_.stop()) return;
     const Objective to = guide.With(some_.For(pruned.model.spec(), weighting));
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
