@@ -12,6 +12,7 @@
 #include "trilobe/app/print.h"
 #include "trilobe/app/stretch_report.h"
 #include "trilobe/io/stretch_json.h"
+#include "trilobe/model/table_layout.h"
 
 namespace trilobe {
 namespace {
@@ -89,6 +90,16 @@ std::string Irreducible(const ScoreReport& score) {
   return "reciprocity  " + Text(100 * share, 3) +
          " % of E is what exchanged directions differ by in the data, noise included; no "
          "reciprocal model lowers it\n";
+}
+
+// Of thinned tables not all are stored; the others follow.
+std::string ParametersText(const FitReport& report) {
+  const int all = TableLayout::Full(report.spec).num_parameters(report.spec);
+  std::string text = std::to_string(all) + " parameters";
+  if (report.stored_parameters < all) {
+    text += ", " + std::to_string(report.stored_parameters) + " of them stored";
+  }
+  return text;
 }
 
 std::string StretchLine(const ModelSpec& spec) {
@@ -234,8 +245,8 @@ void Print(const FitReport& report) {
   std::cout << "source       " << fit.source << ", " << fit.valid_samples << " valid samples up to "
             << Text(fit.max_angle) << " deg\n"
             << "left out     bins " << LeftOutText(report.bins) << "\n"
-            << "model        " << report.spec.lobes << " lobes, " << report.spec.num_parameters()
-            << " parameters, weighting " << fit.weighting << ", from " << fit.init << "\n"
+            << "model        " << report.spec.lobes << " lobes, " << ParametersText(report)
+            << ", weighting " << fit.weighting << ", from " << fit.init << "\n"
             << report.summary.FullReport() << "error        E is "
             << Text(100 * score.relative_objective) << " % of a black model's; PSNR "
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "

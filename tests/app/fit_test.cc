@@ -239,6 +239,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   EXPECT_EQ(like_the_chosen, 1);
   // What the judge saw of it, on a quarter of the pixels.
   EXPECT_NEAR(report["appearance"]["psnr_db"].get<double>(), best, 0.5);
+  EXPECT_THAT(result.out, HasSubstr(", " + std::to_string(parameters) + " of them stored, "));
   EXPECT_THAT(result.out, HasSubstr("\ncandidates   as fitted: PSNR "));
   EXPECT_THAT(result.out, HasSubstr("   <- chosen\n"));
   EXPECT_THAT(result.out, HasSubstr("\ndata edge    "));
