@@ -33,7 +33,7 @@ constexpr double kNotSeen = 0.2;
 // A stretch that lowers E by less than this fraction is none.
 constexpr double kWorthwhile = 0.05;
 
-// What thinning cannot go below: a node a table.
+// What thinning cannot go below: a node a table, besides d, s and exponents.
 int LeastStored(const ModelSpec& spec) {
   TableLayout layout = TableLayout::Full(spec);
   for (const Factor factor : kFactors) {
@@ -262,7 +262,7 @@ class ModelSearch {
 
   // The fit itself, stretched, and weighed by channel, which the others go on from.
   bool FitBases() {
-    bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates[best_.chosen].score}};
+    bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
     bool stretched = false;
     if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
         !fitted_.spec().stretches.any()) {

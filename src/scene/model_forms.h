@@ -21,7 +21,7 @@ struct ModelForm {
 // Those with the same values that share less than a form: F by lobe, D by channel.
 std::vector<ModelForm> FormsSharingLess(const ModelForm& base);
 
-// Both at once, as far as the form shares F and D; nothing if it shares neither.
+// Both at once, or the one that is not so yet; nothing where both are.
 std::optional<ModelForm> FormSharingNeither(const ModelForm& base);
 
 // A lobe more, the strongest one split; nothing where none can be.

@@ -28,8 +28,9 @@ struct PruneOptions {
   bool colour = true;     // tables, then d and s, shared by the channels
   bool shadowing = true;  // G: shared by the lobes, constant, or thinned
   bool tables = true;     // entries of D and F: dropped where no data are, and thinned
-  // False: lobes and channels share no more than they do, whatever the two above allow, and G
-  // becomes constant only by thinning; saves the time to look. Anisotropic models: of no effect.
+  // False: lobes and channels share no more than they do, whatever `colour` and `shadowing` allow,
+  // and G becomes constant only by thinning; saves the time to look. Anisotropic models: of no
+  // effect.
   bool sharing = true;
   // More lobes than the full model's, where the budget asks for a lower E. 0: none.
   int max_lobes = 0;

@@ -8,8 +8,8 @@
 namespace trilobe {
 
 // What a model says where nothing was measured, for fits that go on from it: fitted to few samples,
-// or thinned, these would be free there, and entries that hardly a sample reads would run wild. It
-// counts so little that it decides only what the data leave open.
+// thinned, or moved to another reflectance, these would be free there, and entries that hardly a
+// sample reads would run wild. It counts so little that it decides only what the data leave open.
 class UnmeasuredGuide {
  public:
   // Speaks about the bins above the surface that are not among the objective's samples, and not
