@@ -12,7 +12,6 @@
 #include "trilobe/app/print.h"
 #include "trilobe/app/stretch_report.h"
 #include "trilobe/io/stretch_json.h"
-#include "trilobe/model/table_layout.h"
 
 namespace trilobe {
 namespace {
@@ -94,7 +93,7 @@ std::string Irreducible(const ScoreReport& score) {
 
 // Of thinned tables not all are stored; the others follow.
 std::string ParametersText(const FitReport& report) {
-  const int all = TableLayout::Full(report.spec).num_parameters(report.spec);
+  const int all = report.spec.num_parameters();
   std::string text = std::to_string(all) + " parameters";
   if (report.stored_parameters < all) {
     text += ", " + std::to_string(report.stored_parameters) + " of them stored";

@@ -56,9 +56,8 @@ Command SynthCommand() {
           "materials come at the 288 x 288 pairs of directions of the UTIA database, to a FILE "
           "that\nends in .bin or .csv. @GRID is another grid: of THETASxPHIS directions, for a "
           ".csv, as synth:linen@9x36,\nwith theta every 10 and phi every 10 degrees, for isotropic "
-          "materials, too; or, of isotropic "
-          "ones, of theta_h x theta_d x\nphi_d bins, as synth:felt@30x30x60, for tries that take a "
-          "second; no .binary file holds these.",
+          "materials, too; or, of isotropic ones,\nof theta_h x theta_d x phi_d bins, as "
+          "synth:felt@30x30x60, for tries that take a second; no .binary\nfile holds these.",
       .flags = {"out", "noise", "missing", "seed", "threads"},
       .run = RunSynth};
 }
