@@ -44,7 +44,7 @@ struct Derivatives {
   MatrixOf<Real> hessian;   // J'J + sum r d2r/dx2, lower triangle
 };
 
-// The objective of docs/method.md and its derivatives, written down from there sample by sample,
+// The objective of docs/objective.md and its derivatives, written down from there sample by sample,
 // for any real type: from the library come only the measured numbers, the nodes of tables, and the
 // order of the parameters (FactorModel::parameters()). Isotropic models see samples on a grid,
 // anisotropic ones, D and G over nodes (theta, phi), samples with azimuths.
@@ -66,7 +66,7 @@ class ReferenceProblem {
   // Total weight of what reads each parameter; d and s read everything of their channel. [n]
   const VectorOf<Real>& coverage() const { return coverage_; }
 
-  // The canonical form of docs/method.md, unobserved entries filled.
+  // The canonical form of docs/stored-model.md, unobserved entries filled.
   VectorOf<Real> Canonical(VectorOf<Real> x) const;
 
  private:

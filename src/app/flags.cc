@@ -34,7 +34,7 @@ DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
               "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
               "(docs/file-formats.md)");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
-              "weights of the objective: a name, or power:KEY=VALUE,... (docs/method.md)");
+              "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
 DEFINE_string(out, "", "where to write: a file or, for fit, info and plot, a folder");
 
 namespace trilobe {

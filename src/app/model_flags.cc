@@ -26,7 +26,7 @@ DEFINE_string(
 DEFINE_string(
     stretch, "",
     "of an isotropic model, ALONG,ACROSS: exponents by which highlights get wider with theta_d, "
-    "along the plane of both directions and across it (docs/method.md#stretched-highlights); one "
+    "along the plane of both directions and across it (docs/model.md#stretched-highlights); one "
     "pair for all lobes, or one a lobe, ALONG,ACROSS,ALONG,ACROSS...; by default 0,0, as in the "
     "paper; --model=auto finds them");
 DEFINE_int32(f_bins, 0,
@@ -45,7 +45,7 @@ DEFINE_double(
     guide, 1,
     "of scattered samples: how much a small model, fitted first, counts between the measured "
     "directions, much less where no azimuths matter (docs/anisotropic.md, "
-    "docs/method.md#samples-on-no-grid); 0: not at all, the default with --model=anisotropic");
+    "docs/few-samples.md); 0: not at all, the default with --model=anisotropic");
 
 namespace trilobe {
 namespace {

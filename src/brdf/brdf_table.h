@@ -55,7 +55,7 @@ BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid);
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid);
 
 // True where the bin is above the surface, all three stored values are finite and >= 0, and it was
-// measured (docs/method.md). [grid.size()]
+// measured (docs/samples.md). [grid.size()]
 std::vector<bool> ValidBins(const BrdfTable& table);
 
 // What the table says of one bin.

@@ -8,7 +8,7 @@
 
 namespace trilobe {
 
-// The half-angle grid of the MERL database (docs/method.md), of any resolution: theta_h bins are
+// The half-angle grid of the MERL database (docs/samples.md), of any resolution: theta_h bins are
 // equal steps of sqrt(theta_h), theta_d and phi_d bins equal steps of the angle. Angles in radians.
 struct MerlGrid {
   int theta_h = 90;

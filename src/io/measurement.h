@@ -71,7 +71,7 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement);
 PairError ReciprocityError(const Measurement& scattered);
 
 // Gathers scattered samples as a reader finds them, and counts what is not valid: a direction below
-// the surface, a value that is not finite, one below 0 (docs/method.md).
+// the surface, a value that is not finite, one below 0 (docs/samples.md).
 class SampleCollector {
  public:
   SampleCollector(const std::string& source, const std::string& kind);

@@ -8,7 +8,7 @@
 
 namespace trilobe {
 
-// MERL `.binary` (docs/method.md): 3 little-endian int32 (90, 90, 180), then float64 planes R, G,
+// MERL `.binary` (docs/samples.md): 3 little-endian int32 (90, 90, 180), then float64 planes R, G,
 // B. All throw Error on bad input: too short, other dimensions, trailing bytes, ... Writing what
 // was read gives the same bytes; only bins that count as not measured are written as -1, as the
 // format has no other mark for them. ParseMerl reads the same format on another grid, too, if told

@@ -34,7 +34,7 @@ class RglBrdf {
   // was not measured.
   double max_theta() const;
 
-  // BRDF [1/sr], >= 0 (docs/method.md); 0 where a direction is below the surface.
+  // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
 
   // The same, and whether all nodes of `rgb` that it takes with weight were measured.
@@ -54,7 +54,7 @@ class RglBrdf {
 bool LooksLikeRgl(std::string_view bytes);
 
 // The BRDF at the centres of all bins above the surface, others invalid, and which of them were
-// measured (docs/method.md). Throws Error for an anisotropic material.
+// measured (docs/samples.md). Throws Error for an anisotropic material.
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},
                       int num_threads = 1);
 

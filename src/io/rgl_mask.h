@@ -10,7 +10,7 @@
 namespace trilobe {
 
 // Which nodes of an RGL file's field `rgb` the authors measured, and which they filled
-// (docs/method.md).
+// (docs/samples.md).
 class RglMask {
  public:
   // Of a file whose `rgb` has these slices, `rgb_slices` = phi_i x theta_i, rows and columns. A

@@ -11,7 +11,7 @@ namespace trilobe {
 
 // Catmull-Rom spline through values at theta_k = (k + 1/2) * 90/nodes degrees, k = 0..nodes-1, with
 // one-sided slopes at the two ends and constant beyond the end nodes
-// (Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 8.6.1; docs/method.md).
+// (Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 8.6.1; docs/model.md).
 class CatmullRom {
  public:
   // A place on the spline: between node `interval` and the next, `t` in [0, 1] of the way.

@@ -29,7 +29,7 @@ struct ElementQuartic {
 // near it; a parameter that E hardly depends on could.
 inline constexpr double kMaxParameter = 1e60;
 
-// The x' in [0, kMaxParameter] with the lowest E along the element (docs/method.md): the best of x
+// The x' in [0, kMaxParameter] with the lowest E along the element (docs/sums.md): the best of x
 // itself, 0, and the stationary points >= 0. Returns x where nothing lowers E by more than rounding
 // can tell.
 double BestElement(double x, const ElementQuartic& change);

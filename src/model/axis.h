@@ -28,7 +28,7 @@ struct Axis {
   // sqrt(theta), which are denser where highlights are.
   enum class Steps { kOfTheta, kOfRoot };
   static Axis EvenPolar(int thetas, Steps steps, int phi_nodes);
-  // The nodes 0, 15, ... 75 degrees by 0, 7.5, ... 352.5 of UTIA's directions (docs/method.md).
+  // The nodes 0, 15, ... 75 degrees by 0, 7.5, ... 352.5 of UTIA's directions (docs/model.md).
   static Axis Utia();
 
   // How many nodes of kSpline suit data at so few even theta: about three for two theta, as nodes

@@ -86,14 +86,14 @@ struct SampleStencils {
   Stencil D, F, G_i, G_o;
   std::vector<Stencil> more_D =
       {};  // where lobes are stretched differently: of the second stretch on
-  // 1 / (cos theta_i cos theta_o), splined as G is where that is a spline (docs/method.md).
+  // 1 / (cos theta_i cos theta_o), splined as G is where that is a spline (docs/model.md).
   double inverse_cosines = 0;
 
   // By the number of the stretch among the distinct ones.
   const Stencil& DOf(int stretch) const { return stretch == 0 ? D : more_D[stretch - 1]; }
 };
 
-// Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/method.md), a stretched
+// Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/model.md), a stretched
 // D between two. The grid's theta_h, theta_d resolution is that of the spec's D and F. Throws Error
 // for an anisotropic spec.
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);

@@ -10,7 +10,7 @@ namespace trilobe {
 
 // Scale can move between s, D, F and G without changing any BRDF value, and lobes can change
 // places. The canonical form, in which models are stored, fixes both by what a lobe reflects
-// (docs/method.md), so that entries that hardly any light goes through have no say:
+// (docs/stored-model.md), so that entries that hardly any light goes through have no say:
 // - each D integrates to 1 over the solid angle of half vectors, weighted by how much of the
 //   directions there is above the surface (VisibleSolidAngles); over the projected solid angle
 //   where the model is anisotropic;

@@ -12,7 +12,7 @@ namespace trilobe {
 
 // The model's BRDF [1/sr] at every sample, in their order; the numbers that the objective compares
 // with the measurement. On a grid whose theta_h and theta_d bins are those of the spec, D and F are
-// read at their own bins; elsewhere they are interpolated (docs/method.md). Since the spline
+// read at their own bins; elsewhere they are interpolated (docs/model.md). Since the spline
 // through G may undershoot, a value may be slightly negative; and nothing stops the product of huge
 // factors from overflowing to infinity or NaN. Throws Error for samples that are none
 // (CheckSamples).

@@ -20,8 +20,8 @@ struct WeightedPoint {
   double solid_angle = 1;  // of the directions that the sample stands for, in any unit
 };
 
-// A named choice of the weights w of E = sum w (rho - rho*)^2 (docs/method.md). A weight depends on
-// one measured sample and, at most, on the mean level of the measurement that it belongs to.
+// A named choice of the weights w of E = sum w (rho - rho*)^2 (docs/objective.md). A weight depends
+// on one measured sample and, at most, on the mean level of the measurement that it belongs to.
 struct Weighting {
   std::string name;
   std::string description;  // one line: formula and source

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// Samples on a MERL grid, folded by symmetry (docs/method.md). Exchanging theta_i and theta_o maps
+// Samples on a MERL grid, folded by symmetry (docs/sums.md). Exchanging theta_i and theta_o maps
 // phi_d to 180 degrees - phi_d and leaves the model's value unchanged, so the two bins become one
 // with
 //   w = w1 + w2,  rho* = (w1 rho1 + w2 rho2) / w,

@@ -15,7 +15,8 @@
 namespace trilobe {
 
 // E(model) = sum_j sum_C w_jC (rho_C(j) - rho*_jC)^2 over all samples and channels (paper eq. 2,
-// docs/method.md), prepared for a spec and a weighting. Immutable; safe to share between threads.
+// docs/objective.md), prepared for a spec and a weighting. Immutable; safe to share between
+// threads.
 class Objective {
  public:
   // Throws Error if there is no sample, or one that is none (CheckSamples), if the largest value is
@@ -48,7 +49,7 @@ class Objective {
 
   // Total weight of the samples that read each parameter (the sum of w |stencil weight|), in the
   // order of FactorModel::parameters(). 0 marks an unobserved bin: not a parameter at all
-  // (docs/method.md).
+  // (docs/stored-model.md).
   const std::vector<double>& coverage() const { return coverage_; }
 
   // One sample with its stencils. Throws Error if there is no such sample.

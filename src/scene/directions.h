@@ -14,7 +14,7 @@ namespace trilobe {
 
 // Which directions occur in a scene, in one of four forms. The model does not tell a pair of
 // directions from the same pair exchanged. So ranges and lists that use one of two bins that fold
-// into one (docs/method.md) use the other, too; a histogram counts each bin by itself.
+// into one (docs/sums.md) use the other, too; a histogram counts each bin by itself.
 
 struct AllDirections {};
 

@@ -12,7 +12,7 @@ namespace trilobe {
 class SampleEquations;
 
 // Accumulates a QuadraticModel without ever storing J, in one pass over the samples
-// (docs/method.md). Samples on a grid are taken folded, by their cells; others one by one
+// (docs/sums.md). Samples on a grid are taken folded, by their cells; others one by one
 // (SampleEquations).
 class NormalEquations {
  public:

@@ -1,4 +1,4 @@
-// Which bins of an RGL file count as measured (docs/method.md).
+// Which bins of an RGL file count as measured (docs/samples.md).
 
 #include "trilobe/io/rgl_mask.h"
 

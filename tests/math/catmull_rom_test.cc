@@ -161,7 +161,7 @@ TEST(CatmullRom, PiecesAreExactAtTheNodes) {
   }
 }
 
-// docs/method.md: the splined cosine divides; it never falls below that of the last node.
+// docs/model.md: the splined cosine divides; it never falls below that of the last node.
 TEST(CatmullRom, SplinedCosineStaysAboveThatOfTheLastNode) {
   const CatmullRom spline(90);
   std::vector<double> cosines(90);

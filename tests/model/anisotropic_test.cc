@@ -1,4 +1,4 @@
-// The anisotropic model (paper eq. 4, docs/method.md): nodes, interpolation, poles, gauge.
+// The anisotropic model (paper eq. 4, docs/model.md): nodes, interpolation, poles, gauge.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

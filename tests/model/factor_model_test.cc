@@ -66,7 +66,7 @@ TEST(FactorModel, IsAValue) {
   EXPECT_NE(model.d()[0], 17);
 }
 
-// Equation (3) at bin (h, d, p), written out with the formulas of docs/method.md.
+// Equation (3) at bin (h, d, p), written out with the formulas of docs/model.md.
 TEST(FactorModel, EvaluatesThePapersEquation) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   const FactorModel model = RandomModel(spec, 2);

@@ -28,7 +28,7 @@ constexpr long double kSolidAngle = 3;
 using Exact = long double;
 using Formula = Exact (*)(Exact rho, const std::array<Exact, 3>& all, Exact cos_i);
 
-// The table of docs/method.md, as it stands there.
+// The table of docs/objective.md, as it stands there.
 const std::map<std::string, Formula> kFormulas = {
     {"appearance",  // where no measurement is known, whose level then counts as 1
      [](Exact, const std::array<Exact, 3>& all, Exact cos_i) {
@@ -142,7 +142,7 @@ TEST(Weighting, NeverRisesWithTheMeasuredValue) {
   }
 }
 
-// The limit towards black, docs/method.md: cos^2, across the switch to the series.
+// The limit towards black, docs/objective.md: cos^2, across the switch to the series.
 TEST(Weighting, CompressiveTendsToTheCosine) {
   const Weighting weighting = FindWeighting("compressive");
   for (const double cos_i : {1.0, 0.3, 0.01}) {

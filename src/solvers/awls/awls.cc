@@ -25,7 +25,7 @@ class Awls : public Solver {
 SolverEntry AwlsEntry() {
   return {.name = "awls",
           .description = "alternating weighted least squares, one parameter at a time",
-          .reference = "Peng, Zheng, Lv, section 2.3; exact sums: docs/method.md",
+          .reference = "Peng, Zheng, Lv, section 2.3; exact sums: docs/sums.md",
           .options = {"g_filter_sigma"},
           .make = [] { return std::make_unique<Awls>(); }};
 }

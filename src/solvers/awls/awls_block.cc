@@ -29,7 +29,7 @@ class AwlsBlock : public Solver {
 SolverEntry AwlsBlockEntry() {
   return {.name = "awls_block",
           .description = "awls with all lobes at once, and several rounds of d, s, D, F a sweep",
-          .reference = "Lawson and Hanson 1974, chapter 23; exact sums: docs/method.md",
+          .reference = "Lawson and Hanson 1974, chapter 23; exact sums: docs/sums.md",
           .options = {"g_filter_sigma"},
           .make = [] { return std::make_unique<AwlsBlock>(); }};
 }

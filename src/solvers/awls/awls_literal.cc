@@ -94,7 +94,7 @@ class ReferenceSweep {
     std::iota(all_.begin(), all_.end(), 0);
   }
 
-  // d, s, D, F, then G, one element at a time (docs/method.md).
+  // d, s, D, F, then G, one element at a time (docs/sums.md).
   void operator()(FactorModel* model) const {
     const ModelSpec& spec = objective_.spec();
     for (int c = 0; c < kChannels; ++c) {

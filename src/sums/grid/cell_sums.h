@@ -11,7 +11,7 @@
 namespace trilobe {
 
 // Element updates of d, s, D and F from sums over the cells (theta_h, theta_d), exact for fixed G
-// (docs/method.md).
+// (docs/sums.md).
 //
 // In one cell and channel the model is linear in a few basis functions of the sample,
 //   rho = sum_a x_a phi_a,  phi_0 = 1, phi_m = K_m = G^m(theta_i) G^m(theta_o) / (cos cos),

@@ -14,7 +14,7 @@ class RowLayout;
 struct RowAccumulator;
 
 // The part of H and J'r in which d, s, D or F take part, from one streaming pass over the rows
-// (theta_h, theta_d) of a folded grid (docs/method.md).
+// (theta_h, theta_d) of a folded grid (docs/sums.md).
 //
 // In a row and channel rho = sum_a x_a phi_a as in CellSums. A parameter of d, s, D or F moves it
 // by known multiples v_a of the phi_a, so that two of them have the product v.A.v' with CellSums'

@@ -13,7 +13,7 @@
 namespace trilobe {
 
 // The products in J'J of the nodes of G with each other, from one pass over the cells (knot
-// interval of theta_i, knot interval of theta_o); see docs/method.md.
+// interval of theta_i, knot interval of theta_o); see docs/sums.md.
 //
 // With y_t = sum s D F / (cos cos) over the lobes that table t serves, a node k of t moves rho by
 //   y_t (B_k(theta_i) G_t(theta_o) + G_t(theta_i) B_k(theta_o)).

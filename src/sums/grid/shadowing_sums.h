@@ -10,7 +10,7 @@
 
 namespace trilobe {
 
-// Element updates of G from moments of spline weights, exact for fixed d, s, D, F (docs/method.md).
+// Element updates of G from moments of spline weights, exact for fixed d, s, D, F (docs/sums.md).
 //
 // With y = s D F / (cos cos), summed over the lobes that a table serves, and B_a the spline's
 // weight of node a, a change of the table from G0 to G changes a sample's value by
