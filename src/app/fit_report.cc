@@ -4,6 +4,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <variant>
 
 #include "trilobe/app/appearance_report.h"
@@ -20,12 +21,13 @@ using Json = nlohmann::ordered_json;
 
 // The value of --model that stands for a spec, which a model file may have brought.
 std::string ModelName(const ModelSpec& spec) {
-  const MerlGrid grid{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size};
-  ModelSpec shared = ModelSpec::SharedFactors(spec.lobes, grid);
-  shared.stretches = spec.stretches;
-  if (spec == shared) return "shared";
-  if (spec == ModelSpec::IndependentG(grid)) return "independent";
   if (spec.anisotropic()) return "anisotropic";
+  const auto is = [&spec](const ModelSpec& named) {
+    return std::tie(spec.lobes, spec.D, spec.F, spec.G) ==
+           std::tie(named.lobes, named.D, named.F, named.G);
+  };
+  if (is(ModelSpec::SharedFactors(spec.lobes))) return "shared";
+  if (is(ModelSpec::IndependentG()) && !spec.stretches.any()) return "independent";
   return "other";
 }
 

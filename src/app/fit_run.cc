@@ -1,6 +1,5 @@
 #include "trilobe/app/fit_run.h"
 
-#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -85,14 +84,13 @@ FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const 
           .run = run};
 }
 
-// What all readers of model files know of scattered samples' models: F in 90 bins, if those have
-// the centres of its own fewer bins among theirs, which makes it the same function; of isotropic
-// ones, G on as many nodes as F has bins, of which InForm fills those that no data touch.
+// An anisotropic model with F in the 90 bins that readers of such files have always found, if those
+// have the centres of its own fewer bins among theirs: the same function. All other tables are
+// stored as they were fitted.
 ModelSpec WithFileBins(ModelSpec spec) {
   constexpr int kFileBins = 90;
   int& bins = spec.f_axis.size;
-  if (kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
-  if (!spec.anisotropic()) spec.g_axis.size = std::max(spec.g_axis.size, bins);
+  if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
   return spec;
 }
 
@@ -220,7 +218,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.seconds.solve = stopwatch.Lap();
   report.fit = InfoOf(settings, summary, source, measured, objective,
                       folder == nullptr ? "" : folder->run());
-  const ModelSpec file_spec = table != nullptr ? report.spec : WithFileBins(report.spec);
+  const ModelSpec file_spec = WithFileBins(report.spec);
   const Objective in_file = file_spec == report.spec ? objective : Objective(objective, file_spec);
   // As the solver left it; what follows may take longer than somebody who ends the program waits.
   if (folder != nullptr && InterruptGuard::signal() == 0) {

@@ -1,0 +1,88 @@
+// What `trilobe fit` stores of scattered samples: the model that was solved, on its own few nodes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_program.h"
+#include "trilobe/brdf/directions.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/trace_file.h"
+#include "trilobe/model/continuous_model.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Scattered : public ::testing::Test {
+ protected:
+  Scattered() {
+    const ProgramResult made = RunProgram(
+        {"convert", "synth:rubber@30x30x60", "--missing=0.9", "--out=" + folder_ / "few.csv"});
+    EXPECT_EQ(made.status, 0) << made.err;
+  }
+
+  // Without a guide, so that the solver's E is that of the data.
+  json Fit(const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"fit", folder_ / "few.csv", "--guide=0", "--solver=awls",
+                                          "--out=" + folder_ / name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult fit = RunProgram(arguments);
+    EXPECT_EQ(fit.status, 0) << fit.err;
+    return json::parse(Contents(folder_ / name + "/report.json"));
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(Scattered, StoresTheModelThatWasSolved) {
+  const json report = Fit("fit", {"--lobes=1", "--max_iterations=20", "--plots"});
+  EXPECT_EQ(report["model"], "shared");
+  const std::string path = folder_ / "fit/model.json";
+  const ModelFile file = ReadModel(path);
+  EXPECT_EQ(file.model.spec(),
+            ModelSpec::SharedFactors(1).ForScattered(report["valid_samples"].get<int>()));
+
+  const std::vector<IterationRecord> trace = ReadTrace(folder_ / "fit/trace.csv");
+  const double solved = std::ranges::min(trace, {}, &IterationRecord::objective).objective;
+  const double finished = solved * (1 + report["tied_at_data_edge"].get<double>());
+  EXPECT_NEAR(report["objective"], finished, 1e-9 * finished);
+  EXPECT_EQ(file.fit.objective, report["objective"]);
+  const json score = json::parse(RunProgram({"score", path, folder_ / "few.csv", "--json"}).out);
+  EXPECT_NEAR(score["objective"], finished, 1e-9 * finished);
+
+  // What evaluates models takes its few nodes.
+  const ContinuousModel prepared(file.model);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> theta(0, 1.5), phi(0, 6);
+  for (int k = 0; k < 100; ++k) {
+    const DirectionPair at =
+        ToDirections(SphericalAngles{theta(random), phi(random), theta(random), phi(random)});
+    const Rgb expected = Evaluate(file.model, at), value = prepared(at);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], 1e-9 * (1 + expected[c]));
+  }
+  const ProgramResult info = RunProgram({"info", path});
+  EXPECT_THAT(info.out, HasSubstr(std::to_string(file.model.spec().num_parameters())));
+  EXPECT_EQ(RunProgram({"convert", path, "--out=" + folder_ / "fit.bin"}).status, 0);
+}
+
+TEST_F(Scattered, AFitFromAStoredModelKeepsItsSmallForm) {
+  const json first = Fit("first", {"--lobes=1", "--max_iterations=10"});
+  const json second =
+      Fit("second", {"--init=" + folder_ / "first/model.json", "--max_iterations=3"});
+  EXPECT_EQ(second["parameters"], first["parameters"]);
+  EXPECT_EQ(ReadModel(folder_ / "second/model.json").model.spec(),
+            ReadModel(folder_ / "first/model.json").model.spec());
+  EXPECT_NEAR(second["initial_objective"], first["objective"],
+              1e-9 * first["objective"].get<double>());
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
