@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What takes too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests under the
 # address and undefined-behaviour sanitizers, the thread sanitizer, some hundred faults, and long fuzzing.
-#   scripts/nightly.sh [TRIALS [RUNS]]      faults to try (400), executions of each fuzzer (10000000)
+#   scripts/nightly.sh [TRIALS [RUNS [DATA]]]      faults to try (400), executions of each fuzzer (10000000), a
+#                                                  folder with the measured files of which docs have pictures
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -35,6 +36,9 @@ step "Running the tests that go through choices, with all combinations"
 TRILOBE_ALL_CHOICES=1 run_tests release
 step "Breaking runs of it"
 tests/faults/harness.py --trials="${1:-400}"
+
+step "Making the pictures of the pages"
+scripts/check_pictures.py ${3:+--data="$3"}
 
 step "Fuzzing each reader"
 scripts/fuzz_long.sh "" "${2:-10000000}"
