@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-MADE = re.compile(r"<!-- made (nightly )?by:(.*?)-->\s*\Z", re.DOTALL)
+MADE = re.compile(r"<!-- made (nightly )?by:((?:(?!-->).)*)-->\s*\Z", re.DOTALL)
 PICTURE = re.compile(r"!\[[^]]*\]\(([^)\s]+\.png)\)")
 MEASURED = re.compile(r"(?<!\S)[\w.-]+\.(?:bsdf|mbsdf|brdf|binary|bin)\b")
 # On another processor commands give the same figures in all the digits that pictures have, so only

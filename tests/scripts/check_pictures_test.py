@@ -80,6 +80,15 @@ class CheckPictures(unittest.TestCase):
         self.assertTrue(self.check("--quick"), self.output)
         self.assertFalse(self.check())
 
+    def test_a_page_of_several_pictures(self):
+        (self.root / "docs/images/b.png").write_bytes(png(changed=20))
+        page = (self.root / "README.md").read_text()
+        (self.root / "README.md").write_text(
+            page + "\n" + page.replace("a.png", "b.png").replace("by: cp", "nightly by: cp"))
+        self.assertTrue(self.check("--quick"), self.output)
+        self.assertFalse(self.check())
+        self.assertIn("b.png is not what", self.output)
+
     def test_measured_files_come_from_a_folder(self):
         self.page("made by: cp steel.bsdf a.png")
         self.assertTrue(self.check())
