@@ -23,6 +23,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/model_file.h"
+#include "trilobe/math/openblas.h"
 #include "trilobe/scene/fit_cache.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
@@ -199,6 +200,7 @@ int RunFitOfScene(std::span<const std::string> arguments) {
 }
 
 int RunFit(std::span<const std::string> arguments) {
+  { const BlasCall memory_is_there; }  // which is better known before the work
   if (!FLAGS_scene.empty()) return RunFitOfScene(arguments);
   if (arguments.empty()) throw Error("trilobe fit needs a SOURCE, or --scene=SCENE");
   for (const char* const flag : {"cache", "nocache"}) {

@@ -3,8 +3,10 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <iostream>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/source.h"
@@ -60,8 +62,15 @@ std::string FlagHelp(const std::string& flag) {
 
 int ThreadsFromFlags() {
   if (FLAGS_threads < 0) throw Error("--threads is negative; give 0 for all cores");
-  if (FLAGS_threads > 0) return FLAGS_threads;
-  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  // Those that this process may use.
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (FLAGS_threads == 0) return cores;
+  static bool told = false;
+  if (FLAGS_threads > cores && !std::exchange(told, true)) {
+    std::cerr << "trilobe: --threads=" << FLAGS_threads
+              << " is more than there are cores, which gains nothing; using " << cores << "\n";
+  }
+  return std::min(FLAGS_threads, cores);
 }
 
 SourceOptions SourceOptionsFromFlags() {

@@ -33,7 +33,8 @@ std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& fl
 // A flag for `trilobe help COMMAND`: "  --lobes=3", and its description on the next line.
 std::string FlagHelp(const std::string& flag);
 
-// --threads, with 0 meaning all cores. Throws Error if negative.
+// --threads, with 0 meaning all cores, and no more than these: beyond, the first call says so on
+// standard error. Throws Error if negative.
 int ThreadsFromFlags();
 
 // What says how a source is read: for LoadSource. Throws Error for bad values. And the names of

@@ -1,7 +1,11 @@
 #include "trilobe/app/interrupt.h"
 
+#include <unistd.h>
+
 #include <atomic>
+#include <cerrno>
 #include <exception>
+#include <string_view>
 
 namespace trilobe {
 namespace {
@@ -10,7 +14,8 @@ namespace {
 std::atomic<int> caught_signal = 0;
 std::atomic<int> signals_caught = 0;
 std::atomic<int> unsaved_models = 0;
-static_assert(std::atomic<int>::is_always_lock_free);
+std::atomic<bool> on_terminal = false;
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 // As if nobody had caught it; from a handler it arrives when the handler is through.
 void EndBy(int signal) {
@@ -18,9 +23,30 @@ void EndBy(int signal) {
   std::raise(signal);
 }
 
+// On a terminal in the place of a line of progress.
+void Say(std::string_view line) {
+  const int error = errno;
+  if (on_terminal) static_cast<void>(!write(STDERR_FILENO, "\r\033[K", 4));
+  static_cast<void>(!write(STDERR_FILENO, line.data(), line.size()));
+  errno = error;
+}
+
 extern "C" void OnSignal(int signal) {
   caught_signal = signal;
-  if (++signals_caught > 1 && unsaved_models == 0) EndBy(signal);
+  switch (++signals_caught) {
+    case 1:
+      return Say(
+          "trilobe: stopping: the best so far is kept; a second Ctrl-C ends at once, but not "
+          "before a model is on disk\n");
+    case 2:
+      if (unsaved_models == 0) break;
+      return Say(
+          "trilobe: stopping: a model is not on disk yet; a third Ctrl-C ends at once, and loses "
+          "it\n");
+    default:
+      break;
+  }
+  EndBy(signal);
 }
 
 void Catch(int signal, struct sigaction* old) {
@@ -35,6 +61,7 @@ void Catch(int signal, struct sigaction* old) {
 
 InterruptGuard::InterruptGuard() {
   caught_signal = signals_caught = 0;
+  on_terminal = isatty(STDERR_FILENO) != 0;
   Catch(SIGINT, &old_int_);
   Catch(SIGTERM, &old_term_);
   Catch(SIGHUP, &old_hup_);

@@ -6,9 +6,10 @@
 namespace trilobe {
 
 // While one lives, the first SIGINT (Ctrl-C), SIGTERM or SIGHUP does not end the program but is
-// kept in signal(); the next one ends it, unless there is a model that is not yet on disk
-// (UnsavedModel): then the program goes on until it is. A signal that the program was started to
-// ignore stays ignored. A reader of standard output that has gone away is an error of writing.
+// kept in signal(), and acknowledged on standard error; the next one ends it, unless there is a
+// model that is not yet on disk (UnsavedModel): then the program goes on until it is. A third one
+// ends it in any case. A signal that the program was started to ignore stays ignored. A reader of
+// standard output that has gone away is an error of writing.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iomanip>
@@ -142,6 +143,8 @@ int Main(int argc, char** argv) {
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
+  // A file that has reached `ulimit -f` is an error of writing then, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   gflags::SetVersionString(TRILOBE_VERSION);

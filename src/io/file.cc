@@ -212,6 +212,7 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
   const std::string target = ResolveTarget(path);
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
+  stream.exceptions(std::ios::badbit);  // or memory that lacks were but a state of it
   write(stream);
   if (!stream) FailToWrite(path, "its content could not be produced");
 

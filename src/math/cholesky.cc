@@ -98,6 +98,7 @@ class FactorizationByTiles {
   }
 
   bool Run(int num_threads) {
+    { const BlasCall memory_is_there; }  // or throws here, as no item may
     ParallelFor(tiles_.count(), num_threads, [&](int j) {
       for (int k = 0; k < j; ++k) {
         const auto first = std::ranges::lower_bound(below_[k], j);

@@ -346,6 +346,7 @@ TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
   const TerminalResult result =
       RunOnTerminal(Fit(out, {"--max_iterations=1000000", "--tolerance=0"}), "iteration 2", SIGINT);
   EXPECT_EQ(result.status, 130);
+  EXPECT_THAT(result.text, HasSubstr("stopping: the best so far is kept"));  // before it has
   EXPECT_THAT(result.text, HasSubstr("interrupted"));
   EXPECT_THAT(result.text, HasSubstr("s left"));  // the progress line of a terminal
   const auto trace = ReadTrace(out + "/trace.csv");

@@ -182,6 +182,18 @@ TEST(Interrupt, TwiceKeepsTheModel) {
   for (const std::string& name : Names(out)) EXPECT_FALSE(name.starts_with('.')) << name;
 }
 
+// An iteration of this solver takes longer than the three need to come.
+TEST(Interrupt, ThriceEndsTheProgramWhateverItDoes) {
+  const TemporaryFolder folder;
+  const TerminalResult result =
+      RunOnTerminal({"fit", "synth:felt", "--solver=awls_literal", "--max_iterations=1000000",
+                     "--tolerance=0", "--out=" + (folder / "out")},
+                    "iteration 0", SIGINT, /*times=*/3);
+  EXPECT_EQ(result.status, -1) << result.text;
+  EXPECT_THAT(result.text, HasSubstr("stopping: the best so far is kept"));
+  EXPECT_THAT(result.text, HasSubstr("a third Ctrl-C ends at once"));
+}
+
 TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   const TemporaryFolder folder;
   const std::string out = folder / "out", data = folder / "data";

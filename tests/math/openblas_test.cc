@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <string>
+
+#include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -22,6 +26,14 @@ TEST(OpenBlas, HasOneThread) {
   auto* const threads =
       reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
   EXPECT_EQ(threads != nullptr ? threads() : 1, 1);
+}
+
+// Nor has it begun with more: in a process that has started none there is this one.
+TEST(OpenBlas, StartsNoThread) {
+  const BlasCall call;
+  const std::filesystem::directory_iterator threads("/proc/self/task");
+  if (kSanitized) GTEST_SKIP() << "a sanitizer may have one";
+  EXPECT_EQ(std::distance(begin(threads), end(threads)), 1);
 }
 
 #if defined(__x86_64__)

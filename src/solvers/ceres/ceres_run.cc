@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "trilobe/math/element_step.h"
+#include "trilobe/math/openblas.h"
 #include "trilobe/model/gauge.h"
 
 namespace trilobe {
@@ -152,6 +153,7 @@ void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
   options.callbacks.push_back(&recorder);
 
   ceres::Solver::Summary summary;
+  { const BlasCall memory_is_there; }  // or throws here; Ceres' own calls would try for ever
   try {
     ceres::Solve(options, problem, &summary);
   } catch (const std::system_error&) {  // Ceres starts its threads before all else, and got fewer
