@@ -7,6 +7,7 @@
 
 #include "trilobe/app/flags.h"
 #include "trilobe/app/print.h"
+#include "trilobe/base/printable.h"
 #include "trilobe/io/image_file.h"
 
 DEFINE_string(
@@ -41,7 +42,7 @@ AppearanceOptions AppearanceOptionsFromFlags() {
 
 std::string Describe(const AppearanceReport& report) {
   const SphereError& sphere = report.sphere;
-  std::string text = "appearance   sphere in " + report.environment + ": PSNR " +
+  std::string text = "appearance   sphere in " + Printable(report.environment) + ": PSNR " +
                      Text(sphere.psnr_db) + " dB (peak 1, mean luminance " + Text(kMeanLuminance) +
                      ", sRGB curve, clipped), CIELAB difference " + Text(sphere.mean_delta_e, 3) +
                      " mean, " + Text(sphere.delta_e_95, 3) + " at 95 %, mean colour off by " +

@@ -15,6 +15,7 @@
 #include "trilobe/app/scene_run.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/printable.h"
 #include "trilobe/io/json_value.h"
 #include "trilobe/io/plots.h"
 
@@ -198,12 +199,14 @@ Json ToJson(const Comparison& comparison) {
 void Print(const Comparison& comparison) {
   size_t width = 10;
   for (const Row& row : comparison.rows) width = std::max(width, row.name.size() + 2);
-  const auto line = [width](const std::string& name, int full, int pruned, double full_seconds,
+  const auto line = [width](const std::string& material, int full, int pruned, double full_seconds,
                             double pruned_seconds, const std::string& full_E,
                             const std::string& pruned_E, double rise, double full_psnr,
                             double pruned_psnr) {
-    std::cout << name << std::string(width - name.size(), ' ') << Right(std::to_string(full), 7)
-              << Right(std::to_string(pruned), 8) << Right(std::to_string(BytesOf(full)), 9)
+    const std::string name = Printable(material);
+    std::cout << name << std::string(name.size() < width ? width - name.size() : 1, ' ')
+              << Right(std::to_string(full), 7) << Right(std::to_string(pruned), 8)
+              << Right(std::to_string(BytesOf(full)), 9)
               << Right(std::to_string(BytesOf(pruned)), 8) << Right(Text(full_seconds, 3), 8)
               << Right(Text(pruned_seconds, 3), 8) << Right(full_E, 11) << Right(pruned_E, 11)
               << Right(Text(100 * rise, 3), 9) << Right(Text(full_psnr), 8)

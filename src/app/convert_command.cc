@@ -51,7 +51,7 @@ int RunConvert(std::span<const std::string> arguments) {
   const Measurement measurement = MeasurementOf(source, out, options);
   TellNotes(measurement);
   const std::string written = WriteMeasurement(measurement, out, options.num_threads);
-  std::cout << "wrote " << out << ": " << written << "\n";
+  PrintLine("wrote " + out + ": " + written);
   return 0;
 }
 
@@ -79,8 +79,7 @@ Command ConvertCommand() {
           "that ends in .csv it writes the valid samples, scattered ones too, a row each, with all "
           "their\ndigits; a whole table takes some 130 MB. To a FILE that ends in .bin it writes "
           "the input at the\ndirections of the UTIA database, -1 where it was not measured; "
-          "scattered samples must stand at them.\nA FILE whose ending says another format, as "
-          ".bsdf does, is an error.",
+          "scattered samples must stand at them.\nA FILE with another ending is an error.",
       .flags = WithSourceFlags({"out"}),
       .run = RunConvert};
 }

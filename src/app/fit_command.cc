@@ -177,7 +177,7 @@ int RunFitOfOne(const std::string& source) {
       throw Error(std::string(error.what()) + "; the model is in '" + into->PathOf("model.json") +
                   "'");
     }
-    std::cout << "written      " << Joined(run.report.files) << " in " << out << "\n";
+    PrintLine("written      " + Joined(run.report.files) + " in " + out);
   }
   return run.report.interrupted ? 128 + InterruptGuard::signal()
                                 : 0;  // as a shell reports such an end

@@ -23,6 +23,7 @@
 #include "trilobe/app/result_folder.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/base/printable.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/json_value.h"
 #include "trilobe/io/model_file.h"
@@ -169,11 +170,12 @@ std::string Summary(std::vector<FitOutcome> outcomes) {
   std::ranges::sort(outcomes, {}, &FitOutcome::psnr_db);
   const FitOutcome& least = outcomes.front();
   return "sphere " + Text(outcomes[outcomes.size() / 2].psnr_db, 3) +
-         " dB in the median, at least " + Text(least.psnr_db, 3) + " (" + least.name + ")";
+         " dB in the median, at least " + Text(least.psnr_db, 3) + " (" + Printable(least.name) +
+         ")";
 }
 
 void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
-  std::cout << "[" << done << "/" << count << "] " << outcome.name << ": "
+  std::cout << "[" << done << "/" << count << "] " << Printable(outcome.name) << ": "
             << StateName(outcome.state);
   if (outcome.has_model()) {
     if (outcome.has_picture) {
@@ -191,7 +193,11 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 
 std::string FitNameOf(const std::string& source) {
   if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
-  return fs::path(source).stem().string();
+  const fs::path file = fs::path(source).filename();
+  const std::string name = file.stem().string();
+  // As "." is of "..csv": then the whole name will do.
+  const bool taken = name == "." || name == ".." || name == kTableName || name == kPageName;
+  return taken ? file.string() : name;
 }
 
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
@@ -238,7 +244,7 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);
   progress.Clear();
   std::cout << "all          " << Summary(outcomes) << "\n"
-            << "written      " << written << " in " << out
+            << "written      " << written << " in " << Printable(out)
             << (failed > 0 ? "; " + std::to_string(failed) + " failed" : "") << "\n";
   if (InterruptGuard::signal() != 0) {
     std::cout << "interrupted  the same command goes on with what is missing\n";

@@ -8,7 +8,8 @@
 
 namespace trilobe {
 
-// What a measurement's folder is called: synth:NAME's or a file's name, without its ending.
+// What a measurement's folder is called: synth:NAME's or a file's name, without its ending unless
+// only with it that can be a folder beside the others.
 std::string FitNameOf(const std::string& source);
 
 // `trilobe fit SOURCE... --out=DIR`, where a SOURCE may be a folder of measurements: fits each, on

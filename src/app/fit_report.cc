@@ -12,6 +12,7 @@
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/stretch_report.h"
+#include "trilobe/base/printable.h"
 #include "trilobe/io/stretch_json.h"
 
 namespace trilobe {
@@ -243,8 +244,8 @@ void Print(const FitReport& report) {
   const FitInfo& fit = report.fit;
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
-  std::cout << "source       " << fit.source << ", " << fit.valid_samples << " valid samples up to "
-            << Text(fit.max_angle) << " deg\n"
+  std::cout << "source       " << Printable(fit.source) << ", " << fit.valid_samples
+            << " valid samples up to " << Text(fit.max_angle) << " deg\n"
             << "left out     bins " << LeftOutText(report.bins) << "\n"
             << "model        " << report.spec.lobes << " lobes, " << ParametersText(report)
             << ", weighting " << fit.weighting << ", from " << fit.init << "\n"

@@ -23,18 +23,14 @@ std::string RequiredOut(const std::string& command, const std::string& what) {
 }
 
 std::string RequiredMeasurementOut(const std::string& command) {
-  // Of formats that other programs would take the file for.
-  constexpr std::string_view kOthers[] = {
-      ".bsdf", ".json", ".txt", ".png", ".jpg", ".jpeg", ".hdr", ".pic", ".exr",
-      ".tif",  ".tiff", ".pdf", ".svg", ".npy", ".npz",  ".mat", ".h5",  ".xml",
-      ".zip",  ".gz",   ".tgz", ".xz",  ".bz2", ".zst",  ".7z",  ".tar"};
+  // A name without an ending is one of a MERL file, too.
+  constexpr std::string_view kKnown[] = {"", ".binary", ".bin", ".csv"};
   std::string out = RequiredOut(command, "FILE");
   const std::string ending = EndingOf(out);
-  if (std::ranges::find(kOthers, ending) != std::end(kOthers)) {
-    throw Error("--out=" + out + ": trilobe " + command + " writes MERL data, and the ending '" +
-                ending +
-                "' says another format; end the name in .binary, in .bin for UTIA's directions, or "
-                "in .csv");
+  if (std::ranges::find(kKnown, ending) == std::end(kKnown)) {
+    throw Error("--out=" + out + ": trilobe " + command + " writes no '" + ending +
+                "'; end the name in .binary for MERL layout, in .bin for UTIA's directions, or in "
+                ".csv");
   }
   return out;
 }

@@ -13,7 +13,7 @@ bool IsModelFile(const std::string& path);
 std::string RequiredOut(const std::string& command, const std::string& what);
 
 // The same for a command that writes a measurement, as WriteMeasurement does; also an Error where
-// the name's ending says another format, as that of "felt.bsdf" does.
+// the name ends otherwise, as "felt.bsdf" does.
 std::string RequiredMeasurementOut(const std::string& command);
 
 }  // namespace trilobe

@@ -10,12 +10,16 @@
 #include <iomanip>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trilobe/app/command.h"
+#include "trilobe/app/command_line.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/nearest_name.h"
+#include "trilobe/base/printable.h"
 
 namespace trilobe {
 
@@ -66,43 +70,56 @@ void PrintHelp(const Command& command) {
   for (const std::string& flag : command.flags) std::cout << FlagHelp(flag);
 }
 
-// Flags of other commands must not be swallowed in silence.
-void CheckFlags(const Command& command) {
-  std::vector<gflags::CommandLineFlagInfo> flags;
-  gflags::GetAllFlags(&flags);
-  for (const auto& flag : flags) {
-    const bool ours = flag.filename.find("src/app/") != std::string::npos;
+// Of the flags that a command takes, the one that another name was meant to be; "" if it is far
+// from all.
+std::string MeantFlag(const std::string& name, const Command& command) {
+  std::vector<std::string_view> taken(command.flags.begin(), command.flags.end());
+  taken.insert(taken.end(), command.particular_flags.begin(), command.particular_flags.end());
+  if (taken.empty()) return "";
+  const std::string_view nearest = NearestName(name, taken);
+  return 3 * EditDistance(name, nearest) <= name.size() ? std::string(nearest) : "";
+}
+
+// Flags that the command does not take must not be swallowed in silence.
+void CheckFlags(const CommandLine& line, const Command& command) {
+  for (const CommandLine::Flag& flag : line.flags) {
     const auto is_in = [&flag](const std::vector<std::string>& names) {
       return std::ranges::find(names, flag.name) != names.end();
     };
-    const bool taken = is_in(command.flags) || is_in(command.particular_flags);
-    if (!flag.is_default && ours && !taken) {
-      throw Error("trilobe " + command.name + " has no flag --" + flag.name +
-                  "; see `trilobe help " + command.name + "`");
+    if (is_in(command.flags) || is_in(command.particular_flags)) continue;
+    // Those of gflags and glog, as --version and --v, are everybody's.
+    if (flag.known &&
+        gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str()).filename.find("src/app/") ==
+            std::string::npos) {
+      continue;
     }
+    const std::string meant = flag.known ? "" : MeantFlag(flag.name, command);
+    throw Error("trilobe " + command.name + " has no flag --" + flag.name +
+                (meant.empty() ? "; see" : "; did you mean --" + meant + "? See") +
+                " `trilobe help " + command.name + "`");
   }
 }
 
-int Help(const std::vector<std::string>& words) {
-  if (words.empty()) {
+int Help(const CommandLine& line) {
+  if (line.words.empty()) {
     PrintHelp();
     return 0;
   }
-  const Command& command = FindCommand(words[0]);
-  CheckFlags(command);
+  const Command& command = FindCommand(line.words[0]);
+  CheckFlags(line, command);
   PrintHelp(command);
   return 0;
 }
 
-int Run(const std::vector<std::string>& words) {
-  const Command& command = FindCommand(words[0]);
-  const std::vector<std::string> arguments(words.begin() + 1, words.end());
+int Run(const CommandLine& line) {
+  const Command& command = FindCommand(line.words[0]);
+  CheckFlags(line, command);
+  const std::vector<std::string> arguments(line.words.begin() + 1, line.words.end());
   const int count = static_cast<int>(arguments.size());
   if (count < command.min_arguments || count > command.max_arguments) {
     throw Error("trilobe " + command.name + " takes " + command.arguments + ", but got " +
                 std::to_string(count) + " arguments; see `trilobe help " + command.name + "`");
   }
-  CheckFlags(command);
   return command.run(arguments);
 }
 
@@ -112,31 +129,19 @@ void FlushOutput() {
   if (!written) throw Error("cannot write to standard output");
 }
 
-// `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both. So
-// the words for help are taken out before gflags sees them: its own --help would list everything.
-bool TakeOutHelp(int* argc, char** argv) {
-  const auto is_help = [](const std::string& word) {
-    return word == "--help" || word == "-help" || word == "-h";
-  };
-  char** const end = std::remove_if(argv + 1, argv + *argc, is_help);
-  const bool found = end != argv + *argc;
-  *argc = static_cast<int>(end - argv);
-  argv[*argc] = nullptr;
-  return found;
-}
-
+// `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both.
 int Main(int argc, char** argv) {
-  const bool help = argc < 2 || TakeOutHelp(&argc, argv);
   DefineSolverFlags();
-  gflags::ParseCommandLineFlags(&argc, &argv, /*remove_flags=*/true);
-  std::vector<std::string> words(argv + 1, argv + argc);
-  if (!words.empty() && words[0] == "help") {
-    words.erase(words.begin());
-    return Help(words);
+  CommandLine line = ReadCommandLine(argc, argv);
+  SetFlags(line, argv[0]);
+  if (argc < 2) line.help = true;
+  if (!line.words.empty() && line.words[0] == "help") {
+    line.words.erase(line.words.begin());
+    line.help = true;
   }
-  if (help) return Help(words);
-  if (words.empty()) throw Error("no command; known: " + KnownCommands());
-  return Run(words);
+  if (line.help) return Help(line);
+  if (line.words.empty()) throw Error("no command; known: " + KnownCommands());
+  return Run(line);
 }
 
 }  // namespace
@@ -157,7 +162,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::cerr << "trilobe: error: out of memory\n";
   } catch (const std::exception& error) {
-    std::cerr << "trilobe: internal error: " << error.what() << "\n";
+    std::cerr << "trilobe: internal error: " << trilobe::Printable(error.what()) << "\n";
   }
   return 1;
 }

@@ -43,7 +43,7 @@ int RunPlot(std::span<const std::string> arguments) {
   MakeDirectories(folder);
   for (const std::string& path :
        DrawPictures(file, data, trace, folder, AppearanceOptionsFromFlags())) {
-    std::cout << "wrote " << path << "\n";
+    PrintLine("wrote " + path);
   }
   return 0;
 }

@@ -8,6 +8,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "trilobe/base/printable.h"
+
 DEFINE_bool(json, false, "print one JSON object instead of a table");
 
 namespace trilobe {
@@ -30,14 +32,15 @@ std::string Right(const std::string& text, int width) {
   return std::string(length < width ? width - length : 2, ' ') + text;
 }
 
+void PrintLine(const std::string& text) { std::cout << Printable(text) << "\n"; }
+
 void PrintLine(const std::string& label, const std::string& value) {
-  std::cout << label << std::string(label.size() < 26 ? 26 - label.size() : 1, ' ') << value
-            << "\n";
+  PrintLine(label + std::string(label.size() < 26 ? 26 - label.size() : 1, ' ') + value);
 }
 
 void TellNotes(const Measurement& measurement) {
   for (const std::string& note : measurement.notes) {
-    std::cerr << "trilobe: " << measurement.source << ": " << note << "\n";
+    std::cerr << "trilobe: " << Printable(measurement.source + ": " + note) << "\n";
   }
 }
 

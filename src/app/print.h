@@ -26,7 +26,10 @@ std::string Text(const Rgb& rgb);
 // Right-justified in `width` columns, or after two spaces where it is wider.
 std::string Right(const std::string& text, int width);
 
-// "label", spaces up to a fixed column, "value", on a line of standard output.
+// A line of standard output, whatever names are in it (Printable).
+void PrintLine(const std::string& text);
+
+// "label", spaces up to a fixed column, "value", on such a line.
 void PrintLine(const std::string& label, const std::string& value);
 
 // What a measurement's reader found wrong with it, a line each on standard error.

@@ -10,7 +10,7 @@
 namespace trilobe {
 namespace {
 
-std::string BytesOf(const char* path) {
+std::string FileBytes(const char* path) {
   try {
     return ReadFile(path);
   } catch (const Error&) {
@@ -24,13 +24,13 @@ std::string ProgramName() { return std::string("trilobe ").append(gflags::Versio
 
 const std::string& ProgramBuild() {
   static const std::string build = [] {
-    std::string bytes = BytesOf("/proc/self/exe");
+    std::string bytes = FileBytes("/proc/self/exe");
     // Where the library is part of the program, both are one file.
     Dl_info program{}, library{};
     if (dladdr(reinterpret_cast<void*>(&ProgramName), &program) != 0 &&
         dladdr(reinterpret_cast<void*>(&ContentHash), &library) != 0 &&
         program.dli_fbase != library.dli_fbase) {
-      bytes += BytesOf(library.dli_fname);
+      bytes += FileBytes(library.dli_fname);
     }
     return bytes.empty() ? bytes : ContentHash(bytes);
   }();

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "trilobe/base/printable.h"
+
 namespace trilobe {
 Progress::Progress(const SolverOptions& options)
     : max_iterations_(options.max_iterations),
@@ -47,7 +49,7 @@ void JobProgress::Clear() const {
 void JobProgress::Done(const std::string& name, bool took_time) {
   ++done_;
   timed_ += took_time ? 1 : 0;
-  last_ = ", last " + name;
+  last_ = ", last " + Printable(name);
   Show();
 }
 

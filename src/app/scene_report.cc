@@ -7,6 +7,7 @@
 
 #include "trilobe/app/flags.h"
 #include "trilobe/app/print.h"
+#include "trilobe/base/printable.h"
 
 namespace trilobe {
 namespace {
@@ -48,8 +49,10 @@ const SceneMaterial& MaterialOf(const SceneRun& run, const MaterialFit& fit) {
 
 void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
   const SceneMaterial& material = MaterialOf(run, fit);
-  out << "\n" << fit.name << ": " << material.source << "; " << BudgetText(material.budget) << "\n";
-  for (const std::string& note : fit.data_notes) out << "  note:     " << note << "\n";
+  out << "\n"
+      << Printable(fit.name + ": " + material.source) << "; " << BudgetText(material.budget)
+      << "\n";
+  for (const std::string& note : fit.data_notes) out << "  note:     " << Printable(note) << "\n";
   if (fit.used_samples < fit.valid_samples) {
     out << "  left out: " << fit.valid_samples - fit.used_samples << " of " << fit.valid_samples
         << " samples, in directions that the scene does not use\n";
@@ -99,7 +102,8 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
   size_t width = 10;
   for (const MaterialFit& fit : run.fits) width = std::max(width, fit.name.size() + 2);
   const auto name = [&](const std::string& text) {
-    return text + std::string(width - text.size(), ' ');
+    const std::string shown = Printable(text);
+    return shown + std::string(shown.size() < width ? width - shown.size() : 1, ' ');
   };
   out << name("material")
       << " lobes   stored  of full    bytes  E rises by  PSNR falls by  seconds\n";
@@ -128,7 +132,7 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
       << (run.reused > 0 ? ", reckoned from what the parts took when they were made" : "") << "\n";
   for (const MaterialFit& fit : run.fits) PrintDecisions(run, fit, out);
   for (const auto& [material, error] : run.failures) {
-    out << "\n" << material << " failed: " << error << "\n";
+    out << "\n" << Printable(material) << " failed: " << error << "\n";
   }
 }
 

@@ -19,6 +19,7 @@
 #include "trilobe/app/scene_report.h"
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/printable.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/json_value.h"
@@ -191,7 +192,7 @@ int RunSceneFit(const std::string& path) {
     const std::string plan = plan_text(PlanToJson(run), folder.Files());
     folder.Write(kPlanName, [&](std::ostream& to) { to << plan; });
     std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
-              << kPlanTextName << " in " << out << "\n";
+              << kPlanTextName << " in " << Printable(out) << "\n";
   }
   if (run.interrupted != 0) {
     std::cout << "interrupted"

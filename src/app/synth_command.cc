@@ -32,8 +32,8 @@ int RunSynth(std::span<const std::string> arguments) {
   Inputs().CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
   WriteMeasurement(LoadMeasurement(source, options), out, options.num_threads);
-  std::cout << "wrote " << out << ": " << material.description << ", noise " << Text(options.noise)
-            << ", seed " << options.seed << "\n";
+  PrintLine("wrote " + out + ": " + material.description + ", noise " + Text(options.noise) +
+            ", seed " + std::to_string(options.seed));
   return 0;
 }
 

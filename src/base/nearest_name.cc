@@ -4,7 +4,6 @@
 #include <numeric>
 
 namespace trilobe {
-namespace {
 
 size_t EditDistance(std::string_view a, std::string_view b) {
   // row[j]: from the characters of `a` so far to the first j of `b`.
@@ -21,8 +20,6 @@ size_t EditDistance(std::string_view a, std::string_view b) {
   }
   return row.back();
 }
-
-}  // namespace
 
 std::string_view NearestName(std::string_view name, const std::vector<std::string_view>& known) {
   return *std::ranges::min_element(

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "trilobe/io/utf8.h"
+#include "trilobe/base/utf8.h"
 
 namespace trilobe {
 namespace {
@@ -56,7 +56,8 @@ constexpr Signature kSignatures[] = {
     {"\x28\xB5\x2F\xFD"sv, Kind::kForeign, "a Zstandard file; unpack it"},
 };
 
-// Printable characters and white space in UTF-8. A binary table is not: it has zeros.
+// Printable characters and white space in UTF-8, as far as the first 64 bytes tell. A binary table
+// is not: it has zeros.
 bool LooksLikeText(std::string_view bytes) {
   for (std::string_view rest = bytes.substr(0, 64); !rest.empty();) {
     const char c = rest[0];
@@ -141,16 +142,22 @@ Content RecogniseContent(std::string_view bytes) {
       kSignatures, [&](const Signature& signature) { return bytes.starts_with(signature.begin); });
   if (found != std::end(kSignatures)) return {found->kind, found->name};
   if (bytes.empty()) return {};
-  if (LooksLikeText(bytes)) {
+  // Samples in a text are these even if something else follows the first line; their reader says
+  // where.
+  const std::string_view first_line = bytes.substr(0, bytes.find('\n'));
+  const bool is_text = LooksLikeText(bytes);
+  if (is_text || (!Trimmed(first_line).empty() && LooksLikeText(first_line))) {
     if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
     const size_t first = bytes.find_first_not_of(" \t\r\n");
-    if (first != std::string_view::npos && bytes[first] == '{') return {Kind::kJson, "a JSON file"};
+    if (is_text && first != std::string_view::npos && bytes[first] == '{') {
+      return {Kind::kJson, "a JSON file"};
+    }
     std::string_view rest = bytes;
     if (HasCell(TakeSignificantLine(&rest), "theta_i")) return {Kind::kCsv, "samples in CSV"};
     if (LooksLikeZemax(bytes)) return {Kind::kZemax, "a Zemax BSDF"};
     if (LooksLikeAstm(bytes)) return {Kind::kAstm, "an ASTM E1392 measurement"};
     if (LooksLikeCornell(bytes)) return {Kind::kCornell, "spectra as Cornell measured them"};
-    return {Kind::kText, "text"};
+    if (is_text) return {Kind::kText, "text"};
   }
   if (bytes.size() == kUtiaSize) {
     return {Kind::kUtia, "a UTIA measurement (288 x 288 x 3 doubles, by its size)"};

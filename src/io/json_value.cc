@@ -9,7 +9,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
-#include "trilobe/io/utf8.h"
+#include "trilobe/base/utf8.h"
 
 namespace trilobe {
 namespace {

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/utf8.h"
+#include "trilobe/base/utf8.h"
 
 namespace trilobe {
 namespace {
@@ -20,12 +20,10 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
 }
 
-// What to show of a cell: a line of text of moderate length.
+// What to show of a cell.
 std::string Quoted(std::string_view cell) {
   constexpr size_t kLongest = 40;
-  std::string shown;
-  for (const char c : cell.substr(0, kLongest)) shown += c >= ' ' && c <= '~' ? c : '?';
-  return "'" + shown + (cell.size() > kLongest ? "...'" : "'");
+  return "'" + std::string(cell.substr(0, kLongest)) + (cell.size() > kLongest ? "...'" : "'");
 }
 
 // The number that all of a cell is.

@@ -129,6 +129,74 @@ TEST(ProgramTest, RejectsWhatItDoesNotKnow) {
   ExpectError(RunProgram({"synth", "foam", "--out=x", "--threads=-1"}), "--threads is negative");
 }
 
+TEST(ProgramTest, SaysWhichFlagWasMeant) {
+  ExpectError(RunProgram({"fit", "synth:felt", "--lobs=2"}),
+              "trilobe fit has no flag --lobs; did you mean --lobes?");
+  ExpectError(RunProgram({"fit", "--lobs", "2", "synth:felt"}), "did you mean --lobes?");
+  ExpectError(RunProgram({"fit", "--nodiagnos", "synth:felt"}), "--nodiagnos");
+  ExpectError(RunProgram({"help", "fit", "--weighing=log"}), "did you mean --weighting?");
+  // Another command's, and one like none.
+  for (const char* const flag : {"--weighing=log", "--frobnicate"}) {
+    const ProgramResult result = RunProgram({"info", flag, "x"});
+    ExpectError(result, "trilobe info has no flag --");
+    EXPECT_THAT(result.err, Not(HasSubstr("did you mean")));
+  }
+}
+
+TEST(ProgramTest, SaysWhatAFlagMayBe) {
+  ExpectError(RunProgram({"fit", "synth:felt", "--lobes=x"}), "--lobes=x: give a whole number");
+  ExpectError(RunProgram({"fit", "synth:felt", "--lobes=99999999999"}), "to 2147483647");
+  ExpectError(RunProgram({"fit", "synth:felt", "--noise=much"}), "--noise=much: give a number");
+  ExpectError(RunProgram({"fit", "synth:felt", "--plots=perhaps"}), "give true or false");
+  ExpectError(RunProgram({"fit", "synth:felt", "--lobes"}), "--lobes lacks its value");
+}
+
+TEST(ProgramTest, TakesAllThatFollowsTwoDashesForWords) {
+  EXPECT_EQ(RunProgram({"info", "--", "synth:felt@9x36"}).out,
+            RunProgram({"info", "synth:felt@9x36"}).out);
+  ExpectError(RunProgram({"info", "--", "--lobs=2"}), "cannot read '--lobs=2'");
+}
+
+// "..csv" without its ending is no folder.
+TEST(ProgramTest, FitsFilesOfAnyName) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "in");
+  for (const char* const name : {"in/..csv", "in/index.html.csv", "in/b.csv"}) {
+    RunProgram({"synth", "felt@2x4", "--out=" + (folder / name)});
+  }
+  const ProgramResult result = RunProgram(
+      {"fit", folder / "in", "--lobes=0", "--max_iterations=0", "--out=" + (folder / "out")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* const name : {"..csv", "index.html.csv", "b"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / ("out/" + std::string(name) + "/model.json")))
+        << name;
+  }
+}
+
+// Whatever a name holds, it neither breaks the line nor steers the terminal.
+TEST(ProgramTest, ShowsNamesInPrintableForm) {
+  const TemporaryFolder folder;
+  const std::string name = "a\nb\x1b[31m";
+  const std::string shown = R"(a\nb\x1b[31m)";
+  ExpectError(RunProgram({"info", name}), "cannot read '" + shown + "'");
+  ExpectError(RunProgram({"fit", "synth:felt", "--weighting=" + name}), "'" + shown + "'");
+  Write(folder / (name + ".csv"), "theta_i,phi_i,theta_o,phi_o,r,g,b\n0,0,10,0,1,1,1\n");
+  Write(folder / "scene.json", "{\"a\\nb\\u001b[31m\": 1}");
+  ExpectError(RunProgram({"plan", folder / "scene.json"}), shown);
+  const ProgramResult info = RunProgram({"info", folder / (name + ".csv")});
+  EXPECT_EQ(info.status, 0);
+  EXPECT_THAT(info.out, HasSubstr(shown + ".csv\n"));
+  const ProgramResult many =
+      RunProgram({"fit", folder / (name + ".csv"), "synth:felt@2x4", "--shard=1/2", "--lobes=0",
+                  "--max_iterations=0", "--out=" + (folder / name)});
+  EXPECT_EQ(many.status, 0) << many.err;
+  EXPECT_THAT(many.out,
+              AllOf(HasSubstr("] " + shown + ": fitted"), HasSubstr("in " + (folder / shown))));
+  for (const ProgramResult& result : {info, many}) {
+    EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos) << result.out;
+  }
+}
+
 TEST(SynthTest, ListsMaterials) {
   const ProgramResult result = RunProgram({"synth"});
   EXPECT_EQ(result.status, 0);
@@ -324,13 +392,14 @@ TEST(ConvertTest, WritesUtiasDirections) {
 TEST(ConvertTest, RejectsBadInput) {
   ExpectError(RunProgram({"convert", "synth:foam@30x30x60"}), "needs --out=FILE");
   const TemporaryFolder folder;
-  for (const char* name : {"x.bsdf", "x.json", "x.png", "x.hdr", "x.exr", "x.binary.gz"}) {
+  for (const char* name : {"x.bsdf", "x.sbsdf", "x.json", "x.png", "x.exr", "x.binary.gz"}) {
     for (const std::vector<std::string>& words :
          {std::vector<std::string>{"convert", "synth:foam@30x30x60"}, {"synth", "foam"}}) {
       std::vector<std::string> arguments = words;
       arguments.push_back("--out=" + (folder / name));
       const ProgramResult result = RunProgram(arguments);
-      ExpectError(result, std::string(name) + ": trilobe " + words[0] + " writes MERL data");
+      ExpectError(result, std::string(name) + ": trilobe " + words[0] + " writes no '");
+      EXPECT_THAT(result.err, AllOf(HasSubstr(".binary"), HasSubstr(".bin "), HasSubstr(".csv")));
       EXPECT_FALSE(std::filesystem::exists(folder / name));
     }
   }

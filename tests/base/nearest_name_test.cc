@@ -13,6 +13,12 @@ TEST(NearestName, TakesTheFewestEdits) {
   EXPECT_EQ(NearestName("name", known), "name");
 }
 
+TEST(NearestName, CountsEdits) {
+  EXPECT_EQ(EditDistance("lobs", "lobes"), 1U);
+  EXPECT_EQ(EditDistance("kitten", "sitting"), 3U);
+  EXPECT_EQ(EditDistance("", "abc"), 3U);
+}
+
 TEST(NearestName, TakesTheFirstOfSeveral) {
   EXPECT_EQ(NearestName("", {"ab", "cd"}), "ab");
   EXPECT_EQ(NearestName("xx", {"ab", "cd"}), "ab");

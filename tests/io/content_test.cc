@@ -64,6 +64,10 @@ TEST(Content, IsRecognisedByItsFirstBytes) {
   const std::string dashes = "---------------------------------------------------------------";
   Check(dashes + "\u00e9, cut in the middle by the look at 64 bytes", Kind::kText, "text");
   Check(dashes + "\xc3", Kind::kUnknown, "");
+  // What is wrong further on is for the reader to say.
+  Check(csv + std::string("1,\0,2\n", 6), Kind::kCsv, "samples in CSV");
+  Check(std::string("31\n400 410\n\0", 12), Kind::kCornell, "spectra as Cornell measured them");
+  Check(std::string("notes\n\0", 7), Kind::kUnknown, "");
   Check("\x89PNG\r\n\x1a\n", Kind::kForeign, "a PNG picture");
   Check("\x89HDF\r\n\x1a\n", Kind::kForeign, "an HDF5 file");
   Check("PK\x03\x04", Kind::kForeign, "a ZIP archive; unpack it");

@@ -1,4 +1,4 @@
-#include "trilobe/io/utf8.h"
+#include "trilobe/base/utf8.h"
 
 namespace trilobe {
 

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_IO_UTF8_H_
-#define TRILOBE_IO_UTF8_H_
+#ifndef TRILOBE_BASE_UTF8_H_
+#define TRILOBE_BASE_UTF8_H_
 
 #include <cstddef>
 #include <string_view>
@@ -13,4 +13,4 @@ size_t Utf8Length(std::string_view text);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_IO_UTF8_H_
+#endif  // TRILOBE_BASE_UTF8_H_
