@@ -3,8 +3,11 @@
 # scripts/cached_compiler.sh COMPILER ARGUMENT..., which setup.sh makes CMake's compiler launcher.
 set -euo pipefail
 
-# A build folder that was made with ccache goes on without.
-command -v ccache >/dev/null || exec "$@"
+# A build folder that was made with ccache goes on without, and so it does where a home cannot be
+# written to: ccache itself would fail.
+if ! { cache=$(ccache --get-config cache_dir) && mkdir -p "$cache" && [[ -w $cache ]]; } 2>/dev/null; then
+  exec "$@"
+fi
 
 # Paths below the repository do not count, nor does the folder that the compiler runs in.
 CCACHE_BASEDIR=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")

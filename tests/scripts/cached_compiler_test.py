@@ -26,7 +26,7 @@ target_precompile_headers(two REUSE_FROM one)
 @unittest.skipUnless(shutil.which("ccache"), "no ccache")
 class CachedCompiler(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
+        folder = tempfile.TemporaryDirectory(prefix="with a space ")
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
@@ -39,18 +39,26 @@ class CachedCompiler(unittest.TestCase):
         shutil.copy(SCRIPT, root / "scripts")
         return root
 
-    def built(self, root, compiler):
-        """How many of the two objects ccache had when all was built."""
-        environment = {**os.environ, "CCACHE_DIR": str(self.folder / "cache")}
+    @staticmethod
+    def configure(root, compiler, environment):
         subprocess.run(["cmake", "-S", root, "-B", root / "build", "-G", "Ninja",
                         f"-DCMAKE_CXX_COMPILER={compiler}", "-DCMAKE_CXX_COMPILER_LAUNCHER="
                         f"{root}/scripts/cached_compiler.sh"],
                        check=True, capture_output=True, env=environment)
+
+    @staticmethod
+    def build(root, environment):
+        subprocess.run(["cmake", "--build", root / "build"], check=True, capture_output=True,
+                       env=environment)
+
+    def built(self, root, compiler):
+        """How many of the two objects ccache had when all was built."""
+        environment = {**os.environ, "CCACHE_DIR": str(self.folder / "cache")}
+        self.configure(root, compiler, environment)
         # Not those of what CMake tried above.
         subprocess.run(["ccache", "--zero-stats"], check=True, capture_output=True,
                        env=environment)
-        subprocess.run(["cmake", "--build", root / "build"], check=True, capture_output=True,
-                       env=environment)
+        self.build(root, environment)
         printed = subprocess.run(["ccache", "--print-stats"], check=True, capture_output=True,
                                  text=True, env=environment).stdout
         statistics = dict(line.split("\t") for line in printed.splitlines())
@@ -70,6 +78,15 @@ class CachedCompiler(unittest.TestCase):
 
     def test_of_clang(self):
         self.check("clang++")
+
+    def test_without_a_folder_for_ccache(self):
+        """A home that cannot be written to, not even by root."""
+        root = self.checkout("a")
+        environment = {name: value for name, value in os.environ.items()
+                       if not name.startswith(("CCACHE_", "XDG_"))}
+        environment["HOME"] = "/proc/nowhere"
+        self.configure(root, "g++", environment)
+        self.build(root, environment)
 
 
 if __name__ == "__main__":
