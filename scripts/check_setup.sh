@@ -1,4 +1,7 @@
 #!/usr/bin/env bash
+# Checks scripts/setup.sh: that it goes on where a dpkg was killed, and that a build is not silent
+# where there is no terminal.
+#
 # Lets dpkg be killed while it configures a package, as by a lost connection, and checks that
 # setup_packages still installs it. The package is made here and goes into a folder of its own, which
 # dpkg takes for the root of the system; apt-get is played by a script, as it would want a mirror.
@@ -61,3 +64,31 @@ chmod 755 "$root"/bin/*
   is_installed trilobe-setup-check || die "the package is still not installed"
 )
 grep -q 'apt-get install' "$root/calls"
+
+# A build of four steps that ends after two: what is told of it now and then, and what is kept.
+ninja="$root/a folder/ninja"
+mkdir "${ninja%/*}"
+cat >"$ninja" <<'END'
+#!/bin/sh
+echo "[1/4] Building one.o"
+sleep 1.1
+echo "one.cc: a warning" >&2
+printf '[2/4] Building'
+sleep 1.1
+echo " two.o"
+sleep 1.1
+exit "$1"
+END
+chmod 755 "$ninja"
+(
+  source scripts/setup.sh
+  log_dir="$root/a folder/log"
+  progress_seconds=1
+  slowly four "$ninja" 0 >"$root/told"
+  for made in 1 2; do
+    grep -q "$made of 4 steps made; at this pace [0-9]* s to go" "$root/told" || die "$(cat "$root/told")"
+  done
+  printf '[1/4] Building one.o\none.cc: a warning\n[2/4] Building two.o\n' | diff - "$log_dir/four.log"
+  (slowly four "$ninja" 3) >"$root/told" 2>&1 && die "a build that fails is taken for one that does not"
+  grep -qF "error: '$ninja 3' failed; all of its output is in $log_dir/four.log" "$root/told"
+)

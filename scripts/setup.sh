@@ -24,8 +24,44 @@ quietly() {
   mkdir -p "$log_dir"
   if ! "$@" >"$log" 2>&1 </dev/null; then
     tail -n 60 "$log" >&2
-    die "'$*' failed; all of its output is in $log"
+    local command=$*
+    die "'${command#tell_progress }' failed; all of its output is in $log"
   fi
+}
+
+# slowly NAME COMMAND...: the same for a build, and says now and then how far ninja has come.
+progress_seconds=30
+slowly() {
+  local name=$1
+  shift
+  quietly "$name" tell_progress "$@" 3>&1
+}
+
+# tell_progress COMMAND...: passes on what COMMAND says, and tells file descriptor 3 which of ninja's
+# steps have been made ("[12/63] ..."), and how long the others take if they take as long each.
+tell_progress() {
+  local begin=$EPOCHSECONDS told=$EPOCHSECONDS line='' part status made=0 all=0
+  "$@" 2>&1 | while true; do
+    IFS= read -r -t 1 part && status=0 || status=$?
+    line+=$part
+    if ((status <= 128)); then # not for want of time: a line, or the end
+      ((status == 0)) || [[ -n $line ]] || break
+      printf '%s\n' "$line"
+      if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+        made=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]}
+      fi
+      line=''
+    fi
+    if ((made > 0 && EPOCHSECONDS - told >= progress_seconds)); then
+      told=$EPOCHSECONDS
+      step "$made of $all steps made; at this pace $(duration $(((all - made) * (told - begin) / made))) to go" >&3
+    fi
+  done
+}
+
+# duration SECONDS
+duration() {
+  if (($1 < 90)); then echo "$1 s"; else echo "$((($1 + 30) / 60)) min"; fi
 }
 
 # Packages of the groups given, one a line.
@@ -88,16 +124,32 @@ configure() {
   quietly "configure-$1" cmake --preset "$@"
 }
 
-# build PRESET [TARGET...]: builds a configured preset, with ninja's progress line on a terminal.
+# build PRESET [TARGET...]: builds a configured preset, with ninja's progress line on a terminal, and
+# a line now and then where there is none.
 build() {
-  local preset=$1 command=(cmake --build --preset "$1" --parallel "$(nproc)")
-  shift
-  (($# == 0)) || command+=(--target "$@")
+  set_build_command "$@"
   if [[ -t 1 ]]; then
-    "${command[@]}" || die "the build failed"
+    "${build_command[@]}" || die "the build failed"
   else
-    quietly "build-$preset" "${command[@]}"
+    slowly "build-$1" "${build_command[@]}"
   fi
+}
+
+# rebuild PRESET [TARGET...]: the same where there may be nothing to do; then it says nothing.
+rebuild() {
+  set_build_command "$@"
+  slowly "build-$1" "${build_command[@]}"
+}
+
+set_build_command() {
+  build_command=(cmake --build --preset "$1" --parallel "$(nproc)")
+  shift
+  (($# == 0)) || build_command+=(--target "$@")
+}
+
+# work MINUTES: how long a build takes; the fewer minutes are of a core of 2023.
+work() {
+  echo "some $1 minutes of one core's time, shared by $(nproc); less where ccache knows a part"
 }
 
 # run_tests PRESET: runs its tests and shows how ctest closes; on failure, what failed and why.
