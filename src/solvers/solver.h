@@ -18,7 +18,8 @@ namespace trilobe {
 // Why a run ended: one list for all solvers.
 enum class StopReason {
   kConverged,   // relative decrease of E in one iteration below the tolerance
-  kOptimal,     // scaled projected gradient below the tolerance
+  kOptimal,     // scaled projected gradient below the tolerance, or what is left to gain is below
+                // the rounding of E
   kExactFit,    // E is at the rounding error of the data: nothing left to fit
   kNoDecrease,  // the solver finds no step that lowers E
   kMaxIterations,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "trilobe/solvers/diagnosis.h"
@@ -161,7 +162,9 @@ bool JointStepper::Step() {
     E = Evaluate(trial);
   }
   const double gain = (E_ - E) / (2 * result.predicted_decrease);
+  settled_ = false;
   if (!(E < E_ && gain > kMinGain)) {
+    settled_ = !held_back_ && 2 * result.predicted_decrease < RoundingOfE();
     lambda_ *= growth_;
     growth_ *= 2;
     return false;
@@ -180,6 +183,11 @@ bool JointStepper::Step() {
   binding_ = step_.binding();
   linearized_ = false;
   return true;
+}
+
+double JointStepper::RoundingOfE() const {
+  const double terms = static_cast<double>(kChannels) * objective_.samples().size();
+  return std::sqrt(terms) * std::numeric_limits<double>::epsilon() * E_;
 }
 
 bool JointStepper::exhausted() const { return !(lambda_ < kMaxLambda); }
@@ -208,6 +216,7 @@ void RepeatJointSteps(JointStepper* stepper, Run* run) {
   for (bool go_on = !run->stopped(); go_on;) {
     Run::Step step{.accepted = stepper->Step()};
     if (stepper->exhausted()) run->Stop(StopReason::kNoDecrease);
+    if (stepper->settled()) run->Stop(StopReason::kOptimal);
     if (step.accepted) step.optimality = stepper->Optimality();
     step.objective = stepper->E();
     step.may_converge = !stepper->held_back();

@@ -54,6 +54,10 @@ class JointStepper {
   // Damping, not the shape of E, made the last step short: that it lowered E little says nothing
   // about how much there is to gain.
   bool held_back() const { return held_back_; }
+  // The last step was taken back, damping had not made it short, and it would have lowered E by
+  // less than E is rounded by: whether another one lowers E is up to its last bits, which differ
+  // between processors.
+  bool settled() const { return settled_; }
 
   const FactorModel& current() const { return current_; }
   double E() const { return E_; }
@@ -66,6 +70,8 @@ class JointStepper {
  private:
   void Wake();
   double Evaluate(const FactorModel& model);
+  // What the sum of so many terms may be off by, if each rounds either way.
+  double RoundingOfE() const;
   void Linearize();
   NonnegativeStep NewStep() const;
 
@@ -86,7 +92,7 @@ class JointStepper {
   NonnegativeStep step_;
   std::vector<bool> binding_;
   double lambda_;
-  bool held_back_ = false;
+  bool held_back_ = false, settled_ = false;
   double growth_ = 2;      // of lambda when the next step is rejected
   double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
 };
