@@ -36,10 +36,14 @@ class Setting:
 
     def program(self, name="trilobe"):
         """The program `trilobe`, or one that experiments/CMakeLists.txt builds."""
-        path = self.main_program if name == "trilobe" else self.build / "experiments" / name
+        path, how = self.main_program, "./run builds it in build/release"
+        if name != "trilobe":
+            path = self.build / "experiments" / name
+            how = ("./check builds it and installs what that takes; with the packages of the group check in "
+                   f"dependencies.txt so does: cmake -S {FOLDER.parent} -B {self.build} "
+                   f"-DTRILOBE_BUILD_EXPERIMENTS=ON && cmake --build {self.build} --target {name}")
         if not path.is_file():
-            raise UsageError(f"no program {path}; build it (docs/building.md), or name another "
-                             "with --program or --build")
+            raise UsageError(f"no program {path}; {how}")
         return path
 
     def reading(self, source):

@@ -240,13 +240,21 @@ def list_experiments():
         print(f"{name}\n    {experiment.settings()['question']}")
 
 
+def _same_run(folder, other):
+    """Whether both folders have the tables of one run."""
+    records = [path / "manifest.json" for path in (folder, other)]
+    return all(path.is_file() for path in records) and records[0].read_bytes() == records[1].read_bytes()
+
+
 def write_report(options):
     """Takes what was run last into --out, or else what is published."""
     from lab import report
 
     def results_of(experiment, form="full"):
         here, published = options.out / of_form(experiment.name, form), experiment.published(form)
-        return here if here.is_dir() else published if published.is_dir() else None
+        if here.is_dir() and not _same_run(here, published):
+            return report.Results(here, published=False)
+        return report.Results(published if published.is_dir() else None)
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "report.html"
     everything = [experiments.load(name) for name in experiments.names()]
@@ -273,6 +281,10 @@ def main(arguments=None):
         return 0
     except (UsageError, OSError) as error:
         print(f"trilobe-experiments: error: {error}", file=sys.stderr)
+        return 2
+    except ModuleNotFoundError as error:
+        print(f"trilobe-experiments: error: this Python has no {error.name}; Debian's has it with the packages "
+              "of the group check in dependencies.txt, which ./check installs", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("\nstopped; the same command goes on from here", file=sys.stderr)

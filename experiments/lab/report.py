@@ -1,8 +1,15 @@
-"""All pages, with their pictures and tables, in one HTML file that needs nothing else."""
+"""All pages, with their pictures and tables, in one HTML file that needs nothing else.
+
+The text of a page speaks of the run that is published with it. Where tables and pictures of another run
+take the place of those, the page says which run that is, and its text, whose figures are others, is left
+out.
+"""
 import base64
+import dataclasses
 import html
 import json
 import mimetypes
+import pathlib
 import re
 
 import markdown
@@ -24,7 +31,27 @@ figure { margin: 1.5rem 0; } figcaption { color: #555; font-size: 14px; }
 pre, code { background: #f4f4f4; font-size: 13px; } pre { padding: .6rem; overflow-x: auto; }
 details { margin: 1rem 0; }
 .missing { color: #D55E00; }
+.run { border-left: 4px solid #D55E00; padding-left: .8rem; }
 """
+
+FORMS = {"full": "full form", "quick": "quick form, whose figures mean nothing",
+         "anisotropic": "anisotropic form"}
+
+
+@dataclasses.dataclass(frozen=True)
+class Results:
+    """Where the tables and pictures of a form of an experiment are: those that are published with its page,
+    or of another run."""
+
+    folder: pathlib.Path | None
+    published: bool = True
+
+    @property
+    def run(self):
+        """What the run has left about itself, None where it has not."""
+        path = self.folder / "manifest.json" if self.folder else None
+        return json.loads(path.read_text()) if path and path.exists() else None
+
 
 _LINK_ALONE = re.compile(r"^(!?)\[([^\]]*)\]\(results(_anisotropic)?/([^)\s]+)\)$", re.MULTILINE)
 _IMAGE = re.compile(r'<img alt="([^"]*)" src="([^"]+)"\s*/?>')
@@ -52,22 +79,49 @@ def _inline(text):
     return markdown.markdown(text).removeprefix("<p>").removesuffix("</p>")
 
 
-def _inlined(page, results, anisotropic):
+def _content(match, results):
+    """What a link that stands alone in its line leads to: a picture with its caption, a table, a text."""
+    picture, caption, form, name = match.groups()
+    folder = results["anisotropic" if form else "full"].folder
+    path = folder / name if folder else None
+    if path is None or not path.exists():
+        return f'<p class="missing">Not there yet: {_inline(caption)}</p>'
+    if picture:
+        return (f'<figure><img alt="" src="{_data_uri(path)}"/>'
+                f"<figcaption>{_inline(caption)}</figcaption></figure>")
+    text = _csv_table(path) if path.suffix == ".csv" else path.read_text()
+    return f"{caption}:\n\n{text}"
+
+
+def _which_run(form, results):
+    """A sentence."""
+    named = "" if form == "full" else f" of the {form} form"
+    run = results.run
+    if results.published:
+        return f"Tables and pictures{named} are the published ones."
+    if run is None:
+        return f"Tables and pictures{named} are of another run than the published ones."
+    materials = ", ".join(run["sources"][:8]) + (", …" if len(run["sources"]) > 8 else "")
+    return (f"Tables and pictures{named} are of a run of {run['date']}, {FORMS[run['form']]}, on "
+            f"{len(run['sources'])} material{'s' if len(run['sources']) != 1 else ''} ({materials}).")
+
+
+def _without_text(experiment, text, results):
+    """The page's title, which run it shows, and what the links that stand alone in a line lead to."""
+    sentences = [_which_run(form, of) for form, of in results.items() if of.folder]
+    shown = "\n\n".join(_content(match, results) for match in _LINK_ALONE.finditer(text))
+    return (f'# {experiment.title}\n\n<p class="run">{html.escape(" ".join(sentences))} '
+            "The text of the page speaks of the published run and is left out; it is in "
+            f"<code>experiments/{experiment.name}/README.md</code>.</p>\n\n{shown}\n")
+
+
+def _page(experiment, results):
     """The page with each link that stands alone in its line and leads into results/ or
-    results_anisotropic/ replaced by what it leads to: a picture with its caption, a table, a text.
-    """
-    def content(match):
-        picture, caption, form, name = match.groups()
-        folder = anisotropic if form else results
-        path = folder / name if folder else None
-        if path is None or not path.exists():
-            return f'<p class="missing">Not there yet: {_inline(caption)}</p>'
-        if picture:
-            return (f'<figure><img alt="" src="{_data_uri(path)}"/>'
-                    f"<figcaption>{_inline(caption)}</figcaption></figure>")
-        text = _csv_table(path) if path.suffix == ".csv" else path.read_text()
-        return f"{caption}:\n\n{text}"
-    return _LINK_ALONE.sub(content, page)
+    results_anisotropic/ replaced by what it leads to."""
+    text = experiment.page.read_text()
+    if not all(of.published for of in results.values()):
+        return _without_text(experiment, text, results)
+    return _LINK_ALONE.sub(lambda match: _content(match, results), text)
 
 
 def _embed_images(text, folder):
@@ -80,17 +134,16 @@ def _embed_images(text, folder):
     return _IMAGE.sub(embedded, text)
 
 
-def _section(experiment, results, anisotropic):
-    page = _inlined(experiment.page.read_text(), results, anisotropic)
+def _section(experiment, results):
+    page = _page(experiment, results)
     body = markdown.markdown(page, extensions=["tables", "fenced_code"])
-    body = _embed_images(body, results)
+    body = _embed_images(body, results["full"].folder)
     body = re.sub(r'<a href="(?![a-z]+:|#)[^"]*">(.*?)</a>', r"\1", body)  # other pages: not here
     body = body.replace("<table>", '<div class="table"><table>').replace("</table>",
                                                                          "</table></div>")
     body = body.replace("<h1>", f'<h1 id="{experiment.name}">', 1)
-    run = results / "manifest.json" if results else None
-    if run is not None and run.exists():
-        record = json.loads(run.read_text())
+    record = results["full"].run
+    if record is not None:
         body += ("<details><summary>Settings, machine and versions of this run "
                  f"({record['form']} form, {record['units']['made']} of {record['units']['all']} "
                  f"units, {record['seconds'] / 3600:.2f} h)</summary>"
@@ -106,12 +159,12 @@ def in_order(experiments, index):
 
 
 def write(path, experiments, results_of):
-    """Writes the page. results_of(experiment, form): the folder of tables and pictures of
-    a form, or None."""
+    """Writes the page. results_of(experiment, form): the Results of a form."""
     contents = "".join(f'<li><a href="#{e.name}">{html.escape(e.title)}</a></li>'
                        for e in experiments)
-    sections = "\n".join(_section(e, results_of(e, "full"), results_of(e, "anisotropic"))
-                         for e in experiments)
+    sections = "\n".join(
+        _section(e, {form: results_of(e, form) for form in ("full", "anisotropic")})
+        for e in experiments)
     part = path.with_name(f".{path.name}.part")
     part.write_text(
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"/><title>Experiments with '

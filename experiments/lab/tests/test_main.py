@@ -3,6 +3,7 @@ import contextlib
 import io
 import types
 import unittest
+import unittest.mock
 
 from lab import UsageError, experiments, main, tables
 from lab.experiments import Experiment
@@ -135,6 +136,14 @@ class MainTest(FolderTest):
         self.words = []
         with self.assertRaisesRegex(UsageError, "none of the 1 materials"):
             self.run_it()
+
+    def test_a_module_that_python_lacks_is_named(self):
+        def lacking(_):
+            raise ModuleNotFoundError("No module named 'numpy'", name="numpy")
+        with (unittest.mock.patch.object(experiments, "load", lacking),
+              contextlib.redirect_stderr(io.StringIO()) as said):
+            self.assertEqual(main.main(["x", "--quick"]), 2)
+        self.assertRegex(said.getvalue(), "^trilobe-experiments: error: this Python has no numpy; .*check.*\n$")
 
     def test_settings_that_make_no_sense_are_refused(self):
         self.module.units = lambda setting: setting.manifest["flags"]["none"]

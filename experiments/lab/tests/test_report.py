@@ -1,4 +1,6 @@
-"""The report is one file that holds what the pages lead to, and says what is missing."""
+"""The report is one file that holds what the pages lead to, and says what is missing and of which run it
+is."""
+import json
 import types
 import unittest
 
@@ -32,10 +34,10 @@ class ReportTest(FolderTest):
         self.experiment = types.SimpleNamespace(name="a", title="A question?",
                                                 page=self.folder / "page.md")
 
-    def written(self, results, anisotropic=None):
+    def written(self, results, anisotropic=None, published=True):
         path = self.folder / "report.html"
-        folders = {"full": results, "anisotropic": anisotropic}
-        report.write(path, [self.experiment], lambda _, form: folders[form])
+        of = {"full": report.Results(results, published), "anisotropic": report.Results(anisotropic)}
+        report.write(path, [self.experiment], lambda _, form: of[form])
         return path.read_text()
 
     def test_holds_pictures_tables_and_texts(self):
@@ -62,6 +64,23 @@ class ReportTest(FolderTest):
 
     def test_without_results_everything_is_missing(self):
         self.assertEqual(self.written(None).count("Not there yet"), 4)
+
+    def test_another_run_is_named_and_has_no_text_of_the_published_one(self):
+        self.experiment.page.write_text("# A\n\n**E is 17 % lower** on 63 materials.\n\n[A text](results/t.md)\n\n"
+                                        "[Another](results_anisotropic/t.md)\n")
+        (self.results / "manifest.json").write_text(json.dumps(
+            {"form": "quick", "date": "2026-11-26", "sources": ["synth-plastic"], "seconds": 2.0,
+             "units": {"made": 3, "all": 3}}))
+        self.assertIn("17 % lower", self.written(self.results))
+        page = self.written(self.results, self.results, published=False)
+        self.assertNotIn("17 % lower", page)
+        self.assertIn("of a run of 2026-11-26, quick form, whose figures mean nothing, on 1 material "
+                      "(synth-plastic).", page)
+        self.assertIn("of the anisotropic form are the published ones", page)
+        self.assertIn("Text with", page)
+        self.assertLess(page.index("of a run of"), page.index("Text with"))
+        (self.results / "manifest.json").unlink()
+        self.assertIn("of another run than", self.written(self.results, published=False))
 
     def test_order_is_that_of_the_index(self):
         index = self.folder / "README.md"

@@ -68,7 +68,9 @@ class SettingsTest(FolderTest):
         experiment.settings = lambda form, changes: {"sources": ["synth:plastic"]}
         with self.assertRaisesRegex(UsageError, "x takes no --solvers"):
             main.setting_of(experiment, main.parse(["x", "--solvers=auto"]))
-        with self.assertRaisesRegex(UsageError, "no program"):
+        with self.assertRaisesRegex(
+                UsageError, "no program build/release/experiments/none; ./check builds it .*"
+                            "-B build/release -DTRILOBE_BUILD_EXPERIMENTS=ON .* --target none"):
             setting.program("none")
 
     def test_a_place_may_be_anywhere_but_must_be_there(self):
