@@ -87,12 +87,13 @@ SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin
   CheckIsotropic(spec, "a MERL grid, which knows no azimuths,");
   SampleStencils stencils;
   const HalfDiffAngles angles = grid.Center(bin);
-  if (spec.stretches.any()) {
+  if (spec.stretches.any() || spec.d_axis.size != grid.theta_h) {
     SetStretchedStencils(spec, angles, &stencils);
   } else {
     stencils.D = PointStencil(bin / (grid.theta_d * grid.phi_d));
   }
-  stencils.F = PointStencil(bin / grid.phi_d % grid.theta_d);
+  stencils.F = spec.f_axis.size == grid.theta_d ? PointStencil(bin / grid.phi_d % grid.theta_d)
+                                                : spec.f_axis.At(angles.theta_d, 0);
   SetCosineStencils(spec, ToCosines(angles), &stencils);
   return stencils;
 }

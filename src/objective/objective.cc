@@ -16,24 +16,23 @@
 namespace trilobe {
 namespace {
 
-// Samples on a grid read the tables bin by bin; scattered ones read any tables.
+// Whether the samples stand at the bins of the tables, each of which then reads one of D and of F.
+// A stretched D is read between bins, differently along a row of the grid, and so are tables of
+// other bins than the grid has. Without lobes there are no tables to read; but lists are made that
+// have a place for each entry.
+bool ReadsBinByBin(const ModelSpec& spec, const BrdfSamples& samples) {
+  if (!samples.on_grid() || spec.stretches.any()) return false;
+  const int d = spec.d_axis.size, f = spec.f_axis.size;
+  const MerlGrid& grid = samples.grid;
+  return (d == grid.theta_h && f == grid.theta_d) ||
+         (spec.lobes == 0 && d >= grid.theta_h && f >= grid.theta_d);
+}
+
 void CheckReadable(const ModelSpec& spec, const BrdfSamples& samples) {
   CheckSpec(spec);
-  const MerlGrid& grid = samples.grid;
   if (samples.on_grid()) {
     CheckIsotropic(spec, "a measurement on a MERL grid, which knows no azimuths,");
-    if (spec.d_axis.size == grid.theta_h && spec.f_axis.size == grid.theta_d) return;
-    // Without lobes there are no tables to read; but lists are made that have a place for each
-    // entry.
-    if (spec.lobes == 0 && spec.d_axis.size >= grid.theta_h && spec.f_axis.size >= grid.theta_d) {
-      return;
-    }
-    throw Error("the model has " + std::to_string(spec.d_axis.size) + " D bins and " +
-                std::to_string(spec.f_axis.size) + " F bins, but the measurement's grid has " +
-                std::to_string(grid.theta_h) + " and " + std::to_string(grid.theta_d) +
-                "; fit this measurement with a model of its own grid");
-  }
-  if (spec.anisotropic() && samples.directions.empty()) {
+  } else if (spec.anisotropic() && samples.directions.empty()) {
     throw Error(samples.source + ": the samples' azimuths are not known; fit an isotropic model");
   }
 }
@@ -152,8 +151,7 @@ struct Objective::Prepared {
         spec(of),
         weighting(ForSamples(weights, samples)) {
     bool nonnegative = true;
-    // A stretched D is read between the bins of a grid, differently along a row of it.
-    if (samples.on_grid() && !spec.stretches.any()) {
+    if (ReadsBinByBin(spec, samples)) {
       folded =
           std::make_unique<FoldedGrid>(Fold(samples, spec.g_axis.size, weighting, num_threads));
       measured_energy = folded->measured_energy;

@@ -68,6 +68,10 @@ TEST_F(Scattered, StoresTheModelThatWasSolved) {
     const Rgb expected = Evaluate(file.model, at), value = prepared(at);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], 1e-9 * (1 + expected[c]));
   }
+  // And it can be held against the whole table that the samples are of.
+  const json whole =
+      json::parse(RunProgram({"score", path, "synth:rubber@30x30x60", "--json"}).out);
+  EXPECT_LT(whole["relative_objective"], 0.1);
   const ProgramResult info = RunProgram({"info", path});
   EXPECT_THAT(info.out, HasSubstr(std::to_string(file.model.spec().num_parameters())));
   EXPECT_EQ(RunProgram({"convert", path, "--out=" + folder_ / "fit.bin"}).status, 0);

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/model/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -219,16 +221,29 @@ std::string ErrorOf(BrdfSamples samples, const ModelSpec& spec) {
   return "";
 }
 
-TEST(Objective, RefusesAnotherGrid) {
+// As a model of few scattered samples has them, held against a table.
+TEST(Objective, ReadsTablesOfOtherBinsBetweenThem) {
   const BrdfSamples samples = ValidSamples(RandomTable(kOdd, 14));
-  EXPECT_THAT(ErrorOf(samples, ModelSpec::SharedFactors(3)),
-              testing::AllOf(testing::HasSubstr("90 D bins"), testing::HasSubstr("10 and 12")));
-  ModelSpec f_differs = ModelSpec::SharedFactors(1, kOdd);
-  f_differs.f_axis.size = 13;
-  EXPECT_NE(ErrorOf(samples, f_differs), "");
-  ModelSpec g_differs = ModelSpec::SharedFactors(1, kOdd);
-  g_differs.g_axis.size = 31;  // the spline's own resolution
-  EXPECT_EQ(ErrorOf(samples, g_differs), "");
+  ModelSpec spec = ModelSpec::SharedFactors(2, kOdd);
+  for (const auto& [d, f, g] : {std::array{9, 12, 12}, {10, 5, 7}, {90, 90, 90}}) {
+    spec.d_axis.size = d;
+    spec.f_axis.size = f;
+    spec.g_axis.size = g;
+    const FactorModel model = RandomModel(spec, 3);
+    const Objective objective(samples, spec, FindWeighting("uniform"));
+    const std::vector<Rgb> fitted = EvaluateSamples(model, samples, 1);
+    double E = 0;
+    for (int j = 0; j < samples.size(); ++j) {
+      for (int c = 0; c < kChannels; ++c) {
+        E += (fitted[j][c] - samples.rho[j][c]) * (fitted[j][c] - samples.rho[j][c]);
+      }
+    }
+    EXPECT_NEAR(objective.Value(model), E, 1e-12 * E) << d << " " << f << " " << g;
+  }
+}
+
+TEST(Objective, RefusesTooManyLobes) {
+  const BrdfSamples samples = ValidSamples(RandomTable(kOdd, 14));
   EXPECT_THAT(ErrorOf(samples, ModelSpec::SharedFactors(20, kOdd)),
               testing::HasSubstr("lobes is 20"));
 }
