@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Sends synthetic measurements through a Slurm of one node that it starts on this machine, kills two
-# jobs on the way, and checks that nothing is missing in the end. Must be run as root, when the
-# release preset has been built. All that Slurm writes is in a temporary folder.
+# jobs on the way, and checks that nothing is missing in the end; then the same without Snakemake, as
+# an array job. Must be run as root, when the release preset has been built. All that Slurm writes is
+# in a temporary folder.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -152,12 +153,13 @@ expect() { [[ $2 == "$3" ]] || die "$1: $2 instead of $3"; }
 start_slurm
 step "Slurm $(sinfo --version | cut -d' ' -f2) is up in $SECONDS s"
 
+options=(--solver=awls --max_iterations=2 --lobes=1 --max_angle=30)
 mapfile -t names < <("$program" synth | awk '/^  / { print $1 }')
 fits=$dir/fits
 start=$SECONDS
 snakemake --profile "$PWD/scripts/slurm" --snakefile scripts/fit_batch.smk --directory "$dir" \
   --latency-wait 5 --config sources="${names[*]/#/synth:}" out="$fits" shards=$shards \
-  program="$program" options="--solver=awls --max_iterations=2 --lobes=1 --max_angle=30" \
+  program="$program" options="${options[*]}" \
   >"$dir/log/snakemake.log" 2>&1 </dev/null &
 workflow=$!
 stop_job --signal=KILL
@@ -179,3 +181,16 @@ expect "jobs" "$(grep -c '^Submitted job' "$dir/log/snakemake.log")" $((shards +
 kept=$(cat "$fits"/shards/*-of-$shards.log | grep -c '^\[.*: kept')
 ((kept >= 2)) || die "jobs that were run again kept $kept fits of at least 2"
 step "$shards shards fitted ${#names[@]} measurements in $elapsed s; 2 were run again, and kept $kept fits"
+
+# The commands of docs/batch.md.
+array=$dir/array
+mkdir "$array"
+command="'$program' fit ${names[*]/#/synth:} --out='$array' --threads=1 ${options[*]}"
+start=$SECONDS
+job=$(sbatch --parsable --array=1-$shards --output="$array/shard-%a.log" \
+  --wrap="$command --shard=\$SLURM_ARRAY_TASK_ID/$shards")
+sbatch --wait --dependency="afterany:$job" --output="$array/gather.log" --wrap="$command" ||
+  die "gathering the array job failed"
+expect "lines of fits.csv of the array job" "$(wc -l <"$array/fits.csv")" $((${#names[@]} + 1))
+expect "measurements that it kept" "$(grep -c ',kept,' "$array/fits.csv")" ${#names[@]}
+step "An array job of $shards did the same in $((SECONDS - start)) s"
