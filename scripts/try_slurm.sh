@@ -189,8 +189,8 @@ command="'$program' fit ${names[*]/#/synth:} --out='$array' --threads=1 ${option
 start=$SECONDS
 job=$(sbatch --parsable --array=1-$shards --output="$array/shard-%a.log" \
   --wrap="$command --shard=\$SLURM_ARRAY_TASK_ID/$shards")
-sbatch --wait --dependency="afterany:$job" --output="$array/gather.log" --wrap="$command" ||
-  die "gathering the array job failed"
+sbatch --wait --dependency="afterany:$job" --output="$array/gather.log" --wrap="$command" \
+  >/dev/null || die "gathering the array job failed"
 expect "lines of fits.csv of the array job" "$(wc -l <"$array/fits.csv")" $((${#names[@]} + 1))
 expect "measurements that it kept" "$(grep -c ',kept,' "$array/fits.csv")" ${#names[@]}
 step "An array job of $shards did the same in $((SECONDS - start)) s"
