@@ -1,11 +1,13 @@
-# trilobe_extract_code(PAGE OUT...): writes the first C++ block of a Markdown page into the first OUT,
-# the second into the second, and so on, whenever the page changes; so what a page shows is compiled.
+# trilobe_extract_code(PAGE OUT... [RENAMED FROM TO]...): writes the first C++ block of a Markdown page into
+# the first OUT, the second into the second, and so on, whenever the page changes; so what a page shows is
+# compiled. There each FROM becomes TO.
 function(trilobe_extract_code page)
+  cmake_parse_arguments(PARSE_ARGV 1 extract "" "" RENAMED)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
   file(READ ${page} rest)
   set(fence "```cpp\n")
   string(LENGTH "${fence}" fence_length)
-  foreach(out ${ARGN})
+  foreach(out ${extract_UNPARSED_ARGUMENTS})
     string(FIND "${rest}" "${fence}" begin)
     if(begin EQUAL -1)
       message(FATAL_ERROR "${page} has no C++ block for ${out}")
@@ -15,6 +17,11 @@ function(trilobe_extract_code page)
     string(FIND "${rest}" "```\n" end)
     string(SUBSTRING "${rest}" 0 ${end} code)
     string(SUBSTRING "${rest}" ${end} -1 rest)
+    set(names ${extract_RENAMED})
+    while(names)
+      list(POP_FRONT names from to)
+      string(REPLACE ${from} ${to} code "${code}")
+    endwhile()
     file(CONFIGURE OUTPUT ${out} CONTENT "${code}" @ONLY)
   endforeach()
 endfunction()

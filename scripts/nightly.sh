@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What takes too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests under the
-# address and undefined-behaviour sanitizers, the thread sanitizer, some hundred faults, and long fuzzing.
+# address and undefined-behaviour sanitizers, the thread sanitizer, all tests as other processors and another compiler
+# round, a newcomer's first hour in an inconvenient place, some hundred faults, and long fuzzing.
 #   scripts/nightly.sh [TRIALS [RUNS [DATA]]]      faults to try (400), executions of each fuzzer (10000000), a
 #                                                  folder with the measured files of which docs have pictures
 set -euo pipefail
@@ -34,7 +35,22 @@ configure release -DTRILOBE_BUILD_TESTS=ON
 build release
 step "Running the tests that go through choices, with all combinations"
 TRILOBE_ALL_CHOICES=1 run_tests release
-step "Breaking runs of it"
+
+step "Building them by clang"
+configure clang -DTRILOBE_BUILD_TESTS=ON
+build clang
+# BLAS adds up otherwise on each, so that last bits differ, and no test may hang on these.
+for compiler in release clang; do
+  for kernels in Haswell Zen SandyBridge Prescott Nehalem; do
+    step "Running the tests with the kernels of OpenBLAS for $kernels ($compiler)"
+    OPENBLAS_CORETYPE=$kernels run_tests "$compiler"
+  done
+done
+
+step "Doing what a newcomer does, in an inconvenient place"
+scripts/check_anywhere.sh
+
+step "Breaking runs of the program"
 tests/faults/harness.py --trials="${1:-400}"
 
 step "Making the pictures of the pages"

@@ -1,4 +1,5 @@
-// Runs the code of docs/adding-a-solver.md, which CMake cuts out of the page.
+// Runs the code of docs/adding-a-solver.md, which CMake cuts out of the page: its CompassSearch is
+// PageSearch here.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +14,8 @@
 namespace trilobe {
 
 // Of the page.
-SolverEntry CompassSearchEntry();
-SolverSummary FitByCompassSearch(const Objective& objective, FactorModel* model);
+SolverEntry PageSearchEntry();
+SolverSummary FitByPageSearch(const Objective& objective, FactorModel* model);
 
 }  // namespace trilobe
 
@@ -27,8 +28,8 @@ TEST(AddingASolver, FitsWhenRegistered) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   const Objective objective = MakeObjective(TableOf(RandomModel(spec, 1), kGrid), spec);
   FactorModel model = RandomModel(spec, 2);
-  const SolverSummary summary = FitByCompassSearch(objective, &model);
-  EXPECT_EQ(summary.solver, "compass_search");
+  const SolverSummary summary = FitByPageSearch(objective, &model);
+  EXPECT_EQ(summary.solver, "page_search");
   EXPECT_LT(summary.final_objective, 0.01 * summary.initial_objective);
   EXPECT_EQ(objective.Value(model), summary.final_objective);
   for (size_t k = 1; k < summary.trace.size(); ++k) {
@@ -36,15 +37,15 @@ TEST(AddingASolver, FitsWhenRegistered) {
     EXPECT_EQ(summary.trace[k].accepted, after < before) << k;
     EXPECT_LE(after, before) << k;
   }
-  EXPECT_EQ(Solvers().back().name, "compass_search");
-  EXPECT_EQ(FindSolver("compass_search").reference, CompassSearchEntry().reference);
-  EXPECT_THROW(RegisterSolver(CompassSearchEntry()), Error);  // the name is taken
+  EXPECT_EQ(Solvers().back().name, "page_search");
+  EXPECT_EQ(FindSolver("page_search").reference, PageSearchEntry().reference);
+  EXPECT_THROW(RegisterSolver(PageSearchEntry()), Error);  // the name is taken
 }
 
 TEST(AddingASolver, HonoursLimitsAndStopsWhereNothingLowersE) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
-  const std::unique_ptr<Solver> solver = CompassSearchEntry().make();
+  const std::unique_ptr<Solver> solver = PageSearchEntry().make();
   const FactorModel start = RandomModel(spec, 2);
   SolverOptions options;
   options.relative_decrease_tolerance = 0;

@@ -55,7 +55,10 @@ TEST(RecordedModels, AreMadeAgain) {
     const BrdfTable table = Synthesize(FindSynthMaterial(material), 0.05, 1, kGrid);
     const ModelSpec spec = ModelSpec::SharedFactors(3, kGrid);
     const Objective objective(ValidSamples(table), spec, FindWeighting("appearance"), 1);
+    size_t compared = 0;
     for (const SolverEntry& solver : kLibrarySolvers) {
+      if (record == nullptr && !recorded[material].contains(solver.name)) continue;  // came later
+      ++compared;
       FactorModel model = FindInitialModel("analytic").make(objective, 1);
       const SolverSummary summary =
           solver.make()->Solve(objective, {.max_iterations = 6, .diagnose = false}, &model);
@@ -73,6 +76,7 @@ TEST(RecordedModels, AreMadeAgain) {
         EXPECT_NEAR(fingerprint[k] / expected, 1, 1e-4) << material << ' ' << solver.name;
       }
     }
+    EXPECT_EQ(compared, recorded[material].size());
   }
   if (record != nullptr) std::ofstream(record) << recorded.dump(1) << '\n';
 }

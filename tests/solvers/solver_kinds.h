@@ -25,6 +25,10 @@ inline bool ReportsUpdates(const SolverEntry& solver) {
          solver.name == "awls_accelerated" || solver.name == "awls_gss";
 }
 
+// Whether a solver finds its way whatever the unit of the data: the example of
+// docs/adding-a-solver.md, for those who follow it, tries steps of 1 from parameters that are 0.
+inline bool KnowsUnits(const SolverEntry& solver) { return solver.name != "compass_search"; }
+
 // Whether the filter comes after a sweep, so that E may rise; in awls_gss it is part of a step that
 // does not raise E.
 inline bool FiltersG(const SolverEntry& solver) {

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include "tests/solvers/iterations.h"
 #include "tests/solvers/solver_kinds.h"
@@ -72,11 +74,16 @@ TEST_P(Stopping, AfterMaxIterations) {
 }
 
 TEST_P(Stopping, AfterMaxSeconds) {
-  constexpr double kSeconds = 0.004;  // before a Newton step can have converged
+  // Iterations so slow that no processor is through before.
+  constexpr double kSeconds = 0.004;
   FactorModel model = Start();
   SolverOptions options;
   options.relative_decrease_tolerance = kNever;
   options.max_iterations = std::numeric_limits<int>::max();
+  options.on_iteration = [](const IterationRecord&, const FactorModel&) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(kSeconds / 2));
+    return true;
+  };
   options.max_seconds = 0;
   EXPECT_EQ(Run(options, &model).iterations, 0);
   options.max_seconds = kSeconds;

@@ -202,9 +202,10 @@ TEST_P(WarmStart, StaysAtAMinimum) {
   FactorModel model = minimum;
   const SolverSummary summary = MakeSolver(GetParam())->Solve(objective, {}, &model);
   // One that does not know the gradient takes an iteration to see that it moves nothing; Ceres, all
-  // of whose tolerances are off, takes steps back until its trust region has vanished.
+  // of whose tolerances are off, and a search for lower E take steps back until these have
+  // vanished.
   EXPECT_LE(summary.iterations - summary.RejectedSteps(), 1);
-  EXPECT_LE(summary.iterations, 20);
+  EXPECT_LE(summary.iterations, 30);
   EXPECT_LE(summary.final_objective, summary.initial_objective);
   EXPECT_GE(summary.final_objective, summary.initial_objective * (1 - 1e-12));
   for (size_t k = 0; k < model.parameters().size(); ++k) {
