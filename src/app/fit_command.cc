@@ -105,37 +105,37 @@ std::string KeyOfFlags() {
 
 FitSettings SettingsFromFlags() {
   FitSettings settings;
-  settings.weighting = FindWeighting(FLAGS_weighting);
-  settings.solver = &SolverFromFlags();
-  settings.options = [solver = settings.solver](const ModelSpec& spec) {
-    return SolverOptionsFromFlags(*solver, spec);
+  FitOptions& fit = settings.fit;
+  fit.weighting = FindWeighting(FLAGS_weighting);
+  const SolverEntry& solver = SolverFromFlags();
+  fit.solver = solver.name;
+  fit.solver_options = [&solver](const ModelSpec& spec) {
+    return SolverOptionsFromFlags(solver, spec);
   };
-  settings.init = FLAGS_init;
+  fit.init = FLAGS_init;
   const bool init_is_file = InitIsFile();
-  if (!init_is_file) settings.start = &FindInitialModel(FLAGS_init);
+  if (!init_is_file) FindInitialModel(FLAGS_init);  // its error
   if (!(FLAGS_robust >= 0 && FLAGS_robust <= 1e6)) throw Error("--robust must be from 0 to 1e6");
   if (FLAGS_max_numbers < 1) throw Error("--max_numbers must be at least 1");
   if (!ChoosesModel() && !IsDefault("max_numbers")) {
     throw Error("--max_numbers goes with --model=auto");
   }
-  settings.finish = {.robust = FLAGS_robust,
-                     .max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0,
-                     .match_reflectance = FLAGS_match_reflectance,
-                     .appearance = AppearanceOptionsFromFlags()};
-  settings.spec = SpecFromFlags;
-  settings.nodes = NodeLadderFromFlags;
-  settings.guide = GuideFromFlags();
-  CheckModelFlags();
-  SolverOptionsFromFlags(*settings.solver, ModelSpec());
+  fit.robust = FLAGS_robust;
+  fit.max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0;
+  fit.match_reflectance = FLAGS_match_reflectance;
+  fit.appearance = AppearanceOptionsFromFlags();
+  fit.form = FormFromFlags();
+  fit.guide = GuideFromFlags();
+  fit.seed = static_cast<uint64_t>(FLAGS_seed);
+  SolverOptionsFromFlags(solver, ModelSpec());  // its errors
   settings.source = SourceOptionsFromFlags();
-  settings.seed = FLAGS_seed;
   settings.course = FLAGS_course;
   settings.reconstruction = FLAGS_reconstruction;
   settings.plots = FLAGS_plots;
   settings.key = KeyOfFlags();
   if (!FLAGS_probe.empty()) settings.inputs.push_back(FLAGS_probe);
   if (init_is_file) {
-    settings.start_model = StartFromFile();
+    fit.start_model = StartFromFile();
     settings.inputs.push_back(FLAGS_init);
   }
   for (const std::string& input : settings.inputs) {
@@ -160,7 +160,7 @@ int RunFitOfOne(const std::string& source) {
   std::optional<InterruptGuard> guard;  // while it reads, Ctrl-C ends it at once
   std::optional<Progress> progress;
   const auto show = [&](const IterationRecord& record) {
-    if (!progress) progress.emplace(settings.options(ModelSpec()));
+    if (!progress) progress.emplace(settings.fit.solver_options(ModelSpec()));
     progress->Show(record);
   };
   FitRun run = *RunOneFit(

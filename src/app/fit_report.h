@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/app/finish_fit.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/fit/fit.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/model/lobe_light.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/scene/model_choice.h"
+#include "trilobe/prune/model_choice.h"
 #include "trilobe/solvers/node_choice.h"
 #include "trilobe/solvers/solver.h"
 
@@ -23,8 +23,8 @@ namespace trilobe {
 // All that `trilobe fit` has to say about a fit.
 struct FitReport {
   // Where the time of the program went [s]; summary.phases tells more of `solve`.
-  struct Seconds {
-    double read = 0, prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
+  struct Seconds : FitResult::Seconds {
+    double read = 0;
   };
 
   FitInfo fit;
@@ -38,19 +38,10 @@ struct FitReport {
   BinCounts bins;                       // of the source: how many were left out, and why
   SolverSummary summary;
   std::optional<NodeChoice> nodes;  // of those of D and G, where it was asked for
-  // Samples that joined the data for the solver, whose E counts them (WithGuide).
-  struct Guide {
-    double weight = 0;
-    int samples = 0;
-  };
+  using Guide = FitResult::Guide;
   std::optional<Guide> guide;
-  // What came after the solver (FinishedFit).
-  struct Finished {
-    std::optional<double> tied;
-    std::vector<ModelCandidate> candidates;
-    int chosen = -1;
-    std::optional<FinishedFit::Matched> matched;
-  } finished;
+  using Finished = FitResult::Finished;
+  Finished finished;
   int stored_parameters = 0;
   ScoreReport score;
   std::optional<AppearanceReport> appearance;  // none of samples on no grid, which have no picture

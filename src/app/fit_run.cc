@@ -65,48 +65,6 @@ void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
   }
 }
 
-FitInfo InfoOf(const FitSettings& settings, const SolverSummary& summary, const std::string& source,
-               const Measurement& measured, const Objective& objective, const std::string& run) {
-  return {.solver = settings.solver->name,
-          .init = settings.init,
-          .weighting = settings.weighting.name,
-          .objective = summary.final_objective,
-          .initial_objective = summary.initial_objective,
-          .stop_reason = StopReasonName(summary.stop_reason),
-          .iterations = summary.iterations,
-          .seconds = summary.seconds,
-          .threads = objective.num_threads(),
-          .source = source,
-          .valid_samples = objective.samples().size(),
-          .max_angle = MaxAngleDegrees(measured),
-          .program = ProgramName(),
-          .date = UtcNow(),
-          .run = run};
-}
-
-// An anisotropic model with F in the 90 bins that readers of such files have always found, if those
-// have the centres of its own fewer bins among theirs: the same function. All other tables are
-// stored as they were fitted.
-ModelSpec WithFileBins(ModelSpec spec) {
-  constexpr int kFileBins = 90;
-  int& bins = spec.f_axis.size;
-  if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
-  return spec;
-}
-
-// Whether a solver had found what it looks for.
-bool HasEnded(StopReason reason) {
-  return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
-         reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
-}
-
-// The model on the axes of this objective, in its canonical form.
-FactorModel InForm(const Objective& objective, const FactorModel& model) {
-  FactorModel canonical = WithAxes(model, objective.spec());
-  Canonicalize(objective, &canonical);
-  return canonical;
-}
-
 }  // namespace
 
 const std::vector<std::string>& FitFileNames() {
@@ -137,7 +95,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                                 const std::function<void(const IterationRecord&)>& on_iteration) {
   FitReport report;
   report.noise = settings.source.noise;
-  report.seed = settings.seed;
+  report.seed = static_cast<int64_t>(settings.fit.seed);
   Stopwatch stopwatch;
   SourceOptions source_options = settings.source;
   source_options.num_threads = num_threads;
@@ -153,112 +111,54 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.seconds.read = stopwatch.Lap();
   TellNotes(measured);
   report.data_notes = measured.notes;
-  const BrdfTable* const table = measured.table ? &*measured.table : nullptr;
-  if (table == nullptr && settings.finish.max_parameters > 0) {
-    throw Error(source +
-                ": --model=auto chooses among isotropic models of a MERL or RGL table; choose "
-                "--model=isotropic, anisotropic or independent");
-  }
-  BrdfSamples samples = SamplesOf(measured);
-  report.spec = settings.start_model ? settings.start_model->spec() : settings.spec(measured);
-  const std::vector<NodeCandidate> ladder =
-      settings.start_model ? std::vector<NodeCandidate>() : settings.nodes(report.spec, measured);
-  Objective objective(std::move(samples), report.spec, settings.weighting, num_threads);
-  const auto interrupted = [] { return InterruptGuard::signal() != 0; };
-  report.seconds.prepare = stopwatch.Lap();
-  FactorModel model = settings.start_model
-                          ? *settings.start_model
-                          : settings.start->make(objective, static_cast<uint64_t>(settings.seed));
-  report.seconds.init = stopwatch.Lap();
   report.bins = CountsOf(measured);
-  if (InterruptGuard::signal() != 0) return std::nullopt;
-  if (folder != nullptr) folder->Open();
-  on_begin();
-  std::optional<UnsavedModel> unsaved;
-  if (folder != nullptr) unsaved.emplace();
-  if (!ladder.empty()) {
-    report.nodes = ChooseNodes(objective, ladder,
-                               {.seed = static_cast<uint64_t>(settings.seed),
-                                .guide = settings.guide,
-                                .on_iteration =
-                                    [&](const IterationRecord& record, const FactorModel&) {
-                                      on_iteration(record);
-                                      return true;
-                                    },
-                                .stop = interrupted});
-    report.spec = report.nodes->tried[report.nodes->chosen].spec;
-    objective = Objective(objective, report.spec);
-    model = interrupted()
-                ? report.nodes->model  // better than a starting point that no solver will improve
-                : settings.start->make(objective, static_cast<uint64_t>(settings.seed));
-    report.seconds.nodes = stopwatch.Lap();
-  }
-  Course course;
-  SolverOptions options = settings.options(report.spec);
-  options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
-    on_iteration(record);
-    if (settings.course) course.Keep(record, current);
-    return InterruptGuard::signal() == 0;
+  const std::string run = folder == nullptr ? "" : folder->run();
+  const auto file_of = [&](const FitResult& fit) {
+    ModelFile file = fit.file;
+    file.fit.source = source;
+    file.fit.program = ProgramName();
+    file.fit.date = UtcNow();
+    file.fit.run = run;
+    return file;
   };
-  SolverSummary& summary = report.summary;
-  std::optional<Objective> guided;
-  if (table == nullptr && settings.guide > 0) {
-    guided.emplace(WithGuide(objective, {.weight = settings.guide,
-                                         .isotropic = !measured.anisotropic,
-                                         .stop = interrupted}),
-                   report.spec, settings.weighting, num_threads);
-    const BrdfSamples& both = guided->samples();
-    if (both.size() > objective.samples().size()) {
-      report.guide = {both.multiplicity.back(), both.size() - objective.samples().size()};
-    }
-  }
-  const Objective& solved = guided ? *guided : objective;
-  summary = settings.solver->make()->Solve(solved, options, &model);
-  summary.phases.reading = report.seconds.read;
-  report.seconds.solve = stopwatch.Lap();
-  report.fit = InfoOf(settings, summary, source, measured, objective,
-                      folder == nullptr ? "" : folder->run());
-  const ModelSpec file_spec = WithFileBins(report.spec);
-  const Objective in_file = file_spec == report.spec ? objective : Objective(objective, file_spec);
-  // As the solver left it; what follows may take longer than somebody who ends the program waits.
-  if (folder != nullptr && InterruptGuard::signal() == 0) {
-    WriteModelInto({InForm(in_file, model), UnobservedParameters(in_file.coverage()), report.fit},
-                   folder);
+  bool begun = false;
+  std::optional<UnsavedModel> unsaved;
+  Course course;
+  FitOptions options = settings.fit;
+  options.num_threads = num_threads;
+  options.stop = [] { return InterruptGuard::signal() != 0; };
+  options.on_begin = [&] {
+    begun = true;
+    if (folder != nullptr) folder->Open();
+    on_begin();
+    if (folder != nullptr) unsaved.emplace();
+  };
+  options.on_progress = on_iteration;
+  options.on_iteration = [&](const IterationRecord& record, const FactorModel& model) {
+    if (settings.course) course.Keep(record, model);
+  };
+  options.on_model = [&](const FitResult& fit) {
+    if (folder != nullptr) WriteModelInto(file_of(fit), folder);
     unsaved.reset();
-  }
-  FinishOptions finish = settings.finish;
-  finish.appearance.num_threads = num_threads;
-  finish.stop = interrupted;
-  // One that was stopped early gains more by going on.
-  finish.match_reflectance = finish.match_reflectance && HasEnded(summary.stop_reason);
-  FinishedFit fit = FinishFit(solved, table, std::move(model), finish);
-  // Data alone, in the file's bins.
-  if (guided || file_spec != report.spec) {
-    fit.model = InForm(in_file, fit.model);
-    fit.objective = in_file;
-  }
-  report.finished = {fit.tied, fit.candidates, fit.chosen, fit.matched};
-  report.spec = fit.model.spec();
-  report.stored_parameters =
-      fit.layout.value_or(TableLayout::Full(report.spec)).num_parameters(report.spec);
-  report.score = ScoreModel(fit.objective, fit.model);
-  report.fit.objective = report.score.objective;
-  ModelFile file{fit.model, UnobservedParameters(fit.objective.coverage()), report.fit, fit.layout};
-  if (folder != nullptr) WriteModelInto(file, folder);
-  unsaved.reset();
-  report.seconds.finish = stopwatch.Lap();
-
-  const PictureData pictured = PictureDataOf(measured);
-  if (!pictured.empty()) {
-    report.appearance = CompareAppearance(pictured, MaterialOf(fit.model), finish.appearance);
-  }
-  if (measured.anisotropic && !report.spec.anisotropic()) {
-    report.left_out = AnisotropyOf(measured).share;
-  }
-  report.light = ComputeLobeLight(fit.objective.coverage(), fit.model, fit.objective.num_threads());
-  report.seconds.score = stopwatch.Lap();
+  };
+  FitResult fit = Fit(measured, options);
+  if (!begun) return std::nullopt;
+  ModelFile file = file_of(fit);
+  report.fit = file.fit;
+  report.interrupted = fit.interrupted;
+  report.spec = fit.model().spec();
+  report.summary = std::move(fit.summary);
+  report.summary.phases.reading = report.seconds.read;
+  report.nodes = std::move(fit.nodes);
+  report.guide = fit.guide;
+  report.finished = std::move(fit.finished);
+  report.stored_parameters = fit.stored_parameters;
+  report.score = fit.score;
+  report.appearance = fit.appearance;
+  report.left_out = fit.left_out;
+  report.light = std::move(fit.light);
+  static_cast<FitResult::Seconds&>(report.seconds) = fit.seconds;
   report.peak_memory = PeakMemory();
-  report.interrupted = InterruptGuard::signal() != 0;
   return FitRun{.measured = std::move(measured),
                 .objective = std::move(fit.objective),
                 .file = std::move(file),
@@ -284,7 +184,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   }
   const PictureData pictured =
       settings.pair || settings.plots ? PictureDataOf(run->measured) : PictureData{};
-  AppearanceOptions appearance = settings.finish.appearance;
+  AppearanceOptions appearance = settings.fit.appearance;
   appearance.num_threads = threads;
   std::exception_ptr failure;
   try {

@@ -1,42 +1,25 @@
 #ifndef TRILOBE_APP_FIT_RUN_H_
 #define TRILOBE_APP_FIT_RUN_H_
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "trilobe/app/course.h"
-#include "trilobe/app/finish_fit.h"
 #include "trilobe/app/fit_report.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/fit/fit.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/source.h"
-#include "trilobe/model/factor_model.h"
-#include "trilobe/model/weighting.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/node_choice.h"
-#include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 
 // How `trilobe fit` fits, whatever it is given.
 struct FitSettings {
-  const SolverEntry* solver = nullptr;
-  std::function<SolverOptions(const ModelSpec&)> options;
-  Weighting weighting;
-  std::string init;                     // as the user named it
-  const InitialModel* start = nullptr;  // or else:
-  std::optional<FactorModel> start_model;
-  std::function<ModelSpec(const Measurement&)> spec;
-  // To choose from by the error on held-out directions; empty to keep those of `spec`.
-  std::function<std::vector<NodeCandidate>(const ModelSpec&, const Measurement&)> nodes;
-  double guide = 0;  // GuideOptions::weight, where several azimuths were measured
+  FitOptions fit;  // its threads and callbacks are replaced
   SourceOptions source;
-  FinishOptions finish;
-  int64_t seed = 0;
   // What is written besides model.json, trace.csv and report.json: files of these names.
   bool course = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail

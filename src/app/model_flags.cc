@@ -3,7 +3,9 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -95,70 +97,17 @@ Stretches StretchesFromFlags(int lobes) {
   return Stretches(of_lobes);
 }
 
-ModelSpec AnisotropicSpec(const HemisphereGrid& data, double max_theta) {
-  ModelSpec spec = FLAGS_model == "anisotropic"
-                       ? ModelSpec::Anisotropic(FLAGS_lobes)
-                       : ModelSpec::AnisotropicFor(FLAGS_lobes, data.phis, max_theta);
-  if (!FLAGS_d_nodes.empty()) spec.d_axis = ParseNodes("d_nodes", FLAGS_d_nodes, true);
-  if (!FLAGS_g_nodes.empty()) spec.g_axis = ParseNodes("g_nodes", FLAGS_g_nodes, false);
-  if (!IsDefault("f_bins")) spec.f_axis.size = FLAGS_f_bins;
-  CheckSpec(spec);
-  return spec;
-}
-
-// Where directions stand on a grid of few theta, `g_nodes` is not 0: then G has so many nodes.
-ModelSpec IsotropicSpec(const MerlGrid& grid, int g_nodes = 0) {
-  for (const char* const flag : {"d_nodes", "f_bins", "g_nodes", "nodes"}) {
-    if (!IsDefault(flag)) throw Error("--" + std::string(flag) + " is for anisotropic models");
-  }
-  const bool independent = FLAGS_model == "independent";
-  if (independent && !IsDefault("lobes") && FLAGS_lobes != 1) {
-    throw Error("--model=independent has one lobe; leave out --lobes");
-  }
-  ModelSpec spec =
-      independent ? ModelSpec::IndependentG(grid) : ModelSpec::SharedFactors(FLAGS_lobes, grid);
-  if (g_nodes > 0) spec.g_axis.size = g_nodes;
-  spec.stretches = StretchesFromFlags(spec.lobes);
-  CheckSpec(spec);
-  return spec;
-}
-
 }  // namespace
 
-ModelSpec SpecFromFlags(const Measurement& measurement) {
-  CheckModelFlags();
-  if (measurement.table) {
-    if (!IsDefault("guide")) {
-      throw Error(measurement.source + ": --guide is for scattered samples, and a " +
-                  measurement.kind + " is a table");
-    }
-    if (FLAGS_model == "anisotropic") {
-      throw Error(measurement.source + ": a " + measurement.kind +
-                  " knows no azimuths; an anisotropic model needs scattered samples with several "
-                  "phi_i");
-    }
-    return IsotropicSpec(measurement.table->grid);
-  }
-  const bool anisotropic =
-      FLAGS_model == "anisotropic" || (FLAGS_model == "shared" && measurement.anisotropic);
-  const std::optional<HemisphereGrid> grid =
-      measurement.anisotropic ? GridOf(measurement) : std::nullopt;
-  if (anisotropic) {
-    if (StretchesFromFlags(FLAGS_lobes).any()) {
-      throw Error(measurement.source +
-                  ": --stretch is for isotropic models, and this is to have an " +
-                  "anisotropic one; --model=isotropic fits the other");
-    }
-    return AnisotropicSpec(grid.value_or(HemisphereGrid()), measurement.max_theta);
-  }
-  const ModelSpec spec =
-      IsotropicSpec(measurement.samples.grid, grid ? Axis::SplineNodesFor(grid->thetas) : 0);
-  return measurement.anisotropic ? spec : spec.ForScattered(measurement.samples.size());
-}
-
-void CheckModelFlags() {
-  constexpr const char* kNames[] = {"shared", "isotropic", "anisotropic", "independent", "auto"};
-  if (std::ranges::find(kNames, FLAGS_model) == std::end(kNames)) {
+FormOptions FormFromFlags() {
+  using Kind = FormOptions::Kind;
+  const std::map<std::string, Kind> kinds = {{"shared", Kind::kShared},
+                                             {"isotropic", Kind::kIsotropic},
+                                             {"anisotropic", Kind::kAnisotropic},
+                                             {"independent", Kind::kIndependent},
+                                             {"auto", Kind::kIsotropic}};
+  const auto kind = kinds.find(FLAGS_model);
+  if (kind == kinds.end()) {
     throw Error("unknown model '" + FLAGS_model +
                 "'; known: shared, isotropic, anisotropic, independent, auto");
   }
@@ -170,12 +119,14 @@ void CheckModelFlags() {
       throw Error("--nodes=held_out chooses the nodes; leave out --" + std::string(flag));
     }
   }
-  if (!(FLAGS_guide >= 0 && FLAGS_guide <= 1e6)) throw Error("--guide must be from 0 to 1e6");
-  if (FLAGS_model == "anisotropic" || FLAGS_model == "shared") {
-    AnisotropicSpec({}, kPi / 2);
-  } else {
-    IsotropicSpec({});
-  }
+  FormOptions form{.kind = kind->second, .nodes_by_held_out = FLAGS_nodes == "held_out"};
+  if (!IsDefault("lobes")) form.lobes = FLAGS_lobes;
+  form.stretches = StretchesFromFlags(form.kind == Kind::kIndependent ? 1 : FLAGS_lobes);
+  if (!FLAGS_d_nodes.empty()) form.d_nodes = ParseNodes("d_nodes", FLAGS_d_nodes, true);
+  if (!FLAGS_g_nodes.empty()) form.g_nodes = ParseNodes("g_nodes", FLAGS_g_nodes, false);
+  if (!IsDefault("f_bins")) form.f_bins = FLAGS_f_bins;
+  CheckForm(form);
+  return form;
 }
 
 bool ModelIsGiven() {
@@ -185,23 +136,13 @@ bool ModelIsGiven() {
 
 bool ChoosesModel() { return FLAGS_model == "auto"; }
 
-std::vector<NodeCandidate> NodeLadderFromFlags(const ModelSpec& spec,
-                                               const Measurement& measurement) {
-  if (FLAGS_nodes != "held_out") return {};
-  if (!spec.anisotropic()) {
-    throw Error(measurement.source + ": --nodes=held_out is for anisotropic models, and this is " +
-                "to have an isotropic one");
-  }
-  const HemisphereGrid data = GridOf(measurement).value_or(HemisphereGrid());
-  return NodeLadder(spec, data.thetas, data.phis);
-}
-
 std::vector<std::string> ModelFlags() {
   return {"model", "lobes", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes"};
 }
 
-double GuideFromFlags() {
-  return FLAGS_model == "anisotropic" && IsDefault("guide") ? 0 : FLAGS_guide;
+std::optional<double> GuideFromFlags() {
+  if (!(FLAGS_guide >= 0 && FLAGS_guide <= 1e6)) throw Error("--guide must be from 0 to 1e6");
+  return IsDefault("guide") ? std::nullopt : std::optional(FLAGS_guide);
 }
 
 }  // namespace trilobe

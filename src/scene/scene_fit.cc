@@ -19,7 +19,7 @@
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
-#include "trilobe/scene/prune_anisotropic.h"
+#include "trilobe/prune/prune_anisotropic.h"
 #include "trilobe/solvers/guide.h"
 #include "trilobe/solvers/initial_model.h"
 

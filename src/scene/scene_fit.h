@@ -11,7 +11,7 @@
 #include "trilobe/io/model_file.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/scene/fit_cache.h"
-#include "trilobe/scene/prune.h"
+#include "trilobe/prune/prune.h"
 #include "trilobe/scene/scene_file.h"
 #include "trilobe/solvers/solver.h"
 

@@ -11,7 +11,7 @@
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/objective/canonical_form.h"
-#include "trilobe/scene/unmeasured_guide.h"
+#include "trilobe/prune/unmeasured_guide.h"
 #include "trilobe/solvers/joint/data_edge.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -1,0 +1,172 @@
+#include "trilobe/fit/finish_fit.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "trilobe/model/continuous_model.h"
+#include "trilobe/objective/canonical_form.h"
+#include "trilobe/objective/robust.h"
+#include "trilobe/objective/score.h"
+#include "trilobe/prune/unmeasured_guide.h"
+#include "trilobe/solvers/joint/data_edge.h"
+#include "trilobe/solvers/joint/reflectance.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// From a fit, so that few passes and steps are enough. Returns the objective of the last pass.
+Objective FitRobustly(const Objective& objective, const FinishOptions& options,
+                      FactorModel* model) {
+  constexpr int kPasses = 2, kSteps = 10;
+  SolverOptions steps;
+  steps.max_iterations = kSteps;
+  steps.diagnose = false;
+  steps.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !options.stop(); };
+  Objective reweighted = objective;
+  for (int pass = 0; pass < kPasses && !options.stop(); ++pass) {
+    reweighted = Objective(Reweighted(objective, *model, options.robust), objective.spec(),
+                           objective.weighting(), objective.num_threads());
+    MakeSolver("varpro")->Solve(reweighted, steps, model);
+  }
+  return reweighted;
+}
+
+// How models look on a sphere: of what was measured and, where some was not, of all directions.
+// Made when it is first asked for.
+class Looks {
+ public:
+  Looks(const BrdfTable& measured, const AppearanceOptions& options)
+      : table_(measured), options_(options) {}
+
+  bool has_beyond() const { return !table_.unmeasured.empty(); }
+
+  double Measured(const FactorModel& model) {
+    if (!measured_) measured_.emplace(table_, options_);
+    return (*measured_)(ContinuousModel(model)).psnr_db;
+  }
+  double Beyond(const FactorModel& model) {
+    if (!beyond_) beyond_.emplace(SphereJudge::OfAllDirections(table_, options_));
+    return (*beyond_)(ContinuousModel(model)).psnr_db;
+  }
+
+ private:
+  const BrdfTable& table_;
+  const AppearanceOptions& options_;
+  std::optional<SphereJudge> measured_, beyond_;
+};
+
+// Whether one model is as good as another in all but E.
+class NoHarm {
+ public:
+  NoHarm(const Objective& objective, const FactorModel& before, Looks* looks)
+      : objective_(objective),
+        looks_(*looks),
+        measured_(looks->Measured(before)),
+        beyond_(looks->has_beyond() ? looks->Beyond(before) : 0),
+        log_error_(LogError(before)) {}
+
+  bool operator()(const FactorModel& after) const {
+    constexpr double kMayLose = 0.2, kMayLoseBeyond = 1;  // [dB]
+    constexpr double kMayGrow = 0.1;
+    return looks_.Measured(after) >= measured_ - kMayLose &&
+           (!looks_.has_beyond() || looks_.Beyond(after) >= beyond_ - kMayLoseBeyond) &&
+           LogError(after) <= (1 + kMayGrow) * log_error_;
+  }
+
+ private:
+  double LogError(const FactorModel& model) const {
+    return ScoreModel(objective_, model).mean_log_error;
+  }
+
+  const Objective& objective_;
+  Looks& looks_;
+  double measured_, beyond_, log_error_;
+};
+
+// As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
+// the fit's spec.
+void MatchReflectanceOf(const Objective& of, const std::function<bool()>& stop, Looks* looks,
+                        FinishedFit* fit) {
+  constexpr double kPrices[] = {30, 10, 3};
+  constexpr double kWorthwhile = 0.75;  // what remains of the error
+  const FactorModel& model = fit->model;
+  if (!ReflectanceOf(of, model).IsOff()) return;  // and needs no guide
+  const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
+  const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
+  // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
+  // entries that hardly a sample reads are held by what the model says where nothing was measured.
+  const std::vector<double> all_covered(model.parameters().size(), 1.0);
+  const Objective held = thinned ? UnmeasuredGuide(of, model).With(of) : of;
+  std::optional<NoHarm> no_harm;
+  for (const double price : kPrices) {
+    std::optional<MatchedModel> matched = MatchReflectance(of, held, model, layout, price, stop);
+    // A lower price mends still less.
+    if (!matched || matched->error_after > kWorthwhile * matched->error_before) return;
+    if (thinned) {
+      Canonicalize(all_covered, &matched->model, LobeOrder::kAsTheyAre, of.num_threads());
+    } else {
+      Canonicalize(of, &matched->model);
+    }
+    if (!no_harm) no_harm.emplace(fit->objective, model, looks);
+    if (!(*no_harm)(matched->model)) continue;
+    const double E = fit->objective.Value(model);
+    fit->matched = {.error_before = matched->error_before,
+                    .error_after = matched->error_after,
+                    .rise = E > 0 ? fit->objective.Value(matched->model) / E - 1 : 0};
+    fit->model = std::move(matched->model);
+    return;
+  }
+}
+
+}  // namespace
+
+FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
+                      const FinishOptions& options) {
+  // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
+  const Objective of =
+      options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
+  std::optional<double> tied;
+  if (!options.stop()) {
+    const double before = of.Value(model);
+    if (TieEntriesAtDataEdge(of, &model, options.stop) && before > 0) {
+      tied = of.Value(model) / before - 1;
+    }
+  }
+  Canonicalize(objective, &model);
+  FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
+  std::optional<Looks> looks;
+  if (measured != nullptr) looks.emplace(*measured, options.appearance);
+  Weighting weighting = objective.weighting();
+  if (options.max_parameters > 0 && !options.stop()) {
+    ModelChoiceOptions choice;
+    choice.max_parameters = options.max_parameters;
+    choice.stop = options.stop;
+    choice.judge = [&looks](const FactorModel& candidate) { return looks->Measured(candidate); };
+    if (looks->has_beyond()) {
+      choice.judge_beyond = [&looks](const FactorModel& candidate) {
+        return looks->Beyond(candidate);
+      };
+    }
+    ChosenModel chosen = ChooseModel(of, fit.model, choice);
+    fit.objective = Objective(objective, chosen.model.spec());
+    fit.model = std::move(chosen.model);
+    fit.layout = std::move(chosen.layout);
+    fit.candidates = std::move(chosen.candidates);
+    fit.chosen = chosen.chosen;
+    weighting = chosen.weighting;
+  }
+  // A robust fit has given up on some of the light.
+  if (options.match_reflectance && options.robust == 0 && looks &&
+      !fit.model.spec().anisotropic() && !options.stop()) {
+    const Objective weighed =
+        weighting.name == objective.weighting().name
+            ? fit.objective
+            : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
+    MatchReflectanceOf(weighed, options.stop, &*looks, &fit);
+  }
+  return fit;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,240 @@
+#include "trilobe/fit/fit.h"
+
+#include <utility>
+
+#include "trilobe/appearance/material.h"
+#include "trilobe/base/error.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/io/anisotropy.h"
+#include "trilobe/io/picture_data.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/with_axes.h"
+#include "trilobe/objective/canonical_form.h"
+#include "trilobe/solvers/guide.h"
+
+namespace trilobe {
+namespace {
+
+double GuideWeight(const Measurement& measurement, const FitOptions& options) {
+  if (measurement.table) {
+    if (options.guide) {
+      throw Error(measurement.source + ": --guide is for scattered samples, and a " +
+                  measurement.kind + " is a table");
+    }
+    return 0;
+  }
+  return options.guide.value_or(options.form.kind == FormOptions::Kind::kAnisotropic ? 0 : 1);
+}
+
+BrdfSamples SamplesToFit(const Measurement& measurement, const FitOptions& options) {
+  BrdfSamples samples = SamplesOf(measurement);
+  return options.select ? options.select(std::move(samples)) : samples;
+}
+
+std::optional<Objective> WithGuideOf(const Measurement& measurement, const FitOptions& options,
+                                     const Objective& data) {
+  const double weight = GuideWeight(measurement, options);
+  if (!(weight > 0)) return std::nullopt;
+  return Objective(
+      WithGuide(data,
+                {.weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop}),
+      data.spec(), options.weighting, options.num_threads);
+}
+
+FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
+               const Objective& objective, const SolverSummary& summary) {
+  return {.solver = options.solver,
+          .init = options.init,
+          .weighting = options.weighting.name,
+          .objective = summary.final_objective,
+          .initial_objective = summary.initial_objective,
+          .stop_reason = StopReasonName(summary.stop_reason),
+          .iterations = summary.iterations,
+          .seconds = summary.seconds,
+          .threads = objective.num_threads(),
+          .source = measurement.source,
+          .valid_samples = objective.samples().size(),
+          .max_angle = MaxAngleDegrees(measurement),
+          .program = {},
+          .date = {}};
+}
+
+// An anisotropic model with F in the 90 bins that readers of such files have always found, if those
+// have the centres of its own fewer bins among theirs: the same function. All other tables are
+// stored as they were fitted.
+ModelSpec WithFileBins(ModelSpec spec) {
+  constexpr int kFileBins = 90;
+  int& bins = spec.f_axis.size;
+  if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
+  return spec;
+}
+
+// Whether a solver had found what it looks for.
+bool HasEnded(StopReason reason) {
+  return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
+         reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
+}
+
+// The model on the axes of this objective, in its canonical form.
+FactorModel InForm(const Objective& objective, const FactorModel& model) {
+  FactorModel canonical = WithAxes(model, objective.spec());
+  Canonicalize(objective, &canonical);
+  return canonical;
+}
+
+// One fit, step by step.
+class Fitting {
+ public:
+  Fitting(const Measurement& measurement, const FitOptions& options)
+      : measurement_(measurement),
+        options_(options),
+        table_(measurement.table && !options.select ? &*measurement.table : nullptr) {
+    if (!measurement.table && options.max_parameters > 0) {
+      throw Error(measurement.source +
+                  ": --model=auto chooses among isotropic models of a MERL or RGL table; choose "
+                  "--model=isotropic, anisotropic or independent");
+    }
+  }
+
+  FitResult Run() {
+    BrdfSamples samples = SamplesToFit(measurement_, options_);
+    const ModelSpec spec = options_.start_model
+                               ? options_.start_model->spec()
+                               : SpecFor(measurement_, options_.form, samples.size());
+    const std::vector<NodeCandidate> nodes = options_.start_model
+                                                 ? std::vector<NodeCandidate>()
+                                                 : NodesToTry(measurement_, options_.form, spec);
+    GuideWeight(measurement_, options_);  // its error
+    FitResult fit{
+        .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
+    fit.seconds.prepare = stopwatch_.Lap();
+    FactorModel model = Start(fit.objective);
+    fit.seconds.init = stopwatch_.Lap();
+    if (options_.stop()) {
+      fit.interrupted = true;
+      return fit;
+    }
+    options_.on_begin();
+    if (!nodes.empty()) ChooseAmong(nodes, &fit, &model);
+    Solve(&fit, &model);
+    return fit;
+  }
+
+ private:
+  FactorModel Start(const Objective& objective) const {
+    return options_.start_model ? *options_.start_model
+                                : FindInitialModel(options_.init).make(objective, options_.seed);
+  }
+
+  void ChooseAmong(const std::vector<NodeCandidate>& nodes, FitResult* fit, FactorModel* model) {
+    NodeChoiceOptions choice{.seed = options_.seed,
+                             .guide = GuideWeight(measurement_, options_),
+                             .on_iteration =
+                                 [this](const IterationRecord& record, const FactorModel&) {
+                                   options_.on_progress(record);
+                                   return true;
+                                 },
+                             .stop = options_.stop};
+    fit->nodes = ChooseNodes(fit->objective, nodes, choice);
+    fit->objective = Objective(fit->objective, fit->nodes->tried[fit->nodes->chosen].spec);
+    *model = options_.stop() ? fit->nodes->model  // better than a starting point that no solver
+                                                  // will improve
+                             : Start(fit->objective);
+    fit->seconds.nodes = stopwatch_.Lap();
+  }
+
+  void Solve(FitResult* fit, FactorModel* model) {
+    const std::optional<Objective> guided = WithGuideOf(measurement_, options_, fit->objective);
+    const Objective& solved = guided ? *guided : fit->objective;
+    const int added = solved.samples().size() - fit->objective.samples().size();
+    if (added > 0) fit->guide = {solved.samples().multiplicity.back(), added};
+    SolverOptions solver = options_.solver_options(solved.spec());
+    solver.on_iteration = [this](const IterationRecord& record, const FactorModel& current) {
+      options_.on_progress(record);
+      options_.on_iteration(record, current);
+      return !options_.stop();
+    };
+    fit->summary = MakeSolver(options_.solver)->Solve(solved, solver, model);
+    fit->seconds.solve = stopwatch_.Lap();
+    const ModelSpec file_spec = WithFileBins(solved.spec());
+    const bool of_data = !guided && file_spec == solved.spec();
+    if (file_spec != solved.spec()) fit->objective = Objective(fit->objective, file_spec);
+    fit->file.fit = InfoOf(measurement_, options_, fit->objective, fit->summary);
+    // As the solver left it; what follows may take longer than somebody who ends it waits.
+    if (!options_.stop()) {
+      fit->file.model = InForm(fit->objective, *model);
+      fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
+      options_.on_model(*fit);
+    }
+    Finish(solved, of_data, std::move(*model), fit);
+    options_.on_model(*fit);
+    fit->seconds.finish = stopwatch_.Lap();
+    if (options_.compare) Compare(fit);
+    fit->seconds.score = stopwatch_.Lap();
+    fit->interrupted = options_.stop();
+  }
+
+  void Finish(const Objective& solved, bool of_data, FactorModel model, FitResult* fit) const {
+    FinishOptions finish{
+        .robust = options_.robust,
+        .max_parameters = options_.max_parameters,
+        // One that was stopped early gains more by going on.
+        .match_reflectance = options_.match_reflectance && HasEnded(fit->summary.stop_reason),
+        .appearance = Appearance(),
+        .stop = options_.stop};
+    FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
+    if (of_data) {
+      fit->objective = finished.objective;
+      fit->file.model = std::move(finished.model);
+    } else {
+      fit->file.model = InForm(fit->objective, finished.model);
+    }
+    fit->finished = {finished.tied, std::move(finished.candidates), finished.chosen,
+                     finished.matched};
+    fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
+    fit->file.layout = std::move(finished.layout);
+    const ModelSpec& spec = fit->model().spec();
+    fit->stored_parameters =
+        fit->file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
+    fit->score = ScoreModel(fit->objective, fit->model());
+    fit->file.fit.objective = fit->score.objective;
+  }
+
+  AppearanceOptions Appearance() const {
+    AppearanceOptions appearance = options_.appearance;
+    appearance.num_threads = options_.num_threads;
+    return appearance;
+  }
+
+  void Compare(FitResult* fit) const {
+    const PictureData pictured = options_.select ? PictureData() : PictureDataOf(measurement_);
+    if (!pictured.empty()) {
+      fit->appearance = CompareAppearance(pictured, MaterialOf(fit->model()), Appearance());
+    }
+    if (measurement_.anisotropic && !fit->model().spec().anisotropic()) {
+      fit->left_out = AnisotropyOf(measurement_).share;
+    }
+    fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
+  }
+
+  const Measurement& measurement_;
+  const FitOptions& options_;
+  const BrdfTable* const table_;  // as the whole of it is fitted
+  Stopwatch stopwatch_;
+};
+
+}  // namespace
+
+FitResult Fit(const Measurement& measurement, const FitOptions& options) {
+  return Fitting(measurement, options).Run();
+}
+
+FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
+                      const ModelSpec& spec) {
+  FitProblem problem{.data = Objective(SamplesToFit(measurement, options), spec, options.weighting,
+                                       options.num_threads)};
+  problem.guided = WithGuideOf(measurement, options, problem.data);
+  return problem;
+}
+
+}  // namespace trilobe

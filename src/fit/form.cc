@@ -1,0 +1,100 @@
+#include "trilobe/fit/form.h"
+
+#include <string>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/picture_data.h"
+
+namespace trilobe {
+namespace {
+
+using Kind = FormOptions::Kind;
+
+constexpr int kLobes = 3;
+
+ModelSpec AnisotropicSpec(const FormOptions& options, const HemisphereGrid& data,
+                          double max_theta) {
+  const int lobes = options.lobes.value_or(kLobes);
+  ModelSpec spec = options.kind == Kind::kAnisotropic
+                       ? ModelSpec::Anisotropic(lobes)
+                       : ModelSpec::AnisotropicFor(lobes, data.phis, max_theta);
+  if (options.d_nodes) spec.d_axis = *options.d_nodes;
+  if (options.g_nodes) spec.g_axis = *options.g_nodes;
+  if (options.f_bins) spec.f_axis.size = *options.f_bins;
+  CheckSpec(spec);
+  return spec;
+}
+
+void CheckNothingAnisotropic(const FormOptions& options) {
+  const char* const given = options.d_nodes             ? "d_nodes"
+                            : options.f_bins            ? "f_bins"
+                            : options.g_nodes           ? "g_nodes"
+                            : options.nodes_by_held_out ? "nodes"
+                                                        : nullptr;
+  if (given != nullptr) throw Error("--" + std::string(given) + " is for anisotropic models");
+}
+
+// Where directions stand on a grid of few theta, `g_nodes` is not 0: then G has so many nodes.
+ModelSpec IsotropicSpec(const FormOptions& options, const MerlGrid& grid, int g_nodes = 0) {
+  CheckNothingAnisotropic(options);
+  const bool independent = options.kind == Kind::kIndependent;
+  if (independent && options.lobes.value_or(1) != 1) {
+    throw Error("--model=independent has one lobe; leave out --lobes");
+  }
+  ModelSpec spec = independent ? ModelSpec::IndependentG(grid)
+                               : ModelSpec::SharedFactors(options.lobes.value_or(kLobes), grid);
+  if (g_nodes > 0) spec.g_axis.size = g_nodes;
+  spec.stretches = options.stretches;
+  CheckSpec(spec);
+  return spec;
+}
+
+}  // namespace
+
+void CheckForm(const FormOptions& options) {
+  if (options.kind == Kind::kAnisotropic || options.kind == Kind::kShared) {
+    AnisotropicSpec(options, {}, kPi / 2);
+  } else {
+    IsotropicSpec(options, {});
+  }
+}
+
+ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, int num_samples) {
+  CheckForm(options);
+  if (measurement.table) {
+    if (options.kind == Kind::kAnisotropic) {
+      throw Error(measurement.source + ": a " + measurement.kind +
+                  " knows no azimuths; an anisotropic model needs scattered samples with several "
+                  "phi_i");
+    }
+    return IsotropicSpec(options, measurement.table->grid);
+  }
+  const bool anisotropic = options.kind == Kind::kAnisotropic ||
+                           (options.kind == Kind::kShared && measurement.anisotropic);
+  const std::optional<HemisphereGrid> grid =
+      measurement.anisotropic ? GridOf(measurement) : std::nullopt;
+  if (anisotropic) {
+    if (options.stretches.any()) {
+      throw Error(measurement.source +
+                  ": --stretch is for isotropic models, and this is to have an " +
+                  "anisotropic one; --model=isotropic fits the other");
+    }
+    return AnisotropicSpec(options, grid.value_or(HemisphereGrid()), measurement.max_theta);
+  }
+  const ModelSpec spec = IsotropicSpec(options, measurement.samples.grid,
+                                       grid ? Axis::SplineNodesFor(grid->thetas) : 0);
+  return measurement.anisotropic ? spec : spec.ForScattered(num_samples);
+}
+
+std::vector<NodeCandidate> NodesToTry(const Measurement& measurement, const FormOptions& options,
+                                      const ModelSpec& spec) {
+  if (!options.nodes_by_held_out) return {};
+  if (!spec.anisotropic()) {
+    throw Error(measurement.source + ": --nodes=held_out is for anisotropic models, and this is " +
+                "to have an isotropic one");
+  }
+  const HemisphereGrid data = GridOf(measurement).value_or(HemisphereGrid());
+  return NodeLadder(spec, data.thetas, data.phis);
+}
+
+}  // namespace trilobe

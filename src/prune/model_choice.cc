@@ -1,0 +1,377 @@
+#include "trilobe/prune/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/objective/canonical_form.h"
+#include "trilobe/objective/score.h"
+#include "trilobe/prune/model_forms.h"
+#include "trilobe/prune/prune.h"
+#include "trilobe/prune/unmeasured_guide.h"
+#include "trilobe/solvers/joint/data_edge.h"
+#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/solvers/joint/reduction.h"
+#include "trilobe/solvers/joint/stretch_search.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+namespace {
+
+// What nobody sees of a picture [dB].
+constexpr double kNotSeen = 0.2;
+
+// A stretch that lowers E by less than this fraction is none.
+constexpr double kWorthwhile = 0.05;
+
+// What thinning cannot go below: a node a table, besides d, s and exponents.
+int LeastStored(const ModelSpec& spec) {
+  TableLayout layout = TableLayout::Full(spec);
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) layout.of(factor, t).resize(1);
+  }
+  return layout.num_parameters(spec);
+}
+
+// So many samples for each parameter, more at angles that few have: an entry that is read by none
+// of those left could be anything, and for all samples the model would be far off.
+Objective Thinned(const Objective& objective, int samples_per_parameter, int max_stride) {
+  constexpr int kLeast = 16;  // samples a place, as many times as there are for each parameter
+  const int wanted = samples_per_parameter * objective.spec().num_parameters();
+  const int stride = std::clamp(objective.samples().size() / wanted, 1, max_stride);
+  if (stride == 1) return objective;
+  return {ThinnedByPlace(objective.samples(), stride, kLeast * samples_per_parameter),
+          objective.spec(), objective.weighting(), objective.num_threads()};
+}
+
+// So many that what a model makes of them is nearly what it makes of all.
+Objective Some(const Objective& objective) { return Thinned(objective, 100, 24); }
+
+// So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
+Objective Few(const Objective& objective) { return Thinned(objective, 32, 72); }
+
+// Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
+// read may be anything.
+FactorModel GoOn(const Objective& objective, const FactorModel& start,
+                 const std::function<bool()>& stop, const Reduction* reduction = nullptr) {
+  constexpr int kSteps = 2;
+  return JointSteps(objective, start, kSteps, stop, reduction).model;
+}
+
+// Objectives of the same samples for other specs and weightings; what it takes to prepare the
+// samples is made once for a weighting and stretches.
+class Objectives {
+ public:
+  explicit Objectives(const Objective& own) : made_({own}) {}
+
+  const Objective& own() const { return made_.front(); }
+
+  Objective For(const ModelSpec& spec, const Weighting& weighting) {
+    const auto alike = std::ranges::find_if(made_, [&](const Objective& other) {
+      return other.weighting().name == weighting.name &&
+             other.spec().stretches.distinct() == spec.stretches.distinct();
+    });
+    if (alike != made_.end()) return {*alike, spec};
+    const Objective& own = made_.front();
+    made_.push_back(weighting.name == own.weighting().name
+                        ? Objective(own, spec)
+                        : Objective(own.samples(), spec, weighting, own.num_threads()));
+    return made_.back();
+  }
+
+ private:
+  std::vector<Objective> made_;
+};
+
+// What the default solver makes of few samples from its own starts.
+FactorModel FitAnew(const Objective& few, const FactorModel& start,
+                    const std::function<bool()>& stop) {
+  FactorModel model = start;
+  SolverOptions options;
+  options.diagnose = false;
+  options.on_iteration = [&stop](const IterationRecord&, const FactorModel&) { return !stop(); };
+  MakeSolver("auto")->Solve(few, options, &model);
+  return model;
+}
+
+// Whether the data rather have a form that shares less: a stretch may look like one. What more
+// parameters fit of few samples by chance is taken off; those of the guide tell nothing.
+bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
+                const SteppedModel& stretched, const std::function<bool()>& stop) {
+  constexpr int kSteps = 5;
+  const double values = kChannels * num_measured / 2.0;  // exchanged ones say the same
+  const auto expected = [&](double E, const ModelSpec& spec) {
+    const double share = std::min(spec.num_parameters() / values, 0.9);
+    return E * (1 + share) / (1 - share);
+  };
+  return std::ranges::any_of(
+      FormsSharingLess({"", fitted, few.weighting()}), [&](const ModelForm& form) {
+        const ModelSpec& spec = form.start.spec();
+        const double E = JointSteps(Objective(few, spec), form.start, kSteps, stop).E;
+        return expected(E, spec) < expected(stretched.E, stretched.model.spec());
+      });
+}
+
+// The search of ChooseModel. Forms are fitted to some samples; only those that are stored as a
+// whole, to all.
+class ModelSearch {
+ public:
+  ModelSearch(const Objective& objective, const FactorModel& fitted,
+              const ModelChoiceOptions& options)
+      : objective_(objective),
+        fitted_(fitted),
+        options_(options),
+        all_(objective),
+        some_(Some(objective)),
+        few_(Few(objective)),
+        guide_(objective, fitted),
+        guided_some_(guide_.With(some_.own())),
+        guided_few_(guide_.With(few_.own())) {}
+
+  ChosenModel Run() {
+    const TableLayout full = TableLayout::Full(fitted_.spec());
+    Judge("as fitted", fitted_, full, objective_.Value(fitted_));
+    some_of_fit_ = some_.own().Value(fitted_);
+    if (options_.judge_beyond) beyond_ = options_.judge_beyond(fitted_);
+    Choose(fitted_, full, objective_.weighting());
+    if (best_.chosen < 0) Thin("as fitted", objective_.weighting(), fitted_);
+    if (best_.chosen < 0) {
+      PruneTheFit();
+    } else if (FitBases() && FitForms()) {
+      FinishBestForms();
+    }
+    return std::move(best_);
+  }
+
+ private:
+  struct Fitted {
+    ModelForm form;  // with the fitted model as its start
+    double score;
+  };
+
+  double Judge(const std::string& name, const FactorModel& model, const TableLayout& layout,
+               double E) {
+    const double seconds = stopwatch_.Lap();
+    double score = options_.judge(model);
+    // Below all others, with which NaN has no order.
+    if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
+    best_.candidates.push_back({.name = name,
+                                .num_parameters = layout.num_parameters(model.spec()),
+                                .E = E,
+                                .score = score,
+                                .seconds = seconds});
+    stopwatch_.Lap();
+    return score;
+  }
+
+  // The last candidate, if it is the best that keeps to the budget.
+  void Choose(const FactorModel& model, const TableLayout& layout, const Weighting& weighting) {
+    ModelCandidate& last = best_.candidates.back();
+    if (last.num_parameters > options_.max_parameters) return;
+    if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
+    if (options_.judge_beyond && best_.chosen >= 0) {
+      constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
+      const double gain = last.score - best_.candidates.front().score;
+      last.wild = !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
+      if (last.wild) return;
+    }
+    best_.chosen = static_cast<int>(best_.candidates.size()) - 1;
+    best_.model = model;
+    best_.layout = layout;
+    best_.weighting = weighting;
+  }
+
+  // E, as it is quoted, is of the objective that was asked for; of a form on its way, as these
+  // samples tell it.
+  double ValueOfSome(const FactorModel& model) {
+    const double E = some_.For(model.spec(), objective_.weighting()).Value(model);
+    return some_of_fit_ > 0 ? E * (best_.candidates.front().E / some_of_fit_) : E;
+  }
+
+  // All samples would have to be prepared for a stretch, which takes longer than to evaluate them
+  // once.
+  double ValueOf(const FactorModel& model) {
+    if (!model.spec().stretches.any()) {
+      return all_.For(model.spec(), objective_.weighting()).Value(model);
+    }
+    const std::vector<Rgb> values =
+        EvaluateSamples(model, objective_.samples(), objective_.num_threads());
+    return ScoreValues(objective_, values).objective;
+  }
+
+  // Beyond the data it goes on about as the whole model does.
+  void Thin(const std::string& name, const Weighting& weighting, const FactorModel& model) {
+    const UnmeasuredGuide guide(objective_, model);
+    PruneOptions prune;
+    prune.lobes = prune.colour = false;
+    prune.max_parameters = options_.max_parameters;
+    // The fit itself has to come down to the budget. Of forms it takes long to see whether G had
+    // better be shared, and hardly ever it had.
+    const bool of_fit = best_.chosen < 0;
+    prune.sharing = of_fit;
+    if (!of_fit) prune.stop = options_.stop;
+    PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
+    if (!of_fit && options_.stop()) return;
+    const Objective to = guide.With(some_.For(pruned.model.spec(), weighting));
+    const Reduction stored(to.spec(), pruned.layout);
+    pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
+    Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
+    Choose(pruned.model, pruned.layout, weighting);
+  }
+
+  // For where one parameter a table is still too much: lobes and colours have to go, and no form
+  // that shares less has a chance.
+  void PruneTheFit() {
+    const PrunedModel pruned =
+        Prune(objective_, fitted_, {.max_parameters = options_.max_parameters});
+    Judge("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
+    Choose(pruned.model, pruned.layout, objective_.weighting());
+    if (best_.chosen >= 0) return;
+    throw Error("no form of the model keeps to " + std::to_string(options_.max_parameters) +
+                " parameters; its values overflow");
+  }
+
+  // This and the next two: false once it is to stop; then what was to be fitted is not among
+  // forms_.
+  bool Fit(ModelForm form) {
+    if (options_.stop()) return false;
+    const ModelSpec& spec = form.start.spec();
+    constexpr int kStepsOnFew = 12;
+    constexpr double kSmall = 2e-3;  // a decrease of E, relative, that no picture shows
+    form.start = JointSteps(guided_few_.For(spec, form.weighting), form.start, kStepsOnFew,
+                            options_.stop, /*reduction=*/nullptr, kSmall)
+                     .model;
+    form.start = GoOn(guided_some_.For(spec, form.weighting), form.start, options_.stop);
+    // Entries that no measured sample reads are what the guide makes of them, next to others that
+    // have moved far away; a picture reads between the two.
+    Canonicalize(some_.For(spec, form.weighting), &form.start);
+    const double score =
+        Judge(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
+    forms_.push_back({std::move(form), score});
+    return true;
+  }
+
+  // The fit itself, stretched, and weighed by channel, which the others go on from.
+  bool FitBases() {
+    bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
+    bool stretched = false;
+    if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
+        !fitted_.spec().stretches.any()) {
+      const Objective of = guided_few_.For(fitted_.spec(), objective_.weighting());
+      const SteppedModel start = FitStretches(of, fitted_, options_.stop);
+      if (!Fit({"stretched", start.model, objective_.weighting()})) return false;
+      // Under other weights it may look better even where it does not under these.
+      stretched = start.model.spec().stretches.any() &&
+                  best_.candidates.back().E < (1 - kWorthwhile) * best_.candidates.front().E &&
+                  !SharesLess(of, few_.own().samples().size(), fitted_, start, options_.stop);
+      if (stretched) bases_.push_back(forms_.back());
+    }
+    if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
+      return true;
+    }
+    // Selections keep the level of the whole.
+    const Weighting by_channel =
+        ForSamples(FindWeighting("appearance_channel"), objective_.samples());
+    if (stretched) {
+      const ModelForm form{"stretched, weighed by channel", forms_.back().form.start, by_channel};
+      if (!Fit(form)) return false;
+      bases_.push_back(forms_.back());
+    }
+    // From starts of its own, since it ends in another minimum.
+    ModelForm form{"weighed by channel anew",
+                   FitAnew(guided_few_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
+                   by_channel};
+    if (stretched) {
+      const Objective of = guided_few_.For(fitted_.spec(), by_channel);
+      form = {"stretched, weighed by channel anew",
+              FitStretches(of, form.start, options_.stop).model, by_channel};
+    }
+    if (!Fit(form)) return false;
+    bases_.push_back(forms_.back());
+    return true;
+  }
+
+  // Of the best base, and any within 2 dB of it, the form that shares neither F nor D; then the
+  // best of all these with a lobe more. The more nodes there are to choose from, the better those
+  // that thinning leaves.
+  bool FitForms() {
+    constexpr double kNearly = 2;  // [dB]
+    const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;
+    std::vector<Fitted> good;
+    for (const Fitted& base : bases_) {
+      if (base.score < best_base - kNearly) continue;
+      good.push_back(base);
+      const std::optional<ModelForm> form = FormSharingNeither(base.form);
+      if (!form) continue;
+      if (!Fit(*form)) return false;
+      good.push_back(forms_.back());
+    }
+    const std::optional<ModelForm> form =
+        FormWithALobeMore(std::ranges::max(good, {}, &Fitted::score).form);
+    return !form || Fit(*form);
+  }
+
+  // Takes time, and changes little of what a form has gained: only the best ones.
+  void FinishBestForms() {
+    std::ranges::stable_sort(forms_, std::greater(), &Fitted::score);
+    for (Fitted& fitted_form : forms_) {
+      if (options_.stop()) break;
+      if (fitted_form.score <= best_.candidates[best_.chosen].score + kNotSeen) break;
+      auto& [name, model, weighting] = fitted_form.form;
+      if (LeastStored(model.spec()) > options_.max_parameters) continue;
+      const TableLayout layout = TableLayout::Full(model.spec());
+      if (layout.num_parameters(model.spec()) > options_.max_parameters) {
+        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score,
+                     TieRefit::kUntilBack);
+        Thin(name, weighting, model);
+      } else {
+        const Objective of = all_.For(model.spec(), weighting);
+        model = GoOn(of, model, options_.stop);
+        Canonicalize(of, &model);
+        model = Tied(of, model, options_.judge(model), TieRefit::kUntilSettled);
+        Judge(name + ", finished", model, layout, ValueOf(model));
+        Choose(model, layout, weighting);
+      }
+    }
+  }
+
+  // The model, in canonical form and of this score, with entries at the edge of the data tied,
+  // unless that is seen where data are.
+  FactorModel Tied(const Objective& of, const FactorModel& model, double score, TieRefit refit) {
+    FactorModel tied = model;
+    if (!TieEntriesAtDataEdge(of, &tied, options_.stop, refit)) return model;
+    Canonicalize(of, &tied);
+    return options_.judge(tied) >= score - kNotSeen ? tied : model;
+  }
+
+  const Objective& objective_;
+  const FactorModel& fitted_;
+  const ModelChoiceOptions& options_;
+  Objectives all_, some_, few_;
+  const UnmeasuredGuide guide_;  // for forms that go on from the fit
+  Objectives guided_some_, guided_few_;
+  Stopwatch stopwatch_;     // since the last candidate
+  double beyond_ = 0;       // the data, the score of the fit
+  double some_of_fit_ = 0;  // of E of the fit
+  std::vector<Fitted> bases_, forms_;
+  ChosenModel best_;
+};
+
+}  // namespace
+
+ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
+                        const ModelChoiceOptions& options) {
+  if (options.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
+  return ModelSearch(objective, fitted, options).Run();
+}
+
+}  // namespace trilobe

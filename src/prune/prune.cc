@@ -1,0 +1,235 @@
+#include "trilobe/prune/prune.h"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/lobes.h"
+#include "trilobe/objective/score.h"
+#include "trilobe/prune/lobe_search.h"
+#include "trilobe/prune/needed_layout.h"
+#include "trilobe/prune/prune_tables.h"
+#include "trilobe/prune/pruning.h"
+#include "trilobe/prune/shapes.h"
+#include "trilobe/solvers/joint/reduction.h"
+
+namespace trilobe {
+namespace {
+
+// Where lobes that went took more than this share of the budget, it may be better spent on nodes.
+constexpr double kDear = 0.5;
+
+// Towards a limit of PSNR: so often, and by this factor, the rise of E that is allowed grows.
+constexpr int kStretches = 4;
+constexpr double kStretch = 3;
+
+// The first shape that changes no parameter.
+void ShareWhatIsEqual(Pruning* pruning) {
+  const PruneState& state = pruning->state();
+  for (const ModelShape& shape : ShapesWithin(state.spec(), state.layout, pruning->options().colour,
+                                              pruning->options().shadowing)) {
+    if (shape.constant_G || shape.name.empty()) continue;
+    const Reduction sharing = Reduction::BySharing(state.spec(), shape.spec);
+    const Reduction reduction =
+        sharing.After(Reduction(shape.spec, LayoutOf(shape, TableLayout::Full(shape.spec))));
+    const std::span<const double> x = state.model.parameters();
+    if (!std::ranges::equal(reduction.Expand(reduction.Restrict(x)), x)) continue;
+    FactorModel model(shape.spec);
+    std::ranges::copy(sharing.Restrict(x), model.parameters().begin());
+    PruneState to = pruning->MakeState(shape.spec, model);
+    to.layout = LayoutOf(shape, std::move(to.layout));
+    pruning->Decide(shape.name, std::move(to), true, "they are equal");
+    return;
+  }
+}
+
+// Lobes that reflect nothing, entries that no data touch and runs of equal values.
+void LeaveOutWhatIsFree(Pruning* pruning) {
+  if (pruning->options().lobes) {
+    FactorModel model = pruning->state().model;
+    for (int m = model.spec().lobes - 1; m >= 0; --m) {
+      const auto s = model.s(m);
+      if (std::ranges::all_of(s, [](double x) { return x == 0; })) model = WithoutLobe(model, m);
+    }
+    if (model.spec() != pruning->state().spec()) {
+      PruneState to = pruning->MakeState(model.spec(), model);
+      const std::string what =
+          LobesText(to.lobes()) + " instead of " + LobesText(pruning->state().lobes());
+      pruning->Decide(what, std::move(to), true, "the others reflect nothing");
+    }
+  }
+  if (pruning->options().sharing) ShareWhatIsEqual(pruning);
+  PruneState to = pruning->state();
+  const TableLayout needed =
+      NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
+  for (int f = 0; f < 3; ++f) to.layout.nodes[f] = needed.nodes[f];
+  if (to.num_parameters() == pruning->state().num_parameters()) return;
+  ExpandStored(to.layout, &to.model);
+  to.E = to.objective->Value(to.model);
+  pruning->Decide("entries without data and runs of equal entries not stored", std::move(to), true,
+                  "they change no value");
+}
+
+// The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
+PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Pruning& pruning) {
+  PruneState best{};
+  while (!starts.empty() && !(best.objective != nullptr && pruning.options().stop())) {
+    const ModelSpec spec = starts.front().spec();
+    const auto others =
+        std::stable_partition(starts.begin(), starts.end(),
+                              [&](const FactorModel& start) { return start.spec() == spec; });
+    const std::vector<FactorModel> alike(starts.begin(), others);
+    starts.erase(starts.begin(), others);
+    PruneState to{.objective = pruning.ObjectiveFor(spec), .model = {}, .layout = {}};
+    FittedModel fitted = FitFrom(alike, *to.objective, wanted, pruning.options().stop);
+    to.model = std::move(fitted.model);
+    to.E = fitted.E;
+    if (best.objective == nullptr || !(best.E <= to.E)) best = std::move(to);
+  }
+  return best;
+}
+
+// Tries the next number of lobes; true if it was taken.
+bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pruning) {
+  const PruneState& state = pruning->state();
+  PruneState to = FitLobes(starts, wanted, *pruning);
+  const int lobes = to.model.spec().lobes;
+  NormalizeScale(to.objective->coverage(), &to.model);
+  to.layout =
+      NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
+  ExpandStored(to.layout, &to.model);
+  to.E = to.objective->Value(to.model);
+  if (pruning->options().stop()) return false;
+  const bool within = to.E <= wanted && pruning->Keeps(to);
+  const bool taken = lobes > state.lobes() ? to.E < state.E : within;
+  const std::string what = LobesText(lobes) + " instead of " + LobesText(state.lobes());
+  const std::string why = pruning->Against(to.E, within);
+  return pruning->Decide(what, std::move(to), taken, why);
+}
+
+// True where PSNR alone limits, and less than half of what it may fall is spent.
+bool SparesPsnr(const Pruning& pruning) {
+  if (!pruning.lowest_psnr() || pruning.guide() >= pruning.limit()) return false;
+  const PruneState& state = pruning.state();
+  return ScoreModel(*state.objective, state.model).psnr_db >
+         *pruning.lowest_psnr() + pruning.options().max_psnr_drop_db / 2;
+}
+
+// Shape and nodes.
+void ThinWithin(double guide, Pruning* pruning) {
+  pruning->set_guide(std::max(guide, pruning->state().E));
+  ChooseShape(pruning);
+  ThinTables(pruning);
+  for (int round = 0; round < kStretches && SparesPsnr(*pruning); ++round) {
+    pruning->set_guide(std::min(
+        pruning->limit(), pruning->E_full() + kStretch * (pruning->guide() - pruning->E_full())));
+    ThinTables(pruning);
+  }
+}
+
+// With as few lobes as the budget allows; and with one more where that took most of it.
+void SpendBudget(Pruning* pruning) {
+  const PruneState& state = pruning->state();
+  // The guide says nothing about a PSNR far away, so that E may rise beyond it here.
+  const double guide = pruning->guide();
+  const double wanted = pruning->lowest_psnr() ? pruning->limit() : guide;
+  PruneState with_one_more;
+  bool dear = false;  // the last lobe
+  size_t last_lobe = 0;
+  while (pruning->options().lobes && state.lobes() > 0) {
+    PruneState before = state;
+    if (!TryLobes(WithOneLobeLess(state.model), wanted, pruning)) break;
+    last_lobe = pruning->decisions().size() - 1;
+    dear = state.E - pruning->E_full() > kDear * (wanted - pruning->E_full());
+    with_one_more = std::move(before);
+  }
+  ThinWithin(guide, pruning);
+  if (!dear || pruning->options().stop()) return;
+  PruneState fewer = pruning->GoOnFrom(std::move(with_one_more));
+  const size_t end = pruning->decisions().size();
+  ThinWithin(guide, pruning);
+  if (state.num_parameters() < fewer.num_parameters()) {
+    pruning->Withdraw(last_lobe, end, "with one lobe more fewer parameters are enough");
+  } else {
+    pruning->GoOnFrom(std::move(fewer));
+    pruning->Withdraw(end, pruning->decisions().size(),
+                      "with one lobe less fewer parameters are enough");
+  }
+}
+
+void AddLobes(Pruning* pruning) {
+  const PruneState& state = pruning->state();
+  while (!pruning->Keeps(state) && state.lobes() < pruning->options().max_lobes) {
+    const std::vector<FactorModel> starts = WithOneLobeMore(state.model);
+    if (starts.empty() || !TryLobes(starts, pruning->guide(), pruning)) break;
+  }
+  if (!pruning->Keeps(state)) {
+    pruning->Record("nothing else left out", state, false,
+                    "the budget asks for a lower E than was found");
+  } else {
+    ChooseShape(pruning);
+    ThinTables(pruning);
+  }
+}
+
+// The lowest E that max_parameters reach: with as many lobes as there are, then with fewer as long
+// as that is better.
+void MeetParameters(Pruning* pruning) {
+  const PruneState& state = pruning->state();
+  while (state.num_parameters() <= pruning->options().max_parameters &&
+         state.lobes() < pruning->options().max_lobes) {
+    const std::vector<FactorModel> starts = WithOneLobeMore(state.model);
+    if (starts.empty() || !TryLobes(starts, 0, pruning)) break;
+  }
+  if (state.num_parameters() <= pruning->options().max_parameters) return;
+  PruneState lobes_kept = state;
+  ChooseShape(pruning);
+  ThinTables(pruning);
+  while (pruning->options().lobes && lobes_kept.lobes() > 0) {
+    PruneState best = pruning->GoOnFrom(lobes_kept);
+    const size_t decided = pruning->decisions().size();
+    const bool met = best.num_parameters() <= pruning->options().max_parameters;
+    const auto back_to_best = [&] {
+      pruning->GoOnFrom(std::move(best));
+      pruning->Withdraw(decided, pruning->decisions().size(), "with more lobes it ends lower");
+    };
+    if (!TryLobes(WithOneLobeLess(state.model), met ? best.E : kInfinity, pruning)) {
+      back_to_best();
+      break;
+    }
+    lobes_kept = state;
+    ChooseShape(pruning);
+    ThinTables(pruning);
+    const bool meets = state.num_parameters() <= pruning->options().max_parameters;
+    if (met && !(meets && state.E < best.E)) {
+      back_to_best();
+      break;
+    }
+  }
+  if (state.num_parameters() > pruning->options().max_parameters) {
+    pruning->Record("nothing else left out", state, false,
+                    "what may be left out does not reach the budget");
+  }
+}
+
+}  // namespace
+
+PrunedModel Prune(const Objective& objective, const FactorModel& full,
+                  const PruneOptions& options) {
+  Pruning pruning(objective, full, options);
+  LeaveOutWhatIsFree(&pruning);
+  if (pruning.by_parameters()) {
+    MeetParameters(&pruning);
+  } else if (!pruning.Keeps(pruning.state())) {
+    AddLobes(&pruning);
+  } else if (pruning.may_rise()) {
+    SpendBudget(&pruning);
+  }
+  // The layout knows lobes by their places.
+  return pruning.Result(LobeOrder::kAsTheyAre);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,125 @@
+#include "trilobe/prune/pruning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "trilobe/base/error.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/objective/canonical_form.h"
+#include "trilobe/objective/score.h"
+#include "trilobe/solvers/run.h"
+#include "trilobe/sums/normal_equations.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of E
+
+}  // namespace
+
+std::string LobesText(int lobes) {
+  return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
+}
+
+Pruning::Pruning(const Objective& objective, const FactorModel& full, const PruneOptions& options)
+    : objective_(objective),
+      options_(options),
+      state_(MakeState(objective.spec(), full)),
+      E_full_(state_.E),
+      by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
+  if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
+      options.max_parameters < 1) {
+    throw Error(
+        "a budget must be a number, and at least one number must be left to store: check "
+        "max_relative_rise, max_psnr_drop_db and max_numbers");
+  }
+  if (by_parameters_) return;
+  if (std::isfinite(options.max_psnr_drop_db)) {
+    lowest_psnr_ = ScoreModel(objective, full).psnr_db - options.max_psnr_drop_db;
+  }
+  // Where E is the squared error, PSNR falls by as much at this E; elsewhere it is a start.
+  limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
+  if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(objective));
+  guide_ = std::min(limit_, E_full_ * std::pow(10, options.max_psnr_drop_db / 10));
+}
+
+std::shared_ptr<const Objective> Pruning::ObjectiveFor(const ModelSpec& spec) const {
+  if (spec == objective_.spec()) return {std::shared_ptr<const Objective>(), &objective_};
+  return std::make_shared<Objective>(objective_, spec);
+}
+
+PruneState Pruning::MakeState(const ModelSpec& spec, const FactorModel& model) const {
+  PruneState state{
+      .objective = ObjectiveFor(spec), .model = model, .layout = TableLayout::Full(spec)};
+  NormalizeScale(state.objective->coverage(), &state.model);
+  state.E = state.objective->Value(state.model);
+  return state;
+}
+
+const QuadraticModel& Pruning::Linearized() {
+  if (!linearized_ || linearized_->spec() != state_.spec() ||
+      !std::ranges::equal(linearized_->parameters(), state_.model.parameters())) {
+    NormalEquations(*state_.objective).Evaluate(state_.model, Hessian::kGaussNewton, &quadratic_);
+    linearized_ = state_.model;
+  }
+  return quadratic_;
+}
+
+bool Pruning::may_rise() const { return guide_ > E_full_ * (1 + kRounding); }
+
+bool Pruning::Keeps(const PruneState& state) const {
+  if (by_parameters_) return true;
+  if (!(state.E <= limit_ * (1 + kRounding))) return false;
+  return !lowest_psnr_ || ScoreModel(*state.objective, state.model).psnr_db >= *lowest_psnr_;
+}
+
+std::string Pruning::Against(double E, bool within) const {
+  std::ostringstream out;
+  out.precision(3);
+  if (E_full_ > 0) {
+    const double rise = 100 * (E / E_full_ - 1);
+    out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
+        << " the full model's";
+  } else {
+    out << "E is " << E << ", and of the full model 0";
+  }
+  if (!by_parameters_) out << "; " << (within ? "within" : "beyond") << " the budget";
+  return out.str();
+}
+
+void Pruning::Record(std::string what, const PruneState& to, bool taken, std::string why) {
+  decisions_.push_back({.what = std::move(what),
+                        .parameters_before = state_.num_parameters(),
+                        .parameters_after = to.num_parameters(),
+                        .E_before = state_.E,
+                        .E_after = to.E,
+                        .taken = taken,
+                        .why = std::move(why)});
+}
+
+bool Pruning::Decide(std::string what, PruneState to, bool taken, std::string why) {
+  Record(std::move(what), to, taken, std::move(why));
+  if (taken) state_ = std::move(to);
+  return taken;
+}
+
+PrunedModel Pruning::Result(LobeOrder order) const {
+  PrunedModel result{.model = state_.model,
+                     .layout = state_.layout,
+                     .decisions = decisions_,
+                     .num_parameters = state_.num_parameters()};
+  Canonicalize(*state_.objective, &result.model, order);
+  ExpandStored(result.layout, &result.model);
+  result.E = state_.objective->Value(result.model);
+  return result;
+}
+
+void Pruning::Withdraw(size_t begin, size_t end, const std::string& why) {
+  for (size_t k = begin; k < end; ++k) {
+    if (decisions_[k].taken) decisions_[k].why += "; " + why;
+    decisions_[k].taken = false;
+  }
+}
+
+}  // namespace trilobe

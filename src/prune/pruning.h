@@ -1,0 +1,95 @@
+#ifndef TRILOBE_PRUNE_PRUNING_H_
+#define TRILOBE_PRUNE_PRUNING_H_
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/gauge.h"
+#include "trilobe/model/table_layout.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/prune/needed_layout.h"
+#include "trilobe/prune/prune.h"
+
+namespace trilobe {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// "no lobe", "one lobe", "2 lobes".
+std::string LobesText(int lobes);
+
+// A model on the way from the full to the pruned one, with its own objective.
+struct PruneState {
+  std::shared_ptr<const Objective> objective;
+  FactorModel model;
+  TableLayout layout;
+  double E = 0;
+
+  const ModelSpec& spec() const { return model.spec(); }
+  int lobes() const { return model.spec().lobes; }
+  int num_parameters() const { return layout.num_parameters(spec()); }
+};
+
+// What the parts of Prune share: the budget, where the model has got to, and what was decided.
+class Pruning {
+ public:
+  // Both must outlive it.
+  Pruning(const Objective& objective, const FactorModel& full, const PruneOptions& options);
+
+  const PruneOptions& options() const { return options_; }
+  ThinnedFactors may_thin() const { return {options_.tables, options_.tables, options_.shadowing}; }
+
+  const PruneState& state() const { return state_; }
+  // Goes on from another state, without a decision; returns that which was left.
+  PruneState GoOnFrom(PruneState state) { return std::exchange(state_, std::move(state)); }
+  std::shared_ptr<const Objective> ObjectiveFor(const ModelSpec& spec) const;
+  // Of a model with all its parameters, brought to canonical form.
+  PruneState MakeState(const ModelSpec& spec, const FactorModel& model) const;
+  // The quadratic of E at the state's model, made once for each model.
+  const QuadraticModel& Linearized();
+
+  // True where the budget is one of parameters, and E is to be low; else E has a limit.
+  bool by_parameters() const { return by_parameters_; }
+  double E_full() const { return E_full_; }
+  bool may_rise() const;  // by more than rounding
+  double limit() const { return limit_; }
+  // Where E is to go, limit() or less: by a limit of PSNR that is known only roughly.
+  double guide() const { return guide_; }
+  void set_guide(double guide) { guide_ = guide; }
+  const std::optional<double>& lowest_psnr() const { return lowest_psnr_; }  // [dB], if limited
+  // The true test, of E and PSNR.
+  bool Keeps(const PruneState& state) const;
+  // E against the full model's, in words.
+  std::string Against(double E, bool within) const;
+
+  void Record(std::string what, const PruneState& to, bool taken, std::string why);
+  // Records it, and goes on from there if it is taken; returns whether.
+  bool Decide(std::string what, PruneState to, bool taken, std::string why);
+  const std::vector<PruneDecision>& decisions() const { return decisions_; }
+  // The state's model in canonical form, and how it came about.
+  PrunedModel Result(LobeOrder order) const;
+  // Decisions that led to nothing better.
+  void Withdraw(size_t begin, size_t end, const std::string& why);
+
+ private:
+  const Objective& objective_;
+  const PruneOptions& options_;
+  PruneState state_;
+  double E_full_ = 0;
+  std::optional<double> lowest_psnr_;
+  bool by_parameters_ = false;
+  double limit_ = kInfinity;
+  double guide_ = kInfinity;
+  QuadraticModel quadratic_;
+  std::optional<FactorModel> linearized_;  // where quadratic_ was made
+  std::vector<PruneDecision> decisions_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_PRUNE_PRUNING_H_

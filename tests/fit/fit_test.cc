@@ -1,0 +1,95 @@
+#include "trilobe/fit/fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+// Quick, but through all steps.
+FitOptions Quick() {
+  FitOptions options;
+  options.solver = "awls";
+  options.solver_options = [](const ModelSpec& /*spec*/) {
+    return SolverOptions{.max_iterations = 3, .diagnose = false};
+  };
+  options.compare = false;
+  return options;
+}
+
+std::vector<double> Parameters(const FitResult& fit) {
+  return {fit.model().parameters().begin(), fit.model().parameters().end()};
+}
+
+TEST(Fit, TellsOfItsModelAndHowFarItIs) {
+  const Measurement measured = LoadMeasurement("synth:plastic@20x20x40");
+  FitOptions options = Quick();
+  int begun = 0, steps = 0;
+  std::vector<double> objectives;
+  options.on_begin = [&] { ++begun; };
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { ++steps; };
+  options.on_model = [&](const FitResult& fit) {
+    EXPECT_EQ(fit.file.unobserved.size(), fit.model().parameters().size());
+    objectives.push_back(fit.file.fit.objective);
+  };
+  const FitResult fit = Fit(measured, options);
+  EXPECT_EQ(begun, 1);
+  EXPECT_EQ(steps, 4);
+  EXPECT_THAT(objectives, testing::ElementsAre(fit.summary.final_objective, fit.score.objective));
+  EXPECT_EQ(fit.model().spec(), ModelSpec::SharedFactors(3, measured.table->grid));
+  EXPECT_EQ(fit.score.objective, fit.objective.Value(fit.model()));
+  EXPECT_FALSE(fit.appearance);
+  EXPECT_EQ(Parameters(fit), Parameters(Fit(measured, options)));
+}
+
+TEST(Fit, StopsBeforeItBeginsAndWithTheBestSoFar) {
+  const Measurement measured = LoadMeasurement("synth:plastic@20x20x40");
+  FitOptions options = Quick();
+  options.on_begin = [] { ADD_FAILURE() << "there is nothing to begin with"; };
+  options.stop = [] { return true; };
+  EXPECT_TRUE(Fit(measured, options).interrupted);
+  bool stop = false;
+  int models = 0;
+  options.on_begin = [] {};
+  options.on_iteration = [&](const IterationRecord& record, const FactorModel&) {
+    stop = record.iteration == 1;
+  };
+  options.on_model = [&](const FitResult&) { ++models; };
+  options.stop = [&] { return stop; };
+  const FitResult fit = Fit(measured, options);
+  EXPECT_TRUE(fit.interrupted);
+  EXPECT_EQ(models, 1);  // the finished one, which is not as the solver left it
+  EXPECT_EQ(fit.summary.stop_reason, StopReason::kInterrupted);
+  EXPECT_GT(fit.score.objective, 0);
+}
+
+TEST(Fit, RefusesWhatTheMeasurementCannotHave) {
+  const Measurement table = LoadMeasurement("synth:plastic@20x20x40");
+  const auto error = [](const Measurement& measured, const FitOptions& options) -> std::string {
+    try {
+      Fit(measured, options);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  FitOptions options = Quick();
+  options.guide = 2;
+  EXPECT_THAT(error(table, options), testing::HasSubstr("guide is for scattered samples"));
+  options = Quick();
+  options.form.kind = FormOptions::Kind::kAnisotropic;
+  EXPECT_THAT(error(table, options), testing::HasSubstr("knows no azimuths"));
+  options = Quick();
+  options.max_parameters = 100;
+  EXPECT_THAT(error(LoadMeasurement("synth:velvet@4x12"), options),
+              testing::HasSubstr("--model=auto chooses among isotropic models"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
