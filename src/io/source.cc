@@ -73,8 +73,8 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
     found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
       return (bytes.empty() || format.is_text == is_text) && format.ending == ending;
     });
-    // Of a format that this cannot be: its reader says what is wrong.
-    if (found == formats.end()) {
+    // Of a text format that this cannot be: its reader says what is wrong.
+    if (found == formats.end() && !is_text) {
       found = std::ranges::find(formats, ending, &MeasurementFormat::ending);
     }
     if (found != formats.end()) return *found;
