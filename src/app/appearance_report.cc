@@ -67,6 +67,17 @@ std::string Describe(const AppearanceReport& report) {
   return text;
 }
 
+std::string DescribeBriefly(const AppearanceReport& report) {
+  std::string text =
+      "colour       mean colour off by " + Text(100 * report.sphere.mean_color_error, 2) +
+      " %, the share of light that is reflected (albedo) by " + Text(report.albedo.mean, 2) + "\n";
+  if (report.beyond) {
+    text += "not measured " + Text(100 * report.beyond->share, 2) +
+            " % of the directions; what the model shows there is a guess\n";
+  }
+  return text;
+}
+
 Json ToJson(const AppearanceReport& report) {
   const SphereError& sphere = report.sphere;
   Json albedo = Json::array();

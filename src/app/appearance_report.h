@@ -16,8 +16,9 @@ namespace trilobe {
 // The light of --probe, or the built-in one, and --threads. Reads the probe at the first call.
 AppearanceOptions AppearanceOptionsFromFlags();
 
-// Some lines of a table, each with its newline.
+// Some lines of a table, each with its newline: all, or what needs no knowledge of the method.
 std::string Describe(const AppearanceReport& report);
+std::string DescribeBriefly(const AppearanceReport& report);
 
 // "appearance" in report.json (docs/file-formats.md).
 nlohmann::ordered_json ToJson(const AppearanceReport& report);

@@ -13,9 +13,11 @@
 #include "trilobe/app/fit_many.h"
 #include "trilobe/app/fit_report.h"
 #include "trilobe/app/fit_run.h"
+#include "trilobe/app/fit_summary.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/interrupt.h"
 #include "trilobe/app/model_flags.h"
+#include "trilobe/app/print.h"
 #include "trilobe/app/progress.h"
 #include "trilobe/app/result_folder.h"
 #include "trilobe/app/scene_run.h"
@@ -82,15 +84,15 @@ FactorModel StartFromFile() {
 
 // Flags on which a result does not depend, or only by the content of a file.
 constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shard",
-                                            "cache",   "nocache", "probe"};
+                                            "cache",   "nocache", "probe", "verbose"};
 
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags = WithSourceFlags(
       {"solver", "init", "weighting", "guide", "robust", "match_reflectance", "max_numbers"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "probe", "shard", "scene",
-                             "cache", "nocache"});
+  flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "verbose", "probe",
+                             "shard", "scene", "cache", "nocache"});
   return flags;
 }
 
@@ -166,9 +168,11 @@ int RunFitOfOne(const std::string& source) {
   FitRun run = *RunOneFit(
       source, settings, threads, into, [&] { guard.emplace(); }, show);
   progress.reset();
-  Print(run.report);
-  if (run.report.interrupted) std::cout << "interrupted  this is the best model so far\n";
+  PrintSummary(run.report);
+  if (FLAGS_verbose) PrintDetails(run.report);
+  std::cout << std::flush;  // drawing takes a while
   if (into == nullptr) {
+    PrintSeconds(run.report);
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
     try {
@@ -177,6 +181,7 @@ int RunFitOfOne(const std::string& source) {
       throw Error(std::string(error.what()) + "; the model is in '" + into->PathOf("model.json") +
                   "'");
     }
+    PrintSeconds(run.report);
     PrintLine("written      " + Joined(run.report.files) + " in " + out);
   }
   return run.report.interrupted ? 128 + InterruptGuard::signal()
@@ -191,7 +196,7 @@ int RunFitOfScene(std::span<const std::string> arguments) {
   for (const char* const flag :
        {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "guide", "max_numbers",
         "robust", "match_reflectance", "probe", "course", "reconstruction", "plots", "diagnose",
-        "shard"}) {
+        "shard", "verbose"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }
@@ -230,32 +235,35 @@ std::string List(const std::vector<T>& entries) {
 }  // namespace
 
 Command FitCommand() {
-  return {.name = "fit",
-          .summary = "fit a model to a measurement",
-          .arguments = "SOURCE... | --scene=SCENE",
-          .min_arguments = 0,
-          .max_arguments = std::numeric_limits<int>::max(),
-          .details =
-              "Writes DIR/model.json (the model, in canonical form), DIR/trace.csv (E, step and "
-              "seconds of\neach iteration; row 0 is the starting point) and DIR/report.json "
-              "(settings, errors, diagnosis,\ntimes). Ctrl-C stops after the iteration and keeps "
-              "the best model so far; go on from it, with the\nsame solver or another, with "
-              "--init=DIR/model.json.\n\nSeveral sources, or a folder of measurements, are fitted "
-              "side by side, each into a folder of its name\nin DIR; DIR/fits.csv and "
-              "DIR/index.html, a page of pictures, gather them. What DIR has already, of\nthe "
-              "same measurement and flags, is not fitted again; one that fails does not stop the "
-              "others, and\nmakes the exit status 3. --shard=i/n shares them out between machines "
-              "(docs/batch.md).\n\nWith --scene, does what `trilobe plan` says for the "
-              "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
-              "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
-              "command goes on with the others.\n\nsolvers:\n" +
-              List(Solvers()) + "\nstarting points (--init):\n" + List(InitialModels()) +
-              "\nweightings:\n" + List(Weightings()) +
-              "\n`trilobe help fit --solver=NAME` shows the flags of another solver than this:",
-          .flags = FitFlags(),
-          .particular_flags = ParticularSolverFlags(),
-          .particular_help = [] { return DescribeSolver(SolverFromFlags()); },
-          .run = RunFit};
+  return {
+      .name = "fit",
+      .summary = "fit a model to a measurement",
+      .arguments = "SOURCE... | --scene=SCENE",
+      .min_arguments = 0,
+      .max_arguments = std::numeric_limits<int>::max(),
+      .details =
+          "Prints first what a person would see of the fit beside its measurement; with --verbose "
+          "all there is to\nsay. Writes DIR/model.json (the model, in canonical form), "
+          "DIR/trace.csv (E, step and "
+          "seconds of\neach iteration; row 0 is the starting point) and DIR/report.json "
+          "(settings, errors, diagnosis,\ntimes). Ctrl-C stops after the iteration and keeps "
+          "the best model so far; go on from it, with the\nsame solver or another, with "
+          "--init=DIR/model.json.\n\nSeveral sources, or a folder of measurements, are fitted "
+          "side by side, each into a folder of its name\nin DIR; DIR/fits.csv and "
+          "DIR/index.html, a page of pictures, gather them. What DIR has already, of\nthe "
+          "same measurement and flags, is not fitted again; one that fails does not stop the "
+          "others, and\nmakes the exit status 3. --shard=i/n shares them out between machines "
+          "(docs/batch.md).\n\nWith --scene, does what `trilobe plan` says for the "
+          "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
+          "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
+          "command goes on with the others.\n\nsolvers:\n" +
+          List(Solvers()) + "\nstarting points (--init):\n" + List(InitialModels()) +
+          "\nweightings:\n" + List(Weightings()) +
+          "\n`trilobe help fit --solver=NAME` shows the flags of another solver than this:",
+      .flags = FitFlags(),
+      .particular_flags = ParticularSolverFlags(),
+      .particular_help = [] { return DescribeSolver(SolverFromFlags()); },
+      .run = RunFit};
 }
 
 }  // namespace trilobe

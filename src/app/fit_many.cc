@@ -21,6 +21,7 @@
 #include "trilobe/app/print.h"
 #include "trilobe/app/progress.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/appearance/verdict.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/base/printable.h"
@@ -115,6 +116,8 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
     outcome->mean_delta_e = sphere.at("mean_delta_e");
     outcome->mean_color_error = sphere.at("mean_color_error");
   }
+  outcome->verdict = report.at("verdict").at("words");
+  outcome->visibility = report.at("verdict").at("visibility");
   outcome->objective = report.at("objective");
   outcome->num_parameters = report.at("stored_numbers");
   outcome->seconds = 0;
@@ -163,13 +166,19 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
       run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
 }
 
-// "sphere 45.2 dB in the median, at least 33 (brass)", of those that have a model.
+// "7 of 9 cannot be told apart; sphere 45.2 dB in the median, at least 33 (brass)", of those that
+// have a model.
 std::string Summary(std::vector<FitOutcome> outcomes) {
+  std::erase_if(outcomes, [](const FitOutcome& outcome) { return outcome.verdict.empty(); });
+  const auto same =
+      std::ranges::count(outcomes, NameOf(Visibility::kNone), &FitOutcome::visibility);
+  const std::string verdicts =
+      std::to_string(same) + " of " + std::to_string(outcomes.size()) + " cannot be told apart; ";
   std::erase_if(outcomes, [](const FitOutcome& outcome) { return !outcome.has_picture; });
-  if (outcomes.empty()) return "no picture";
+  if (outcomes.empty()) return verdicts + "no picture";
   std::ranges::sort(outcomes, {}, &FitOutcome::psnr_db);
   const FitOutcome& least = outcomes.front();
-  return "sphere " + Text(outcomes[outcomes.size() / 2].psnr_db, 3) +
+  return verdicts + "sphere " + Text(outcomes[outcomes.size() / 2].psnr_db, 3) +
          " dB in the median, at least " + Text(least.psnr_db, 3) + " (" + Printable(least.name) +
          ")";
 }
@@ -178,6 +187,7 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   std::cout << "[" << done << "/" << count << "] " << Printable(outcome.name) << ": "
             << StateName(outcome.state);
   if (outcome.has_model()) {
+    std::cout << ", " << outcome.verdict;
     if (outcome.has_picture) {
       std::cout << ", sphere " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
                 << Text(outcome.mean_delta_e, 2);
@@ -202,6 +212,7 @@ std::string FitNameOf(const std::string& source) {
 
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
+  if (FLAGS_verbose) throw Error("--verbose is for the fit of one SOURCE; leave it out");
   settings.pair = true;
   settings.key += "pair\n";
   const std::vector<FitOutcome> all = ListSources(arguments);

@@ -71,10 +71,10 @@ std::string Figure(const FitOutcome& outcome) {
   std::ostringstream figure;
   figure << R"(<figure><a href=")" << folder << R"(/report.json"><img src=")" << folder
          << R"(/pair.png" loading="lazy" alt=")" << Escaped(outcome.name)
-         << ": measured and fitted\"></a>\n<figcaption><b>" << Escaped(outcome.name) << "</b>PSNR "
-         << Text(outcome.psnr_db, 3) << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2)
-         << ", mean colour off by " << Text(100 * outcome.mean_color_error, 2)
-         << " %</figcaption></figure>\n";
+         << ": measured and fitted\"></a>\n<figcaption><b>" << Escaped(outcome.name) << "</b>"
+         << Escaped(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
+         << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
+         << Text(100 * outcome.mean_color_error, 2) << " %</figcaption></figure>\n";
   return figure.str();
 }
 
@@ -99,11 +99,12 @@ std::string StateName(FitOutcome::State state) {
 std::string FitsCsv(std::span<const FitOutcome> outcomes) {
   std::ostringstream csv;
   csv.imbue(std::locale::classic());
-  csv << "name,source,state,psnr_db,mean_delta_e,mean_color_error,objective,numbers,seconds,error\n"
+  csv << "name,source,state,verdict,psnr_db,mean_delta_e,mean_color_error,objective,numbers,"
+         "seconds,error\n"
       << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (const FitOutcome& outcome : outcomes) {
     csv << CsvField(outcome.name) << ',' << CsvField(outcome.source) << ','
-        << StateName(outcome.state) << ',';
+        << StateName(outcome.state) << ',' << CsvField(outcome.verdict) << ',';
     if (outcome.has_picture) {
       csv << outcome.psnr_db << ',' << outcome.mean_delta_e << ',' << outcome.mean_color_error
           << ',';
@@ -133,6 +134,7 @@ std::string FitsPage(std::span<const FitOutcome> outcomes) {
     if (outcome.has_picture) continue;
     page << "<p" << (outcome.has_model() ? "" : " class=\"failed\"") << "><b>"
          << Escaped(outcome.name) << "</b> " << StateName(outcome.state)
+         << (outcome.verdict.empty() ? "" : ", " + Escaped(outcome.verdict))
          << (outcome.error.empty() ? "" : ": ") << Escaped(outcome.error) << "</p>\n";
   }
   page << "<main>\n";

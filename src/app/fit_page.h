@@ -13,6 +13,8 @@ struct FitOutcome {
   std::string name, source;
   State state = State::kMissing;
   std::string error = {};  // of kFailed: why
+  // What a person would see, of a model: in words, and how much (NameOf(Visibility)).
+  std::string verdict = {}, visibility = {};
   // Of the sphere (AppearanceReport) and of the fit; 0 where there is none.
   double psnr_db = 0, mean_delta_e = 0, mean_color_error = 0, objective = 0, seconds = 0;
   int num_parameters = 0;  // that the model stores

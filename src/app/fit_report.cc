@@ -9,9 +9,11 @@
 
 #include "trilobe/app/appearance_report.h"
 #include "trilobe/app/bin_counts.h"
+#include "trilobe/app/fit_summary.h"
 #include "trilobe/app/light_report.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/stretch_report.h"
+#include "trilobe/app/verdict_report.h"
 #include "trilobe/base/printable.h"
 #include "trilobe/io/stretch_json.h"
 
@@ -19,18 +21,6 @@ namespace trilobe {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The value of --model that stands for a spec, which a model file may have brought.
-std::string ModelName(const ModelSpec& spec) {
-  if (spec.anisotropic()) return "anisotropic";
-  const auto is = [&spec](const ModelSpec& named) {
-    return std::tie(spec.lobes, spec.D, spec.F, spec.G) ==
-           std::tie(named.lobes, named.D, named.F, named.G);
-  };
-  if (is(ModelSpec::SharedFactors(spec.lobes))) return "shared";
-  if (is(ModelSpec::IndependentG()) && !spec.stretches.any()) return "independent";
-  return "other";
-}
 
 Json ToJson(const SolverOptions& options, const SolverEntry& solver) {
   Json json;
@@ -86,22 +76,11 @@ Json ToJson(const NodeChoice& choice) {
 // Where it is much of E.
 std::string Irreducible(const ScoreReport& score) {
   constexpr double kMuch = 0.1;
-  const double share =
-      score.objective > 0 ? std::min(score.irreducible_objective / score.objective, 1.0) : 0;
+  const double share = IrreducibleShare(score);
   if (share < kMuch) return "";
   return "reciprocity  " + Text(100 * share, 3) +
          " % of E is what exchanged directions differ by in the data, noise included; no "
          "reciprocal model lowers it\n";
-}
-
-// Of thinned tables not all are stored; the others follow.
-std::string ParametersText(const FitReport& report) {
-  const int all = report.spec.num_parameters();
-  std::string text = std::to_string(all) + " parameters";
-  if (report.stored_parameters < all) {
-    text += ", " + std::to_string(report.stored_parameters) + " of them stored";
-  }
-  return text;
 }
 
 std::string StretchLine(const ModelSpec& spec) {
@@ -168,13 +147,34 @@ Json ToJson(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+std::string ModelName(const ModelSpec& spec) {
+  if (spec.anisotropic()) return "anisotropic";
+  const auto is = [&spec](const ModelSpec& named) {
+    return std::tie(spec.lobes, spec.D, spec.F, spec.G) ==
+           std::tie(named.lobes, named.D, named.F, named.G);
+  };
+  if (is(ModelSpec::SharedFactors(spec.lobes))) return "shared";
+  if (is(ModelSpec::IndependentG()) && !spec.stretches.any()) return "independent";
+  return "other";
+}
+
+std::string ParametersText(const FitReport& report) {
+  const int all = report.spec.num_parameters();
+  std::string text = std::to_string(all) + " parameters";
+  if (report.stored_parameters < all) {
+    text += ", " + std::to_string(report.stored_parameters) + " of them stored";
+  }
+  return text;
+}
+
 nlohmann::ordered_json ToJson(const FitReport& report) {
   const FitInfo& fit = report.fit;
   const SolverSummary& summary = report.summary;
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
-  return {{"source", fit.source},
+  return {{"verdict", ToJson(VerdictOn(report))},
+          {"source", fit.source},
           {"noise", report.noise},
           {"seed", report.seed},
           {"valid_samples", fit.valid_samples},
@@ -229,7 +229,8 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
             {"nodes", seconds.nodes},
             {"solve", seconds.solve},
             {"finish", seconds.finish},
-            {"score", seconds.score}}},
+            {"score", seconds.score},
+            {"draw", seconds.draw}}},
           {"phases", ToJson(summary.phases)},
           {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
           {"program", fit.program},
@@ -240,10 +241,9 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"files", report.files}};
 }
 
-void Print(const FitReport& report) {
+void PrintDetails(const FitReport& report) {
   const FitInfo& fit = report.fit;
   const ScoreReport& score = report.score;
-  const FitReport::Seconds& seconds = report.seconds;
   std::cout << "source       " << Printable(fit.source) << ", " << fit.valid_samples
             << " valid samples up to " << Text(fit.max_angle) << " deg\n"
             << "left out     bins " << LeftOutText(report.bins) << "\n"
@@ -253,7 +253,7 @@ void Print(const FitReport& report) {
             << Text(100 * score.relative_objective) << " % of a black model's; PSNR "
             << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
             << Text(score.rmse) << " /sr, mean relative error "
-            << Text(100 * score.mean_relative_error) << " %\n"
+            << RelativeErrorText(score.mean_relative_error) << "\n"
             << Irreducible(score) << StretchLine(report.spec)
             << (report.nodes ? Describe(*report.nodes) : "")
             << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
@@ -267,12 +267,7 @@ void Print(const FitReport& report) {
                           " % of the energy: what differs from the mean over all turns of the "
                           "sample\n"
                     : "")
-            << "light        " << Describe(report.light) << "\n"
-            << "seconds      " << Text(seconds.read, 3) << " read, " << Text(seconds.prepare, 3)
-            << " prepare, " << Text(seconds.init, 3) << " init, "
-            << (report.nodes ? Text(seconds.nodes, 3) + " nodes, " : "") << Text(seconds.solve, 3)
-            << " solve, " << Text(seconds.finish, 3) << " finish, " << Text(seconds.score, 3)
-            << " score\n";
+            << "light        " << Describe(report.light) << "\n";
   if (report.peak_memory) {
     std::cout << "memory       " << Text(static_cast<double>(*report.peak_memory) / 1e6, 3)
               << " MB at most\n";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/seen_error.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/model_file.h"
@@ -25,6 +26,7 @@ struct FitReport {
   // Where the time of the program went [s]; summary.phases tells more of `solve`.
   struct Seconds : FitResult::Seconds {
     double read = 0;
+    double draw = 0;  // and write the other files
   };
 
   FitInfo fit;
@@ -45,6 +47,7 @@ struct FitReport {
   int stored_parameters = 0;
   ScoreReport score;
   std::optional<AppearanceReport> appearance;  // none of samples on no grid, which have no picture
+  std::optional<SeenError> samples_seen;       // of these
   // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
   // of the sample leaves out (AnisotropyOf).
   std::optional<double> left_out;
@@ -53,8 +56,13 @@ struct FitReport {
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
 };
 
-// A table on standard output.
-void Print(const FitReport& report);
+// The value of --model that stands for a spec, which a model file may have brought.
+std::string ModelName(const ModelSpec& spec);
+// "822 parameters"; of thinned tables not all are stored: the others follow.
+std::string ParametersText(const FitReport& report);
+
+// All there is to say but the verdict and the times, on standard output.
+void PrintDetails(const FitReport& report);
 
 // report.json (docs/file-formats.md).
 nlohmann::ordered_json ToJson(const FitReport& report);

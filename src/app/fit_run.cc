@@ -155,6 +155,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.stored_parameters = fit.stored_parameters;
   report.score = fit.score;
   report.appearance = fit.appearance;
+  report.samples_seen = fit.samples_seen;
   report.left_out = fit.left_out;
   report.light = std::move(fit.light);
   static_cast<FitResult::Seconds&>(report.seconds) = fit.seconds;
@@ -170,6 +171,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   const Objective& objective = run->objective;
   const int threads = objective.num_threads();
   FitReport& report = run->report;
+  Stopwatch stopwatch;
   WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
   if (settings.course) run->course.Write(folder->PathOf(kCourseName), objective);
   if (settings.reconstruction) {
@@ -200,6 +202,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   }
   report.files = folder->Files();
   report.files.emplace_back(kReportName);
+  report.seconds.draw = stopwatch.Lap();
   folder->Write(kReportName, [&report](std::ostream& out) {
     out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   });

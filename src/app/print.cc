@@ -11,6 +11,8 @@
 #include "trilobe/base/printable.h"
 
 DEFINE_bool(json, false, "print one JSON object instead of a table");
+DEFINE_bool(verbose, false,
+            "print all there is to say, and not only the verdict and what it rests on");
 
 namespace trilobe {
 

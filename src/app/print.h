@@ -11,6 +11,8 @@
 
 // What `score` and `info` print: a table for people, or one JSON object.
 DECLARE_bool(json);
+// What `fit` and `score` print: a verdict and a few lines, or all there is to say.
+DECLARE_bool(verbose);
 
 namespace trilobe {
 

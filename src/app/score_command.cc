@@ -9,11 +9,14 @@
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/app/verdict_report.h"
+#include "trilobe/appearance/seen_samples.h"
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/plots.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/continuous_model.h"
+#include "trilobe/model/reconstruct.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe {
@@ -39,10 +42,20 @@ std::vector<Rgb> ValuesAt(const AngularBrdf& brdf, const BrdfSamples& samples) {
   return values;
 }
 
-Json ToJson(const ScoreReport& report, const std::optional<AppearanceReport>& appearance,
-            const Objective& objective, const std::string& model_path) {
+// What was compared, and what came out.
+struct Scored {
+  std::string model;  // its path
+  ScoreReport score;
+  std::optional<AppearanceReport> appearance = {};
+  ReportedVerdict verdict = {};
+};
+
+Json ToJson(const Scored& scored, const Objective& objective) {
   const BrdfSamples& samples = objective.samples();
-  Json json = {{"model", model_path},
+  const ScoreReport& report = scored.score;
+  const std::optional<AppearanceReport>& appearance = scored.appearance;
+  Json json = {{"verdict", ToJson(scored.verdict)},
+               {"model", scored.model},
                {"source", samples.source},
                {"weighting", objective.weighting().name},
                {"valid_samples", report.valid_samples},
@@ -85,10 +98,20 @@ Json ToJson(const ScoreReport& report, const std::optional<AppearanceReport>& ap
   return json;
 }
 
-void PrintTable(const ScoreReport& report, const std::optional<AppearanceReport>& appearance,
-                const Objective& objective, const std::string& model_path) {
+void PrintSummary(const Scored& scored, const Objective& objective) {
+  std::cout << Describe(scored.verdict);
+  PrintLine("compared     " + scored.model + " with " + objective.samples().source + ", " +
+            std::to_string(scored.score.valid_samples) + " samples");
+  std::cout << "error        E is " << Text(100 * scored.score.relative_objective, 3)
+            << " % of a black model's; mean log error " << Text(scored.score.mean_log_error, 3)
+            << "\n"
+            << (scored.appearance ? DescribeBriefly(*scored.appearance) : "");
+}
+
+void PrintDetails(const Scored& scored, const Objective& objective) {
   const BrdfSamples& samples = objective.samples();
-  PrintLine("model", model_path);
+  const ScoreReport& report = scored.score;
+  PrintLine("model", scored.model);
   PrintLine("source", samples.source);
   PrintLine("valid samples", std::to_string(report.valid_samples) + ", of 3 channels each");
   PrintLine("weighting", objective.weighting().name);
@@ -102,11 +125,11 @@ void PrintTable(const ScoreReport& report, const std::optional<AppearanceReport>
   PrintLine("RMSE", Text(report.rmse) + " /sr (red " + Text(report.rmse_channel[0]) + ", green " +
                         Text(report.rmse_channel[1]) + ", blue " + Text(report.rmse_channel[2]) +
                         ")");
-  PrintLine("mean relative error", Text(100 * report.mean_relative_error) + " %");
+  PrintLine("mean relative error", RelativeErrorText(report.mean_relative_error));
   PrintLine("mean log error", Text(report.mean_log_error));
   PrintLine("largest absolute error", Text(report.max_absolute_error) + " /sr");
   std::cout << "\n"
-            << (appearance ? Describe(*appearance) : "")
+            << (scored.appearance ? Describe(*scored.appearance) : "")
             << "\nworst bins by share of E\n"
                "  theta_h  theta_d    phi_d  channel  measured    fitted  share of E\n"
                "      deg      deg      deg               1/sr      1/sr           %\n";
@@ -143,15 +166,28 @@ int RunScore(std::span<const std::string> arguments) {
   std::optional<TabulatedBrdf> tabulated;
   if (other) tabulated.emplace(*other);
   const Material fitted = other ? Isotropic(Interpolated(*tabulated)) : MaterialOf(model);
-  const ScoreReport report =
-      other ? ScoreValues(objective, ValuesAt(fitted.angular, objective.samples()))
-            : ScoreModel(objective, model);
-  std::optional<AppearanceReport> appearance;
-  if (!pictured.empty()) appearance = CompareAppearance(pictured, fitted, appearance_options);
-  if (FLAGS_json) {
-    PrintJson(ToJson(report, appearance, objective, arguments[0]));
+  Scored scored{.model = arguments[0],
+                .score = other
+                             ? ScoreValues(objective, ValuesAt(fitted.angular, objective.samples()))
+                             : ScoreModel(objective, model)};
+  std::optional<SeenError> seen;
+  if (pictured.empty()) {
+    const BrdfSamples& of = objective.samples();
+    seen = CompareSamples(
+        of, other ? ValuesAt(fitted.angular, of) : EvaluateSamples(model, of, threads));
   } else {
-    PrintTable(report, appearance, objective, arguments[0]);
+    scored.appearance = CompareAppearance(pictured, fitted, appearance_options);
+  }
+  scored.verdict =
+      MakeVerdict(scored.appearance, seen, {.irreducible = IrreducibleShare(scored.score)});
+  if (FLAGS_json) {
+    PrintJson(ToJson(scored, objective));
+  } else {
+    PrintSummary(scored, objective);
+    if (FLAGS_verbose) {
+      std::cout << "\n";
+      PrintDetails(scored, objective);
+    }
   }
   if (!FLAGS_out.empty()) WriteSpherePair(pictured, fitted, FLAGS_out, appearance_options);
   return 0;
@@ -167,12 +203,14 @@ Command ScoreCommand() {
       .min_arguments = 2,
       .max_arguments = 2,
       .details =
-          "Prints the objective E under --weighting, and errors that know no weights: RMSE; PSNR "
-          "over the\nlargest measured value, which is printed with it; the mean of |rho - "
-          "rho*|/(rho* + 0.001); the\nmean of |log((1 + rho cos)/(1 + rho* cos))|; and the ten "
-          "bins with the largest share of E.\nWith --json, one JSON object; a PSNR that is not "
+          "Prints what a person would see, and what that rests on. With --verbose also the "
+          "objective "
+          "E under\n--weighting, and errors that know no weights: RMSE; PSNR over the largest "
+          "measured value, which is\nprinted with it; the mean of |rho - rho*|/(rho* + 0.001); the "
+          "mean of |log((1 + rho cos)/(1 +\nrho* cos))|; and the ten bins with the largest share "
+          "of E.\nWith --json, one JSON object; a PSNR that is not "
           "finite (an exact fit) is null there.",
-      .flags = WithSourceFlags({"json", "weighting", "probe", "out"}),
+      .flags = WithSourceFlags({"json", "verbose", "weighting", "probe", "out"}),
       .run = RunScore};
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "trilobe/appearance/color.h"
@@ -132,6 +131,13 @@ BeyondData LookBeyond(const BrdfTable& table, const std::vector<bool>& valid,
   return data;
 }
 
+// Of a picture with so many pixels in a row.
+bool AtRim(size_t pixel, int size) {
+  const auto place = [size](size_t k) { return (static_cast<double>(k) + 0.5) / size * 2 - 1; };
+  return std::hypot(place(pixel % size), place(pixel / size)) >
+         std::sin(DegreesToRadians(kGrazingAngleDegrees));
+}
+
 using Counts = std::function<bool(const HalfDiffAngles&, const Cosines&)>;
 bool Everything(const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) { return true; }
 
@@ -184,33 +190,18 @@ SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& f
     }
   }
   const auto n = static_cast<double>(std::max<size_t>(pixels.size(), 1));
-  SphereError error;
   const double exposure = kMeanLuminance / (Luminance(mean_measured) / n);
-  if (std::isfinite(exposure)) error.exposure = exposure;
-  const auto exposed = [&](double x) { return x > 0 ? std::min(exposure * x, 1.0) : 0.0; };
-  error.mean_color_error = RelativeDistance(mean_fitted, mean_measured);
-  double squares = 0;
-  std::vector<double> delta_e;
+  const auto exposed = [exposure](const Rgb& radiance) {
+    Rgb light;
+    for (int c = 0; c < kChannels; ++c) light[c] = radiance[c] > 0 ? exposure * radiance[c] : 0;
+    return light;
+  };
+  SeenErrorSum sum;
   for (const size_t k : pixels) {
-    Rgb a, b;
-    for (int c = 0; c < kChannels; ++c) {
-      a[c] = exposed(measured.radiance[k][c]);
-      b[c] = exposed(fitted.radiance[k][c]);
-      const double difference = EncodeSrgb(b[c]) - EncodeSrgb(a[c]);
-      squares += difference * difference;
-    }
-    delta_e.push_back(LabDifference(ToLab(a), ToLab(b)));
-    error.mean_delta_e += delta_e.back() / n;
+    sum.Add(exposed(measured.radiance[k]), exposed(fitted.radiance[k]), AtRim(k, measured.size));
   }
-  error.psnr_db = squares > 0 ? -10 * std::log10(squares / (n * kChannels))
-                              : std::numeric_limits<double>::infinity();
-  if (!delta_e.empty()) {
-    const auto nth = delta_e.begin() +
-                     static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(delta_e.size() - 1));
-    std::ranges::nth_element(delta_e, nth);
-    error.delta_e_95 = *nth;
-  }
-  return error;
+  return {sum.Total(), RelativeDistance(mean_fitted, mean_measured),
+          std::isfinite(exposure) ? exposure : 0};
 }
 
 AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,

@@ -11,6 +11,7 @@
 #include "trilobe/appearance/material.h"
 #include "trilobe/appearance/point_errors.h"
 #include "trilobe/appearance/render.h"
+#include "trilobe/appearance/seen_error.h"
 #include "trilobe/appearance/sphere.h"
 #include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/brdf_table.h"
@@ -20,15 +21,9 @@
 
 namespace trilobe {
 
-// How two spheres differ to the eye. Both get the exposure that takes the mean luminance of the
-// measured one to kMeanLuminance, are clipped at 1 and encoded by the sRGB curve. All pixels of the
-// sphere count on which any light counts (RenderSpheres). Beside a black measurement, whatever is
-// not black is white.
-inline constexpr double kMeanLuminance = 0.35;
-struct SphereError {
-  double psnr_db = 0;       // of the encoded values, peak 1; +infinity for equal pictures
-  double mean_delta_e = 0;  // CIELAB, 1976
-  double delta_e_95 = 0;    // 95 % of the pixels stay below
+// How two spheres differ to the eye. All pixels of the sphere count on which any light counts
+// (RenderSpheres). Beside a black measurement, whatever is not black is white.
+struct SphereError : SeenError {
   // |mean fitted - mean measured| / |mean measured|, linear RGB; 0 for a black measurement.
   double mean_color_error = 0;
   double exposure = 0;  // 0 for a black measurement

@@ -3,11 +3,13 @@
 #include <utility>
 
 #include "trilobe/appearance/material.h"
+#include "trilobe/appearance/seen_samples.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/anisotropy.h"
 #include "trilobe/io/picture_data.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/model/reconstruct.h"
 #include "trilobe/model/with_axes.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/solvers/guide.h"
@@ -210,6 +212,10 @@ class Fitting {
     const PictureData pictured = options_.select ? PictureData() : PictureDataOf(measurement_);
     if (!pictured.empty()) {
       fit->appearance = CompareAppearance(pictured, MaterialOf(fit->model()), Appearance());
+    } else {
+      const BrdfSamples& samples = fit->objective.samples();
+      fit->samples_seen =
+          CompareSamples(samples, EvaluateSamples(fit->model(), samples, options_.num_threads));
     }
     if (measurement_.anisotropic && !fit->model().spec().anisotropic()) {
       fit->left_out = AnisotropyOf(measurement_).share;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/seen_error.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/fit/finish_fit.h"
 #include "trilobe/fit/form.h"
@@ -98,6 +99,7 @@ struct FitResult {
   int stored_parameters = 0;
   ScoreReport score = {};                           // E of the stored model, on the data alone
   std::optional<AppearanceReport> appearance = {};  // none of samples on no grid
+  std::optional<SeenError> samples_seen = {};       // of these
   // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
   // of the sample leaves out (AnisotropyOf).
   std::optional<double> left_out = {};

@@ -28,8 +28,9 @@ class AnisotropicCommands : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
     fit_ = RunProgram({"fit", kVelvet, "--lobes=1", "--d_nodes=4x12", "--g_nodes=4x12",
-                       "--solver=awls", "--max_iterations=5", kSanitized ? "--noplots" : "--plots",
-                       "--reconstruction", "--out=" + In("fit")});
+                       "--solver=awls", "--max_iterations=5", "--verbose",
+                       kSanitized ? "--noplots" : "--plots", "--reconstruction",
+                       "--out=" + In("fit")});
   }
   static void TearDownTestSuite() { delete folder_; }
 
@@ -91,7 +92,7 @@ TEST_F(AnisotropicCommands, ReconstructionIsAMeasurementOfTheModel) {
 TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   const ProgramResult fit =
       RunProgram({"fit", kVelvet, "--model=isotropic", "--lobes=1", "--solver=awls",
-                  "--max_iterations=3", "--out=" + In("isotropic")});
+                  "--max_iterations=3", "--verbose", "--out=" + In("isotropic")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("azimuths     an isotropic model leaves out "));
   const json report = Parse(Contents(In("isotropic/report.json")));
@@ -196,7 +197,8 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
 // The report says what was tried; the model has the nodes that were chosen.
 TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
   const std::vector<std::string> command = {
-      "fit", kVelvet, "--lobes=1", "--solver=awls", "--nodes=held_out", "--max_iterations=2"};
+      "fit",      kVelvet, "--lobes=1", "--solver=awls", "--nodes=held_out", "--max_iterations=2",
+      "--verbose"};
   const auto fit_into = [&](const std::string& name, const char* threads) {
     std::vector<std::string> arguments = command;
     arguments.insert(arguments.end(), {"--out=" + In(name), threads});

@@ -412,8 +412,15 @@ TEST(ScoreTest, PrintsATableOrOneJsonObject) {
   Write(folder / "model.json", kLambertianModel);
   const std::vector<std::string> arguments = {"score", folder / "model.json",
                                               "synth:foam@30x30x60"};
-  const ProgramResult table = RunProgram(arguments);
+  const ProgramResult brief = RunProgram(arguments);
+  EXPECT_EQ(brief.status, 0) << brief.err;
+  EXPECT_THAT(brief.out, StartsWith("verdict      plainly visible "));
+  EXPECT_THAT(brief.out, Not(HasSubstr("worst bins")));
+  std::vector<std::string> verbose = arguments;
+  verbose.emplace_back("--verbose");
+  const ProgramResult table = RunProgram(verbose);
   EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, StartsWith(brief.out));
   EXPECT_THAT(table.out, AllOf(HasSubstr("PSNR"), HasSubstr("peak"), HasSubstr("worst bins"),
                                HasSubstr("appearance   sphere in studio: PSNR ")));
   EXPECT_THAT(table.out, Not(ContainsRegex("(^|[^a-z])nan")));  // "luminance" is none

@@ -43,8 +43,8 @@ std::vector<std::string> Fit(const std::string& out, const std::vector<std::stri
 TEST(Fit, WritesModelTraceAndReport) {
   const TemporaryFolder folder;
   const std::string out = folder / "a/b";  // parents are made
-  const ProgramResult result =
-      RunProgram(Fit(out, {"--reconstruction", "--diagnose", "--missing=0"}, "synth:plastic"));
+  const ProgramResult result = RunProgram(
+      Fit(out, {"--reconstruction", "--diagnose", "--missing=0", "--verbose"}, "synth:plastic"));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");  // no progress line in a pipe
 
@@ -113,11 +113,73 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_EQ(nlohmann::json::parse(score.out)["objective"].get<double>(), file.fit.objective);
 }
 
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// The first line says what a person would see, and the others what that rests on.
+TEST(Fit, SaysItsVerdictFirstInFewLines) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const ProgramResult result = RunProgram(Fit(out, {"--missing=0", "--max_iterations=0"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<std::string> lines = LinesOf(result.out);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_LE(lines.size(), 9U) << result.out;
+  const nlohmann::json report = Json(out + "/report.json"), verdict = report["verdict"];
+  EXPECT_THAT(lines[0],
+              StartsWith("verdict      " + verdict["words"].get<std::string>() + " (Delta E "));
+  EXPECT_THAT(lines[0], HasSubstr("; PSNR "));
+  EXPECT_EQ(verdict["of"], "sphere");
+  EXPECT_EQ(verdict["psnr_db"], report["appearance"]["psnr_db"]);
+  EXPECT_EQ(verdict["mean_delta_e"], report["appearance"]["mean_delta_e"]);
+  double share = 0;
+  for (const auto& [name, place] : verdict["places"].items()) share += place["share"].get<double>();
+  EXPECT_NEAR(share, 1, 1e-12);
+  ASSERT_NE(verdict["visibility"], "none");  // it is the starting point
+  EXPECT_EQ(verdict["advice"][0], "iterate");
+  EXPECT_THAT(lines[1], StartsWith("advice       a limit stopped it"));
+
+  // `score` finds the same.
+  const ProgramResult score = RunProgram(
+      {"score", out + "/model.json", "synth:plastic@30x30x60", "--noise=0.02", "--json"});
+  ASSERT_EQ(score.status, 0) << score.err;
+  const nlohmann::json scored = nlohmann::json::parse(score.out)["verdict"];
+  EXPECT_EQ(scored["words"], verdict["words"]);
+  EXPECT_EQ(scored["places"], verdict["places"]);
+}
+
+// What was printed of it, in hundredths of a second; and the report's own.
+TEST(Fit, SecondsSumToTheTotal) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const ProgramResult result = RunProgram(Fit(out));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const size_t at = result.out.find("\nseconds      ");
+  ASSERT_NE(at, std::string::npos) << result.out;
+  std::istringstream line(result.out.substr(at + 14, result.out.find('\n', at + 1) - at - 14));
+  double total = 0, sum = 0;
+  char colon = 0;
+  ASSERT_TRUE(line >> total >> colon) << result.out;
+  EXPECT_EQ(colon, ':');
+  for (std::string part; std::getline(line, part, ',');) sum += std::stod(part);
+  EXPECT_NEAR(sum, total, 1e-9);
+  double reported = 0;
+  const nlohmann::json seconds = Json(out + "/report.json")["seconds"];
+  for (const auto& [name, part] : seconds.items()) {
+    reported += part.get<double>();
+  }
+  EXPECT_NEAR(total, reported, 0.05);  // of some ten parts, rounded
+}
+
 TEST(Fit, SaysWhatItLeftOutAndWhy) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   const ProgramResult result =
-      RunProgram(Fit(out, {"--max_angle=60", "--noise=0", "--missing=0", "--plots"}));
+      RunProgram(Fit(out, {"--max_angle=60", "--noise=0", "--missing=0", "--plots", "--verbose"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json report = Json(out + "/report.json"), bins = report["bins"];
   const int valid = report["valid_samples"];
@@ -133,6 +195,7 @@ TEST(Fit, SaysWhatItLeftOutAndWhy) {
   }
   EXPECT_EQ(ReadModel(out + "/model.json").fit.max_angle, report["max_angle"].get<double>());
   EXPECT_THAT(result.out, HasSubstr(std::to_string(valid) + " valid samples up to 60 deg\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nnot measured "));
   EXPECT_THAT(result.out, HasSubstr("left out     bins 13356 below the surface, " +
                                     std::to_string(40644 - valid) + " beyond --max_angle\n"));
 }
@@ -203,9 +266,10 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   // So that there is little to do, and an edge of the data.
-  const ProgramResult result = RunProgram(
-      {"fit", "synth:plastic@30x30x60", "--model=auto", "--max_numbers=150", "--solver=awls",
-       "--max_iterations=2", "--lobes=1", "--max_angle=40", "--noise=0.02", "--out=" + out});
+  const ProgramResult result =
+      RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_numbers=150",
+                  "--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=40",
+                  "--noise=0.02", "--verbose", "--out=" + out});
   ASSERT_EQ(result.status, 0) << result.err;
   const ModelFile file = ReadModel(out + "/model.json");
   ASSERT_TRUE(file.layout.has_value());
@@ -303,7 +367,8 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
   ASSERT_EQ(RunProgram({"convert", folder / "material.json", "--out=" + table}).status, 0);
   const auto fit = [&](const char* name, const char* match) {
     return RunProgram({"fit", table, "--lobes=1", "--missing=0.9", "--solver=varpro",
-                       "--tolerance=1e-2", "--nodiagnose", match, "--out=" + folder / name});
+                       "--tolerance=1e-2", "--nodiagnose", "--verbose", match,
+                       "--out=" + folder / name});
   };
   const ProgramResult matched = fit("with", "--match_reflectance"),
                       unmatched = fit("without", "--nomatch_reflectance");

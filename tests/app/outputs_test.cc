@@ -21,6 +21,7 @@ namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
 nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
@@ -207,7 +208,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   EXPECT_EQ(result.status, 3);  // one failed
   EXPECT_EQ(result.err, "");
   EXPECT_THAT(result.out, HasSubstr("] torn: failed: "));
-  EXPECT_THAT(result.out, HasSubstr("] felt: fitted, sphere "));
+  EXPECT_THAT(result.out, HasSubstr("] felt: fitted, "));
   EXPECT_THAT(result.out, HasSubstr("1 failed\n"));
   EXPECT_THAT(Names(out), UnorderedElementsAre("a & b", "felt", "fits.csv", "index.html"));
   for (const char* const name : {"a & b", "felt"}) {
@@ -217,10 +218,15 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   const std::string table = Contents(out + "/fits.csv"), page = Contents(out + "/index.html");
   EXPECT_EQ(std::ranges::count(table, '\n'), 4);
   EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt@30x30x60,fitted,"));
-  EXPECT_THAT(table, HasSubstr("\ntorn," + data + "/torn.binary,failed,,,,,,,"));
+  EXPECT_THAT(table, HasSubstr("\ntorn," + data + "/torn.binary,failed,,,,,,,,"));
   EXPECT_THAT(page, HasSubstr("<h1>2 of 3 measurements in pictures</h1>"));
   EXPECT_THAT(page, HasSubstr("src=\"a%20%26%20b/pair.png\""));
   EXPECT_THAT(page, HasSubstr("<b>a &amp; b</b>"));
+  const std::string words = Json(out + "/felt/report.json")["verdict"]["words"];
+  EXPECT_THAT(result.out, HasSubstr("] felt: fitted, " + words + ", sphere "));
+  EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt@30x30x60,fitted," + words + ","));
+  EXPECT_THAT(page, HasSubstr("<b>felt</b>" + words + "<br>PSNR "));
+  EXPECT_THAT(result.out, HasSubstr(" of 2 cannot be told apart; sphere "));
 
   // A thread more or less, and alone or with others: the same model.
   ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + (folder / "alone")})).status,
@@ -232,8 +238,8 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   // The same again keeps what is there; other data or missing files make it anew.
   const std::string felt = Contents(out + "/felt/report.json");
   const ProgramResult again = RunProgram(command);
-  EXPECT_THAT(again.out, HasSubstr("] felt: kept, sphere "));
-  EXPECT_THAT(again.out, HasSubstr("] a & b: kept, sphere "));
+  EXPECT_THAT(again.out, HasSubstr("] felt: kept, "));
+  EXPECT_THAT(again.out, HasSubstr("] a & b: kept, "));
   EXPECT_EQ(Contents(out + "/felt/report.json"), felt);
   ASSERT_EQ(RunProgram({"synth", "rubber", "--out=" + (folder / "data/a & b.binary")}).status, 0);
   std::filesystem::remove(out + "/felt/trace.csv");
@@ -326,12 +332,14 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
       RunProgram({"fit", csv, "--solver=newton", "--max_iterations=5", "--lobes=1", "--plots",
                   "--reconstruction", "--out=" + out});
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(fit.out, HasSubstr("make no picture to compare with; by --plots"));
+  EXPECT_THAT(fit.out, StartsWith("verdict      "));
+  EXPECT_THAT(fit.out, HasSubstr(" (Delta E of samples "));
   EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
                                                "reconstruction.binary", "factors.png",
                                                "spheres.png", "trace.png"));
   const nlohmann::json report = Json(out + "/report.json");
   EXPECT_TRUE(report["appearance"].is_null());
+  EXPECT_EQ(report["verdict"]["of"], "samples");
   EXPECT_EQ(report["valid_samples"], 175);
   const ProgramResult score = RunProgram({"score", out + "/model.json", csv, "--json"});
   ASSERT_EQ(score.status, 0) << score.err;
@@ -355,6 +363,9 @@ TEST(FitMany, BadUseIsAnError) {
   std::filesystem::create_directory(folder / "empty");
   ExpectRefusal(RunProgram({"fit", "synth:felt@30x30x60", "synth:rubber@30x30x60"}),
                 "needs --out=DIR");
+  ExpectRefusal(RunProgram({"fit", "synth:felt@30x30x60", "synth:rubber@30x30x60", "--verbose",
+                            "--out=" + (folder / "o")}),
+                "--verbose is for the fit of one SOURCE");
   ExpectRefusal(RunProgram({"fit", folder / "empty", "--out=" + (folder / "o")}),
                 "has no measurement");
   ExpectRefusal(

@@ -1,0 +1,19 @@
+#ifndef TRILOBE_APP_FIT_SUMMARY_H_
+#define TRILOBE_APP_FIT_SUMMARY_H_
+
+#include "trilobe/app/fit_report.h"
+#include "trilobe/app/verdict_report.h"
+
+namespace trilobe {
+
+ReportedVerdict VerdictOn(const FitReport& report);
+
+// The verdict, then a few lines that need no knowledge of the method, on standard output.
+void PrintSummary(const FitReport& report);
+
+// Where the time went, in parts that sum to the total.
+void PrintSeconds(const FitReport& report);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_FIT_SUMMARY_H_
