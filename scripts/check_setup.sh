@@ -65,19 +65,21 @@ chmod 755 "$root"/bin/*
 )
 grep -q 'apt-get install' "$root/calls"
 
-# A build of four steps that ends after two: what is told of it now and then, and what is kept.
+# A build of four steps that ends after two, and a test: what is told of them now and then, and what is kept.
 ninja="$root/a folder/ninja"
 mkdir "${ninja%/*}"
 cat >"$ninja" <<'END'
 #!/bin/sh
 echo "[1/4] Building one.o"
+[ "$1" = 0 ] || exit "$1"
 sleep 1.1
 echo "one.cc: a warning" >&2
 printf '[2/4] Building'
 sleep 1.1
 echo " two.o"
 sleep 1.1
-exit "$1"
+echo "  3/40 Test #7: some ....   Passed    0.90 sec"
+sleep 1.1
 END
 chmod 755 "$ninja"
 (
@@ -85,10 +87,15 @@ chmod 755 "$ninja"
   log_dir="$root/a folder/log"
   progress_seconds=1
   slowly four "$ninja" 0 >"$root/told"
-  for made in 1 2; do
-    grep -q "$made of 4 steps made; at this pace [0-9]* s to go" "$root/told" || die "$(cat "$root/told")"
+  for made in "1 of 4" "2 of 4" "3 of 40"; do
+    grep -q "$made done; at this pace [0-9]* s to go" "$root/told" || die "$(cat "$root/told")"
   done
-  printf '[1/4] Building one.o\none.cc: a warning\n[2/4] Building two.o\n' | diff - "$log_dir/four.log"
+  diff - "$log_dir/four.log" <<'END'
+[1/4] Building one.o
+one.cc: a warning
+[2/4] Building two.o
+  3/40 Test #7: some ....   Passed    0.90 sec
+END
   (slowly four "$ninja" 3) >"$root/told" 2>&1 && die "a build that fails is taken for one that does not"
   grep -qF "error: '$ninja 3' failed; all of its output is in $log_dir/four.log" "$root/told"
 )

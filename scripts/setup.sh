@@ -37,8 +37,9 @@ slowly() {
   quietly "$name" tell_progress "$@" 3>&1
 }
 
-# tell_progress COMMAND...: passes on what COMMAND says, and tells file descriptor 3 which of ninja's
-# steps have been made ("[12/63] ..."), and how long the others take if they take as long each.
+# tell_progress COMMAND...: passes on what COMMAND says, and tells file descriptor 3 how many of ninja's
+# steps ("[12/63] ...") or ctest's tests (" 12/63 Test ...") are done, and how long the others take if they
+# take as long each.
 tell_progress() {
   local begin=$EPOCHSECONDS told=$EPOCHSECONDS line='' part status made=0 all=0
   "$@" 2>&1 | while true; do
@@ -47,14 +48,14 @@ tell_progress() {
     if ((status <= 128)); then # not for want of time: a line, or the end
       ((status == 0)) || [[ -n $line ]] || break
       printf '%s\n' "$line"
-      if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+      if [[ $line =~ ^\ *\[?([0-9]+)/([0-9]+)(\]|\ Test\ ) ]]; then
         made=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]}
       fi
       line=''
     fi
     if ((made > 0 && EPOCHSECONDS - told >= progress_seconds)); then
       told=$EPOCHSECONDS
-      step "$made of $all steps made; at this pace $(duration $(((all - made) * (told - begin) / made))) to go" >&3
+      step "$made of $all done; at this pace $(duration $(((all - made) * (told - begin) / made))) to go" >&3
     fi
   done
 }
@@ -156,7 +157,7 @@ work() {
 run_tests() {
   local log=$log_dir/test-$1.log
   mkdir -p "$log_dir"
-  if ! ctest --preset "$1" --parallel "$(nproc)" --no-tests=error >"$log" 2>&1 </dev/null; then
+  if ! tell_progress ctest --preset "$1" --parallel "$(nproc)" --no-tests=error 3>&1 >"$log" 2>&1 </dev/null; then
     grep -vE '^ *[0-9]+/[0-9]+ Test .* Passed |^ *Start +[0-9]+:' "$log" >&2
     die "tests failed; all of their output is in $log"
   fi
