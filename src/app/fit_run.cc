@@ -108,6 +108,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     measured = ParseMeasurement(bytes, source, source_options);
     report.key = FitKey(settings, source, bytes);
   }
+  if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
   TellNotes(measured);
   report.data_notes = measured.notes;

@@ -23,7 +23,7 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
   SolverOptions steps;
   steps.max_iterations = kSteps;
   steps.diagnose = false;
-  steps.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !options.stop(); };
+  steps.stop = options.stop;
   Objective reweighted = objective;
   for (int pass = 0; pass < kPasses && !options.stop(); ++pass) {
     reweighted = Objective(Reweighted(objective, *model, options.robust), objective.spec(),

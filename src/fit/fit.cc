@@ -110,12 +110,12 @@ class Fitting {
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
     fit.seconds.prepare = stopwatch_.Lap();
+    fit.interrupted = options_.stop();
+    if (fit.interrupted) return fit;
     FactorModel model = Start(fit.objective);
     fit.seconds.init = stopwatch_.Lap();
-    if (options_.stop()) {
-      fit.interrupted = true;
-      return fit;
-    }
+    fit.interrupted = options_.stop();
+    if (fit.interrupted) return fit;
     options_.on_begin();
     if (!nodes.empty()) ChooseAmong(nodes, &fit, &model);
     Solve(&fit, &model);
@@ -154,8 +154,9 @@ class Fitting {
     solver.on_iteration = [this](const IterationRecord& record, const FactorModel& current) {
       options_.on_progress(record);
       options_.on_iteration(record, current);
-      return !options_.stop();
+      return true;
     };
+    solver.stop = options_.stop;
     fit->summary = MakeSolver(options_.solver)->Solve(solved, solver, model);
     fit->seconds.solve = stopwatch_.Lap();
     const ModelSpec file_spec = WithFileBins(solved.spec());

@@ -38,7 +38,8 @@ struct FitOptions {
   // picture any more, so that no reflectance is matched and no appearance compared.
   std::function<BrdfSamples(BrdfSamples)> select = nullptr;
   std::string solver = Solvers().front().name;
-  // Of the solver, for the form that it is to fit; on_iteration is replaced. Asked when it begins.
+  // Of the solver, for the form that it is to fit; on_iteration and stop are replaced. Asked when
+  // it begins.
   std::function<SolverOptions(const ModelSpec&)> solver_options = [](const ModelSpec& /*spec*/) {
     return SolverOptions();
   };
@@ -53,7 +54,7 @@ struct FitOptions {
   uint64_t seed = 1;
   int num_threads = 1;
 
-  // All of what follows is called from the thread that fits.
+  // All of what follows but `stop` is called from the thread that fits.
   // When the input has proved right, and before the first step.
   std::function<void()> on_begin = [] {};
   // After each iteration: of whatever is fitted on the way, and of the solver's own.
@@ -63,7 +64,7 @@ struct FitOptions {
   // There is a model: as the solver left it, when nobody has asked to stop, and once more when it
   // is finished. Of the result the file is made, and `summary`.
   std::function<void(const FitResult&)> on_model = [](const FitResult&) {};
-  // Asked after each step: true to end with the best so far.
+  // Asked after each step, from several threads: true to end with the best so far.
   std::function<bool()> stop = [] { return false; };
 };
 

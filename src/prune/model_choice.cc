@@ -98,7 +98,7 @@ FactorModel FitAnew(const Objective& few, const FactorModel& start,
   FactorModel model = start;
   SolverOptions options;
   options.diagnose = false;
-  options.on_iteration = [&stop](const IterationRecord&, const FactorModel&) { return !stop(); };
+  options.stop = stop;
   MakeSolver("auto")->Solve(few, options, &model);
   return model;
 }

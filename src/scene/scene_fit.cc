@@ -17,9 +17,9 @@
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/objective/canonical_form.h"
+#include "trilobe/prune/prune_anisotropic.h"
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
-#include "trilobe/prune/prune_anisotropic.h"
 #include "trilobe/solvers/guide.h"
 #include "trilobe/solvers/initial_model.h"
 
@@ -252,9 +252,7 @@ class MaterialFitter {
     FactorModel& model = fit.file.model;
     model = FindInitialModel(settings_.init).make(objective, settings_.seed);
     SolverOptions options = settings_.options;
-    options.on_iteration = [this](const IterationRecord&, const FactorModel&) {
-      return !settings_.stop();
-    };
+    options.stop = settings_.stop;
     fit.seconds = stopwatch.Lap();
     if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
       options.max_seconds = std::min(

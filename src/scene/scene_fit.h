@@ -10,8 +10,8 @@
 
 #include "trilobe/io/model_file.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/scene/fit_cache.h"
 #include "trilobe/prune/prune.h"
+#include "trilobe/scene/fit_cache.h"
 #include "trilobe/scene/scene_file.h"
 #include "trilobe/solvers/solver.h"
 
@@ -20,7 +20,7 @@ namespace trilobe {
 // How the materials of a scene are fitted, before anything is left out.
 struct SceneFitSettings {
   std::string solver;
-  SolverOptions options;  // on_iteration is replaced
+  SolverOptions options;  // stop is replaced
   std::string init;
   std::string weighting;
   int lobes = 3;

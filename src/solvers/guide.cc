@@ -157,7 +157,7 @@ FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data
   FactorModel model = FindInitialModel(kind.start).make(objective, 0);
   SolverOptions options;
   options.diagnose = false;
-  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  options.stop = stop;
   MakeSolver("varpro")->Solve(objective, options, &model);
   return model;
 }

@@ -109,9 +109,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
     solver.max_iterations = model ? kFurtherIterations : kFirstIterations;
     solver.relative_decrease_tolerance = 1e-3;
     solver.diagnose = false;
-    solver.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
-      return (!options.on_iteration || options.on_iteration(record, current)) && !options.stop();
-    };
+    solver.on_iteration = options.on_iteration;
+    solver.stop = options.stop;
     model =
         model ? WithAxes(*model, rung.spec) : InitialModels().front().make(objective, options.seed);
     const SolverSummary summary = MakeSolver("varpro")->Solve(objective, solver, &*model);

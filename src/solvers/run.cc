@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "trilobe/base/error.h"
@@ -28,6 +29,7 @@ double RelativeDistance(std::span<const double> a, std::span<const double> b) {
 SolverOptions WithoutCallbacks(SolverOptions options) {
   options.on_iteration = nullptr;
   options.on_element = nullptr;
+  options.stop = nullptr;
   return options;
 }
 
@@ -51,6 +53,11 @@ Run::Run(std::string solver, const Objective& objective, const SolverOptions& op
 
 double Run::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool Run::IsToStop() const {
+  const SolverOptions& options = summary_.used;
+  return (options.stop && options.stop()) || seconds() >= options.max_seconds;
 }
 
 std::optional<StopReason> Run::ReasonToStop(bool may_converge) const {
@@ -101,8 +108,10 @@ bool Run::Record(const FactorModel& current, const Step& step) {
   }
   previous_ = current;
   if (!reason_) reason_ = ReasonToStop(step.may_converge);
-  const auto& on_iteration = summary_.used.on_iteration;
-  if (on_iteration && !on_iteration(record, current)) Stop(StopReason::kInterrupted);
+  const auto& [on_iteration, stop] = std::tie(summary_.used.on_iteration, summary_.used.stop);
+  if ((on_iteration && !on_iteration(record, current)) || (stop && stop())) {
+    Stop(StopReason::kInterrupted);
+  }
   return !reason_;
 }
 
@@ -113,7 +122,8 @@ SolverSummary Run::Finish() {
   summary_.initial_objective = summary_.trace.front().objective;
   summary_.iterations = summary_.trace.back().iteration;
   summary_.seconds = summary_.trace.back().seconds;
-  if (summary_.used.diagnose) {
+  // Who ends a run does not wait for that.
+  if (summary_.used.diagnose && reason_ != StopReason::kInterrupted) {
     const ScopedTimer timer = Time(&PhaseSeconds::diagnosing);
     summary_.diagnosis = Diagnose(objective_, *model_);
     if (auto warning = ConditionWarning(objective_, *summary_.diagnosis)) {

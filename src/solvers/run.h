@@ -73,6 +73,8 @@ class Run {
   // Ends the run for a reason that only the solver knows. Keeps an earlier reason.
   void Stop(StopReason reason);
   bool stopped() const { return reason_.has_value(); }
+  // Whether there is no time for more, in the midst of an iteration. From any thread.
+  bool IsToStop() const;
 
   SolverSummary Finish();
 

@@ -48,6 +48,10 @@ struct SolverOptions {
   // Sees every record and the model it belongs to, from the solving thread; returns false to stop.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
 
+  // Asked after every record, and where an iteration takes long in the midst of it, from several
+  // threads: true to stop, as if on_iteration had said so.
+  std::function<bool()> stop = nullptr;
+
   // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no
   // filter. With the filter E may rise.
   double g_filter_sigma = 0;

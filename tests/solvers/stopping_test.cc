@@ -130,6 +130,23 @@ TEST_P(Stopping, WhenACallbackSaysSo) {
   }
 }
 
+// No more than an iteration after it has been asked.
+TEST_P(Stopping, WhenItIsAskedTo) {
+  FactorModel model = Start();
+  int iterations = 0;
+  SolverOptions options;
+  options.relative_decrease_tolerance = kNever;
+  options.on_iteration = [&](const IterationRecord& record, const FactorModel&) {
+    iterations = record.iteration;
+    return true;
+  };
+  options.stop = [&] { return iterations >= 2; };
+  const SolverSummary summary = Run(options, &model);
+  EXPECT_EQ(summary.stop_reason, StopReason::kInterrupted);
+  EXPECT_EQ(summary.iterations, 2);
+  EXPECT_FALSE(summary.diagnosis);
+}
+
 TEST_P(Stopping, AtAnExactFit) {
   for (const bool black : {false, true}) {
     // Lambertian data are an exact fit of a model whose lobes are dark.

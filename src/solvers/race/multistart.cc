@@ -154,7 +154,7 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
   begin_at(given);
   bool go_on = run->Start(stepper->Optimality());
   if (!go_on) return;
-  const auto stop = [run] { return run->seconds() >= run->options().max_seconds; };
+  const auto stop = [run] { return run->IsToStop(); };
   FactorModel best = given;
   // Where the stepper stands, if that is the best point so far.
   const auto record = [&] {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -217,6 +218,20 @@ TEST_P(Multistart, EndsAtAnyIteration) {
     EXPECT_EQ(Solve(objective, interrupted, &other).iterations, count);
     EXPECT_TRUE(std::ranges::equal(model.parameters(), other.parameters()));
   }
+}
+
+// A leg of a race may take a minute.
+TEST_P(Multistart, EndsInTheMidstOfALeg) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid));
+  FactorModel model = RandomModel(objective.spec(), 1);
+  SolverOptions options = Iterations(100);
+  std::atomic<int> asked = 0;
+  options.stop = [&asked] { return ++asked > 5; };
+  const SolverSummary summary = Solve(objective, options, &model);
+  EXPECT_EQ(summary.stop_reason, StopReason::kInterrupted);
+  EXPECT_LE(summary.iterations, 1);
+  EXPECT_LT(asked, 100);
+  EXPECT_EQ(summary.final_objective, objective.Value(model));
 }
 
 TEST_P(Multistart, TriesNoStartWhereNoIterationIsAskedFor) {
