@@ -194,7 +194,8 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
     if (settings.pair && !pictured.empty()) {
       WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
     }
-    if (settings.plots) {
+    // Who ends the program early does not wait for pictures.
+    if (settings.plots && !report.interrupted) {
       DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance);
     }
   } catch (const Error&) {

@@ -1,7 +1,9 @@
 #include "trilobe/io/plots.h"
 
 #include <filesystem>
+#include <functional>
 
+#include "trilobe/base/parallel.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
@@ -11,25 +13,39 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
                                       const std::string& folder,
                                       const AppearanceOptions& appearance) {
   std::vector<std::string> paths;
-  const auto add = [&](const char* name) -> const std::string& {
-    return paths.emplace_back((std::filesystem::path(folder) / name).string());
+  std::vector<std::function<void()>> drawings;
+  const auto add = [&](const char* name, const auto& draw) {
+    const std::string path = (std::filesystem::path(folder) / name).string();
+    paths.push_back(path);
+    drawings.emplace_back([path, draw] { draw(path); });
   };
   const Material fitted = MaterialOf(file.model);
   if (measured.table != nullptr) CheckIsotropic(measured, fitted);
-  DrawFactors(file, add("factors.png"));
+  add("factors.png", [&](const std::string& path) { DrawFactors(file, path); });
   if (measured.nodes) {
-    DrawSlices(*measured.nodes, fitted.spherical, add("slices.png"));
-    DrawSpheres(*measured.nodes, fitted.spherical, add("spheres.png"), appearance);
-    DrawCloth(*measured.nodes, fitted.spherical, add("cloth.png"), appearance);
+    const NodeBrdf& nodes = *measured.nodes;
+    add("slices.png", [&](const std::string& path) { DrawSlices(nodes, fitted.spherical, path); });
+    add("spheres.png",
+        [&](const std::string& path) { DrawSpheres(nodes, fitted.spherical, path, appearance); });
+    add("cloth.png",
+        [&](const std::string& path) { DrawCloth(nodes, fitted.spherical, path, appearance); });
   } else if (measured.table != nullptr) {
     const BrdfTable& table = *measured.table;
-    DrawSlices(table, Reconstruct(file.model, "fit", table.grid, appearance.num_threads),
-               add("slices.png"));
-    DrawSpheres(table, fitted.angular, add("spheres.png"), appearance);
+    add("slices.png", [&](const std::string& path) {
+      DrawSlices(table, Reconstruct(file.model, "fit", table.grid, appearance.num_threads), path);
+    });
+    add("spheres.png",
+        [&](const std::string& path) { DrawSpheres(table, fitted.angular, path, appearance); });
   } else {
-    DrawFittedSphere(fitted, add("spheres.png"), appearance);
+    add("spheres.png",
+        [&](const std::string& path) { DrawFittedSphere(fitted, path, appearance); });
   }
-  if (!trace.empty()) DrawTrace(trace, file.fit.source, add("trace.png"));
+  if (!trace.empty()) {
+    add("trace.png", [&](const std::string& path) { DrawTrace(trace, file.fit.source, path); });
+  }
+  // All at once: those that are not rendered wait for gnuplot, which has one thread.
+  const int count = static_cast<int>(drawings.size());
+  ParallelFor(count, appearance.num_threads > 1 ? count : 1, [&](int k) { drawings[k](); });
   return paths;
 }
 

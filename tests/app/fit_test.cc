@@ -189,6 +189,8 @@ TEST(Fit, SaysWhatItLeftOutAndWhy) {
   EXPECT_EQ(bins["beyond_max_angle"], 40644 - valid);
   EXPECT_EQ(bins["extrapolated"], 0);
   EXPECT_EQ(report["max_angle"], 60);
+  EXPECT_GT(report["seconds"]["draw"], 0);
+  EXPECT_THAT(result.out, HasSubstr(" drawing"));
   for (const char* const key : {"share", "largest", "largest_within", "psnr_db"}) {
     ASSERT_TRUE(report["appearance"]["beyond"][key].is_number()) << key;
     EXPECT_GT(report["appearance"]["beyond"][key], 0) << key;
@@ -198,6 +200,20 @@ TEST(Fit, SaysWhatItLeftOutAndWhy) {
   EXPECT_THAT(result.out, HasSubstr("\nnot measured "));
   EXPECT_THAT(result.out, HasSubstr("left out     bins 13356 below the surface, " +
                                     std::to_string(40644 - valid) + " beyond --max_angle\n"));
+}
+
+// Side by side they are what they are one after the other.
+TEST(Fit, PicturesAreTheSameForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const std::string one = folder / "one", all = folder / "all";
+  ASSERT_EQ(RunProgram(Fit(one, {"--plots", "--threads=1"})).status, 0);
+  ASSERT_EQ(RunProgram({"plot", one + "/model.json", "synth:plastic@30x30x60", "--noise=0.02",
+                        "--missing=0.8", "--trace=" + one + "/trace.csv", "--out=" + all})
+                .status,
+            0);
+  for (const char* const name : {"/factors.png", "/slices.png", "/spheres.png", "/trace.png"}) {
+    EXPECT_EQ(Contents(one + name), Contents(all + name)) << name;
+  }
 }
 
 TEST(Fit, CourseScoresTheModelsOnTheWay) {
@@ -408,8 +424,8 @@ TEST(Fit, AThinnedModelReflectsAsMuchToo) {
 TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  const TerminalResult result =
-      RunOnTerminal(Fit(out, {"--max_iterations=1000000", "--tolerance=0"}), "iteration 2", SIGINT);
+  const TerminalResult result = RunOnTerminal(
+      Fit(out, {"--max_iterations=1000000", "--tolerance=0", "--plots"}), "iteration 2", SIGINT);
   EXPECT_EQ(result.status, 130);
   EXPECT_THAT(result.text, HasSubstr("stopping: the best so far is kept"));  // before it has
   EXPECT_THAT(result.text, HasSubstr("interrupted"));
@@ -418,6 +434,7 @@ TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
   ASSERT_GE(trace.size(), 3U);
   const ModelFile file = ReadModel(out + "/model.json");
   EXPECT_EQ(file.fit.stop_reason, "interrupted");
+  EXPECT_FALSE(std::filesystem::exists(out + "/spheres.png"));  // for which nobody waits
   EXPECT_NEAR(file.fit.objective, trace.back().objective, 1e-12 * trace.back().objective);
 }
 
