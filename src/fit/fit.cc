@@ -10,7 +10,6 @@
 #include "trilobe/io/picture_data.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
-#include "trilobe/model/with_axes.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/solvers/guide.h"
 
@@ -61,27 +60,10 @@ FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
           .date = {}};
 }
 
-// An anisotropic model with F in the 90 bins that readers of such files have always found, if those
-// have the centres of its own fewer bins among theirs: the same function. All other tables are
-// stored as they were fitted.
-ModelSpec WithFileBins(ModelSpec spec) {
-  constexpr int kFileBins = 90;
-  int& bins = spec.f_axis.size;
-  if (spec.anisotropic() && kFileBins % bins == 0 && kFileBins / bins % 2 == 1) bins = kFileBins;
-  return spec;
-}
-
 // Whether a solver had found what it looks for.
 bool HasEnded(StopReason reason) {
   return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
          reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
-}
-
-// The model on the axes of this objective, in its canonical form.
-FactorModel InForm(const Objective& objective, const FactorModel& model) {
-  FactorModel canonical = WithAxes(model, objective.spec());
-  Canonicalize(objective, &canonical);
-  return canonical;
 }
 
 // One fit, step by step.
@@ -159,17 +141,15 @@ class Fitting {
     solver.stop = options_.stop;
     fit->summary = MakeSolver(options_.solver)->Solve(solved, solver, model);
     fit->seconds.solve = stopwatch_.Lap();
-    const ModelSpec file_spec = WithFileBins(solved.spec());
-    const bool of_data = !guided && file_spec == solved.spec();
-    if (file_spec != solved.spec()) fit->objective = Objective(fit->objective, file_spec);
     fit->file.fit = InfoOf(measurement_, options_, fit->objective, fit->summary);
     // As the solver left it; what follows may take longer than somebody who ends it waits.
     if (!options_.stop()) {
-      fit->file.model = InForm(fit->objective, *model);
+      fit->file.model = *model;
+      Canonicalize(fit->objective, &fit->file.model);
       fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
       options_.on_model(*fit);
     }
-    Finish(solved, of_data, std::move(*model), fit);
+    Finish(solved, std::move(*model), fit);
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.compare) Compare(fit);
@@ -177,7 +157,7 @@ class Fitting {
     fit->interrupted = options_.stop();
   }
 
-  void Finish(const Objective& solved, bool of_data, FactorModel model, FitResult* fit) const {
+  void Finish(const Objective& solved, FactorModel model, FitResult* fit) const {
     FinishOptions finish{
         .robust = options_.robust,
         .max_parameters = options_.max_parameters,
@@ -186,11 +166,11 @@ class Fitting {
         .appearance = Appearance(),
         .stop = options_.stop};
     FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
-    if (of_data) {
-      fit->objective = finished.objective;
-      fit->file.model = std::move(finished.model);
+    fit->file.model = std::move(finished.model);
+    if (&solved != &fit->objective) {
+      Canonicalize(fit->objective, &fit->file.model);  // by the data alone
     } else {
-      fit->file.model = InForm(fit->objective, finished.model);
+      fit->objective = finished.objective;
     }
     fit->finished = {finished.tied, std::move(finished.candidates), finished.chosen,
                      finished.matched};

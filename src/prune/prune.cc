@@ -68,7 +68,7 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
   for (int f = 0; f < 3; ++f) to.layout.nodes[f] = needed.nodes[f];
   if (to.num_parameters() == pruning->state().num_parameters()) return;
   ExpandStored(to.layout, &to.model);
-  to.E = to.objective->Value(to.model);
+  to.E = to.data->Value(to.model);
   pruning->Decide("entries without data and runs of equal entries not stored", std::move(to), true,
                   "they change no value");
 }
@@ -83,8 +83,9 @@ PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Prunin
                               [&](const FactorModel& start) { return start.spec() == spec; });
     const std::vector<FactorModel> alike(starts.begin(), others);
     starts.erase(starts.begin(), others);
-    PruneState to{.objective = pruning.ObjectiveFor(spec), .model = {}, .layout = {}};
-    FittedModel fitted = FitFrom(alike, *to.objective, wanted, pruning.options().stop);
+    PruneState to = pruning.StateFor(spec);
+    FittedModel fitted =
+        FitFrom(alike, *to.objective, pruning.ForFits(wanted), pruning.options().stop);
     to.model = std::move(fitted.model);
     to.E = fitted.E;
     if (best.objective == nullptr || !(best.E <= to.E)) best = std::move(to);
@@ -101,7 +102,7 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
   to.layout =
       NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
   ExpandStored(to.layout, &to.model);
-  to.E = to.objective->Value(to.model);
+  to.E = to.data->Value(to.model);
   if (pruning->options().stop()) return false;
   const bool within = to.E <= wanted && pruning->Keeps(to);
   const bool taken = lobes > state.lobes() ? to.E < state.E : within;
@@ -114,7 +115,7 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
 bool SparesPsnr(const Pruning& pruning) {
   if (!pruning.lowest_psnr() || pruning.guide() >= pruning.limit()) return false;
   const PruneState& state = pruning.state();
-  return ScoreModel(*state.objective, state.model).psnr_db >
+  return ScoreModel(*state.data, state.model).psnr_db >
          *pruning.lowest_psnr() + pruning.options().max_psnr_drop_db / 2;
 }
 
@@ -217,9 +218,9 @@ void MeetParameters(Pruning* pruning) {
 
 }  // namespace
 
-PrunedModel Prune(const Objective& objective, const FactorModel& full,
+PrunedModel Prune(const Objective& measured, const Objective& guided, const FactorModel& full,
                   const PruneOptions& options) {
-  Pruning pruning(objective, full, options);
+  Pruning pruning(measured, guided, full, options);
   LeaveOutWhatIsFree(&pruning);
   if (pruning.by_parameters()) {
     MeetParameters(&pruning);
@@ -230,6 +231,11 @@ PrunedModel Prune(const Objective& objective, const FactorModel& full,
   }
   // The layout knows lobes by their places.
   return pruning.Result(LobeOrder::kAsTheyAre);
+}
+
+PrunedModel Prune(const Objective& objective, const FactorModel& full,
+                  const PruneOptions& options) {
+  return Prune(objective, objective, full, options);
 }
 
 }  // namespace trilobe

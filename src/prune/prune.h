@@ -60,11 +60,16 @@ struct PrunedModel {
 // objective and has its spec. What is returned never exceeds the budget, up to rounding (1e-12 of
 // E, and E of a fit that is exact but for rounding); if the full model does, and more lobes do not
 // help, it is the one that comes closest, and the last decision says so. With a budget of 0 nothing
-// moves, and only what is free is left out.
+// moves, and only what is free is left out; where that is nothing, `full` comes back to the bit.
 //
 // Costs less than a fit by the solver `auto`; the same bits for any number of threads.
 // Throws Error for a budget that is no number, or less than one stored parameter.
 PrunedModel Prune(const Objective& objective, const FactorModel& full, const PruneOptions& options);
+
+// The same for a fit that had a guide: models are fitted to `guided`, the samples of `measured` and
+// those of the guide, and held against the budget by `measured` alone, as are all E of the result.
+PrunedModel Prune(const Objective& measured, const Objective& guided, const FactorModel& full,
+                  const PruneOptions& options);
 
 }  // namespace trilobe
 

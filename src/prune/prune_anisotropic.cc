@@ -138,7 +138,7 @@ class AnisotropicPruning {
                      const PruneOptions& options)
       : guided_(guided),
         options_(options),
-        pruning_(measured, full, options),
+        pruning_(measured, measured, full, options),
         E_guided_(guided.Value(pruning_.state().model)) {}
 
   Pruning& pruning() { return pruning_; }
@@ -231,11 +231,11 @@ PrunedModel PruneFurther(const Pruning& pruning, PruneOptions options) {
   if (!pruning.by_parameters()) {
     if (state.E > 0) options.max_relative_rise = std::max(pruning.limit() / state.E - 1, 0.0);
     if (pruning.lowest_psnr()) {
-      const double psnr_db = ScoreModel(*state.objective, state.model).psnr_db;
+      const double psnr_db = ScoreModel(*state.data, state.model).psnr_db;
       options.max_psnr_drop_db = std::max(psnr_db - *pruning.lowest_psnr(), 0.0);
     }
   }
-  PrunedModel further = Prune(*state.objective, state.model, options);
+  PrunedModel further = Prune(*state.data, state.model, options);
   std::vector<PruneDecision> decisions = pruning.decisions();
   std::ranges::move(further.decisions, std::back_inserter(decisions));
   further.decisions = std::move(decisions);

@@ -63,11 +63,12 @@ void Polish(const Pruning& pruning, PruneState* state) {
     if (!stepper.Step()) continue;
     const double decrease = before - stepper.E();
     const bool hopeless =
-        !pruning.by_parameters() && stepper.E() - kHope * decrease > pruning.guide();
+        !pruning.by_parameters() &&
+        state->Judged(stepper.current(), stepper.E()) - kHope * decrease > pruning.guide();
     if (decrease < small || hopeless) break;
   }
   state->model = stepper.current();
-  state->E = stepper.E();
+  state->E = state->Judged(state->model, stepper.E());
 }
 
 bool WithinBudget(const Pruning& pruning, const PruneState& to) {
@@ -181,10 +182,10 @@ void ChooseShape(Pruning* pruning) {
   });
   for (const ShapeOption& option : options) {
     if (option.shape.name.empty() || limits.stop()) return;
-    PruneState to{.objective = pruning->ObjectiveFor(option.shape.spec),
-                  .model = option.model,
-                  .layout = option.layout};
-    to.E = to.objective->Value(to.model);
+    PruneState to = pruning->StateFor(option.shape.spec);
+    to.model = option.model;
+    to.layout = option.layout;
+    to.E = to.data->Value(to.model);
     Polish(*pruning, &to);
     const bool taken = WithinBudget(*pruning, to);
     const std::string why = pruning->Against(to.E, taken);

@@ -22,11 +22,15 @@ std::string LobesText(int lobes) {
   return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
 }
 
-Pruning::Pruning(const Objective& objective, const FactorModel& full, const PruneOptions& options)
-    : objective_(objective),
+Pruning::Pruning(const Objective& data, const Objective& objective, const FactorModel& full,
+                 const PruneOptions& options)
+    : data_(data),
+      objective_(objective),
+      full_(full),
       options_(options),
       state_(MakeState(objective.spec(), full)),
       E_full_(state_.E),
+      E_of_guide_(&data == &objective ? 0 : objective.Value(state_.model) - E_full_),
       by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
   if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
       options.max_parameters < 1) {
@@ -36,24 +40,30 @@ Pruning::Pruning(const Objective& objective, const FactorModel& full, const Prun
   }
   if (by_parameters_) return;
   if (std::isfinite(options.max_psnr_drop_db)) {
-    lowest_psnr_ = ScoreModel(objective, full).psnr_db - options.max_psnr_drop_db;
+    lowest_psnr_ = ScoreModel(data, full).psnr_db - options.max_psnr_drop_db;
   }
   // Where E is the squared error, PSNR falls by as much at this E; elsewhere it is a start.
   limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
-  if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(objective));
+  if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(data));
   guide_ = std::min(limit_, E_full_ * std::pow(10, options.max_psnr_drop_db / 10));
 }
 
-std::shared_ptr<const Objective> Pruning::ObjectiveFor(const ModelSpec& spec) const {
-  if (spec == objective_.spec()) return {std::shared_ptr<const Objective>(), &objective_};
-  return std::make_shared<Objective>(objective_, spec);
+PruneState Pruning::StateFor(const ModelSpec& spec) const {
+  const auto made = [&spec](const Objective& of) -> std::shared_ptr<const Objective> {
+    if (spec == of.spec()) return {std::shared_ptr<const Objective>(), &of};
+    return std::make_shared<Objective>(of, spec);
+  };
+  PruneState state{.objective = made(objective_), .data = nullptr};
+  state.data = &data_ == &objective_ ? state.objective : made(data_);
+  return state;
 }
 
 PruneState Pruning::MakeState(const ModelSpec& spec, const FactorModel& model) const {
-  PruneState state{
-      .objective = ObjectiveFor(spec), .model = model, .layout = TableLayout::Full(spec)};
+  PruneState state = StateFor(spec);
+  state.model = model;
+  state.layout = TableLayout::Full(spec);
   NormalizeScale(state.objective->coverage(), &state.model);
-  state.E = state.objective->Value(state.model);
+  state.E = state.data->Value(state.model);
   return state;
 }
 
@@ -71,7 +81,7 @@ bool Pruning::may_rise() const { return guide_ > E_full_ * (1 + kRounding); }
 bool Pruning::Keeps(const PruneState& state) const {
   if (by_parameters_) return true;
   if (!(state.E <= limit_ * (1 + kRounding))) return false;
-  return !lowest_psnr_ || ScoreModel(*state.objective, state.model).psnr_db >= *lowest_psnr_;
+  return !lowest_psnr_ || ScoreModel(*state.data, state.model).psnr_db >= *lowest_psnr_;
 }
 
 std::string Pruning::Against(double E, bool within) const {
@@ -109,9 +119,13 @@ PrunedModel Pruning::Result(LobeOrder order) const {
                      .layout = state_.layout,
                      .decisions = decisions_,
                      .num_parameters = state_.num_parameters()};
-  Canonicalize(*state_.objective, &result.model, order);
-  ExpandStored(result.layout, &result.model);
-  result.E = state_.objective->Value(result.model);
+  if (std::ranges::none_of(decisions_, &PruneDecision::taken)) {
+    result.model = full_;
+  } else {
+    Canonicalize(*state_.objective, &result.model, order);
+    ExpandStored(result.layout, &result.model);
+  }
+  result.E = state_.data->Value(result.model);
   return result;
 }
 

@@ -23,12 +23,18 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // "no lobe", "one lobe", "2 lobes".
 std::string LobesText(int lobes);
 
-// A model on the way from the full to the pruned one, with its own objective.
+// A model on the way from the full to the pruned one, with its own objectives.
 struct PruneState {
-  std::shared_ptr<const Objective> objective;
-  FactorModel model;
-  TableLayout layout;
-  double E = 0;
+  std::shared_ptr<const Objective> objective;  // that its fits lower
+  std::shared_ptr<const Objective> data;       // by which it is judged; the same without a guide
+  FactorModel model = {};
+  TableLayout layout = {};
+  double E = 0;  // of the data
+
+  // `fitted`: E of the objective.
+  double Judged(const FactorModel& of, double fitted) const {
+    return data.get() == objective.get() ? fitted : data->Value(of);
+  }
 
   const ModelSpec& spec() const { return model.spec(); }
   int lobes() const { return model.spec().lobes; }
@@ -38,8 +44,9 @@ struct PruneState {
 // What the parts of Prune share: the budget, where the model has got to, and what was decided.
 class Pruning {
  public:
-  // Both must outlive it.
-  Pruning(const Objective& objective, const FactorModel& full, const PruneOptions& options);
+  // All must outlive it. `objective` has the samples of `data`, or these and a guide's.
+  Pruning(const Objective& data, const Objective& objective, const FactorModel& full,
+          const PruneOptions& options);
 
   const PruneOptions& options() const { return options_; }
   ThinnedFactors may_thin() const { return {options_.tables, options_.tables, options_.shadowing}; }
@@ -47,7 +54,8 @@ class Pruning {
   const PruneState& state() const { return state_; }
   // Goes on from another state, without a decision; returns that which was left.
   PruneState GoOnFrom(PruneState state) { return std::exchange(state_, std::move(state)); }
-  std::shared_ptr<const Objective> ObjectiveFor(const ModelSpec& spec) const;
+  // With the objectives for this spec, and no model yet.
+  PruneState StateFor(const ModelSpec& spec) const;
   // Of a model with all its parameters, brought to canonical form.
   PruneState MakeState(const ModelSpec& spec, const FactorModel& model) const;
   // The quadratic of E at the state's model, made once for each model.
@@ -61,6 +69,8 @@ class Pruning {
   // Where E is to go, limit() or less: by a limit of PSNR that is known only roughly.
   double guide() const { return guide_; }
   void set_guide(double guide) { guide_ = guide; }
+  // Where E of fits is to go, of the data and of the guide's samples, for that of the data to be E.
+  double ForFits(double E) const { return E + E_of_guide_; }
   const std::optional<double>& lowest_psnr() const { return lowest_psnr_; }  // [dB], if limited
   // The true test, of E and PSNR.
   bool Keeps(const PruneState& state) const;
@@ -71,16 +81,18 @@ class Pruning {
   // Records it, and goes on from there if it is taken; returns whether.
   bool Decide(std::string what, PruneState to, bool taken, std::string why);
   const std::vector<PruneDecision>& decisions() const { return decisions_; }
-  // The state's model in canonical form, and how it came about.
+  // The state's model in canonical form, or the full one as it is if nothing was left out; and how
+  // it came about.
   PrunedModel Result(LobeOrder order) const;
   // Decisions that led to nothing better.
   void Withdraw(size_t begin, size_t end, const std::string& why);
 
  private:
-  const Objective& objective_;
+  const Objective &data_, &objective_;
+  const FactorModel& full_;
   const PruneOptions& options_;
   PruneState state_;
-  double E_full_ = 0;
+  double E_full_ = 0, E_of_guide_ = 0;
   std::optional<double> lowest_psnr_;
   bool by_parameters_ = false;
   double limit_ = kInfinity;

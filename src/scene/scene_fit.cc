@@ -12,16 +12,13 @@
 #include "trilobe/base/parallel.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/base/utc_time.h"
+#include "trilobe/fit/fit.h"
 #include "trilobe/io/file.h"
-#include "trilobe/io/picture_data.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
-#include "trilobe/objective/canonical_form.h"
 #include "trilobe/prune/prune_anisotropic.h"
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/luminance.h"
-#include "trilobe/solvers/guide.h"
-#include "trilobe/solvers/initial_model.h"
 
 namespace trilobe {
 namespace {
@@ -158,7 +155,7 @@ class MaterialFitter {
  private:
   // All that the fit with nothing left out depends on.
   Key FitKey(const std::string& purpose) const {
-    Key key("fit 2, " + purpose);
+    Key key("fit 3, " + purpose);
     key.Add("program", settings_.program);
     key.Add("build", settings_.build);
     key.Add("source", bytes_hash_);
@@ -190,7 +187,7 @@ class MaterialFitter {
 
   std::string PruneKey() const {
     Key key = FitKey("scene");
-    key.Add("then", "prune 4");
+    key.Add("then", "prune 5");
     key.Add("unit", static_cast<int>(material_.budget.unit));
     key.Add("amount", material_.budget.amount);
     const SceneReductions& reductions = material_.reductions;
@@ -212,93 +209,76 @@ class MaterialFitter {
                                          : ParseMeasurement(bytes_, material_.source, options);
   }
 
-  // What models are judged by.
-  const Objective& MeasuredObjective() {
-    if (!objective_) {
-      const Measurement measured = Measured();
-      BrdfSamples samples = SamplesOf(measured);
-      valid_samples_ = samples.size();
-      max_angle_ = MaxAngleDegrees(measured);
-      data_notes_ = measured.notes;
-      const ModelSpec spec =
-          measured.anisotropic
-              ? ModelSpec::AnisotropicFor(settings_.lobes,
-                                          GridOf(measured).value_or(HemisphereGrid()).phis,
-                                          measured.max_theta)
-              : ModelSpec::SharedFactors(settings_.lobes, samples.grid);
-      if (material_.reductions.samples) samples = UsedSamples(samples, material_.directions);
-      objective_.emplace(InChannels(std::move(samples), material_.channels), spec,
-                         FindWeighting(settings_.weighting), num_threads_);
-    }
-    return *objective_;
+  const Measurement& measured() {
+    if (!measured_) measured_ = Measured();
+    return *measured_;
   }
 
-  // What they are fitted to.
-  const Objective& FitObjective() {
-    const Objective& measured = MeasuredObjective();
-    if (measured.samples().on_grid()) return measured;
-    if (!guided_) {
-      guided_.emplace(WithGuide(measured, {.isotropic = !measured.spec().anisotropic(),
-                                           .stop = settings_.stop}),
-                      measured.spec(), measured.weighting(), num_threads_);
+  // As `trilobe fit` has them but for what the scene says.
+  FitOptions Options() const {
+    FitOptions options;
+    options.form.lobes = settings_.lobes;
+    options.init = settings_.init;
+    options.solver = settings_.solver;
+    options.solver_options = [this](const ModelSpec& /*spec*/) { return settings_.options; };
+    options.weighting = FindWeighting(settings_.weighting);
+    options.compare = false;
+    options.seed = settings_.seed;
+    options.num_threads = num_threads_;
+    options.stop = settings_.stop;
+    const bool limited = material_.reductions.samples &&
+                         !std::holds_alternative<AllDirections>(material_.directions);
+    if (limited || material_.channels != SceneChannels::kRgb) {
+      options.select = [this, limited](BrdfSamples samples) {
+        if (limited) samples = UsedSamples(samples, material_.directions);
+        return InChannels(std::move(samples), material_.channels);
+      };
     }
-    return *guided_;
+    return options;
   }
 
   std::optional<FullFit> FitAnew() {
-    Stopwatch stopwatch;
-    const Objective& objective = FitObjective();
-    FullFit fit;
-    FactorModel& model = fit.file.model;
-    model = FindInitialModel(settings_.init).make(objective, settings_.seed);
-    SolverOptions options = settings_.options;
-    options.stop = settings_.stop;
-    fit.seconds = stopwatch.Lap();
+    const Stopwatch stopwatch;
+    const Measurement& source = measured();
+    FitOptions options = Options();
     if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
-      options.max_seconds = std::min(
-          options.max_seconds, std::max(0.0, kFitShare * material_.budget.amount - fit.seconds));
+      options.solver_options = [&](const ModelSpec& /*spec*/) {
+        SolverOptions solver = settings_.options;
+        solver.max_seconds =
+            std::min(solver.max_seconds,
+                     std::max(0.0, kFitShare * material_.budget.amount - stopwatch.Seconds()));
+        return solver;
+      };
     }
-    const SolverSummary summary = MakeSolver(settings_.solver)->Solve(objective, options, &model);
-    if (summary.stop_reason == StopReason::kInterrupted) return std::nullopt;
-    const Objective& measured = MeasuredObjective();
-    Canonicalize(measured, &model);
-    fit.file.unobserved = UnobservedParameters(measured.coverage());
-    fit.file.fit = {.solver = settings_.solver,
-                    .init = settings_.init,
-                    .weighting = settings_.weighting,
-                    .objective = measured.Value(model),
-                    .initial_objective = summary.initial_objective,
-                    .stop_reason = StopReasonName(summary.stop_reason),
-                    .iterations = summary.iterations,
-                    .seconds = summary.seconds,
-                    .threads = num_threads_,
-                    .source = material_.source,
-                    .valid_samples = measured.samples().size(),
-                    .max_angle = max_angle_,
-                    .program = settings_.program,
-                    .date = UtcNow()};
-    fit.seconds += stopwatch.Lap();
+    FitResult result = trilobe::Fit(source, options);
+    if (result.interrupted) return std::nullopt;
+    FullFit fit{.file = std::move(result.file)};
+    fit.file.fit.source = material_.source;
+    fit.file.fit.program = settings_.program;
+    fit.file.fit.date = UtcNow();
+    fit.seconds = stopwatch.Seconds();
     return fit;
   }
 
   std::optional<MaterialFit> PruneAnew() {
     const std::optional<FullFit> full = Fit("scene");
     if (!full || settings_.stop()) return std::nullopt;
-    const Objective& objective = MeasuredObjective();
     Stopwatch stopwatch;
+    const FactorModel& model = full->file.model;
+    const FitProblem problem = ProblemFor(measured(), Options(), model.spec());
+    const Objective& objective = problem.data;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
-    const FactorModel& model = full->file.model;
     PrunedModel pruned = model.spec().anisotropic()
-                             ? PruneAnisotropic(objective, FitObjective(), model, prune_options)
-                             : Prune(FitObjective(), model, prune_options);
+                             ? PruneAnisotropic(objective, problem.solved(), model, prune_options)
+                             : Prune(objective, problem.solved(), model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;
     fit.fit_from_cache = full->from_cache;
-    fit.data_notes = data_notes_;
-    fit.valid_samples = valid_samples_;
+    fit.data_notes = measured().notes;
+    fit.valid_samples = CountsOf(measured()).valid;
     fit.used_samples = objective.samples().size();
     fit.full_parameters = full->file.model.spec().num_parameters();
     fit.full = ScoreOn(objective, full->file.model);
@@ -308,7 +288,8 @@ class MaterialFitter {
                 .unobserved = UnobservedParameters(of_pruned.coverage()),
                 .fit = full->file.fit,
                 .layout = std::move(pruned.layout)};
-    if (fit.file.model.spec().anisotropic()) fit.file.layout.reset();  // all is stored
+    const ModelSpec& spec = fit.file.model.spec();
+    if (fit.file.layout == TableLayout::Full(spec)) fit.file.layout.reset();  // all is stored
     fit.file.fit.objective = fit.pruned.objective;
     fit.num_parameters = pruned.num_parameters;
     fit.decisions = std::move(pruned.decisions);
@@ -320,10 +301,7 @@ class MaterialFitter {
   const int num_threads_;
   const std::string bytes_;
   const std::string bytes_hash_;
-  std::optional<Objective> objective_, guided_;
-  std::vector<std::string> data_notes_;
-  int valid_samples_ = 0;
-  double max_angle_ = 90;  // [degrees] that the measurement reaches
+  std::optional<Measurement> measured_;
 };
 
 }  // namespace

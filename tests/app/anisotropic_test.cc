@@ -128,12 +128,12 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
                 "--guide is for scattered samples, and a ");
 }
 
-// The solver's models have fewer bins of F than the file's.
-TEST_F(AnisotropicCommands, FitWritesItsCourse) {
+TEST_F(AnisotropicCommands, FitWritesItsCourseAndTheTablesThatItFitted) {
   const ProgramResult fit = RunProgram({"fit", "synth:linen@4x12", "--lobes=1", "--course",
                                         "--max_iterations=3", "--out=" + In("course")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(Contents(In("course/course.csv")), StartsWith("iteration,seconds,objective,"));
+  EXPECT_EQ(ReadModel(In("course/model.json")).model.spec().f_axis.size, 6);
 }
 
 TEST_F(AnisotropicCommands, InfoGivesNodesAndAlbedosAlongAndAcross) {

@@ -43,6 +43,75 @@ ProgramResult RunQuickly(const TemporaryFolder& folder, std::vector<std::string>
   return RunProgram(arguments);
 }
 
+// A few scattered samples, whose path is returned.
+std::string FewSamples(const TemporaryFolder& folder, const std::string& material) {
+  const std::string path = folder / "few.csv";
+  const ProgramResult made =
+      RunProgram({"convert", "synth:" + material, "--missing=0.95", "--out=" + path});
+  EXPECT_EQ(made.status, 0) << made.err;
+  return path;
+}
+
+nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
+
+// A table, scattered samples, and those of an anisotropic material.
+TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
+  const TemporaryFolder folder;
+  const std::string sources[] = {"synth:plastic@20x20x40", FewSamples(folder, "rubber@30x30x60"),
+                                 "synth:velvet@4x12"};
+  const std::string names[] = {"plastic", "few", "velvet"};
+  const std::string scene = MakeScene(folder, R"({
+    "format": "trilobe-scene", "version": 1,
+    "leave_out": {"lobes": false, "colour": false, "shadowing": false, "tables": false,
+                  "samples": false},
+    "materials": [{"name": "plastic", "source": "synth:plastic@20x20x40"},
+                  {"name": "few", "source": "few.csv"},
+                  {"name": "velvet", "source": "synth:velvet@4x12"}]})");
+  const auto fit = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "fit");
+    arguments.insert(arguments.end(), {"--solver=awls", "--max_iterations=2", "--lobes=1"});
+    const ProgramResult result = RunProgram(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  fit({"--scene=" + scene, "--out=" + (folder / "scene"), "--nocache"});
+  fit({sources[0], sources[1], sources[2], "--out=" + (folder / "many")});
+  for (int k = 0; k < 3; ++k) {
+    fit({sources[k], "--threads=1", "--out=" + (folder / "one")});
+    const nlohmann::json one = Json(folder / "one/model.json");
+    const nlohmann::json of_scene = Json(folder / "scene/" + names[k] + ".json");
+    const nlohmann::json of_many = Json(folder / "many/" + names[k] + "/model.json");
+    for (const char* const key : {"d", "s", "D", "F", "G", "dead"}) {
+      EXPECT_EQ(of_scene[key], one[key]) << names[k] << " " << key;
+      EXPECT_EQ(of_many[key], one[key]) << names[k] << " " << key;
+    }
+    EXPECT_EQ(of_scene["fit"]["objective"], one["fit"]["objective"]);
+  }
+}
+
+// What a guide says between them does not count.
+TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
+  const TemporaryFolder folder;
+  const std::string source = FewSamples(folder, "plastic@30x30x60");
+  const std::string scene = MakeScene(folder, R"({
+    "format": "trilobe-scene", "version": 1, "budget": {"relative_rise": 0.01},
+    "materials": [{"name": "few", "source": "few.csv"}]})");
+  const ProgramResult fit =
+      RunProgram({"fit", "--scene=" + scene, "--solver=awls", "--max_iterations=10", "--nocache",
+                  "--out=" + (folder / "out")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  const nlohmann::json material = Json(folder / "out/plan.json")["materials"][0];
+  const double full = material["objective"]["full"];
+  EXPECT_LT(material["numbers"]["pruned"], material["numbers"]["full"]);
+  EXPECT_LE(material["objective"]["pruned"], 1.01 * full * (1 + 1e-12));
+  const nlohmann::json score =
+      nlohmann::json::parse(RunProgram({"score", folder / "out/few.json", source, "--json"}).out);
+  EXPECT_LE(score["objective"], 1.01 * full * (1 + 1e-9));
+  for (const nlohmann::json& decision : material["decisions"]) {
+    if (!decision["taken"]) continue;
+    EXPECT_LE(decision["objective_after"], 1.01 * full * (1 + 1e-12)) << decision["what"];
+  }
+}
+
 // Both PSNRs are infinite.
 TEST(Scene, AnExactFitLosesNothing) {
   const TemporaryFolder folder;
