@@ -20,10 +20,9 @@ namespace trilobe {
 class Objective {
  public:
   // Throws Error if there is no sample, or one that is none (CheckSamples), if the largest value is
-  // below 1e-50/sr, but not 0, or above 1e50/sr, if the samples cannot read the spec's tables:
-  // those on a grid its bins only, those without azimuths isotropic ones only; if a weight is no
-  // number >= 0 or so extreme that E would leave the range of a double, or if num_threads is
-  // below 1.
+  // below 1e-50/sr, but not 0, or above 1e50/sr, if the samples know no azimuths and the spec is
+  // anisotropic; if a weight is no number >= 0 or so extreme that E would leave the range of a
+  // double, or if num_threads is below 1.
   Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
             int num_threads = 1);
 
@@ -58,8 +57,8 @@ class Objective {
   // All of them. Made at the first call (280 bytes a sample).
   const std::vector<WeightedSample>& weighted_samples() const;
 
-  // The samples folded by symmetry, or null when they are not on a grid, or the spec's stretch
-  // reads D between its bins.
+  // The samples folded by symmetry, or null when they are not on a grid, or read between the bins
+  // of the spec's tables: D of a spec that stretches it, and tables of other bins than the grid's.
   const FoldedGrid* folded() const;
 
   // The same for samples that are not; null for those that are.

@@ -142,8 +142,8 @@ class AwlsGss : public Solver {
     if (objective.folded() == nullptr) {
       throw Error(
           objective.samples().source +
-          ": solver awls_gss needs samples on a MERL grid, and highlights without a stretch; "
-          "use --solver=awls");
+          ": solver awls_gss needs samples on a MERL grid whose bins the model's tables have, and "
+          "highlights without a stretch; use --solver=awls");
     }
     CellSums cells(*objective.folded(), objective.spec());
     const LinearShadowing shadowing(*objective.folded());
