@@ -109,7 +109,7 @@ std::vector<FitOutcome> InShard(const std::vector<FitOutcome>& outcomes) {
 
 void TakeReport(const Json& report, FitOutcome* outcome) {
   const Json& sphere = report.at("appearance");
-  outcome->has_picture = !sphere.is_null();
+  outcome->has_picture = !sphere.is_null() && !report.at("interrupted").get<bool>();
   if (outcome->has_picture) {
     outcome->psnr_db = sphere.at("psnr_db").is_null() ? std::numeric_limits<double>::infinity()
                                                       : sphere.at("psnr_db").get<double>();

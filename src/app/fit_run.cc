@@ -190,12 +190,13 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   AppearanceOptions appearance = settings.fit.appearance;
   appearance.num_threads = threads;
   std::exception_ptr failure;
+  // Who ends the program early does not wait for pictures.
+  const bool draws = !report.interrupted;
   try {
-    if (settings.pair && !pictured.empty()) {
+    if (draws && settings.pair && !pictured.empty()) {
       WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
     }
-    // Who ends the program early does not wait for pictures.
-    if (settings.plots && !report.interrupted) {
+    if (draws && settings.plots) {
       DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance);
     }
   } catch (const Error&) {

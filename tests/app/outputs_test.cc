@@ -306,6 +306,7 @@ TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
   EXPECT_THAT(result.text, HasSubstr("the same command goes on"));
   EXPECT_TRUE(std::filesystem::exists(out + "/felt/report.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/copper"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/rubber/pair.png"));  // for which nobody waits
   EXPECT_THAT(Contents(out + "/fits.csv"), HasSubstr("\ncopper,synth:copper,missing,"));
   const ProgramResult rest = RunProgram(command);
   EXPECT_EQ(rest.status, 0) << rest.err;
