@@ -5,6 +5,7 @@
 # - NAME.cc includes its own NAME.h first, so that a build without precompiled headers proves NAME.h
 #   to compile by itself.
 # - Headers of the library include no other project's, which its users would have to have.
+# - Headers that SRC/public.txt lists, which are installed, include no others.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/TrilobeRooms.cmake)
 trilobe_read_rooms(${source_dir}/rooms.txt)
@@ -51,6 +52,21 @@ foreach(room IN LISTS rooms)
     if(NOT other IN_LIST used)
       string(APPEND errors "rooms.txt: no file of ${room} includes a header of ${other}; "
                            "take it from the list\n")
+    endif()
+  endforeach()
+endforeach()
+
+file(STRINGS ${source_dir}/public.txt public REGEX "^[^#]")
+foreach(unit IN LISTS public)
+  if(NOT EXISTS ${source_dir}/${unit}.h)
+    string(APPEND errors "public.txt: there is no ${unit}.h\n")
+    continue()
+  endif()
+  file(STRINGS ${source_dir}/${unit}.h includes REGEX "^#include \"trilobe/")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "^#include \"trilobe/(.*)\\.h\"" "\\1" other "${include}")
+    if(NOT other IN_LIST public)
+      string(APPEND errors "${unit}.h: ${include} in a public header; public.txt does not list it\n")
     endif()
   endforeach()
 endforeach()

@@ -8,6 +8,7 @@
 
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
+#include "trilobe/app/inputs.h"
 #include "trilobe/app/interrupt.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
@@ -63,6 +64,7 @@ void CheckOut(const Scene& scene, std::vector<std::string> others) {
   if (FLAGS_out.empty()) return;
   for (const std::string& file : FilesOf(scene)) others.push_back(file);
   Inputs(others).CheckOutput(FLAGS_out);
+  CheckPictureOut();
 }
 
 PrunedScene FromRun(const std::string& path) {

@@ -24,6 +24,7 @@ namespace {
 Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
+  RefuseForModel(source, {"noise", "extrapolated", "radiometry"});
   const FactorModel model = ReadModel(source).model;
   Measurement measurement;
   if (model.spec().anisotropic()) {

@@ -74,31 +74,32 @@ int ThreadsFromFlags() {
 }
 
 SourceOptions SourceOptionsFromFlags() {
-  if (!(FLAGS_max_angle > 0 && FLAGS_max_angle <= 90)) {
-    throw Error("--max_angle=" + gflags::GetCommandLineFlagInfoOrDie("max_angle").current_value +
-                " is no largest angle; give degrees above 0, up to 90");
-  }
-  if (!(FLAGS_min_theta_d == -1 || (FLAGS_min_theta_d >= 0 && FLAGS_min_theta_d < 90))) {
-    throw Error(
-        "--min_theta_d=" + gflags::GetCommandLineFlagInfoOrDie("min_theta_d").current_value +
-        " is no smallest angle; give degrees from 0 to below 90, or -1 to go by the data");
-  }
-  return {.noise = FLAGS_noise,
-          .missing = FLAGS_missing,
-          .seed = static_cast<uint64_t>(FLAGS_seed),
-          .num_threads = ThreadsFromFlags(),
-          .max_angle_deg = FLAGS_max_angle,
-          .min_theta_d_deg = FLAGS_min_theta_d,
-          .extrapolated = FLAGS_extrapolated,
-          .radiometry = FLAGS_radiometry};
+  SourceOptions options = {.noise = FLAGS_noise,
+                           .missing = FLAGS_missing,
+                           .seed = static_cast<uint64_t>(FLAGS_seed),
+                           .num_threads = ThreadsFromFlags(),
+                           .max_angle_deg = FLAGS_max_angle,
+                           .min_theta_d_deg = FLAGS_min_theta_d,
+                           .extrapolated = FLAGS_extrapolated,
+                           .radiometry = FLAGS_radiometry};
+  CheckSourceOptions(options);
+  return options;
+}
+
+std::vector<std::string> MeasurementFlags() {
+  return {"noise", "missing", "seed", "max_angle", "min_theta_d", "extrapolated", "radiometry"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {
-  for (const char* flag : {"noise", "missing", "seed", "max_angle", "min_theta_d", "extrapolated",
-                           "radiometry", "threads"}) {
-    others.emplace_back(flag);
-  }
+  for (const std::string& flag : MeasurementFlags()) others.push_back(flag);
+  others.emplace_back("threads");
   return others;
+}
+
+void RefuseForModel(const std::string& path, const std::vector<std::string>& flags) {
+  for (const auto& [flag, value] : GivenFlags(flags)) {
+    throw Error("--" + flag + " is for measurements, and " + path + " is a model; leave it out");
+  }
 }
 
 }  // namespace trilobe

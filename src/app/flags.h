@@ -41,6 +41,11 @@ int ThreadsFromFlags();
 // these flags.
 SourceOptions SourceOptionsFromFlags();
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others);
+// Those of them that are for measurements alone: all but --threads.
+std::vector<std::string> MeasurementFlags();
+
+// Throws Error where one of these flags is given, since `path` is a model and no measurement.
+void RefuseForModel(const std::string& path, const std::vector<std::string>& flags);
 
 }  // namespace trilobe
 

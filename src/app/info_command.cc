@@ -13,6 +13,7 @@ int RunInfo(std::span<const std::string> arguments) {
       throw Error("--out is for a picture of what was measured; " + arguments[0] +
                   " is a model: draw it with trilobe plot");
     }
+    RefuseForModel(arguments[0], MeasurementFlags());
     DescribeModel(arguments[0]);
   } else {
     DescribeMeasurement(arguments[0]);

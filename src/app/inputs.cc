@@ -22,6 +22,12 @@ std::string RequiredOut(const std::string& command, const std::string& what) {
   return FLAGS_out;
 }
 
+void CheckPictureOut() {
+  const std::string ending = EndingOf(FLAGS_out);
+  if (ending.empty() || ending == ".png") return;
+  throw Error("--out=" + FLAGS_out + ": the picture is a PNG; end the name in .png");
+}
+
 std::string RequiredMeasurementOut(const std::string& command) {
   // A name without an ending is one of a MERL file, too.
   constexpr std::string_view kKnown[] = {"", ".binary", ".bin", ".csv"};

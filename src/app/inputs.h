@@ -12,6 +12,9 @@ bool IsModelFile(const std::string& path);
 // --out, or an Error that says what it is for: "trilobe synth needs --out=FILE".
 std::string RequiredOut(const std::string& command, const std::string& what);
 
+// Throws Error where --out ends as no PNG picture does.
+void CheckPictureOut();
+
 // The same for a command that writes a measurement, as WriteMeasurement does; also an Error where
 // the name ends otherwise, as "felt.bsdf" does.
 std::string RequiredMeasurementOut(const std::string& command);

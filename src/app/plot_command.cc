@@ -29,6 +29,7 @@ int RunPlot(std::span<const std::string> arguments) {
   for (const char* const name : kPictureNames) {
     inputs.CheckOutput(folder + "/" + name);
   }
+  if (arguments.size() == 1) RefuseForModel(arguments[0], MeasurementFlags());
   const ModelFile file = ReadModel(arguments[0]);
   std::optional<Measurement> measured;
   PictureData data;
@@ -40,6 +41,7 @@ int RunPlot(std::span<const std::string> arguments) {
   }
   std::vector<IterationRecord> trace;
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
+  CheckDrawable(file, trace);
   MakeDirectories(folder);
   for (const std::string& path :
        DrawPictures(file, data, trace, folder, AppearanceOptionsFromFlags())) {

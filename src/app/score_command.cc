@@ -146,6 +146,7 @@ int RunScore(std::span<const std::string> arguments) {
   const Weighting weighting = FindWeighting(FLAGS_weighting);
   const AppearanceOptions appearance_options = AppearanceOptionsFromFlags();
   const int threads = ThreadsFromFlags();
+  CheckPictureOut();
   if (!FLAGS_out.empty()) {
     Inputs({arguments[0], arguments[1], FLAGS_probe}).CheckOutput(FLAGS_out);
   }

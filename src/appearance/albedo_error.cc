@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "trilobe/base/check.h"
+
 namespace trilobe {
 namespace {
 
@@ -23,6 +25,8 @@ BrdfFunction TurnedTo(double phi, const BrdfFunction& brdf) {
 
 AlbedoError CompareAlbedos(const BrdfFunction& measured, const BrdfFunction& fitted,
                            std::span<const double> phi_i, int num_threads) {
+  CheckNotEmpty(measured, "measured");
+  CheckNotEmpty(fitted, "fitted");
   std::vector<double> thetas;
   for (const int degrees : {0, 15, 30, 45, 60, 75}) thetas.push_back(DegreesToRadians(degrees));
   AlbedoError error;

@@ -11,6 +11,7 @@
 #include "trilobe/appearance/render.h"
 #include "trilobe/appearance/sphere.h"
 #include "trilobe/appearance/view.h"
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/albedo.h"
@@ -50,6 +51,7 @@ class MeasuredDirections {
 
 // As a renderer would have it: the spline through G may undershoot.
 AngularBrdf Clamped(const AngularBrdf& brdf) {
+  CheckNotEmpty(brdf, "the material");
   return [&brdf](const HalfDiffAngles& angles, const Cosines& cosines) {
     Rgb rho = brdf(angles, cosines);
     for (double& x : rho) x = std::max(x, 0.0);
@@ -179,6 +181,9 @@ void CheckFinite(const AppearanceReport& report, const std::string& source) {
 }
 
 SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& fitted) {
+  for (const RenderedImage* const image : {&measured, &fitted}) {
+    CheckSize("a picture", image->radiance.size(), measured.coverage.size());
+  }
   std::vector<size_t> pixels;
   Rgb mean_measured{}, mean_fitted{};
   for (size_t k = 0; k < measured.radiance.size(); ++k) {

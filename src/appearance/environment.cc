@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "trilobe/appearance/color.h"
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
@@ -93,7 +94,26 @@ const Environment& StudioEnvironment() {
   return studio;
 }
 
+void CheckEnvironment(const Environment& environment) {
+  const int width = environment.width, height = environment.height;
+  if (width < 1 || height < 1 ||
+      environment.radiance.size() != static_cast<size_t>(width) * height) {
+    throw Error(environment.name + ": an environment of " + std::to_string(width) + " x " +
+                std::to_string(height) + " pixels with the radiance of " +
+                std::to_string(environment.radiance.size()));
+  }
+  for (const Rgb& pixel : environment.radiance) {
+    for (const double x : pixel) {
+      if (x >= 0 && std::isfinite(x)) continue;
+      throw Error(environment.name + ": the radiance of a pixel is " + std::to_string(x) +
+                  "; it must be finite and 0 or more");
+    }
+  }
+}
+
 std::vector<Light> DrawLights(const Environment& environment, int count) {
+  CheckEnvironment(environment);
+  CheckNumber("the number of lights", count, count >= 1, "1 or more");
   const int width = environment.width, height = environment.height;
   std::vector<double> sums(environment.radiance.size());  // along each row
   std::vector<double> row_sums(height);                   // over whole rows

@@ -18,6 +18,9 @@ struct Environment {
   std::vector<Rgb> radiance;  // [height * width], row by row, >= 0 and finite
 };
 
+// Throws Error unless it is as said above, and of one pixel or more.
+void CheckEnvironment(const Environment& environment);
+
 // A fixed one, for when no probe is given: a sky brighter towards the horizon, dark ground, a sun,
 // and three area lights of different colours.
 const Environment& StudioEnvironment();
@@ -29,7 +32,8 @@ struct Light {
 };
 
 // `count` lights of equal luminance that stand for the environment: the points of a Hammersley set,
-// drawn in proportion to luminance. Deterministic. Throws Error if the environment is black.
+// drawn in proportion to luminance. Deterministic. Throws Error for an environment that is none or
+// black, and for fewer lights than one.
 std::vector<Light> DrawLights(const Environment& environment, int count);
 
 }  // namespace trilobe

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trilobe/base/check.h"
 #include "trilobe/model/continuous_model.h"
 
 namespace trilobe {
@@ -33,6 +34,7 @@ AngularBrdf Interpolated(const TabulatedBrdf& table) {
 }
 
 Material Isotropic(const AngularBrdf& brdf) {
+  CheckNotEmpty(brdf, "brdf");
   return {brdf, [brdf](const SphericalAngles& at) {
             return brdf(ToHalfDiff(ToDirections(at)),
                         Cosines{std::cos(at.theta_i), std::cos(at.theta_o)});

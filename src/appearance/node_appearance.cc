@@ -7,6 +7,7 @@
 
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/view.h"
+#include "trilobe/base/check.h"
 #include "trilobe/base/parallel.h"
 
 namespace trilobe {
@@ -14,6 +15,7 @@ namespace {
 
 // As a renderer would have it: a material of splines may undershoot.
 SphericalBrdf Clamped(const SphericalBrdf& brdf) {
+  CheckNotEmpty(brdf, "the material");
   return [&brdf](const SphericalAngles& at) {
     Rgb rho = brdf(at);
     for (double& x : rho) x = std::max(x, 0.0);

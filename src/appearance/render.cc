@@ -2,12 +2,16 @@
 
 #include <cmath>
 
+#include "trilobe/base/check.h"
+
 namespace trilobe {
 
 RenderedImages Render(const View& view, std::span<const SphericalBrdf> materials,
                       std::span<const Light> lights,
                       const std::function<bool(const SphericalAngles&)>& counts, bool whole_too,
                       int num_threads) {
+  for (const SphericalBrdf& material : materials) CheckNotEmpty(material, "a material");
+  CheckNotEmpty(counts, "counts");
   const auto phi = [](const SurfacePoint& point, const Direction& to) {
     return std::atan2(Dot(to, point.y), Dot(to, point.x));
   };

@@ -10,6 +10,7 @@
 #include "trilobe/appearance/environment.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/appearance/view.h"
+#include "trilobe/base/check.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/channels.h"
 #include "trilobe/brdf/directions.h"
@@ -44,6 +45,9 @@ RenderedImages RenderBy(const View& view, std::span<const Light> lights, int mat
                         const AnglesOver& angles_over, const Value& value, const Counts& counts,
                         bool whole_too, int num_threads) {
   const size_t pixels = static_cast<size_t>(view.width) * view.height;
+  for (const SurfacePoint& point : view.points) {
+    CheckIndex(point.pixel, static_cast<int64_t>(pixels), "the pixel of a point");
+  }
   const RenderedImage black = {view.width, std::vector<Rgb>(pixels),
                                std::vector<double>(pixels, -1.0)};
   RenderedImages images{std::vector<RenderedImage>(materials, black),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trilobe/base/check.h"
+
 namespace trilobe {
 namespace {
 
@@ -42,6 +44,8 @@ std::vector<RenderedImage> RenderSpheres(
     std::span<const AngularBrdf> materials, std::span<const Light> lights, int size,
     const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads,
     int every) {
+  for (const AngularBrdf& material : materials) CheckNotEmpty(material, "a material");
+  CheckNotEmpty(counts, "counts");
   const View view = ViewSphere(size, every);
   std::vector<PreparedLight> prepared;
   for (const Light& light : lights) prepared.push_back(Prepare(light));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "trilobe/appearance/color.h"
+#include "trilobe/base/check.h"
 
 namespace trilobe {
 namespace {
@@ -15,6 +16,12 @@ Direction Cross(const Direction& a, const Direction& b) {
 Direction Normalized(const Direction& v) {
   const double length = std::hypot(v[0], v[1], v[2]);
   return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+void CheckImageSize(int size) {
+  constexpr int kMost = 1 << 13;
+  CheckNumber("the size of a picture", size, size >= 1 && size <= kMost,
+              "from 1 to " + std::to_string(kMost) + " pixels");
 }
 
 // --- Cloth --------------------------------------------------------------------------------------
@@ -83,6 +90,8 @@ Thread AlongLight(std::span<const Light> lights) {
 }  // namespace
 
 View ViewSphere(int size, int every) {
+  CheckImageSize(size);
+  CheckNumber("every", every, every >= 1, "1 or more");
   View view{size, size, {}};
   for (int index = 0; index < size * size; ++index) {
     const int row = index / size, column = index % size;
@@ -101,6 +110,7 @@ View ViewSphere(int size, int every) {
 }
 
 View ViewCloth(int size, std::span<const Light> lights) {
+  CheckImageSize(size);
   const Thread along = AlongLight(lights);
   View view{size, 2 * size, {}};
   for (const Thread& thread : {along, Thread{-along.v, along.u}}) {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "trilobe/base/check.h"
+
 namespace trilobe {
 namespace {
 
@@ -80,7 +82,9 @@ class AtExit {
 }  // namespace
 
 void ParallelFor(int count, int num_threads, const std::function<void(int)>& work) {
-  const int own = std::clamp(count, 0, std::max(num_threads, 1));
+  CheckNumThreads(num_threads);
+  CheckNotEmpty(work, "work");
+  const int own = std::clamp(count, 0, num_threads);
   const int lent = helpers != nullptr ? helpers->Take(count - own) : 0;
   const AtExit give_back([lent] {
     if (lent > 0) helpers->Add(lent);
@@ -89,7 +93,9 @@ void ParallelFor(int count, int num_threads, const std::function<void(int)>& wor
 }
 
 void ParallelJobs(int count, int num_threads, const std::function<void(int)>& work) {
-  const int own = std::clamp(count, 0, std::max(num_threads, 1));
+  CheckNumThreads(num_threads);
+  CheckNotEmpty(work, "work");
+  const int own = std::clamp(count, 0, num_threads);
   // A job on one thread within another one shares its helpers. Otherwise there are but those that
   // get no item.
   IdleThreads spare(std::max(num_threads - own, 0));

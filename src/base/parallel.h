@@ -5,12 +5,13 @@
 
 namespace trilobe {
 
-// Calls work(i) once for every i in [0, count), from at most num_threads threads, at least this
-// one: fewer where num_threads is below 1, or where the system gives no more. Items are handed out
+// Calls work(i) once for every i in [0, count), from at most num_threads >= 1 threads, fewer where
+// the system gives no more. Items are handed out
 // one by one, so they may cost different amounts, and in ascending order, so that one may wait for
 // those before it if these do not throw. Results are the same for any number of threads as
 // long as each item writes only what is its own: reduce afterwards, in item order. The first
-// exception thrown by an item is rethrown here, after all threads have stopped.
+// exception thrown by an item is rethrown here, after all threads have stopped. Throws Error for
+// fewer threads, and where there is no work.
 void ParallelFor(int count, int num_threads, const std::function<void(int)>& work);
 
 // The same for few and long items: threads that have no item, or none left, help in the ParallelFor

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/merl_grid.h"
@@ -23,6 +24,7 @@ void AddScaled(const Rgb& value, double scale, Rgb* sum) {
 }  // namespace
 
 Rgb DirectionalAlbedo(const BrdfFunction& brdf, double theta_i) {
+  CheckNotEmpty(brdf, "brdf");
   if (!(theta_i >= 0 && theta_i < kPi / 2)) {
     throw Error("theta_i is " + std::to_string(theta_i) + "; it must be from 0 to below pi/2");
   }

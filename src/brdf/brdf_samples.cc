@@ -123,6 +123,7 @@ void CheckSamples(const BrdfSamples& samples) {
 }
 
 double BrdfSamples::SolidAngle(int j) const {
+  CheckIndex(j, size(), "the sample");
   if (!on_grid()) return 1;
   const int row = bins[j] / grid.phi_d;
   return grid.SolidAngle(row / grid.theta_d, row % grid.theta_d);
@@ -130,6 +131,7 @@ double BrdfSamples::SolidAngle(int j) const {
 
 Cosines BrdfSamples::CosinesOf(int j) const {
   if (directions.empty()) return ToCosines(Angles(j));
+  CheckIndex(j, static_cast<int64_t>(directions.size()), "the sample");
   return {std::cos(directions[j].theta_i), std::cos(directions[j].theta_o)};
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/brdf/channels.h"
 #include "trilobe/brdf/directions.h"
@@ -29,8 +30,19 @@ struct BrdfSamples {
 
   int size() const { return static_cast<int>(rho.size()); }
   bool on_grid() const { return angles.empty(); }
-  double Multiplicity(int j) const { return multiplicity.empty() ? 1 : multiplicity[j]; }
-  HalfDiffAngles Angles(int j) const { return on_grid() ? grid.Center(bins[j]) : angles[j]; }
+  // These and what follows throw Error where there is no such sample.
+  double Multiplicity(int j) const {
+    CheckIndex(j, size(), "the sample");
+    return multiplicity.empty() ? 1 : multiplicity[j];
+  }
+  HalfDiffAngles Angles(int j) const {
+    if (!on_grid()) {
+      CheckIndex(j, static_cast<int64_t>(angles.size()), "the sample");
+      return angles[j];
+    }
+    CheckIndex(j, static_cast<int64_t>(bins.size()), "the sample");
+    return grid.Center(bins[j]);
+  }
   // Of wi and wo in this order, where the directions are known: `angles` may exchange them.
   Cosines CosinesOf(int j) const;
   // The measure of the pairs of directions that a sample stands for, in some unit; 1 where

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/grid_cosines.h"
 
@@ -59,7 +60,7 @@ double MaxAngleDegrees(double max_theta) {
 double MaxAngleDegrees(const BrdfTable& table) { return MaxAngleDegrees(table.max_theta); }
 
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
-  CheckTable(*table);
+  CheckTable(NotNull(table, "the table"));
   if (!(max_theta >= 0)) throw Error("the largest angle must be a number of 0 or more");
   if (max_theta >= table->max_theta) return;  // 90 degrees, say: nothing more to leave out
   table->max_theta = max_theta;
@@ -76,6 +77,8 @@ void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table) {
 }
 
 void LimitThetaD(double min_theta_d, BrdfTable* table) {
+  CheckTable(NotNull(table, "the table"));
+  if (std::isnan(min_theta_d)) throw Error("the smallest theta_d must be a number");
   if (!(min_theta_d > 0)) return;
   const std::vector<bool> above = BinsAboveSurface(table->grid);
   table->unmeasured.resize(table->grid.size(), Unmeasured::kNo);

@@ -72,7 +72,7 @@ double MaxAngleDegrees(const BrdfTable& table);
 // surface, is beyond `max_theta` >= 0 [rad]. Bins that were not measured before keep their reason.
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table);
 
-// The same where theta_d is below `min_theta_d` [rad].
+// The same where theta_d is below `min_theta_d` [rad], nowhere if that is below 0.
 void LimitThetaD(double min_theta_d, BrdfTable* table);
 
 }  // namespace trilobe

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/brdf/grid_cosines.h"
 
@@ -139,6 +140,8 @@ PairError ExchangeError(const BrdfTable& table) {
 PairError ReciprocityError(const BrdfFunction& brdf, const MerlGrid& grid, int num_threads,
                            const MeasuredFunction& measured) {
   CheckGrid(grid);
+  CheckNotEmpty(brdf, "brdf");
+  CheckNotEmpty(measured, "measured");
   std::vector<std::vector<double>> rows(grid.theta_h);
   ParallelFor(grid.theta_h, num_threads, [&](int h) {
     const int size = grid.theta_d * grid.phi_d;

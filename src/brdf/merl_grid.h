@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trilobe/base/check.h"
 #include "trilobe/brdf/directions.h"
 
 namespace trilobe {
@@ -29,7 +30,8 @@ struct MerlGrid {
   HalfDiffAngles Center(int h, int d, int p) const {
     return {ThetaH(h + 0.5), ThetaD(d + 0.5), PhiD(p + 0.5)};
   }
-  HalfDiffAngles Center(int bin) const {
+  HalfDiffAngles Center(int bin) const {  // throws Error where there is no such bin
+    CheckIndex(bin, size(), "the bin");
     return Center(bin / (theta_d * phi_d), bin / phi_d % theta_d, bin % phi_d);
   }
 

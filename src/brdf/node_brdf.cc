@@ -15,6 +15,7 @@ namespace {
 constexpr double kRounding = 1e-9;  // [rad], of degrees that became radians
 
 Between BetweenThetas(const HemisphereGrid& grid, double theta) {
+  if (std::isnan(theta)) throw Error("a direction or an angle is not a number");
   const double place =
       std::clamp(theta / grid.ThetaStep(), 0.0, static_cast<double>(grid.thetas - 1));
   const int a = static_cast<int>(place);
@@ -77,6 +78,15 @@ std::vector<Rgb> Filled(const NodeTable& table) {
 
 }  // namespace
 
+void CheckHemisphereGrid(const HemisphereGrid& grid) {
+  constexpr double kMostPairs = 1e7;
+  const double nodes = 1.0 * grid.thetas * grid.phis;
+  if (grid.thetas >= 1 && grid.phis >= 1 && nodes * nodes <= kMostPairs) return;
+  throw Error("a grid of " + std::to_string(grid.thetas) + " theta by " +
+              std::to_string(grid.phis) +
+              " phi; it needs at least one of each, and at most 3162 directions");
+}
+
 std::optional<int> HemisphereGrid::Find(double theta, double phi) const {
   constexpr double kSame = 1e-6;  // [rad]
   const double theta_step = ThetaStep(), phi_step = PhiStep();
@@ -91,9 +101,9 @@ std::optional<int> HemisphereGrid::Find(double theta, double phi) const {
 }
 
 NodeBrdf::NodeBrdf(NodeTable table) : table_(std::move(table)) {
-  const auto nodes = static_cast<size_t>(std::max(table_.grid.nodes(), 0));
-  if (table_.grid.thetas < 1 || table_.grid.phis < 1 || table_.rho.size() != nodes * nodes ||
-      table_.present.size() != nodes * nodes) {
+  CheckHemisphereGrid(table_.grid);
+  const auto nodes = static_cast<size_t>(table_.grid.nodes());
+  if (table_.rho.size() != nodes * nodes || table_.present.size() != nodes * nodes) {
     throw Error(table_.source + ": a table of nodes needs a value for each pair of its " +
                 std::to_string(nodes) + " nodes");
   }
@@ -124,6 +134,7 @@ bool NodeBrdf::Measured(const SphericalAngles& at) const {
 }
 
 bool NodeBrdf::MeasuredAround(int i, int o) const {
+  for (const int node : {i, o}) CheckIndex(node, table_.grid.nodes(), "the node");
   if (std::max(i, o) / table_.grid.phis == table_.grid.thetas - 1) return false;
   const SphericalAngles at = table_.grid.Angles(i, o, 0.5);
   const Corners around_i = CornersOf(table_.grid, at.theta_i, at.phi_i);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/brdf/channels.h"
 #include "trilobe/brdf/directions.h"
 
@@ -20,6 +21,7 @@ struct HemisphereGrid {
   constexpr int nodes() const { return thetas * phis; }
   double ThetaStep() const { return kPi / 2 / thetas; }
   double PhiStep() const { return 2 * kPi / phis; }
+  // These throw Error where there is no such node.
   double Theta(int node) const { return ThetaAt(node, 0); }
   double Phi(int node) const { return PhiAt(node, 0); }
   // Of nodes i and o, moved by so many steps in all four angles.
@@ -34,11 +36,18 @@ struct HemisphereGrid {
 
  private:
   double ThetaAt(int node, double steps) const {
+    CheckIndex(node, nodes(), "the node");
     const int a = node / phis;
     return (a + steps) * ThetaStep();
   }
-  double PhiAt(int node, double steps) const { return (node % phis + steps) * PhiStep(); }
+  double PhiAt(int node, double steps) const {
+    CheckIndex(node, nodes(), "the node");
+    return (node % phis + steps) * PhiStep();
+  }
 };
+
+// Throws Error unless the grid has nodes, and no more than ten million pairs of them.
+void CheckHemisphereGrid(const HemisphereGrid& grid);
 
 // Values at all pairs of nodes of a grid.
 struct NodeTable {

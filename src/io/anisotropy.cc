@@ -28,6 +28,7 @@ KeyedSample KeyOf(const SphericalAngles& at, int sample) {
 }  // namespace
 
 Anisotropy AnisotropyOf(const Measurement& scattered) {
+  CheckDirections(scattered);
   const std::vector<Rgb>& rho = scattered.samples.rho;
   std::vector<KeyedSample> keys;
   for (int j = 0; j < scattered.samples.size(); ++j) {

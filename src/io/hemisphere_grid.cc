@@ -61,6 +61,8 @@ HemisphereGrid ParseHemisphereGrid(std::string_view text) {
 }
 
 NodeTable ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& grid) {
+  CheckHemisphereGrid(grid);
+  CheckDirections(scattered);
   const auto nodes = static_cast<size_t>(grid.nodes());
   NodeTable values{.source = scattered.source,
                    .grid = grid,
@@ -93,6 +95,7 @@ NodeTable ValuesAtNodes(const Measurement& scattered, const HemisphereGrid& grid
 }
 
 Measurement AtNodes(const Measurement& measurement, const HemisphereGrid& grid, int num_threads) {
+  CheckHemisphereGrid(grid);
   const int nodes = grid.nodes();
   NodeTable values;
   if (!measurement.table && !measurement.rgl) {

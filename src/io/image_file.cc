@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
@@ -165,6 +166,9 @@ Environment ParseProbe(std::string_view bytes, const std::string& source) {
 Environment ReadProbe(const std::string& path) { return ParseProbe(ReadFile(path), path); }
 
 void WritePng(const std::string& path, int width, int height, const std::string& pixels) {
+  CheckNumber("the width of a picture", width, width >= 1, "1 or more");
+  CheckNumber("the height of a picture", height, height >= 1, "1 or more");
+  CheckSize("a picture", pixels.size(), static_cast<size_t>(width) * height * kChannels);
   std::string png;
   const auto append = [](void* to, void* data, int size) {
     static_cast<std::string*>(to)->append(static_cast<const char*>(data), size);

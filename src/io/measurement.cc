@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/counter_random.h"
 #include "trilobe/io/own_shadow.h"
@@ -89,11 +90,25 @@ double MaxAngleDegrees(const Measurement& measurement) {
   return MaxAngleDegrees(measurement.table ? measurement.table->max_theta : measurement.max_theta);
 }
 
+void CheckDirections(const Measurement& scattered) {
+  const BrdfSamples& samples = scattered.samples;
+  if (samples.directions.size() == samples.rho.size() &&
+      samples.angles.size() == samples.rho.size()) {
+    return;
+  }
+  throw Error(scattered.source + ": " + std::to_string(samples.size()) +
+              " scattered samples have " + std::to_string(samples.directions.size()) +
+              " pairs of directions and " + std::to_string(samples.angles.size()) +
+              " angles; each needs one");
+}
+
 void LimitAngles(double max_theta, Measurement* measurement) {
-  if (measurement->table) {
+  if (NotNull(measurement, "the measurement").table) {
     LimitAngles(max_theta, Unmeasured::kBeyondMaxAngle, &*measurement->table);
     return;
   }
+  if (!(max_theta >= 0)) throw Error("the largest angle must be a number of 0 or more");
+  CheckDirections(*measurement);
   const double largest = std::min(max_theta, measurement->max_theta);
   std::vector<int> kept;
   measurement->max_theta = 0;
@@ -108,10 +123,12 @@ void LimitAngles(double max_theta, Measurement* measurement) {
 }
 
 void LimitThetaD(double min_theta_d, Measurement* measurement) {
-  if (measurement->table) {
+  if (NotNull(measurement, "the measurement").table) {
     LimitThetaD(min_theta_d, &*measurement->table);
     return;
   }
+  if (std::isnan(min_theta_d)) throw Error("the smallest theta_d must be a number");
+  CheckDirections(*measurement);
   std::vector<int> kept;
   for (int j = 0; j < measurement->samples.size(); ++j) {
     if (measurement->samples.Angles(j).theta_d >= min_theta_d - kRounding) kept.push_back(j);
@@ -120,6 +137,7 @@ void LimitThetaD(double min_theta_d, Measurement* measurement) {
 }
 
 void LeaveOutOwnShadow(Measurement* measurement) {
+  CheckDirections(NotNull(measurement, "the measurement"));
   const OwnShadow shadow = FindOwnShadow(measurement->samples);
   if (shadow.theta_d_deg == 0) return;
   LimitThetaD(DegreesToRadians(shadow.theta_d_deg), measurement);
@@ -133,6 +151,7 @@ void LeaveOutOwnShadow(Measurement* measurement) {
 }
 
 void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
+  NotNull(measurement, "the measurement");
   if (share == 0) return;
   if (!(share > 0 && share < 1)) {
     throw Error("the share of missing directions is " + std::to_string(share) +
@@ -148,6 +167,7 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
     }
     return;
   }
+  CheckDirections(*measurement);
   std::vector<int> kept;
   for (int j = 0; j < measurement->samples.size(); ++j) {
     if (!is_lost(j)) kept.push_back(j);
@@ -156,6 +176,7 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
 }
 
 PairError ReciprocityError(const Measurement& scattered) {
+  CheckDirections(scattered);
   std::vector<KeyedSample> keys;
   keys.reserve(scattered.samples.directions.size());
   for (int j = 0; j < scattered.samples.size(); ++j) {
@@ -216,6 +237,7 @@ void SampleCollector::AddColor(const SphericalAngles& angles, const Rgb& rho) {
 }
 
 void SampleCollector::LeaveOut(int BinCounts::*reason) {
+  if (reason == nullptr) throw Error("a sample is left out for a reason, not null");
   ++measurement_.counts.total;
   ++(measurement_.counts.*reason);
 }

@@ -49,10 +49,14 @@ BinCounts CountsOf(const Measurement& measurement);
 // theta_i and theta_o of what is valid are at most this, in degrees, to show.
 double MaxAngleDegrees(const Measurement& measurement);
 
-// From now on nothing is valid where theta_i or theta_o is beyond `max_theta` [rad].
+// Throws Error, with the source, unless each scattered sample knows its directions and its value.
+// All that follows does.
+void CheckDirections(const Measurement& scattered);
+
+// From now on nothing is valid where theta_i or theta_o is beyond `max_theta` >= 0 [rad].
 void LimitAngles(double max_theta, Measurement* measurement);
 
-// The same where theta_d is below `min_theta_d` [rad].
+// The same where theta_d is below `min_theta_d` [rad], nowhere if that is below 0.
 void LimitThetaD(double min_theta_d, Measurement* measurement);
 
 // The same of scattered samples where they show that the detector stood in its own light

@@ -11,19 +11,24 @@
 namespace trilobe {
 
 // How a source is read, and what of it counts as measured. Noise matters to `synth:` only,
-// `extrapolated` to RGL files, the radiometry to UTIA files.
+// `extrapolated` to RGL files, the radiometry to UTIA files; where they are given for others, a
+// note of the measurement says so.
 struct SourceOptions {
-  double noise = 0.0;    // relative standard deviation of the multiplicative noise
-  double missing = 0.0;  // share of the bins or samples that is left out at random
+  double noise = 0.0;    // relative standard deviation of the multiplicative noise, 0 to 1
+  double missing = 0.0;  // share of the bins or samples that is left out at random, 0 up to 1
   uint64_t seed = 1;
   int num_threads = 1;
-  double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured
-  // theta_d below it does not; below 0: as far as a detector stood in its own light, by scattered
+  double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured; above 0
+  // theta_d below it does not; -1: as far as a detector stood in its own light, by scattered
   // samples.
   double min_theta_d_deg = -1;
   bool extrapolated = false;        // what the authors of a file made up counts as measured
   std::string radiometry = "brdf";  // of UtiaRadiometries()
 };
+
+// Throws Error, with the option's flag and value, where one is out of its range, whether it matters
+// or not.
+void CheckSourceOptions(const SourceOptions& options);
 
 // A format of files that hold a measurement. Each is described in the file of its reader, by a
 // function `MeasurementFormat NAMEFormat()`, exactly that, which source.cc declares and lists.

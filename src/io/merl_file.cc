@@ -54,6 +54,7 @@ std::string Defect(std::string_view bytes, const MerlGrid& grid) {
 }  // namespace
 
 BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid) {
+  CheckGrid(grid);
   if (const std::string defect = Defect(bytes, grid); !defect.empty()) {
     throw Error(source + ": " + defect);
   }
@@ -70,6 +71,7 @@ BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const Mer
 BrdfTable ReadMerl(const std::string& path) { return ParseMerl(ReadFile(path), path); }
 
 void WriteMerl(const BrdfTable& table, const std::string& path) {
+  CheckTable(table);
   const Dimensions dimensions = DimensionsOf({});
   if (DimensionsOf(table.grid) != dimensions) {
     throw Error("cannot write '" + path + "': a MERL file has " + ToString(dimensions) +

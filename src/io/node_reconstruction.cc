@@ -10,6 +10,7 @@ namespace trilobe {
 
 Measurement ReconstructAtNodes(const FactorModel& model, const std::string& source,
                                const HemisphereGrid& grid) {
+  CheckHemisphereGrid(grid);
   const SphericalBrdf brdf = MaterialOf(model).spherical;
   SampleCollector collector(source, "reconstruction of an anisotropic model");
   for (int i = 0; i < grid.nodes(); ++i) {

@@ -31,6 +31,7 @@ int StepsOf(std::vector<double> angles, double range) {
 
 std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
   if (!scattered.anisotropic) return std::nullopt;
+  CheckDirections(scattered);
   std::vector<double> thetas = {0}, phis = {0};
   for (const SphericalAngles& at : scattered.samples.directions) {
     for (const double theta : {at.theta_i, at.theta_o}) thetas.push_back(theta);

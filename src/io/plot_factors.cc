@@ -166,6 +166,7 @@ std::string AlbedoPanel(const LobeLight& light) {
 }
 
 void DrawFactors(const ModelFile& file, const std::string& path) {
+  CheckDrawable(file, {});
   const ModelSpec& spec = file.model.spec();
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
   const LobeLight light = ComputeLobeLight(ObservedEntries(file.unobserved), file.model);

@@ -10,6 +10,7 @@ namespace trilobe {
 void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path) {
   if (trace.empty()) throw Error("the trace has no record, so there is nothing to draw");
+  CheckDrawable({}, trace);
   std::vector<std::vector<double>> rows;  // iteration, seconds, E, filtered, rejected
   std::vector<double> objectives;
   bool filtered = false, rejected = false;

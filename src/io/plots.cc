@@ -1,17 +1,55 @@
 #include "trilobe/io/plots.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
+#include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
 
+namespace {
+
+constexpr double kLargest = 1e200;
+
+// No value of the model in the middle of its angles is beyond this.
+double Bound(const FactorModel& model) {
+  const ModelSpec& spec = model.spec();
+  double bound = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    double sum = model.d()[c];
+    for (int m = 0; m < spec.lobes; ++m) {
+      const double G = std::ranges::max(model.G(m, c));
+      sum +=
+          model.s(m)[c] * std::ranges::max(model.D(m, c)) * std::ranges::max(model.F(m, c)) * G * G;
+    }
+    bound = std::max(bound, sum);
+  }
+  return bound;
+}
+
+}  // namespace
+
+void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace) {
+  const std::string name = file.fit.source.empty() ? "the model" : file.fit.source;
+  const double largest = std::ranges::max(file.model.parameters());
+  if (!(std::max(largest, Bound(file.model)) <= kLargest)) {
+    throw Error(name + ": the model's factors are too large to draw; its values go beyond 1e200");
+  }
+  for (const IterationRecord& record : trace) {
+    if (record.objective <= kLargest && record.seconds <= kLargest) continue;
+    throw Error(name + ": row " + std::to_string(record.iteration) +
+                " of the trace goes beyond 1e200, too far to draw");
+  }
+}
+
 std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,
                                       const AppearanceOptions& appearance) {
+  CheckDrawable(file, trace);
   std::vector<std::string> paths;
   std::vector<std::function<void()>> drawings;
   const auto add = [&](const char* name, const auto& draw) {

@@ -80,6 +80,10 @@ struct TradeOff {
 // no model.
 void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 
+// Throws Error where a model's values, or E in a trace, are beyond 1e200, which no axis shows. All
+// that draw them do.
+void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace);
+
 // All pictures that the inputs allow, as factors.png, slices.png, spheres.png, cloth.png and
 // trace.png in an existing folder: slices need data at nodes or in a table, cloth such data at
 // nodes, trace needs records; without data spheres.png is of the fit alone. Returns their paths.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/named.h"
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
 #include "trilobe/io/synth.h"
@@ -86,7 +88,29 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
   return formats.front();  // MERL: it says what is wrong with its header
 }
 
+// Says which of the options that were given this kind of source does not read.
+void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement* measurement) {
+  const auto note = [&](bool given, std::string_view reader, const std::string& what) {
+    if (given && kind != reader) measurement->notes.push_back(what + ", and changes nothing here");
+  };
+  note(options.noise != 0, kSynth, "--noise is of synth: sources");
+  note(options.extrapolated, "rgl", "--extrapolated is of RGL files");
+  note(options.radiometry != SourceOptions().radiometry, "utia", "--radiometry is of UTIA files");
+}
+
 }  // namespace
+
+void CheckSourceOptions(const SourceOptions& options) {
+  const double angle = options.max_angle_deg, theta_d = options.min_theta_d_deg;
+  CheckNumThreads(options.num_threads);
+  CheckNumber("--noise", options.noise, options.noise >= 0 && options.noise <= 1, "from 0 to 1");
+  CheckNumber("--missing", options.missing, options.missing >= 0 && options.missing < 1,
+              "from 0 up to 1");
+  CheckNumber("--max_angle", angle, angle > 0 && angle <= 90, "in degrees above 0, up to 90");
+  CheckNumber("--min_theta_d", theta_d, theta_d == -1 || (theta_d >= 0 && theta_d < 90),
+              "in degrees from 0 to below 90, or -1 to go by the data");
+  FindNamed("radiometry", options.radiometry, UtiaRadiometries());
+}
 
 const std::vector<MeasurementFormat>& MeasurementFormats() {
   static const std::vector<MeasurementFormat> formats = {
@@ -120,6 +144,8 @@ SynthSource SynthSourceOf(std::string_view source) {
 }
 
 void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
+  CheckSourceOptions(options);
+  NotNull(table, "the table");
   if (options.extrapolated) {
     table->unmeasured.clear();
     table->max_theta = kPi / 2;
@@ -129,6 +155,7 @@ void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
 }
 
 void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
+  CheckSourceOptions(options);
   LeaveOutAtRandom(options.missing, options.seed, measurement);
   if (measurement->table) {
     DecideMeasured(options, &*measurement->table);
@@ -140,7 +167,10 @@ void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
 
 Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
                              const SourceOptions& options) {
-  Measurement measurement = FormatOf(bytes, source).read(bytes, source, options);
+  CheckSourceOptions(options);
+  const MeasurementFormat& format = FormatOf(bytes, source);
+  Measurement measurement = format.read(bytes, source, options);
+  NoteUnread(options, format.name, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
   DecideMeasured(options, &measurement);
@@ -153,6 +183,7 @@ BrdfTable ParseSource(std::string_view bytes, const std::string& source,
 }
 
 Measurement LoadMeasurement(const std::string& source, const SourceOptions& options) {
+  CheckSourceOptions(options);  // before a large file is read
   if (!IsSynthetic(source)) return ParseMeasurement(ReadFile(source), source, options);
   const auto [material, grid] = SynthSourceOf(source);
   Measurement measurement;
@@ -167,6 +198,7 @@ Measurement LoadMeasurement(const std::string& source, const SourceOptions& opti
                                        std::get<MerlGrid>(grid), options.num_threads)};
     measurement.table->source = source;
   }
+  NoteUnread(options, kSynth, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
 }

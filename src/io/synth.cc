@@ -159,6 +159,10 @@ void CheckNoise(double noise) {
   throw Error("noise is " + std::to_string(noise) + "; it must be from 0 to 1");
 }
 
+void CheckBrdf(const SynthMaterial& material) {
+  if (!material.brdf) throw Error("synth:" + material.name + " has no BRDF");
+}
+
 // A material as measured at the pair of directions number `index`; nothing where it is lost.
 std::optional<Rgb> Measure(const SynthMaterial& material, const DirectionPair& pair, double noise,
                            uint64_t seed, uint64_t index) {
@@ -204,6 +208,7 @@ const SynthMaterial& FindSynthMaterial(std::string_view name) {
 BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
                      const MerlGrid& grid, int num_threads) {
   CheckNoise(noise);
+  CheckBrdf(material);
   if (material.anisotropic) {
     throw Error("synth:" + material.name +
                 " is anisotropic, which a MERL table cannot hold; use it as scattered samples");
@@ -225,6 +230,8 @@ BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
 Measurement SynthesizeSamples(const SynthMaterial& material, double noise, uint64_t seed,
                               const HemisphereGrid& grid, int num_threads) {
   CheckNoise(noise);
+  CheckBrdf(material);
+  CheckHemisphereGrid(grid);
   const auto nodes = static_cast<size_t>(grid.nodes());
   std::vector<std::optional<Rgb>> measured(nodes * nodes);
   ParallelFor(grid.nodes(), num_threads, [&](int i) {

@@ -136,6 +136,7 @@ const std::vector<UtiaRadiometry>& UtiaRadiometries() {
 
 Measurement ParseUtia(std::string_view bytes, const std::string& source,
                       std::string_view radiometry, const HemisphereGrid& grid) {
+  CheckHemisphereGrid(grid);
   const UtiaRadiometry& meaning = FindNamed("radiometry", radiometry, UtiaRadiometries());
   if (const size_t size = Bytes(grid); bytes.size() != size) {
     const std::string nodes = std::to_string(grid.nodes());

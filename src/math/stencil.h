@@ -39,7 +39,8 @@ struct Between {
   double t = 0;
 };
 
-// Where an angle [rad], any finite one, lies among `count` at even steps from 0 around a circle.
+// Where an angle [rad], lies among `count` >= 1 at even steps from 0 around a circle. Throws Error
+// for other counts, and for an angle that is not finite.
 Between OnCircle(double radians, int count);
 
 // The entry itself.
@@ -47,7 +48,7 @@ Stencil PointStencil(int index);
 
 // Linear between the centres of `bins` unit bins (centre of bin i at i + 1/2), constant beyond the
 // outer centres; within kAtEntry of a centre that entry alone. `coordinate` is in [0, bins], where
-// bins >= 2. Throws Error where it is not a number.
+// bins >= 2. Throws Error where it is not a number, and for fewer bins.
 Stencil LinearStencil(double coordinate, int bins);
 
 }  // namespace trilobe

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/directions.h"
 #include "trilobe/brdf/merl_grid.h"
@@ -34,6 +35,23 @@ Between LocateTheta(const std::vector<double>& nodes, double degrees) {
   return Snapped({a, a + 1, (degrees - nodes[a]) / (nodes[a + 1] - nodes[a])});
 }
 
+// What reading needs of an axis, at little cost: that its entries are there.
+void CheckEntries(const Axis& axis) {
+  if (!axis.polar()) return;
+  if (!axis.theta.empty() && axis.phi_nodes >= 1 &&
+      static_cast<int64_t>(axis.theta.size()) * axis.phi_nodes == axis.size) {
+    return;
+  }
+  throw Error("an axis of " + std::to_string(axis.size) + " entries cannot have " +
+              std::to_string(axis.theta.size()) + " x " + std::to_string(axis.phi_nodes) +
+              " nodes");
+}
+
+void CheckEntry(const Axis& axis, int entry) {
+  CheckEntries(axis);
+  CheckIndex(entry, axis.size, "the entry of a table");
+}
+
 Stencil PolarStencil(const Axis& axis, double theta, double phi) {
   if (!(std::isfinite(theta) && std::isfinite(phi))) {
     throw Error("theta or phi of a direction is not a finite number");
@@ -56,6 +74,12 @@ Stencil PolarStencil(const Axis& axis, double theta, double phi) {
 }  // namespace
 
 Axis Axis::Polar(std::vector<double> theta_degrees, int phi_nodes) {
+  constexpr auto kFit = [](size_t nodes) { return nodes >= 1 && nodes <= kMaxTableSize; };
+  if (phi_nodes < 1 || !kFit(phi_nodes) || !kFit(theta_degrees.size())) {
+    throw Error("an axis of " + std::to_string(theta_degrees.size()) + " theta by " +
+                std::to_string(phi_nodes) + " phi; it needs from 1 to " +
+                std::to_string(kMaxTableSize) + " of each");
+  }
   const int size = static_cast<int>(theta_degrees.size()) * phi_nodes;
   return {.rule = Rule::kPolar,
           .size = size,
@@ -65,6 +89,8 @@ Axis Axis::Polar(std::vector<double> theta_degrees, int phi_nodes) {
 
 Axis Axis::EvenPolar(int thetas, Steps steps, int phi_nodes) {
   constexpr double kLast = 75;
+  CheckNumber("the number of theta of an axis", thetas, thetas >= 1 && thetas <= kMaxTableSize,
+              "from 1 to " + std::to_string(kMaxTableSize));
   std::vector<double> nodes;
   for (int a = 0; a < thetas; ++a) {
     const double t = thetas > 1 ? static_cast<double>(a) / (thetas - 1) : 0;
@@ -79,7 +105,9 @@ Axis Axis::ToHorizon() const {
   return Polar(std::move(nodes), phi_nodes);
 }
 
-bool Axis::reaches_horizon() const { return polar() && theta.back() >= kTowardsHorizon[1]; }
+bool Axis::reaches_horizon() const {
+  return polar() && !theta.empty() && theta.back() >= kTowardsHorizon[1];
+}
 
 Axis Axis::WithoutHorizon() const {
   if (!reaches_horizon()) return *this;
@@ -96,6 +124,7 @@ int Axis::SplineNodesFor(int data_thetas) {
 }
 
 Stencil Axis::At(double theta_radians, double phi_radians) const {
+  CheckEntries(*this);
   switch (rule) {
     case Rule::kRootTheta:
       return LinearStencil(MerlGrid{.theta_h = size}.ThetaHCoordinate(theta_radians), size);
@@ -110,12 +139,14 @@ Stencil Axis::At(double theta_radians, double phi_radians) const {
 }
 
 double Axis::Theta(int entry) const {
+  CheckEntry(*this, entry);
   if (polar()) return DegreesToRadians(theta[entry / phi_nodes]);
   if (rule == Rule::kRootTheta) return MerlGrid{.theta_h = size}.ThetaH(entry + 0.5);
   return (entry + 0.5) / size * (kPi / 2);
 }
 
 double Axis::Phi(int entry) const {
+  CheckEntry(*this, entry);
   return polar() ? entry % phi_nodes * (2 * kPi / phi_nodes) : 0;
 }
 
@@ -124,6 +155,7 @@ double Axis::Cell::SolidAngle() const {
 }
 
 Axis::Cell Axis::CellOf(int entry) const {
+  CheckEntry(*this, entry);
   if (!polar()) {
     const MerlGrid grid{.theta_h = size};
     return {grid.ThetaH(entry), grid.ThetaH(entry + 1), 2 * kPi};

@@ -23,6 +23,7 @@ struct Axis {
   std::vector<double> theta = {};  // [degrees]
   int phi_nodes = 1;
 
+  // These throw Error for fewer than one of theta or phi, or more than kMaxTableSize of either.
   static Axis Polar(std::vector<double> theta_degrees, int phi_nodes);
   // theta_a at so many even steps from 0 to 75 degrees, the last of UTIA's; or at steps of
   // sqrt(theta), which are denser where highlights are.
@@ -46,10 +47,10 @@ struct Axis {
   // The entries that a direction reads, with their weights; angles in radians. Constant beyond the
   // first and the last, periodic in phi, which the others but kPolar do not look at. What is within
   // 1e-9 of a node, in steps from it to the next, stands at it. Throws Error for angles that are no
-  // numbers.
+  // numbers, and for an axis that CheckAxis would not take for one.
   Stencil At(double theta_radians, double phi_radians) const;
 
-  // Where an entry stands. [rad]
+  // Where an entry stands. [rad] These, too, throw Error where there is none.
   double Theta(int entry) const;
   double Phi(int entry) const;  // 0 but for kPolar
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/lobe_light.h"
 
@@ -170,14 +171,14 @@ void DimBeyondData(std::span<const double> coverage, int num_threads, FactorMode
 }  // namespace
 
 void FillFromNeighbors(std::span<const double> coverage, FactorModel* model) {
-  CheckCoverage(coverage, *model);
+  CheckCoverage(coverage, NotNull(model, "the model"));
   ForEachObservedTable(coverage, model, [&](Factor factor, const auto& covered, const auto& table) {
     FillUnobserved(model->spec().axis(factor), covered, 1, table);
   });
 }
 
 void ContinueBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model) {
-  CheckCoverage(coverage, *model);
+  CheckCoverage(coverage, NotNull(model, "the model"));
   ForEachObservedTable(coverage, model, [&](Factor factor, const auto& covered, const auto& table) {
     const Axis& axis = model->spec().axis(factor);
     if (factor == Factor::kG) {

@@ -86,7 +86,7 @@ void CheckCoverage(std::span<const double> coverage, const FactorModel& model) {
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin) {
   CheckIsotropic(spec, "a MERL grid, which knows no azimuths,");
   SampleStencils stencils;
-  const HalfDiffAngles angles = grid.Center(bin);
+  const HalfDiffAngles angles = grid.Center(bin);  // which checks the bin
   if (spec.stretches.any() || spec.d_axis.size != grid.theta_h) {
     SetStretchedStencils(spec, angles, &stencils);
   } else {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "trilobe/base/check.h"
 #include "trilobe/brdf/channels.h"
 #include "trilobe/model/continuation.h"
 #include "trilobe/model/lobe_light.h"
@@ -56,7 +57,9 @@ void Normalize(Factor factor, int index, std::span<const double> norm_weights, d
 }  // namespace
 
 double ProjectedIntegral(const Axis& axis, std::span<const double> D) {
-  return WeightedSum(ProjectedAngles(axis), D);
+  const std::vector<double> angles = ProjectedAngles(axis);
+  CheckSize("D", D.size(), angles.size());
+  return WeightedSum(angles, D);
 }
 
 std::vector<bool> UnobservedParameters(std::span<const double> coverage) {
@@ -73,7 +76,7 @@ std::vector<double> ObservedEntries(const std::vector<bool>& unobserved) {
 
 void CopyUnobservedParameters(std::span<const double> coverage, const FactorModel& from,
                               FactorModel* to) {
-  CheckSameSpec(from.spec(), to->spec());
+  CheckSameSpec(from.spec(), NotNull(to, "the model").spec());
   CheckCoverage(coverage, from);
   for (size_t k = 0; k < coverage.size(); ++k) {
     if (!(coverage[k] > 0)) to->parameters()[k] = from.parameters()[k];
@@ -81,7 +84,7 @@ void CopyUnobservedParameters(std::span<const double> coverage, const FactorMode
 }
 
 void NormalizeScale(std::span<const double> coverage, FactorModel* model) {
-  CheckCoverage(coverage, *model);
+  CheckCoverage(coverage, NotNull(model, "the model"));
   const ModelSpec& spec = model->spec();
   FillFromNeighbors(coverage, model);
   for (const Factor factor : kFactors) {

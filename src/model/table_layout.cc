@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
@@ -70,7 +71,7 @@ void CheckLayout(const TableLayout& layout, const ModelSpec& spec) {
 }
 
 void ExpandStored(const TableLayout& layout, FactorModel* model) {
-  const ModelSpec& spec = model->spec();
+  const ModelSpec& spec = NotNull(model, "the model").spec();
   CheckLayout(layout, spec);
   const auto share = [](bool coloured, std::span<double> values) {
     if (!coloured) std::ranges::fill(values, values[0]);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/lobes.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/race/start_race.h"
@@ -44,7 +45,7 @@ std::vector<FactorModel> WithOneLobeMore(const FactorModel& canonical) {
 }
 
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
-                    double wanted, const std::function<bool()>& stop) {
+                    double wanted, const StopCheck& stop) {
   PhaseSeconds phases;
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kProjected, &phases);

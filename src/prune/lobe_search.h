@@ -1,9 +1,9 @@
 #ifndef TRILOBE_PRUNE_LOBE_SEARCH_H_
 #define TRILOBE_PRUNE_LOBE_SEARCH_H_
 
-#include <functional>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
 
@@ -25,7 +25,7 @@ struct FittedModel {
 // by side, then the best on all. Ends when E falls by little, or so slowly that it will not come
 // down to `wanted`, or when `stop` says so.
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
-                    double wanted, const std::function<bool()>& stop);
+                    double wanted, const StopCheck& stop);
 
 }  // namespace trilobe
 

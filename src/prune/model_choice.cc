@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -10,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
+#include "trilobe/base/stop_check.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/objective/canonical_form.h"
@@ -61,8 +62,8 @@ Objective Few(const Objective& objective) { return Thinned(objective, 32, 72); }
 
 // Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
 // read may be anything.
-FactorModel GoOn(const Objective& objective, const FactorModel& start,
-                 const std::function<bool()>& stop, const Reduction* reduction = nullptr) {
+FactorModel GoOn(const Objective& objective, const FactorModel& start, const StopCheck& stop,
+                 const Reduction* reduction = nullptr) {
   constexpr int kSteps = 2;
   return JointSteps(objective, start, kSteps, stop, reduction).model;
 }
@@ -93,8 +94,7 @@ class Objectives {
 };
 
 // What the default solver makes of few samples from its own starts.
-FactorModel FitAnew(const Objective& few, const FactorModel& start,
-                    const std::function<bool()>& stop) {
+FactorModel FitAnew(const Objective& few, const FactorModel& start, const StopCheck& stop) {
   FactorModel model = start;
   SolverOptions options;
   options.diagnose = false;
@@ -106,7 +106,7 @@ FactorModel FitAnew(const Objective& few, const FactorModel& start,
 // Whether the data rather have a form that shares less: a stretch may look like one. What more
 // parameters fit of few samples by chance is taken off; those of the guide tell nothing.
 bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
-                const SteppedModel& stretched, const std::function<bool()>& stop) {
+                const SteppedModel& stretched, const StopCheck& stop) {
   constexpr int kSteps = 5;
   const double values = kChannels * num_measured / 2.0;  // exchanged ones say the same
   const auto expected = [&](double E, const ModelSpec& spec) {
@@ -370,6 +370,7 @@ class ModelSearch {
 
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options) {
+  CheckNotEmpty(options.judge, "judge");
   if (options.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
   return ModelSearch(objective, fitted, options).Run();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/model/weighting.h"
@@ -24,7 +25,7 @@ struct ModelChoiceOptions {
   std::function<double(const FactorModel&)> judge_beyond = nullptr;
 
   // Asked after each step; true to stop with the best so far that keeps to the budget.
-  std::function<bool()> stop = [] { return false; };
+  StopCheck stop = {};
 };
 
 // One form that was tried.

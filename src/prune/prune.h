@@ -1,11 +1,11 @@
 #ifndef TRILOBE_PRUNE_PRUNE_H_
 #define TRILOBE_PRUNE_PRUNE_H_
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
@@ -36,7 +36,7 @@ struct PruneOptions {
   int max_lobes = 0;
 
   // Asked after each step; true to stop, after which what comes back is of no use.
-  std::function<bool()> stop = [] { return false; };
+  StopCheck stop = {};
 };
 
 // One thing that was tried.

@@ -322,7 +322,7 @@ std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings&
     try {
       std::optional<MaterialFit> fit = FitMaterial(scene.materials[k], settings, 1);
       const std::lock_guard<std::mutex> lock(mutex);
-      if (fit) on_done(*fit);
+      if (fit && on_done) on_done(*fit);
       results[k].fit = std::move(fit);
     } catch (const std::exception& exception) {
       results[k].error = MessageOf(exception);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/prune/prune.h"
@@ -34,7 +35,7 @@ struct SceneFitSettings {
   std::string build;    // and which build of it: what another one has fitted is not reused
   FitCache cache;
   // Asked after each iteration, from several threads; true to stop and keep nothing.
-  std::function<bool()> stop = [] { return false; };
+  StopCheck stop = {};
 };
 
 // What a fit reaches on the samples that a scene uses.

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "trilobe/base/check.h"
 #include "trilobe/math/eigenvalues.h"
 #include "trilobe/sums/normal_equations.h"
 
@@ -37,8 +38,10 @@ int GaugeDimensions(const FactorModel& model, const std::vector<double>& squared
 }  // namespace
 
 double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double> x) {
-  if (!(at.objective > 0)) return 0;
   const size_t n = x.size();
+  CheckSize("the gradient", at.gradient.size(), n);
+  CheckSize("squared_lengths", at.squared_lengths.size(), n);
+  if (!(at.objective > 0)) return 0;
   double largest = 0;
   for (size_t k = 0; k < n; ++k) {
     const double length = std::sqrt(at.squared_lengths[k]);

@@ -4,10 +4,15 @@
 #include <cmath>
 #include <vector>
 
+#include "trilobe/base/check.h"
+
 namespace trilobe {
 
 void SmoothG(double sigma, std::span<const double> coverage, FactorModel* model) {
-  const ModelSpec& spec = model->spec();
+  const ModelSpec& spec = NotNull(model, "the model").spec();
+  CheckNumber("sigma", sigma, sigma > 0 && std::isfinite(sigma), "finite and above 0");
+  CheckCoverage(coverage, *model);
+  CheckIsotropic(spec, "the Gaussian filter on G");
   const int radius =
       static_cast<int>(std::min(std::ceil(3 * sigma), static_cast<double>(spec.g_axis.size)));
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {

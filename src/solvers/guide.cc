@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/directions.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/solvers/initial_model.h"
@@ -144,7 +145,7 @@ BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int n
 
 // The guide of this number, from 0 (the finest), itself guided by the next where data are few.
 FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data,
-                     const std::function<bool()>& stop) {
+                     const StopCheck& stop) {
   const ModelSpec& spec = kind.specs[number];
   const int n = spec.num_parameters();
   const bool guided =
@@ -169,8 +170,8 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   if (measured.directions.empty()) {
     throw Error(measured.source + ": a guide needs samples with their directions");
   }
-  if (!(options.weight > 0)) {
-    throw Error(measured.source + ": the weight of a guide must be above 0");
+  if (!(options.weight > 0 && std::isfinite(options.weight))) {
+    throw Error(measured.source + ": the weight of a guide must be finite and above 0");
   }
   const GuideKind kind = KindFor(options, data.spec().lobes);
   return WithSamplesOf(FitGuide(kind, 0, data, options.stop), data, data.spec().num_parameters(),

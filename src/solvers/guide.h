@@ -1,8 +1,7 @@
 #ifndef TRILOBE_SOLVERS_GUIDE_H_
 #define TRILOBE_SOLVERS_GUIDE_H_
 
-#include <functional>
-
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/objective/objective.h"
 
@@ -22,7 +21,7 @@ struct GuideOptions {
   double weight = 1;  // > 0: what a sample of the guide counts, where there is one for six measured
   // The data know no azimuths, and so the guide knows none; what it says counts 0.003 of that.
   bool isotropic = false;
-  std::function<bool()> stop = [] { return false; };  // ends the fit of the guide early
+  StopCheck stop = {};  // ends the fit of the guide early
 };
 
 // The objective's samples and the guide's, one for six of them, with the objective's number of

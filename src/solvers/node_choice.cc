@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/brdf/directions.h"
@@ -85,6 +86,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   const Stopwatch since;
   const BrdfSamples& samples = data.samples();
   if (ladder.empty()) throw Error(samples.source + ": no nodes to choose from");
+  CheckNumber("guide", options.guide, options.guide >= 0 && std::isfinite(options.guide),
+              "finite and 0 or more");
   std::vector<int> kept, held;
   const std::vector<bool> held_out = HeldOut(samples, options.seed);
   for (int j = 0; j < samples.size(); ++j) (held_out[j] ? held : kept).push_back(j);

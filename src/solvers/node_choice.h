@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/iteration_record.h"
@@ -38,7 +39,7 @@ struct NodeChoiceOptions {
   double guide = 1;  // GuideOptions::weight, or 0 for no guide
   // As of SolverOptions, of each candidate's fit; returns false to stop.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
-  std::function<bool()> stop = [] { return false; };
+  StopCheck stop = {};
 };
 
 struct NodeChoice {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/gaussian_filter.h"
@@ -45,7 +46,7 @@ Run::Run(std::string solver, const Objective& objective, const SolverOptions& op
     : objective_(objective),
       exact_objective_(ExactObjective(objective)),
       model_(model),
-      previous_(*model) {
+      previous_(NotNull(model, "the model")) {
   summary_.solver = std::move(solver);
   summary_.given = WithoutCallbacks(options);
   summary_.used = options;
@@ -136,7 +137,8 @@ SolverSummary Run::Finish() {
 
 void RepeatSweeps(const std::function<void(FactorModel*)>& sweep, const Objective& objective,
                   FactorModel current, Run* run) {
-  const double sigma = run->options().g_filter_sigma;
+  CheckNotEmpty(sweep, "sweep");
+  const double sigma = NotNull(run, "the run").options().g_filter_sigma;
   for (bool go_on = run->Start(); go_on;) {
     sweep(&current);
     if (sigma > 0) SmoothG(sigma, objective.coverage(), &current);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/named.h"
 
@@ -64,8 +65,7 @@ const std::vector<SolverEntry>& Solvers() { return MutableSolvers(); }
 
 SolverSummary Solver::Solve(const Objective& objective, const SolverOptions& options,
                             FactorModel* model) const {
-  if (model == nullptr) throw Error("a solver needs a model to start from, not null");
-  CheckSameSpec(model->spec(), objective.spec());
+  CheckSameSpec(NotNull(model, "the model to start from").spec(), objective.spec());
   CheckParameters(*model);
   CheckSolverOptions(options);
   if (options.g_filter_sigma > 0) CheckIsotropic(objective.spec(), "the Gaussian filter on G");

@@ -68,7 +68,6 @@ SolverOption Option(const char* name, T SolverOptions::*member, SolverOption opt
   return option;
 }
 
-constexpr OptionRange kNumber = {"a number", [](double x) { return !std::isnan(x); }};
 constexpr OptionRange kNotNegative = {"0 or more", [](double x) { return x >= 0; }};
 constexpr OptionRange kAtLeastOne = {"1 or more", [](double x) { return x >= 1; }};
 constexpr OptionRange kFiniteNotNegative = {"finite and 0 or more",
@@ -107,13 +106,13 @@ std::vector<SolverOption> MakeOptions() {
           {.common = true,
            .flag = "tolerance",
            .help = "stop when an iteration changes E by less than this fraction of it",
-           .range = kNumber,
+           .range = kNotNegative,
            .unit = {{.default_value = defaults.relative_decrease_tolerance, .range = kFraction}}}),
       Option("optimality_tolerance", &Options::optimality_tolerance,
              {.common = true,
               .help = "stop when the scaled projected gradient is at most this, where the solver "
                       "knows it",
-              .range = kNumber,
+              .range = kNotNegative,
               .unit = {{.default_value = defaults.optimality_tolerance, .range = kFraction}}}),
       Option("diagnose", &Options::diagnose,
              {.common = true,

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "trilobe/base/check.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/math/triangle.h"
 #include "trilobe/objective/sample_derivatives.h"
@@ -137,6 +138,7 @@ NormalEquations::~NormalEquations() = default;
 
 void NormalEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
   CheckSameSpec(model.spec(), objective_.spec());
+  NotNull(result, "the result");
   if (condensed_ != nullptr) {
     Clear(model.spec().num_parameters(), result);
     condensed_->Evaluate(model, hessian, objective_.num_threads(), result);

@@ -12,12 +12,15 @@
 #include "tests/test_util.h"
 #include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/brdf/node_brdf.h"
 #include "trilobe/brdf/tabulated_brdf.h"
+#include "trilobe/model/continuation.h"
 #include "trilobe/model/continuous_model.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/parameter_blocks.h"
 #include "trilobe/objective/score.h"
 
@@ -197,6 +200,7 @@ TEST(Arguments, TablesAndGrids) {
   for (const double bad : {kNaN, -1.0}) {
     EXPECT_NE(ErrorOf([&] { LimitAngles(bad, Unmeasured::kBeyondMaxAngle, &table); }), "");
   }
+  EXPECT_NE(ErrorOf([&] { LimitThetaD(kNaN, &table); }), "");
   for (const MerlGrid& bad : {MerlGrid{.theta_h = 0}, MerlGrid{.theta_d = -1},
                               MerlGrid{.theta_h = 1 << 20, .theta_d = 1 << 20}}) {
     EXPECT_THAT(ErrorOf([&] { MakeInvalidTable("bad", bad); }), HasSubstr("grid"));
@@ -204,6 +208,91 @@ TEST(Arguments, TablesAndGrids) {
     EXPECT_THAT(ErrorOf([&] { Reconstruct(FactorModel(), "bad", bad); }), HasSubstr("grid"));
   }
   EXPECT_NE(ErrorOf([] { VisibleSolidAngles(0); }), "");
+}
+
+TEST(Arguments, AxesAndTheirEntries) {
+  for (const int phi : {0, -1, 1 << 30}) EXPECT_NE(ErrorOf([&] { Axis::Polar({0, 10}, phi); }), "");
+  EXPECT_NE(ErrorOf([] { Axis::Polar({}, 1); }), "");
+  EXPECT_NE(ErrorOf([] { Axis::Polar(std::vector<double>(1 << 20), 1 << 20); }), "");
+  for (const int thetas : {0, -1, 1 << 30}) {
+    EXPECT_THAT(ErrorOf([&] { Axis::EvenPolar(thetas, Axis::Steps::kOfTheta, 4); }),
+                HasSubstr("from 1 to 2048"));
+  }
+  // Members say what they like.
+  const Axis no_nodes = {.rule = Axis::Rule::kPolar, .size = 4, .theta = {}, .phi_nodes = 0};
+  EXPECT_THAT(ErrorOf([&] { no_nodes.At(0, 0); }), HasSubstr("cannot have 0 x 0 nodes"));
+  EXPECT_FALSE(no_nodes.reaches_horizon());
+  for (const auto rule : {Axis::Rule::kRootTheta, Axis::Rule::kTheta, Axis::Rule::kSpline}) {
+    EXPECT_NE(ErrorOf([&] { Axis{.rule = rule, .size = 0}.At(0, 0); }), "");
+  }
+  for (const Axis& axis : {Axis::Utia(), Axis{.rule = Axis::Rule::kTheta, .size = 5}}) {
+    for (const int entry : {-1, axis.size, 1 << 30}) {
+      EXPECT_THAT(ErrorOf([&] { axis.Theta(entry); }), HasSubstr("must be from 0 to "));
+      EXPECT_THAT(ErrorOf([&] { axis.Phi(entry); }), HasSubstr("must be from 0 to "));
+      EXPECT_THAT(ErrorOf([&] { axis.CellOf(entry); }), HasSubstr("must be from 0 to "));
+    }
+  }
+  EXPECT_NE(ErrorOf([] { OnCircle(kNaN, 4); }), "");
+  EXPECT_NE(ErrorOf([] { OnCircle(1, 0); }), "");
+  EXPECT_NE(ErrorOf([] { LinearStencil(0.5, 1); }), "");
+  EXPECT_THAT(ErrorOf([] { ProjectedIntegral(Axis::Utia(), std::vector<double>(3)); }),
+              HasSubstr("must have 288"));
+}
+
+TEST(Arguments, BinsNodesAndSamples) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  for (const int bin : {-1, kGrid.size(), 1 << 30}) {
+    EXPECT_THAT(ErrorOf([&] { GridStencils(spec, kGrid, bin); }), HasSubstr("from 0 to 239"));
+    EXPECT_THAT(ErrorOf([&] { kGrid.Center(bin); }), HasSubstr("from 0 to 239"));
+  }
+  EXPECT_THAT(ErrorOf([&] { GridStencils(spec, {}, 1000); }), HasSubstr("does not read a grid"));
+  EXPECT_NE(ErrorOf([] { MerlGrid{.phi_d = 0}.Center(0); }), "");
+  const HemisphereGrid nodes = {2, 3};
+  for (const int node : {-1, 6}) {
+    EXPECT_NE(ErrorOf([&] { nodes.Theta(node); }), "");
+    EXPECT_NE(ErrorOf([&] { nodes.Angles(0, node); }), "");
+  }
+  for (const HemisphereGrid& bad : {HemisphereGrid{0, 3}, {3, 0}, {-1, -1}, {1 << 20, 1 << 20}}) {
+    EXPECT_THAT(ErrorOf([&] { CheckHemisphereGrid(bad); }), HasSubstr("at least one"));
+  }
+  for (const BrdfSamples& samples : {Samples(), Scattered(Samples())}) {
+    for (const int j : {-1, samples.size()}) {
+      EXPECT_NE(ErrorOf([&] { samples.Angles(j); }), "");
+      EXPECT_NE(ErrorOf([&] { samples.Multiplicity(j); }), "");
+      EXPECT_NE(ErrorOf([&] { samples.CosinesOf(j); }), "");
+      EXPECT_NE(ErrorOf([&] { samples.SolidAngle(j); }), "");
+    }
+  }
+}
+
+TEST(Arguments, NullsAndEmptyFunctions) {
+  const std::vector<double> coverage(1000, 1.0);
+  const FactorModel model = RandomModel(ModelSpec::SharedFactors(1, kGrid), 1);
+  const auto null = HasSubstr("must not be null");
+  EXPECT_THAT(ErrorOf([&] { Canonicalize(coverage, nullptr); }), null);
+  EXPECT_THAT(ErrorOf([&] { Canonicalize(MakeObjective(Samples()), nullptr); }), null);
+  EXPECT_THAT(ErrorOf([&] { NormalizeScale(coverage, nullptr); }), null);
+  EXPECT_THAT(ErrorOf([&] { FillFromNeighbors(coverage, nullptr); }), null);
+  EXPECT_THAT(ErrorOf([&] { ContinueBeyondData(coverage, 1, nullptr); }), null);
+  EXPECT_THAT(ErrorOf([&] { CopyUnobservedParameters(coverage, model, nullptr); }), null);
+  EXPECT_THAT(ErrorOf([&] { ExpandStored(TableLayout::Full(model.spec()), nullptr); }), null);
+  EXPECT_THAT(ErrorOf([] { LimitAngles(1, Unmeasured::kBeyondMaxAngle, nullptr); }), null);
+  EXPECT_THAT(ErrorOf([] { LimitThetaD(1, static_cast<BrdfTable*>(nullptr)); }), null);
+  const auto empty = HasSubstr("not empty");
+  EXPECT_THAT(ErrorOf([] { DirectionalAlbedo(nullptr, 0); }), empty);
+  EXPECT_THAT(ErrorOf([] { ReciprocityError(nullptr, kGrid, 1); }), empty);
+  const auto black = [](const DirectionPair&) { return Rgb{}; };
+  EXPECT_THAT(ErrorOf([&] { ReciprocityError(black, kGrid, 1, nullptr); }), empty);
+  const auto threads = HasSubstr("num_threads");
+  const std::vector<double> angles = {0};
+  for (const int bad : {0, -1}) {
+    EXPECT_THAT(ErrorOf([&] { DirectionalAlbedos(black, angles, bad); }), threads);
+    EXPECT_THAT(ErrorOf([&] { Reconstruct(model, "model", kGrid, bad); }), threads);
+    const std::vector<double> all(model.parameters().size(), 1.0);
+    EXPECT_THAT(ErrorOf([&] { ComputeLobeLight(all, model, bad); }), threads);
+    FactorModel copy = model;
+    EXPECT_THAT(ErrorOf([&] { Canonicalize(all, &copy, LobeOrder::kByLight, bad); }), threads);
+  }
 }
 
 TEST(Arguments, SizesOfArrays) {

@@ -168,6 +168,7 @@ TEST(ModelChoice, TheJudgeDecides) {
   ModelChoiceOptions options = {.max_parameters = kPlenty, .judge = [](const FactorModel& model) {
                                   return model.spec().lobes;
                                 }};
+  options.stop = nullptr;  // as if it was not there
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).model.spec().lobes, 3);
   // To one that sees no difference the fitted model is good enough.
   options.judge = [](const FactorModel&) { return 1.0; };
@@ -184,6 +185,9 @@ TEST(ModelChoice, TheJudgeDecides) {
   // Or of all.
   options.judge = [](const FactorModel&) { return std::nan(""); };
   EXPECT_EQ(ChooseModel(fit.objective, fit.model, options).chosen, 0);
+  // There must be one.
+  options.judge = nullptr;
+  EXPECT_THROW(ChooseModel(fit.objective, fit.model, options), Error);
 }
 
 TEST(ModelChoice, FindsWhatTheDataDoNotShare) {

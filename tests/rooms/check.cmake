@@ -39,6 +39,9 @@ expect_failure(math/stencil.cc "#include <cmath>"
 expect_failure(rooms.txt "extra: model" "rooms.txt: extra sees model, which is not listed above it")
 expect_failure(rooms.txt "extra:\nother: extra"
                "rooms.txt: no file of other includes a header of extra")
+expect_failure(public.txt "math/none" "public.txt: there is no math/none.h")
+expect_failure(model/gauge.h "#include \"trilobe/math/cubic.h\""
+               "model/gauge.h: #include \"trilobe/math/cubic.h\" in a public header")
 execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1)
 file(MAKE_DIRECTORY ${scratch_dir}/src/attic)

@@ -165,7 +165,7 @@ TEST(FitScene, IsTheSameForAnyNumberOfThreads) {
   const auto one =
       FitScene(scene, Settings(), 1, [&](const MaterialFit& fit) { done.push_back(fit.name); });
   EXPECT_EQ(done, (std::vector<std::string>{"felt", "rubber", "plastic"}));
-  const auto four = FitScene(scene, Settings(), 4, [](const MaterialFit&) {});
+  const auto four = FitScene(scene, Settings(), 4, /*on_done=*/nullptr);
   ASSERT_EQ(one.size(), 3U);
   ASSERT_EQ(four.size(), 3U);
   for (size_t k = 0; k < one.size(); ++k) {

@@ -12,9 +12,14 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/solvers/diagnosis.h"
+#include "trilobe/solvers/gaussian_filter.h"
+#include "trilobe/solvers/guide.h"
 #include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/joint/reflectance.h"
+#include "trilobe/solvers/node_choice.h"
+#include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -73,8 +78,12 @@ TEST_P(SolverArguments, OptionsOutOfTheirRange) {
   EXPECT_THAT(error([](SolverOptions* to) { to->max_seconds = kNaN; }), HasSubstr("max_seconds"));
   EXPECT_THAT(error([](SolverOptions* to) { to->relative_decrease_tolerance = kNaN; }),
               HasSubstr("relative_decrease_tolerance"));
-  EXPECT_THAT(error([](SolverOptions* to) { to->optimality_tolerance = kNaN; }),
-              HasSubstr("optimality_tolerance"));
+  for (const double bad : {-1.0, kNaN}) {
+    EXPECT_THAT(error([&](SolverOptions* to) { to->relative_decrease_tolerance = bad; }),
+                HasSubstr("relative_decrease_tolerance"));
+    EXPECT_THAT(error([&](SolverOptions* to) { to->optimality_tolerance = bad; }),
+                HasSubstr("optimality_tolerance"));
+  }
   for (const double bad : {-1.0, kNaN, kInfinity}) {
     EXPECT_THAT(error([&](SolverOptions* to) { to->g_filter_sigma = bad; }),
                 HasSubstr("g_filter_sigma"));
@@ -105,6 +114,45 @@ TEST(RegisterSolver, NeedsANameAndSomethingToMakeIt) {
   entry.make = [] { return nullptr; };
   RegisterSolver(entry);
   EXPECT_THAT(ErrorOf([] { MakeSolver("own"); }), HasSubstr("'own'"));
+}
+
+TEST(SolverRoom, NullsAndEmptyFunctions) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
+  FactorModel model = RandomModel(spec, 1);
+  EXPECT_THAT(ErrorOf([&] { trilobe::Run("own", objective, {}, nullptr); }), HasSubstr("null"));
+  trilobe::Run run("own", objective, {}, &model);
+  EXPECT_THAT(ErrorOf([&] { RepeatSweeps(nullptr, objective, model, &run); }), HasSubstr("empty"));
+  EXPECT_THAT(ErrorOf([&] { RepeatSweeps([](FactorModel*) {}, objective, model, nullptr); }),
+              HasSubstr("null"));
+  EXPECT_THAT(ErrorOf([&] { SmoothG(1, objective.coverage(), nullptr); }), HasSubstr("null"));
+  EXPECT_THAT(
+      ErrorOf([&] { NormalEquations(objective).Evaluate(model, Hessian::kNewton, nullptr); }),
+      HasSubstr("null"));
+  // One that is asked whether to stop says no.
+  EXPECT_FALSE(TieEntriesAtDataEdge(objective, &model, nullptr));
+  EXPECT_NO_THROW(MatchReflectance(objective, objective, model, TableLayout::Full(spec), 30, {}));
+}
+
+TEST(SolverRoom, NumbersOutOfTheirRange) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
+  FactorModel model = RandomModel(spec, 1);
+  for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(ErrorOf([&] { SmoothG(bad, objective.coverage(), &model); }), HasSubstr("sigma"));
+    EXPECT_THAT(ErrorOf([&] { WithGuide(objective, {.weight = bad}); }), HasSubstr("weight"));
+  }
+  EXPECT_THAT(ErrorOf([&] { SmoothG(1, std::vector<double>(3), &model); }), HasSubstr("coverage"));
+  for (const double bad : {-1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(ErrorOf([&] {
+                  ChooseNodes(objective, {NodeCandidate{.name = "own", .spec = spec}},
+                              {.guide = bad});
+                }),
+                HasSubstr("guide"));
+  }
+  const std::vector<double> x(3);
+  EXPECT_THAT(ErrorOf([&] { ScaledProjectedGradient(QuadraticModel(), x); }),
+              HasSubstr("gradient"));
 }
 
 TEST(SolverRoom, ModelsOfAnotherSpec) {

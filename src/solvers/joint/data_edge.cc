@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/solvers/joint/joint_step.h"
 #include "trilobe/solvers/joint/reduction.h"
@@ -65,7 +66,7 @@ int NumKept(Rule rule, std::span<const double> coverage, std::span<const double>
 // Ties the ends of the tables of these factors. True if there was something to tie, and E came
 // back.
 bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& objective,
-         const std::function<bool()>& stop, TieRefit refit, FactorModel* model) {
+         const StopCheck& stop, TieRefit refit, FactorModel* model) {
   if (stop()) return false;
   const ModelSpec& spec = model->spec();
   TableLayout layout = TableLayout::Full(spec);
@@ -108,8 +109,8 @@ bool Tie(Rule rule, std::initializer_list<Factor> factors, const Objective& obje
 
 }  // namespace
 
-bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
-                          const std::function<bool()>& stop, TieRefit refit) {
+bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model, const StopCheck& stop,
+                          TieRefit refit) {
   CheckSameSpec(model->spec(), objective.spec());
   CheckParameters(*model);
   // Where few samples are dear, less is tied: at least nodes of G beyond the data, which only the

@@ -1,9 +1,9 @@
 #ifndef TRILOBE_SOLVERS_JOINT_DATA_EDGE_H_
 #define TRILOBE_SOLVERS_JOINT_DATA_EDGE_H_
 
-#include <functional>
 #include <span>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
@@ -27,10 +27,8 @@ enum class TieRefit { kUntilSettled, kUntilBack };
 // tie. `stop` is asked before each step of the refit: once it says so there are no more, and the
 // model is judged as it is. Throws Error for a model of another spec, or with parameters that none
 // has.
-bool TieEntriesAtDataEdge(
-    const Objective& objective, FactorModel* model,
-    const std::function<bool()>& stop = [] { return false; },
-    TieRefit refit = TieRefit::kUntilSettled);
+bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
+                          const StopCheck& stop = {}, TieRefit refit = TieRefit::kUntilSettled);
 
 // The entries of a model with this coverage (Objective::coverage) that are not tied: all but those
 // that, at the end of what is observed of a table, equal the one before them, as those of a tail of

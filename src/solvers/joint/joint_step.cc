@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/run.h"
 
@@ -198,8 +199,7 @@ double JointStepper::Optimality() {
 }
 
 SteppedModel JointSteps(const Objective& objective, const FactorModel& start, int steps,
-                        const std::function<bool()>& stop, const Reduction* reduction,
-                        double small) {
+                        const StopCheck& stop, const Reduction* reduction, double small) {
   PhaseSeconds phases;
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        reduction ? JointStepper::Trial::kAsItIs : JointStepper::Trial::kProjected,

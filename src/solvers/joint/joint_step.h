@@ -1,12 +1,12 @@
 #ifndef TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
 #define TRILOBE_SOLVERS_JOINT_JOINT_STEP_H_
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/solvers/awls/sweep.h"
 #include "trilobe/solvers/joint/nonnegative_step.h"
 #include "trilobe/solvers/joint/reduction.h"
@@ -106,7 +106,7 @@ struct SteppedModel {
   double E;
 };
 SteppedModel JointSteps(const Objective& objective, const FactorModel& start, int steps,
-                        const std::function<bool()>& stop, const Reduction* reduction = nullptr,
+                        const StopCheck& stop, const Reduction* reduction = nullptr,
                         double small = 0);
 
 // The metric S of the damping of steps in parameters that make up these parts, from the squared

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/objective/quadratic_model.h"
 #include "trilobe/objective/sample_derivatives.h"
@@ -122,7 +123,7 @@ Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) 
 
 std::optional<MatchedModel> MatchReflectance(const Objective& objective, const Objective& minimised,
                                              const FactorModel& model, const TableLayout& layout,
-                                             double price, const std::function<bool()>& stop) {
+                                             double price, const StopCheck& stop) {
   CheckSameSpec(model.spec(), objective.spec());
   CheckSameSpec(model.spec(), minimised.spec());
   CheckParameters(model);

@@ -1,9 +1,9 @@
 #ifndef TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
 #define TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
 
-#include <functional>
 #include <optional>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/channels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
@@ -41,10 +41,9 @@ struct MatchedModel {
   FactorModel model;
   double error_before, error_after;  // Reflectance::Error of the fit, and of this
 };
-std::optional<MatchedModel> MatchReflectance(
-    const Objective& objective, const Objective& minimised, const FactorModel& model,
-    const TableLayout& layout, double price,
-    const std::function<bool()>& stop = [] { return false; });
+std::optional<MatchedModel> MatchReflectance(const Objective& objective, const Objective& minimised,
+                                             const FactorModel& model, const TableLayout& layout,
+                                             double price, const StopCheck& stop = {});
 
 }  // namespace trilobe
 

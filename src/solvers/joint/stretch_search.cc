@@ -4,12 +4,13 @@
 #include <optional>
 #include <utility>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/solvers/joint/stretch_step.h"
 
 namespace trilobe {
 
 SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
-                          const std::function<bool()>& stop) {
+                          const StopCheck& stop) {
   constexpr int kJointSteps = 3;  // at each point
   constexpr int kMaxTries = 32;
   constexpr int kMaxRejected = 5;   // in a row

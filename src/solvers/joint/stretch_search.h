@@ -1,8 +1,7 @@
 #ifndef TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
 #define TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
 
-#include <functional>
-
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/solvers/joint/joint_step.h"
@@ -15,7 +14,7 @@ namespace trilobe {
 // that share D have one stretch together. Once `stop` is true the best so far is returned. The same
 // bits for any number of threads, as long as it stays false.
 SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
-                          const std::function<bool()>& stop);
+                          const StopCheck& stop);
 
 }  // namespace trilobe
 

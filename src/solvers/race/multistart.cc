@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobes.h"
 #include "trilobe/solvers/initial_model.h"
@@ -26,8 +26,7 @@ constexpr StartRace::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride
 // A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
 // a little, each time by so many sweeps and a few joint steps: a lobe that grew out of another
 // starts where it is needed.
-FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
-                 const std::function<bool()>& stop) {
+FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed, const StopCheck& stop) {
   constexpr int kTries = 5;
   const Stretches& stretches = objective.spec().stretches;
   ModelSpec spec = objective.spec();
@@ -51,7 +50,7 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed,
 class Starts {
  public:
   Starts(const Objective& objective, const FactorModel& given, uint64_t seed, StartRace* race,
-         std::function<bool()> stop)
+         StopCheck stop)
       : objective_(objective), given_(given), seed_(seed), race_(race), stop_(std::move(stop)) {}
 
   // Enters more of them, until there have been `count`.
@@ -115,7 +114,7 @@ class Starts {
   const FactorModel& given_;
   const uint64_t seed_;
   StartRace* const race_;
-  const std::function<bool()> stop_;
+  const StopCheck stop_;
   int entered_ = 0;
   uint64_t random_ = 0;  // of those, random ones
 };

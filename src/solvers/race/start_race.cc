@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trilobe/base/parallel.h"
+#include "trilobe/base/stop_check.h"
 #include "trilobe/solvers/awls/sweep.h"
 #include "trilobe/solvers/joint/joint_step.h"
 
@@ -39,7 +40,7 @@ class StartRace::Entrant {
     if (model_) E_ = Evaluate();
   }
 
-  void Advance(int tries, const std::function<bool()>& stop) {
+  void Advance(int tries, const StopCheck& stop) {
     if (stop()) return;
     if (make_start_) Start(stop);
     if (!model_ || tries_ >= tries || stop()) return;
@@ -73,7 +74,7 @@ class StartRace::Entrant {
   const PhaseSeconds& phases() const { return phases_; }
 
  private:
-  void Start(const std::function<bool()>& stop) {
+  void Start(const StopCheck& stop) {
     model_ = std::exchange(make_start_, nullptr)();
     if (!model_) {
       Leave();
@@ -109,8 +110,7 @@ class StartRace::Entrant {
   std::unique_ptr<JointStepper> stepper_;
 };
 
-StartRace::StartRace(const Objective& objective, const Thinning& thinning,
-                     std::function<bool()> stop)
+StartRace::StartRace(const Objective& objective, const Thinning& thinning, StopCheck stop)
     : objective_(objective), stop_(std::move(stop)), stride_(StrideFor(objective, thinning)) {
   Thin();
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/solvers/solver.h"
@@ -29,7 +30,7 @@ class StartRace {
   };
 
   // `stop` may be asked from several threads.
-  StartRace(const Objective& objective, const Thinning& thinning, std::function<bool()> stop);
+  StartRace(const Objective& objective, const Thinning& thinning, StopCheck stop);
   ~StartRace();
 
   // Goes on with about twice as many samples, if these are not all.
@@ -71,7 +72,7 @@ class StartRace {
   std::vector<Entrant*> Ranked() const;
 
   const Objective& objective_;
-  const std::function<bool()> stop_;
+  const StopCheck stop_;
   int stride_;  // that samples are thinned by
   std::unique_ptr<const Objective> thinned_;
   std::vector<std::unique_ptr<Entrant>> entrants_;
