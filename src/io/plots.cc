@@ -33,14 +33,14 @@ double Bound(const FactorModel& model) {
 }  // namespace
 
 void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace) {
-  const std::string name = file.fit.source.empty() ? "the model" : file.fit.source;
+  const std::string name = "the model" + (file.fit.source.empty() ? "" : " of " + file.fit.source);
   const double largest = std::ranges::max(file.model.parameters());
   if (!(std::max(largest, Bound(file.model)) <= kLargest)) {
-    throw Error(name + ": the model's factors are too large to draw; its values go beyond 1e200");
+    throw Error(name + " goes beyond 1e200, too far to draw; its factors are too large");
   }
   for (const IterationRecord& record : trace) {
     if (record.objective <= kLargest && record.seconds <= kLargest) continue;
-    throw Error(name + ": row " + std::to_string(record.iteration) +
+    throw Error("row " + std::to_string(record.iteration) +
                 " of the trace goes beyond 1e200, too far to draw");
   }
 }

@@ -94,8 +94,8 @@ struct SampleStencils {
 };
 
 // Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/model.md), a stretched
-// D, and tables of other bins than the grid's, between two. Throws Error for an anisotropic spec, and
-// where the grid has no such bin.
+// D, and tables of other bins than the grid's, between two. Throws Error for an anisotropic spec,
+// and where the grid has no such bin.
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);
 
 // Stencils at any directions, as the axes have it (Axis::At). Angles without azimuths do for

@@ -10,7 +10,7 @@ namespace trilobe {
 
 void SmoothG(double sigma, std::span<const double> coverage, FactorModel* model) {
   const ModelSpec& spec = NotNull(model, "the model").spec();
-  CheckNumber("sigma", sigma, sigma > 0 && std::isfinite(sigma), "finite and above 0");
+  CheckNumber("sigma", sigma, sigma > 0, "above 0");
   CheckCoverage(coverage, *model);
   CheckIsotropic(spec, "the Gaussian filter on G");
   const int radius =

@@ -11,7 +11,7 @@ namespace trilobe {
 // its observed nodes only (coverage > 0; weights renormalised at ends and gaps). The paper's remedy
 // for high-frequency oscillations of G on specular materials; it may raise E (paper 3.3,
 // docs/sums.md). `coverage` is Objective::coverage(). Throws Error for another size of it, for an
-// anisotropic model, and unless sigma is finite and above 0.
+// anisotropic model, and unless sigma is above 0.
 void SmoothG(double sigma, std::span<const double> coverage, FactorModel* model);
 
 }  // namespace trilobe

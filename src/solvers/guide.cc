@@ -167,11 +167,11 @@ FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data
 
 BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
   const BrdfSamples& measured = data.samples();
-  if (measured.directions.empty()) {
-    throw Error(measured.source + ": a guide needs samples with their directions");
-  }
   if (!(options.weight > 0 && std::isfinite(options.weight))) {
     throw Error(measured.source + ": the weight of a guide must be finite and above 0");
+  }
+  if (measured.directions.empty()) {
+    throw Error(measured.source + ": a guide needs samples with their directions");
   }
   const GuideKind kind = KindFor(options, data.spec().lobes);
   return WithSamplesOf(FitGuide(kind, 0, data, options.stop), data, data.spec().num_parameters(),

@@ -68,6 +68,7 @@ SolverOption Option(const char* name, T SolverOptions::*member, SolverOption opt
   return option;
 }
 
+constexpr OptionRange kNumber = {"a number", [](double x) { return !std::isnan(x); }};
 constexpr OptionRange kNotNegative = {"0 or more", [](double x) { return x >= 0; }};
 constexpr OptionRange kAtLeastOne = {"1 or more", [](double x) { return x >= 1; }};
 constexpr OptionRange kFiniteNotNegative = {"finite and 0 or more",
@@ -106,7 +107,7 @@ std::vector<SolverOption> MakeOptions() {
           {.common = true,
            .flag = "tolerance",
            .help = "stop when an iteration changes E by less than this fraction of it",
-           .range = kNotNegative,
+           .range = kNumber,  // below 0: never
            .unit = {{.default_value = defaults.relative_decrease_tolerance, .range = kFraction}}}),
       Option("optimality_tolerance", &Options::optimality_tolerance,
              {.common = true,

@@ -179,7 +179,7 @@ TEST(EnvironmentTest, NoLightIsAnError) {
             "test: the environment has no light; give one that is not black");
   for (const double bad :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THAT(ErrorOf(OnePixel(2, 3, {1, bad, 1})), testing::StartsWith("test: the environment"));
+    EXPECT_THAT(ErrorOf(OnePixel(2, 3, {1, bad, 1})), testing::StartsWith("test: the radiance"));
   }
 }
 

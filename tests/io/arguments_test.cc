@@ -101,8 +101,11 @@ TEST(Arguments, GridsAndPictures) {
 TEST(Arguments, WhatNoAxisShows) {
   FactorModel model(ModelSpec::SharedFactors(1, {.theta_h = 4, .theta_d = 4}));
   for (double& x : model.parameters()) x = 1e60;  // and their product is beyond all
-  EXPECT_THAT(ErrorOf([&] { CheckDrawable({model, {}, {}}, {}); }), HasSubstr("too large to draw"));
-  EXPECT_THAT(ErrorOf([&] { DrawFactors({model, {}, {}}, "x.png"); }), HasSubstr("too large"));
+  EXPECT_THAT(ErrorOf([&] { CheckDrawable({model, {}, {}}, {}); }), HasSubstr("too far to draw"));
+  EXPECT_THAT(ErrorOf([&] {
+                DrawFactors({model, {}, {}}, "x.png");
+              }),
+              HasSubstr("too far to draw"));
   const std::vector<IterationRecord> trace = {{.objective = 1},
                                               {.iteration = 1, .objective = 1e308}};
   EXPECT_THAT(ErrorOf([&] { DrawTrace(trace, "", "x.png"); }), HasSubstr("row 1 of the trace"));

@@ -245,7 +245,6 @@ TEST(Arguments, BinsNodesAndSamples) {
     EXPECT_THAT(ErrorOf([&] { GridStencils(spec, kGrid, bin); }), HasSubstr("from 0 to 239"));
     EXPECT_THAT(ErrorOf([&] { kGrid.Center(bin); }), HasSubstr("from 0 to 239"));
   }
-  EXPECT_THAT(ErrorOf([&] { GridStencils(spec, {}, 1000); }), HasSubstr("does not read a grid"));
   EXPECT_NE(ErrorOf([] { MerlGrid{.phi_d = 0}.Center(0); }), "");
   const HemisphereGrid nodes = {2, 3};
   for (const int node : {-1, 6}) {

@@ -19,7 +19,7 @@ SolverOptions Sweeps(int count, double g_filter_sigma = 0) {
   SolverOptions options;
   options.max_iterations = count;
   options.g_filter_sigma = g_filter_sigma;
-  options.relative_decrease_tolerance = 0;  // never
+  options.relative_decrease_tolerance = -std::numeric_limits<double>::infinity();  // never
   return options;
 }
 
