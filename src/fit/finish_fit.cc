@@ -87,7 +87,7 @@ class NoHarm {
 
 // As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
 // the fit's spec.
-void MatchReflectanceOf(const Objective& of, const std::function<bool()>& stop, Looks* looks,
+void MatchReflectanceOf(const Objective& of, const StopCheck& stop, Looks* looks,
                         FinishedFit* fit) {
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
@@ -21,7 +22,7 @@ struct FinishOptions {
   int max_parameters = 0;         // above 0: the form that looks best within so many (ChooseModel)
   bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
   AppearanceOptions appearance;
-  std::function<bool()> stop = [] { return false; };
+  StopCheck stop = {};
 };
 
 struct FinishedFit {

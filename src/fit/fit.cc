@@ -1,9 +1,11 @@
 #include "trilobe/fit/fit.h"
 
+#include <cmath>
 #include <utility>
 
 #include "trilobe/appearance/material.h"
 #include "trilobe/appearance/seen_samples.h"
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/io/anisotropy.h"
@@ -66,12 +68,29 @@ bool HasEnded(StopReason reason) {
          reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
 }
 
+// With numbers in their ranges, and functions that can be called.
+FitOptions Checked(FitOptions options) {
+  CheckNumber("robust", options.robust, options.robust >= 0 && std::isfinite(options.robust),
+              "finite and 0 or more");
+  CheckNumber("max_parameters", options.max_parameters, options.max_parameters >= 0, "0 or more");
+  CheckNumThreads(options.num_threads);
+  const auto complete = [&options, by_default = FitOptions()](const auto member) {
+    if (!(options.*member)) options.*member = by_default.*member;
+  };
+  complete(&FitOptions::solver_options);
+  complete(&FitOptions::on_begin);
+  complete(&FitOptions::on_progress);
+  complete(&FitOptions::on_iteration);
+  complete(&FitOptions::on_model);
+  return options;
+}
+
 // One fit, step by step.
 class Fitting {
  public:
   Fitting(const Measurement& measurement, const FitOptions& options)
       : measurement_(measurement),
-        options_(options),
+        options_(Checked(options)),
         table_(measurement.table && !options.select ? &*measurement.table : nullptr) {
     if (!measurement.table && options.max_parameters > 0) {
       throw Error(measurement.source +
@@ -205,7 +224,7 @@ class Fitting {
   }
 
   const Measurement& measurement_;
-  const FitOptions& options_;
+  const FitOptions options_;
   const BrdfTable* const table_;  // as the whole of it is fitted
   Stopwatch stopwatch_;
 };

@@ -9,6 +9,7 @@
 
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/seen_error.h"
+#include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/fit/finish_fit.h"
 #include "trilobe/fit/form.h"
@@ -65,7 +66,7 @@ struct FitOptions {
   // is finished. Of the result the file is made, and `summary`.
   std::function<void(const FitResult&)> on_model = [](const FitResult&) {};
   // Asked after each step, from several threads: true to end with the best so far.
-  std::function<bool()> stop = [] { return false; };
+  StopCheck stop = {};
 };
 
 // A measurement, as it is fitted.
@@ -115,7 +116,8 @@ struct FitResult {
 
 // From a measurement to the model that `trilobe fit` writes, and all that it reports: the form, the
 // start, the choice of nodes, the guide, the solver, what comes after it, and the score. The same
-// bits for the same options. Stopped before on_begin it returns no model. Throws Error.
+// bits for the same options; functions that are empty are as those by default. Stopped before
+// on_begin it returns no model. Throws Error.
 FitResult Fit(const Measurement& measurement, const FitOptions& options = {});
 
 // What Fit fits, where no nodes are to be chosen; for whoever goes on from its model, whose spec

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,27 @@ TEST(Fit, TellsOfItsModelAndHowFarItIs) {
   EXPECT_EQ(fit.model().spec(), ModelSpec::SharedFactors(3, measured.table->grid));
   EXPECT_EQ(fit.score.objective, fit.objective.Value(fit.model()));
   EXPECT_FALSE(fit.appearance);
+  // Functions that are empty are none.
+  options = Quick();
+  options.on_begin = nullptr;
+  options.on_progress = nullptr;
+  options.on_iteration = nullptr;
+  options.on_model = nullptr;
+  options.stop = nullptr;
   EXPECT_EQ(Parameters(fit), Parameters(Fit(measured, options)));
+}
+
+TEST(Fit, ChecksItsOptions) {
+  const Measurement measured = LoadMeasurement("synth:plastic@20x20x40");
+  FitOptions options = Quick();
+  options.robust = std::nan("");
+  EXPECT_THROW(Fit(measured, options), Error);
+  options = Quick();
+  options.max_parameters = -1;
+  EXPECT_THROW(Fit(measured, options), Error);
+  options = Quick();
+  options.num_threads = -1;
+  EXPECT_THROW(Fit(measured, options), Error);
 }
 
 TEST(Fit, StopsBeforeItBeginsAndWithTheBestSoFar) {
