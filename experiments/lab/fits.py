@@ -62,7 +62,7 @@ def fit(setting, source, solver, flags=None, start="analytic", seed=1, threads=2
     again = f"-repeat{repeat}" if repeat > 1 else ""
     return Unit(path=f"fit/{source.name}/{solver}-{start}-{file_name(weighting)}-{threads}t{again}",
                 program=pathlib.Path(program).resolve() if program else setting.program(),
-                arguments=("fit", source.path, f"--out={FOLDER}", *words(flags)),
+                arguments=("fit", source.path, f"--out={FOLDER}", "--noplots", *words(flags)),
                 product="report.json", timeout_s=10 * limit + PATIENCE_S if limit else None,
                 labels={"material": source.name, "solver": solver, "start": start, "seed": seed,
                         "threads": threads, "weighting": weighting, "repeat": repeat, **labels})

@@ -23,9 +23,15 @@ h1 { border-top: 3px solid #0072B2; padding-top: .6rem; margin-top: 4rem; }
 header h1 { border: 0; margin-top: 0; }
 table { border-collapse: collapse; font-size: 13px; margin: 1rem 0; }
 th, td { border-bottom: 1px solid #ddd; padding: .15rem .6rem; text-align: right;
-         white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; }
-.table { overflow-x: auto; max-height: 32rem; overflow-y: auto; }
+         white-space: nowrap; background: #fff; }
+th { white-space: normal; vertical-align: bottom; position: sticky; top: 0; z-index: 1; }
+th:first-child, td:first-child { text-align: left; position: sticky; left: 0; }
+th:first-child { z-index: 2; }
+.table { overflow: auto; max-height: 32rem; width: max-content; min-width: 100%;
+         max-width: calc(100vw - 3rem); position: relative; left: 50%;
+         transform: translateX(-50%); }
+.table table { margin: 0; }
+@media print { .table { overflow: visible; max-height: none; } }
 img { max-width: 100%; }
 figure { margin: 1.5rem 0; } figcaption { color: #555; font-size: 14px; }
 pre, code { background: #f4f4f4; font-size: 13px; } pre { padding: .6rem; overflow-x: auto; }

@@ -24,6 +24,7 @@
 #include "trilobe/app/solver_flags.h"
 #include "trilobe/base/error.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/gnuplot.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/math/openblas.h"
 #include "trilobe/scene/fit_cache.h"
@@ -50,8 +51,10 @@ DEFINE_bool(reconstruction, false,
 DEFINE_bool(
     course, false,
     "also write DIR/course.csv: errors of the models on the way, scored when the fit is over");
-DEFINE_bool(plots, false,
-            "also draw the pictures of `trilobe plot` into DIR; without --out that is out/NAME");
+DEFINE_bool(
+    plots, true,
+    "draw the pictures of `trilobe plot` into DIR; without --out that is out/NAME. Of several "
+    "SOURCEs, only if asked for");
 
 namespace trilobe {
 namespace {
@@ -133,7 +136,7 @@ FitSettings SettingsFromFlags() {
   settings.source = SourceOptionsFromFlags();
   settings.course = FLAGS_course;
   settings.reconstruction = FLAGS_reconstruction;
-  settings.plots = FLAGS_plots;
+  settings.plots = FLAGS_plots && !IsDefault("plots");
   settings.key = KeyOfFlags();
   if (!FLAGS_probe.empty()) settings.inputs.push_back(FLAGS_probe);
   if (init_is_file) {
@@ -147,7 +150,13 @@ FitSettings SettingsFromFlags() {
 }
 
 int RunFitOfOne(const std::string& source) {
-  const FitSettings settings = SettingsFromFlags();
+  FitSettings settings = SettingsFromFlags();
+  settings.plots = FLAGS_plots;
+  if (settings.plots && IsDefault("plots") && !HaveGnuplot()) {
+    std::cerr
+        << "trilobe: no pictures, as gnuplot is not installed; --noplots is silent about it\n";
+    settings.plots = false;
+  }
   std::optional<ResultFolder> folder;
   // Who asks for files gets them.
   const bool wants_files = settings.plots || settings.reconstruction || settings.course;
@@ -245,8 +254,9 @@ Command FitCommand() {
           "Prints first what a person would see of the fit beside its measurement; with --verbose "
           "all there is to\nsay. Writes DIR/model.json (the model, in canonical form), "
           "DIR/trace.csv (E, step and "
-          "seconds of\neach iteration; row 0 is the starting point) and DIR/report.json "
-          "(settings, errors, diagnosis,\ntimes). Ctrl-C stops after the iteration and keeps "
+          "seconds of\neach iteration; row 0 is the starting point), DIR/report.json "
+          "(settings, errors, diagnosis,\ntimes) and the pictures of `trilobe plot`. Ctrl-C stops "
+          "after the iteration and keeps "
           "the best model so far; go on from it, with the\nsame solver or another, with "
           "--init=DIR/model.json.\n\nSeveral sources, or a folder of measurements, are fitted "
           "side by side, each into a folder of its name\nin DIR; DIR/fits.csv and "

@@ -259,8 +259,8 @@ void PrintDetails(const FitReport& report) {
             << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
             << (report.appearance
                     ? Describe(*report.appearance)
-                    : "appearance   samples on no grid make no picture to compare with; "
-                      "by --plots spheres.png shows the fit alone\n")
+                    : "appearance   samples on no grid are not compared on a sphere; slices.png "
+                      "holds the fit against them\n")
             << (report.left_out
                     ? "azimuths     an isotropic model leaves out " +
                           Text(100 * *report.left_out, 3) +

@@ -37,7 +37,6 @@ int RunPlot(std::span<const std::string> arguments) {
     measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
     TellNotes(*measured);
     data = PictureDataOf(*measured);
-    if (data.empty()) TableOf(*measured);  // its error
   }
   std::vector<IterationRecord> trace;
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
@@ -61,9 +60,9 @@ Command PlotCommand() {
           .details =
               "Writes PNG pictures into the folder --out, by gnuplot:\n"
               "  factors.png  D, F, G and the coefficients d, s\n"
-              "  slices.png   measured against fitted over theta_h (with SOURCE)\n"
+              "  slices.png   measured against fitted values over an angle (with SOURCE)\n"
               "  spheres.png  measured, fitted and their difference on a sphere; without\n"
-              "               SOURCE, or if its samples are on no grid, the model alone\n"
+              "               SOURCE, or if its samples are few, the model alone\n"
               "  cloth.png    the same on draped cloth (where SOURCE is anisotropic)\n"
               "  trace.png    E over iterations and seconds (with --trace)",
           .flags = WithSourceFlags({"out", "trace", "probe"}),

@@ -9,6 +9,7 @@
 
 #include "trilobe/appearance/color.h"
 #include "trilobe/appearance/render.h"
+#include "trilobe/appearance/render_environment.h"
 #include "trilobe/appearance/sphere.h"
 #include "trilobe/appearance/view.h"
 #include "trilobe/base/check.h"
@@ -270,27 +271,32 @@ RenderedImage SphereJudge::Render(const AngularBrdf& brdf) const {
   return std::move(RenderSpheres({&brdf, 1}, lights_, size_, counts_, num_threads_, kEvery)[0]);
 }
 
-RenderedImage RenderSphere(const Material& material, const AppearanceOptions& options) {
-  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
-  if (material.angular) {
-    return std::move(RenderSpheres({&material.angular, 1}, lights, options.size, Everything,
-                                   options.num_threads)[0]);
-  }
-  return std::move(Render(
-                       ViewSphere(options.size), {&material.spherical, 1}, lights,
-                       [](const SphericalAngles&) { return true; }, /*whole_too=*/false,
-                       options.num_threads)
-                       .counted[0]);
+ImagePairs PairsOf(RenderedImages images) {
+  auto& [counted, whole] = images;
+  return {{std::move(counted[0]), std::move(counted[1])},
+          {std::move(whole[0]), std::move(whole[1])}};
 }
 
-ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
-                           const AppearanceOptions& options) {
-  ImagePair counted = RenderMeasuredPair(measured, fitted, options);
-  if (MeasuredDirections(measured).everything()) return counted;
-  ImagePair pair = RenderEverywhere(measured, fitted, options);
-  pair.measured.coverage = std::move(counted.measured.coverage);
-  pair.fitted.coverage = std::move(counted.fitted.coverage);
-  return pair;
+ImagePairs RenderPicture(const BrdfTable& measured, const AngularBrdf& fitted,
+                         const AppearanceOptions& options) {
+  const TabulatedBrdf table(measured);
+  const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
+  return PairsOf(RenderUnder(EnvironmentOf(options), ViewSphere(options.size), brdfs,
+                             MeasuredDirections(measured), options.num_threads));
+}
+
+RenderedImage RenderPicture(const Material& material, const AppearanceOptions& options) {
+  const Environment& environment = EnvironmentOf(options);
+  const View view = ViewSphere(options.size);
+  if (material.angular) {
+    const AngularBrdf brdf = Clamped(material.angular);
+    return std::move(
+        RenderUnder(environment, view, {&brdf, 1}, Everything, options.num_threads).whole[0]);
+  }
+  const auto everything = [](const SphericalAngles&) { return true; };
+  return std::move(
+      RenderUnder(environment, view, {&material.spherical, 1}, everything, options.num_threads)
+          .whole[0]);
 }
 
 }  // namespace trilobe

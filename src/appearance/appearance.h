@@ -103,28 +103,32 @@ class SphereJudge {
   const RenderedImage measured_;
 };
 
-// Measured and fitted sphere under an environment: as they are compared, from measured directions
-// alone, and, for pictures, from all.
+// Two images, whose coverage is the share of the light whose directions were measured.
 struct ImagePair {
-  RenderedImage measured,
-      fitted;  // coverage: the share of the light whose directions were measured
+  RenderedImage measured, fitted;
 };
+// The pair that is compared: a sphere under the points that stand for the environment, from
+// measured directions alone.
 ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
                              const AppearanceOptions& options);
-ImagePair RenderSpherePair(const BrdfTable& measured, const AngularBrdf& fitted,
-                           const AppearanceOptions& options);
+ImagePair RenderMeasuredPair(const NodeBrdf& measured, const SphericalBrdf& fitted,
+                             const AppearanceOptions& options);
 
-// A material alone on a sphere, from all directions.
-RenderedImage RenderSphere(const Material& material, const AppearanceOptions& options);
-
-// The same of a measurement at nodes, on a sphere or on cloth (ViewCloth): what is compared and,
-// if asked for, what pictures show.
-enum class Shape { kSphere, kCloth };
+// What pictures show, under the environment itself (RenderUnder): from measured directions alone,
+// and from all; the nearest bins or nodes stand for those that were not measured.
 struct ImagePairs {
   ImagePair counted, whole;
 };
-ImagePairs RenderPairs(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
-                       bool whole_too, const AppearanceOptions& options);
+ImagePairs PairsOf(RenderedImages images);  // of two materials
+ImagePairs RenderPicture(const BrdfTable& measured, const AngularBrdf& fitted,
+                         const AppearanceOptions& options);
+// On a sphere, or on cloth (ViewCloth).
+enum class Shape { kSphere, kCloth };
+ImagePairs RenderPicture(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
+                         const AppearanceOptions& options);
+
+// A material alone on a sphere, from all directions.
+RenderedImage RenderPicture(const Material& material, const AppearanceOptions& options);
 
 }  // namespace trilobe
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/render_environment.h"
 #include "trilobe/appearance/view.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/parallel.h"
@@ -48,14 +49,14 @@ PointErrors CompareAtPoints(const NodeBrdf& measured, const SphericalBrdf& fitte
   return MeanOf(sums);
 }
 
-RenderedImages RenderShape(const NodeBrdf& measured, std::span<const SphericalBrdf> brdfs,
-                           Shape shape, bool whole_too, const AppearanceOptions& options) {
-  const std::vector<Light> lights = DrawLights(EnvironmentOf(options), options.lights);
-  const View view =
-      shape == Shape::kSphere ? ViewSphere(options.size) : ViewCloth(options.size, lights);
+std::vector<RenderedImage> RenderMeasured(const NodeBrdf& measured,
+                                          std::span<const SphericalBrdf> brdfs,
+                                          const AppearanceOptions& options) {
   return Render(
-      view, brdfs, lights, [&measured](const SphericalAngles& at) { return measured.Measured(at); },
-      whole_too, options.num_threads);
+             ViewSphere(options.size), brdfs, DrawLights(EnvironmentOf(options), options.lights),
+             [&measured](const SphericalAngles& at) { return measured.Measured(at); },
+             /*whole_too=*/false, options.num_threads)
+      .counted;
 }
 
 // Of measured and fitted, on a small sphere: a cloth's formula takes a thousand times as long as a
@@ -67,8 +68,7 @@ AppearanceReport::FromFormula CompareWithFormula(const NodeBrdf& measured,
   options.size = std::max(options.size / 3, 8);
   const SphericalBrdf rendered[] = {
       brdfs[0], brdfs[1], [&](const SphericalAngles& at) { return formula(ToDirections(at)); }};
-  const std::vector<RenderedImage> images =
-      RenderShape(measured, rendered, Shape::kSphere, /*whole_too=*/false, options).counted;
+  const std::vector<RenderedImage> images = RenderMeasured(measured, rendered, options);
   return {CompareSpheres(images[2], images[1]), CompareSpheres(images[2], images[0])};
 }
 
@@ -82,8 +82,7 @@ AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf
   report.lights = options.lights;
   report.size = options.size;
   report.at_nodes = true;
-  const ImagePair pair =
-      RenderPairs(measured, fitted, Shape::kSphere, /*whole_too=*/false, options).counted;
+  const ImagePair pair = RenderMeasuredPair(measured, fitted, options);
   report.sphere = CompareSpheres(pair.measured, pair.fitted);
   if (formula) report.from_formula = CompareWithFormula(measured, brdfs, formula, options);
   const double along_and_across[] = {0, kPi / 2};
@@ -95,14 +94,24 @@ AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf
   return report;
 }
 
-ImagePairs RenderPairs(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
-                       bool whole_too, const AppearanceOptions& options) {
+ImagePair RenderMeasuredPair(const NodeBrdf& measured, const SphericalBrdf& fitted,
+                             const AppearanceOptions& options) {
   const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};
-  RenderedImages images = RenderShape(measured, brdfs, shape, whole_too, options);
-  const auto pair = [](std::vector<RenderedImage>& of) {
-    return of.empty() ? ImagePair{} : ImagePair{std::move(of[0]), std::move(of[1])};
-  };
-  return {pair(images.counted), pair(images.whole)};
+  std::vector<RenderedImage> spheres = RenderMeasured(measured, brdfs, options);
+  return {std::move(spheres[0]), std::move(spheres[1])};
+}
+
+ImagePairs RenderPicture(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
+                         const AppearanceOptions& options) {
+  const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};
+  const Environment& environment = EnvironmentOf(options);
+  const View view = shape == Shape::kSphere
+                        ? ViewSphere(options.size)
+                        : ViewCloth(options.size, DrawLights(environment, options.lights));
+  return PairsOf(RenderUnder(
+      environment, view, brdfs,
+      [&measured](const SphericalAngles& at) { return measured.Measured(at); },
+      options.num_threads));
 }
 
 }  // namespace trilobe

@@ -2,6 +2,7 @@
 #define TRILOBE_APPEARANCE_RENDER_H_
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -37,13 +38,33 @@ RenderedImages Render(const View& view, std::span<const SphericalBrdf> materials
                       const std::function<bool(const SphericalAngles&)>& counts, bool whole_too,
                       int num_threads);
 
-// The same for any kind of angles. `angles_over(k, l, cosines)` are those at view.points[k] under
-// lights[l], with these cosines from the normal to light and eye; `value(material, angles,
-// cosines)` is the BRDF there, and `counts(angles, cosines)` as above.
-template <typename AnglesOver, typename Value, typename Counts>
-RenderedImages RenderBy(const View& view, std::span<const Light> lights, int materials,
-                        const AnglesOver& angles_over, const Value& value, const Counts& counts,
-                        bool whole_too, int num_threads) {
+// Light that falls on a point from one direction, if cosines.i > 0.
+template <typename Angles>
+struct Incident {
+  Cosines cosines{};  // from the normal to light and eye
+  Angles angles{};
+  Rgb irradiance{};   // on a surface that faces it
+  double weight = 1;  // in the coverage
+};
+
+// From the normal of a point to a light and to the eye; .i is 0 where either is below the surface.
+inline Cosines CosinesOver(const SurfacePoint& point, const Direction& light) {
+  const Cosines cosines{std::min(Dot(point.normal, light), 1.0),
+                        std::min(Dot(point.normal, kEye), 1.0)};
+  return cosines.i > 0 && cosines.o > 0 ? cosines : Cosines{};
+}
+
+// The azimuth of a direction over a point, from its x towards its y.
+inline double PhiOver(const SurfacePoint& point, const Direction& to) {
+  return std::atan2(Dot(to, point.y), Dot(to, point.x));
+}
+
+// The same for any kind of angles and of light. `incident(k, l)` is what falls on view.points[k] as
+// the l-th of so many `lights`, an Incident; `value(material, angles, cosines)` is the BRDF there,
+// and `counts(angles, cosines)` as above.
+template <typename IncidentOn, typename Value, typename Counts>
+RenderedImages RenderBy(const View& view, int lights, int materials, const IncidentOn& incident,
+                        const Value& value, const Counts& counts, bool whole_too, int num_threads) {
   const size_t pixels = static_cast<size_t>(view.width) * view.height;
   for (const SurfacePoint& point : view.points) {
     CheckIndex(point.pixel, static_cast<int64_t>(pixels), "the pixel of a point");
@@ -61,21 +82,19 @@ RenderedImages RenderBy(const View& view, std::span<const Light> lights, int mat
     };
     std::vector<Sum> sums(end - begin);
     // Pixel by pixel within a light: much of what is read for it stays.
-    for (int l = 0; l < static_cast<int>(lights.size()); ++l) {
-      const Light& light = lights[l];
+    for (int l = 0; l < lights; ++l) {
       for (int k = begin; k < end; ++k) {
+        const auto light = incident(k, l);
+        const Cosines& cosines = light.cosines;
+        if (!(cosines.i > 0)) continue;
         const SurfacePoint& point = view.points[k];
-        const Cosines cosines{std::min(Dot(point.normal, light.direction), 1.0),
-                              std::min(Dot(point.normal, kEye), 1.0)};
-        if (!(cosines.i > 0 && cosines.o > 0)) continue;
-        const auto angles = angles_over(k, l, cosines);
-        const bool counted = counts(angles, cosines);
+        const bool counted = counts(light.angles, cosines);
         Sum& sum = sums[k - begin];
-        sum.light += cosines.i;
-        if (counted) sum.counted += cosines.i;
+        sum.light += cosines.i * light.weight;
+        if (counted) sum.counted += cosines.i * light.weight;
         if (!counted && !whole_too) continue;
         for (int m = 0; m < materials; ++m) {
-          const Rgb rho = value(m, angles, cosines);
+          const Rgb rho = value(m, light.angles, cosines);
           const auto add_to = [&](RenderedImage* image) {
             Rgb& radiance = image->radiance[point.pixel];
             for (int c = 0; c < kChannels; ++c) {

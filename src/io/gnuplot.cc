@@ -12,16 +12,19 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <sstream>
 #include <thread>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
 #include "trilobe/base/utf8.h"
+#include "trilobe/io/file.h"
 
 namespace trilobe {
 namespace {
@@ -159,6 +162,27 @@ std::string GnuplotQuote(std::string_view text) {
   return quoted + "'";
 }
 
+std::string GnuplotTitle(std::string_view text, int width, int size) {
+  std::string title = GnuplotQuote(text);
+  // A letter is some 0.62 of its height wide, which is 4/3 pixels a point.
+  constexpr double kLetterWidth = 0.62 * 4 / 3;
+  constexpr int kSmallest = 12;
+  const double room = 0.94 * width / kLetterWidth;
+  const auto begins_letter = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
+  const auto letters = static_cast<double>(std::ranges::count_if(title, begins_letter));
+  if (const double most = room / kSmallest; letters > most) {
+    size_t end = static_cast<size_t>(most) - 2;
+    while (!begins_letter(title[end])) --end;
+    title = title.substr(0, end) + "…'";
+  }
+  return title + " noenhanced font '," +
+         std::to_string(std::clamp(static_cast<int>(room / letters), kSmallest, size)) + "'";
+}
+
+std::string PictureName(const std::string& source) {
+  return std::filesystem::path(source).filename().string();
+}
+
 std::string GnuplotNumber(double x) {
   if (!std::isfinite(x)) return "NaN";
   std::array<char, 32> buffer;
@@ -176,7 +200,7 @@ std::string GnuplotData(std::string_view name, std::span<const std::vector<doubl
   return block + "EOD\n";
 }
 
-std::string GnuplotLogRange(std::span<const double> values, double decades) {
+AxisRange LogRange(std::span<const double> values, double decades) {
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const double x : values) {
     if (!(x > 0 && std::isfinite(x))) continue;
@@ -186,7 +210,34 @@ std::string GnuplotLogRange(std::span<const double> values, double decades) {
   if (high == 0) low = high = 1;
   low = std::max(low, high * std::pow(10, -decades));
   const double margin = std::max(std::pow(high / low, 0.05), 1.25);
-  return '[' + GnuplotNumber(low / margin) + ':' + GnuplotNumber(high * margin) + ']';
+  return {low / margin, high * margin};
+}
+
+std::string GnuplotLogRange(std::span<const double> values, double decades) {
+  const auto [low, high] = LogRange(values, decades);
+  return '[' + GnuplotNumber(low) + ':' + GnuplotNumber(high) + ']';
+}
+
+std::string LogTics(const AxisRange& range, char axis) {
+  const std::string format = std::string("set format ") + axis, set = std::string("set ") + axis;
+  if (range.high > 100 * range.low) return format + " '10^{%T}'\n" + set + "tics autofreq\n";
+  std::string tics;
+  for (double decade = std::pow(10, std::floor(std::log10(range.low))); decade <= range.high;
+       decade *= 10) {
+    for (const int digit : {1, 2, 5}) {
+      tics += (tics.empty() ? "" : ", ") + GnuplotNumber(digit * decade);
+    }
+  }
+  return format + " '%g'\n" + set + "tics (" + tics + ")\n";
+}
+
+bool HaveGnuplot() {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((std::filesystem::path(folder) / "gnuplot").c_str(), X_OK) == 0) return true;
+  }
+  return false;
 }
 
 void DrawPng(const std::string& path, int width, int height, const std::string& script,

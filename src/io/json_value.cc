@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include "trilobe/base/error.h"
+#include "trilobe/base/utf8.h"
 #include "trilobe/io/content.h"
 #include "trilobe/io/file.h"
-#include "trilobe/base/utf8.h"
 
 namespace trilobe {
 namespace {

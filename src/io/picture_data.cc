@@ -59,7 +59,7 @@ std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
 PictureData PictureDataOf(const Measurement& measurement) {
   if (measurement.table) return {.table = &*measurement.table};
   const std::optional<HemisphereGrid> grid = GridOf(measurement);
-  if (!grid) return {};
+  if (!grid) return {.scattered = &measurement};
   return {.nodes = NodeBrdf(ValuesAtNodes(measurement, *grid)), .formula = measurement.formula};
 }
 

@@ -15,9 +15,10 @@ namespace trilobe {
 std::optional<HemisphereGrid> GridOf(const Measurement& scattered);
 
 // What pictures of a measurement are made of: its table, or its values at the nodes of a grid.
-// Neither where scattered samples stand on none.
+// Neither where scattered samples stand on none, which slices are made of.
 struct PictureData {
   const BrdfTable* table = nullptr;
+  const Measurement* scattered = nullptr;  // if there is neither
   std::optional<NodeBrdf> nodes = {};
   BrdfFunction formula = nullptr;  // what the nodes were measured of, if known
 

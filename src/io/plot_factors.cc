@@ -7,22 +7,34 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "trilobe/io/gnuplot.h"
 #include "trilobe/io/plots.h"
-#include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobe_light.h"
 
 namespace trilobe {
 namespace {
 
-// Of the light through a table, for an entry to be seen on the axis of its picture.
-constexpr double kLightThatCounts = 1e-4;
+// Of the light through a table: what its first or its last entries have together, for them not to
+// be drawn as the others are. They may be anything.
+constexpr double kHardlyAny = 2e-3;
+
+// Of the panels of D, F and G.
+constexpr const char* kPanelTitles[] = {"D, distribution of facets", "F, Fresnel factor",
+                                        "G, shadowing and masking"};
+constexpr const char* kPanelSetups[] = {
+    ("set xlabel 'θ_h [°], spaced by its root'\nset ylabel 'D [1/sr]'\nset xrange [0:sqrt(90)]\n"
+     "set xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), '60' sqrt(60), "
+     "'90' sqrt(90))\n"),
+    "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
+    ("set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_i, θ_o [°]'\n"
+     "set ylabel 'G, mean 1'\n")};
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kDash[] = {"solid", "'-'", "'.'", "'_.'", "'..-'", "'-_'", "'--.'", "'_'"};
 
 // "62 %", "<0.1 %", for gnuplot, which takes the labels of tics for formats.
 std::string Percent(double share) {
@@ -38,18 +50,23 @@ const char* AbsenceOf(const FactorModel& model, int lobe) {
   return Absent(model, lobe) ? " (s = 0)" : "";
 }
 
-// Legend of curves that differ in colour by their channel and in dashes by their lobe.
-std::string LegendByChannelAndLobe(const FactorModel& model) {
-  std::string legend;
-  const auto add = [&](const std::string& color, const std::string& dash, const std::string& name) {
-    legend += ", NaN with lines linewidth 2.5 linecolor '" + color + "' dashtype " + dash +
-              " title '" + name + "'";
-  };
-  for (int c = 0; c < kChannels; ++c) add(kChannelColors[c], "solid", kChannelNames[c]);
-  for (int m = 0; m < model.spec().lobes; ++m) {
-    add("#555555", kDash[m], LobeName(m) + AbsenceOf(model, m));
+// Which entries matter: those that data were seen of, and through which light goes. Those of D near
+// theta_h = 0 have little light, as they are few directions, and are what is seen of a highlight.
+std::vector<bool> EntriesThatMatter(const ModelFile& file, const LobeLight& light, Factor factor,
+                                    int index) {
+  const int size = file.model.spec().table_size(factor);
+  const size_t offset = file.model.TableOffset(factor, index);
+  const auto through = std::span(light.through).subspan(offset, size);
+  const double hardly_any = kHardlyAny * std::accumulate(through.begin(), through.end(), 0.0);
+  std::vector<bool> matters(size);
+  for (int i = 0; i < size; ++i) matters[i] = !file.unobserved[offset + i];
+  double sum = 0;
+  for (int i = size - 1; i >= 0 && (sum += through[i]) <= hardly_any; --i) matters[i] = false;
+  sum = 0;
+  for (int i = 0; i < size && factor != Factor::kD && (sum += through[i]) <= hardly_any; ++i) {
+    matters[i] = false;
   }
-  return legend;
+  return matters;
 }
 
 }  // namespace
@@ -75,66 +92,92 @@ std::string TableName(const FactorModel& model, Factor factor, int index) {
   return sharing.per_lobe ? name + AbsenceOf(model, lobe) : name;
 }
 
-std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor factor,
-                        const std::vector<double>& positions, bool logarithmic) {
-  const FactorModel& model = file.model;
-  const ModelSpec& spec = model.spec();
-  std::string data, curves, hollow;
+namespace {
+
+// The plot command of these tables, and their data.
+std::string Curves(const ModelFile& file, const LobeLight& light, Factor factor,
+                   const std::vector<int>& tables) {
+  const ModelSpec& spec = file.model.spec();
   std::vector<double> values;
-  bool any_unobserved = false;
-  const bool by_channel = spec.sharing(factor).per_channel;
-  const bool by_both = by_channel && spec.sharing(factor).per_lobe && spec.lobes > 1;
-  for (int t = 0; t < spec.num_tables(factor); ++t) {
-    const auto [lobe, channel] = OwnerOf(spec, factor, t);
-    const bool absent = spec.sharing(factor).per_lobe && Absent(model, lobe);
-    const std::span<const double> table = model.table(factor, t);
-    std::vector<std::vector<double>> rows;  // abscissa, value, value where unobserved
-    for (int i = 0; i < static_cast<int>(table.size()); ++i) {
-      const bool unobserved = file.unobserved[model.TableOffset(factor, t) + i];
-      const bool drawn = !absent;
-      any_unobserved = any_unobserved || (unobserved && drawn);
-      rows.push_back(
-          {positions[i], drawn ? table[i] : kGap, drawn && unobserved ? table[i] : kGap});
+  std::vector<std::vector<bool>> matters;
+  for (const int t : tables) {
+    const std::span<const double> table = file.model.table(factor, t);
+    matters.push_back(EntriesThatMatter(file, light, factor, t));
+    for (size_t i = 0; i < table.size(); ++i) {
+      if (matters.back()[i]) values.push_back(table[i]);
     }
-    const auto through =
-        std::span(light.through).subspan(model.TableOffset(factor, t), table.size());
-    const double enough = kLightThatCounts * std::accumulate(through.begin(), through.end(), 0.0);
-    for (size_t i = 0; i < table.size() && !absent; ++i) {
-      if (through[i] >= enough) values.push_back(table[i]);
-    }
-    const std::string block = std::string(FactorName(factor)) + std::to_string(t);
-    data += GnuplotData(block, rows);
-    const std::string style = std::string("linecolor '") +
-                              (by_channel ? kChannelColors[channel] : kLobeColors[lobe]) + "'";
-    curves += (t == 0 ? "plot $" : ", $") + block + " using 1:2 with ";
-    curves += absent ? "dots linecolor '#FFFFFF'"
-                     : "lines linewidth 2.5 " + style + " dashtype " +
-                           (by_channel ? kDash[lobe] : "solid");
-    curves += by_both ? " notitle" : " title '" + TableName(model, factor, t) + "'";
-    hollow +=
-        ", $" + block + " using 1:3 with points pointtype 6 pointsize 1.1 " + style + " notitle";
   }
   if (values.empty()) return "";
-  if (by_both) curves += LegendByChannelAndLobe(model);
-  if (any_unobserved) {
-    curves +=
-        hollow + ", NaN with points pointtype 6 pointsize 1.1 linecolor '#555555' title 'no data'";
-  }
   // Linear as in the paper, unless a peak would flatten all the rest.
   std::vector<double> sorted = values;
   std::ranges::sort(sorted);
-  const double top = sorted.back();
-  const double spread =
-      top / std::max(sorted[sorted.size() / 2], std::numeric_limits<double>::min());
-  if (logarithmic || spread > 10) {
-    return data + "set logscale y\nset format y '10^{%T}'\nset yrange " +
-           GnuplotLogRange(values, logarithmic ? 9 : 4) + "\n" + curves;
+  const double top = sorted.back(), median = sorted[sorted.size() / 2];
+  const bool logarithmic = top > 0 && (factor == Factor::kD || top > 10 * median);
+  const AxisRange range = logarithmic ? LogRange(values, factor == Factor::kD ? 6 : 3)
+                                      : AxisRange{0, top > 0 ? 1.08 * top : 1};
+  std::string data, plot;
+  bool any_dotted = false;
+  for (size_t k = 0; k < tables.size(); ++k) {
+    const int t = tables[k];
+    const std::span<const double> table = file.model.table(factor, t);
+    const int size = static_cast<int>(table.size());
+    std::vector<std::vector<double>> rows;  // abscissa, value, value where it does not matter
+    for (int i = 0; i < size; ++i) {
+      const double degrees = RadiansToDegrees(spec.axis(factor).Theta(i));
+      // What is less than the axis shows runs along it.
+      const double value = std::max(table[i], range.low);
+      const bool dotted =
+          !matters[k][i] || (i > 0 && !matters[k][i - 1]) || (i + 1 < size && !matters[k][i + 1]);
+      any_dotted = any_dotted || dotted;
+      rows.push_back({factor == Factor::kD ? std::sqrt(degrees) : degrees,
+                      matters[k][i] ? value : kGap, dotted ? value : kGap});
+    }
+    const std::string block = std::string(FactorName(factor)) + std::to_string(t);
+    data += GnuplotData(block, rows);
+    const auto [lobe, channel] = OwnerOf(spec, factor, t);
+    const std::string color =
+        spec.sharing(factor).per_channel ? kChannelColors[channel] : kLobeColors[lobe];
+    const bool named_by_panel = tables.size() <= kChannels && spec.sharing(factor).per_channel;
+    plot += (k == 0 ? "plot $" : ", $") + block +
+            " using 1:2 with lines linewidth 2.5 linecolor '" + color + "' title '" +
+            (named_by_panel ? kChannelNames[channel] : TableName(file.model, factor, t)) +
+            "', '' " + "using 1:3 with lines linewidth 2 dashtype (2,3) linecolor '" + color +
+            "' notitle";
   }
-  return data + "unset logscale y\nset format y '%g'\nset yrange [0:" +
-         GnuplotNumber(top > 0 ? top * 1.08 : 1) + "]\n" + curves;
+  if (any_dotted) {
+    plot +=
+        ", NaN with lines linewidth 2 dashtype (2,3) linecolor '#555555' title 'no data or light'";
+  }
+  return data +
+         (logarithmic ? "set logscale y\n" + LogTics(range, 'y')
+                      : std::string("unset logscale y\nset format y '%g'\n")) +
+         "set yrange [" + GnuplotNumber(range.low) + ":" + GnuplotNumber(range.high) + "]\n" + plot;
 }
 
-std::string AlbedoPanel(const LobeLight& light) {
+}  // namespace
+
+std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Factor factor) {
+  const std::string title = kPanelTitles[static_cast<int>(factor)];
+  const ModelSpec& spec = file.model.spec();
+  const TableSharing& sharing = spec.sharing(factor);
+  std::vector<Panel> panels;
+  // Of many curves, as many panels as there are lobes.
+  const bool by_lobe = sharing.per_lobe && sharing.per_channel && spec.lobes > 1;
+  for (int m = 0; m < (by_lobe ? spec.lobes : 1); ++m) {
+    std::vector<int> tables;
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const int lobe = OwnerOf(spec, factor, t).lobe;
+      if ((!by_lobe || lobe == m) && !(sharing.per_lobe && Absent(file.model, lobe))) {
+        tables.push_back(t);
+      }
+    }
+    panels.push_back({title + (by_lobe ? ", " + LobeName(m) : ""),
+                      kPanelSetups[static_cast<int>(factor)], Curves(file, light, factor, tables)});
+  }
+  return panels;
+}
+
+Panel AlbedoPanel(const LobeLight& light) {
   const int groups = 1 + static_cast<int>(light.lobes.size());
   std::string data[kChannels], tics;
   double top = 0;
@@ -159,10 +202,13 @@ std::string AlbedoPanel(const LobeLight& light) {
             "(sprintf('%.3g', $2)) with labels rotate by 90 left offset 0,0.4 font '" + font +
             "' notitle";
   }
-  return script + "unset logscale y\nset format y '%g'\nset yrange [0:" +
-         GnuplotNumber(top > 0 ? 1.35 * top : 1) +
-         "]\nset xrange [-0.6:" + GnuplotNumber(groups - 0.4) + "]\nset xtics (" + tics + ")" +
-         tic_font + "\nset boxwidth 0.26\nset style fill solid 0.85 noborder\n" + plot;
+  return {.title = "albedo, and share of all that is reflected",
+          .setup = script + "unset logscale y\nset format y '%g'\nset yrange [0:" +
+                   GnuplotNumber(top > 0 ? 1.35 * top : 1) + "]\nset xrange [-0.6:" +
+                   GnuplotNumber(groups - 0.4) + "]\nset xtics (" + tics + ")" + tic_font +
+                   "\nset boxwidth 0.26\nset style fill solid 0.85 noborder\nset xlabel ''\n"
+                   "set ylabel ''\nunset grid\nset grid ytics\n",
+          .plot = plot};
 }
 
 void DrawFactors(const ModelFile& file, const std::string& path) {
@@ -174,50 +220,25 @@ void DrawFactors(const ModelFile& file, const std::string& path) {
     DrawPolarFactors(file, light, path);
     return;
   }
-  // Where the entries of a table stand [degrees].
-  const auto degrees = [&](Factor factor) {
-    std::vector<double> thetas;
-    for (int i = 0; i < spec.table_size(factor); ++i) {
-      thetas.push_back(RadiansToDegrees(spec.axis(factor).Theta(i)));
+  constexpr int kWidth = 1800, kTop = 70;
+  PanelRows rows(kWidth);
+  std::vector<Panel> single;  // those of one panel share rows
+  for (const Factor factor : kFactors) {
+    std::vector<Panel> panels = CurvePanels(file, light, factor);
+    if (panels.size() == 1) {
+      single.push_back(std::move(panels[0]));
+    } else {
+      rows.Add(std::move(panels), spec.lobes == 3 ? 3 : 2);
     }
-    return thetas;
-  };
-  std::vector<double> roots = degrees(Factor::kD);
-  for (double& x : roots) x = std::sqrt(x);
-  constexpr double kLeft = 0.085, kRight = 0.975, kBottom = 0.075, kTop = 0.865;  // of the canvas
-  constexpr double kColumnGap = 0.11, kRowGap = 0.19;
-  std::string script = "set multiplot layout 2,2 margins " + GnuplotNumber(kLeft) + "," +
-                       GnuplotNumber(kRight) + "," + GnuplotNumber(kBottom) + "," +
-                       GnuplotNumber(kTop) + " spacing " + GnuplotNumber(kColumnGap) + "," +
-                       GnuplotNumber(kRowGap) + " title " + GnuplotQuote("Factors: " + name) +
-                       " noenhanced font ',22'\n";
-  // Panels in reading order, each with its title and a legend above it, where no curve can be.
-  int index = 0;
-  const auto panel = [&](const char* title, const std::string& setup, const std::string& plot) {
-    const double width = (kRight - kLeft - kColumnGap) / 2;
-    const double x = kLeft + width / 2 + (index % 2) * (width + kColumnGap);
-    const double y = index / 2 == 0 ? kTop : (kTop + kBottom - kRowGap) / 2;
-    ++index;
-    const std::string center = " at screen " + GnuplotNumber(x) + ", screen ";
-    script += std::string("set label 1 '") + title + "'" + center + GnuplotNumber(y + 0.07) +
-              " center font ',19'\nset key" + center + GnuplotNumber(y + 0.058) +
-              " center top horizontal maxrows 2 font ',16'\n" + setup +
-              (plot.empty() ? "unset label\nset multiplot next\n" : plot + "\n");
-  };
-  panel("D, distribution of facets",
-        "set xlabel 'θ_h [°], spaced by its root'\nset ylabel 'D [1/sr]'\n"
-        "set xrange [0:sqrt(90)]\n"
-        "set xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), '60' sqrt(60), "
-        "'90' sqrt(90))\n",
-        CurvesPanel(file, light, Factor::kD, roots, true));
-  panel("F, Fresnel factor",
-        "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
-        CurvesPanel(file, light, Factor::kF, degrees(Factor::kF), false));
-  panel("G, shadowing and masking", "set xlabel 'θ_i, θ_o [°]'\nset ylabel 'G, mean 1'\n",
-        CurvesPanel(file, light, Factor::kG, degrees(Factor::kG), false));
-  panel("albedo, and share of all that is reflected",
-        "set xlabel ''\nset ylabel ''\nunset grid\nset grid ytics\n", AlbedoPanel(light));
-  DrawPng(path, 1800, 1300, script);
+  }
+  single.push_back(AlbedoPanel(light));
+  rows.Add(std::move(single), 2);
+  const int height = kTop + rows.height();
+  DrawPng(path, kWidth, height,
+          "set multiplot\nset label 99 " +
+              GnuplotTitle("Factors: " + PictureName(name), kWidth, 22) +
+              " at screen 0.5, screen " + GnuplotNumber(1 - 36.0 / height) + " center\n" +
+              rows.Script(kTop, height));
 }
 
 }  // namespace trilobe

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "trilobe/io/model_file.h"
+#include "trilobe/io/plot_panels.h"
 #include "trilobe/model/lobe_light.h"
 
 namespace trilobe {
@@ -21,15 +22,14 @@ TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index);
 // "lobe 1", "lobe 2, red (s = 0)", "all lobes".
 std::string TableName(const FactorModel& model, Factor factor, int index);
 
-// Data blocks and the plot command of all tables of a factor as curves over `positions`, where its
-// entries stand. The axis holds the entries that light goes through; others may leave it. Nothing
-// where there is no curve.
-std::string CurvesPanel(const ModelFile& file, const LobeLight& light, Factor factor,
-                        const std::vector<double>& positions, bool logarithmic);
+// All tables of a factor as curves: in one panel, or in one a lobe where they differ by lobe and by
+// channel. An axis holds the entries that matter, those that data were seen of and that light goes
+// through; others are dotted, and may leave it. Empty where there is no curve.
+std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Factor factor);
 
 // Bars of the albedos of the diffuse term and of each lobe, by channel, with their values written
 // above.
-std::string AlbedoPanel(const LobeLight& light);
+Panel AlbedoPanel(const LobeLight& light);
 
 // DrawFactors of an anisotropic model.
 void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::string& path);

@@ -14,7 +14,8 @@ namespace {
 // Dark to light, apart in brightness as well as in hue.
 constexpr const char* kColors[] = {"#000000", "#0072B2", "#009E73", "#D55E00", "#E69F00"};
 constexpr int kCurves = std::size(kColors);
-constexpr int kSteps = 360;  // of a fitted line
+constexpr int kSteps = 360;   // of a fitted line
+constexpr int kWidth = 2000;  // pixels
 
 // A row of panels: at each of a few thetas, values around the normal.
 struct Row {
@@ -46,25 +47,6 @@ std::vector<double> ThetasOf(const NodeTable& table) {
                      table.grid.ThetaStep());
   }
   return thetas;
-}
-
-// Tics at 1, 2 and 5 times powers of ten, where one a decade would be too few.
-std::string TicsOf(const std::vector<double>& values) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  for (const double x : values) {
-    if (!(x > 0)) continue;
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  if (!(high > 0) || high > 100 * low) return "set format y '10^{%T}'\nset ytics autofreq\n";
-  std::string tics;
-  for (double decade = std::pow(10, std::floor(std::log10(low)) - 1); decade <= 10 * high;
-       decade *= 10) {
-    for (const int digit : {1, 2, 5}) {
-      tics += (tics.empty() ? "" : ", ") + GnuplotNumber(digit * decade);
-    }
-  }
-  return "set format y '%g'\nset ytics (" + tics + ")\n";
 }
 
 std::string Degrees(double radians) {
@@ -103,8 +85,9 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
     }
   }
   script += "set multiplot title " +
-            GnuplotQuote("Measured (points) and fitted (lines): " + table.source) +
-            " noenhanced font ',22'\nset logscale y\nset xrange [0:360]\nset xtics 0,60,360\n";
+            GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(table.source),
+                         kWidth, 22) +
+            "\nset logscale y\nset xrange [0:360]\nset xtics 0,60,360\n";
   for (size_t r = 0; r < std::size(kRows); ++r) {
     const double top = 0.865 - 0.465 * static_cast<double>(r), bottom = top - 0.325;
     script += "set tmargin at screen " + GnuplotNumber(top) + "\nset bmargin at screen " +
@@ -112,11 +95,11 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
               "\nset label 1 '" + kRows[r].title + (r == 1 ? ", θ_i = " + Degrees(middling) : "") +
               "' at screen 0.47, screen " + GnuplotNumber(top + 0.05) + " center font ',19'\n";
     for (int c = 0; c < kChannels; ++c) {
-      const double left = 0.07 + 0.275 * c;
+      const double left = 0.085 + 0.27 * c;
       script += "set lmargin at screen " + GnuplotNumber(left) + "\nset rmargin at screen " +
-                GnuplotNumber(left + 0.25) + "\nset title '" + kChannelNames[c] +
+                GnuplotNumber(left + 0.245) + "\nset title '" + kChannelNames[c] +
                 "' offset 0,-0.4\nset xlabel '" + kRows[r].x + "'\n";
-      script += c == 0 ? "set ylabel 'BRDF [1/sr]'\n" + TicsOf(values[r])
+      script += c == 0 ? "set ylabel 'BRDF [1/sr]'\n" + LogTics(LogRange(values[r], 6), 'y')
                        : std::string("unset ylabel\nset format y ''\n");
       script += c == 2 ? "set key at screen 0.995, screen " + GnuplotNumber((top + bottom) / 2) +
                              " right center vertical spacing 1.5 enhanced\n"
@@ -133,7 +116,7 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
       script += "\nunset label\n";
     }
   }
-  DrawPng(path, 2000, 1400, script);
+  DrawPng(path, kWidth, 1400, script);
 }
 
 }  // namespace trilobe

@@ -16,7 +16,7 @@ namespace {
 constexpr int kGutter = 24;  // between panels
 constexpr int kTop = 130, kBottom = 110;
 constexpr int kRight = 180;  // for the colour bar
-constexpr int kMargin = 3;   // of rendered pixels, around the sphere
+constexpr int kMargin = 3;   // around the sphere
 
 // The canvas and its three panels, in pixels.
 struct Layout {
@@ -34,18 +34,36 @@ constexpr Rgb kLightBackground = {1, 1, 1};
 constexpr Rgb kNotMeasured = {0.6, 0.6, 0.6};
 
 // From white by yellow and red to dark, as differences grow, legible to the colour-blind
-// (ColorBrewer YlOrRd), in sRGB codes / 255.
-Rgb DifferenceColor(double x) {
-  static constexpr Rgb kStops[] = {
-      {255, 255, 255}, {254, 217, 118}, {253, 141, 60}, {189, 0, 38}, {60, 0, 30}};
-  const double position = std::clamp(x, 0.0, 1.0) * 4;
-  const int i = std::min(static_cast<int>(position), 3);
-  const double t = position - i;
+// (ColorBrewer YlOrRd), in sRGB codes / 255: the same colours for the same differences in all
+// pictures. What cannot be seen is nearly white, what can be seen side by side is orange.
+struct DifferenceStop {
+  double delta_e;
+  Rgb color;
+};
+constexpr DifferenceStop kDifferenceStops[] = {{0, {255, 255, 255}},
+                                               {1, {255, 237, 160}},
+                                               {2, {254, 178, 76}},
+                                               {5, {227, 26, 28}},
+                                               {10, {60, 0, 30}}};
+constexpr int kLastStop = std::size(kDifferenceStops) - 1;
+
+// `position` is from 0 to 1, the stops being at equal steps.
+Rgb DifferenceColorAt(double position) {
+  const double x = std::clamp(position, 0.0, 1.0) * kLastStop;
+  const int i = std::min(static_cast<int>(x), kLastStop - 1);
   Rgb color;
   for (int c = 0; c < kChannels; ++c) {
-    color[c] = ((1 - t) * kStops[i][c] + t * kStops[i + 1][c]) / 255;
+    color[c] =
+        std::lerp(kDifferenceStops[i].color[c], kDifferenceStops[i + 1].color[c], x - i) / 255;
   }
   return color;
+}
+
+Rgb DifferenceColor(double delta_e) {
+  int i = 0;
+  while (i < kLastStop - 1 && delta_e > kDifferenceStops[i + 1].delta_e) ++i;
+  const double from = kDifferenceStops[i].delta_e, to = kDifferenceStops[i + 1].delta_e;
+  return DifferenceColorAt((i + (delta_e - from) / (to - from)) / kLastStop);
 }
 
 char Byte(double code) {
@@ -58,15 +76,38 @@ struct Raster {
   std::string bytes = {};  // [height * width * 3], sRGB
 };
 
-// `linear(pixel)` on the object and `background` off it. A sphere gets a margin and a soft edge: a
-// pixel at the rim shows as much of the sphere as covers it.
+// `linear(pixel)` on the object, linear between the middles of its pixels, and `background` off it,
+// so that the object is `size` pixels wide. A sphere gets a margin and a soft edge.
 template <typename Linear>
-Raster Rasterize(const RenderedImage& image, const Rgb& background, const Linear& linear) {
-  const int rows = static_cast<int>(image.radiance.size()) / image.size;
+Raster Rasterize(const RenderedImage& image, int size, const Rgb& background,
+                 const Linear& linear) {
+  const int pixels = static_cast<int>(image.radiance.size()), rows = pixels / image.size;
+  std::vector<Rgb> colors(pixels);
+  for (int k = 0; k < pixels; ++k) {
+    if (image.coverage[k] >= 0) colors[k] = linear(k);
+  }
+  const auto at = [&](double x, double y) {  // in pixels of the image
+    const int column = static_cast<int>(std::floor(x - 0.5));
+    const int row = static_cast<int>(std::floor(y - 0.5));
+    Rgb sum{};
+    double weights = 0;
+    for (int k = 0; k < 4; ++k) {
+      const int i = column + k % 2, j = row + k / 2;
+      if (i < 0 || i >= image.size || j < 0 || j >= rows) continue;
+      const int pixel = j * image.size + i;
+      if (image.coverage[pixel] < 0) continue;
+      const double weight = (1 - std::abs(x - 0.5 - i)) * (1 - std::abs(y - 0.5 - j));
+      weights += weight;
+      for (int c = 0; c < kChannels; ++c) sum[c] += weight * colors[pixel][c];
+    }
+    for (double& c : sum) c /= std::max(weights, 1e-12);
+    return sum;
+  };
   const bool fills = image.coverage.front() >= 0;
   const int margin = fills ? 0 : kMargin;
-  Raster raster{image.size + 2 * margin, rows + 2 * margin};
-  const double radius = image.size / 2.0;
+  const double scale = static_cast<double>(image.size) / size;
+  Raster raster{size + 2 * margin, size * rows / image.size + 2 * margin};
+  const double radius = size / 2.0;
   for (int y = 0; y < raster.height; ++y) {
     for (int x = 0; x < raster.width; ++x) {
       const double dx = x + 0.5 - raster.width / 2.0, dy = y + 0.5 - raster.height / 2.0;
@@ -74,11 +115,10 @@ Raster Rasterize(const RenderedImage& image, const Rgb& background, const Linear
       const double share = fills ? 1 : std::clamp(radius - distance + 0.5, 0.0, 1.0);
       Rgb color = background;
       if (share > 0) {
-        // The nearest pixel whose middle is on the sphere.
-        const double inward = fills ? 1 : std::min(1.0, (radius - 1) / std::max(distance, 1e-9));
-        const int column = static_cast<int>(dx * inward + radius);
-        const int row = static_cast<int>(dy * inward + rows / 2.0);
-        const Rgb on_object = linear(row * image.size + column);
+        // At the rim what is seen next to it, where pixels have their middles on the sphere.
+        const double inward =
+            fills ? 1 : std::min(1.0, (radius - 1 / scale) / std::max(distance, 1e-9));
+        const Rgb on_object = at((dx * inward + radius) * scale, dy * inward * scale + rows / 2.0);
         for (int c = 0; c < kChannels; ++c) color[c] += share * (on_object[c] - background[c]);
       }
       for (const double c : color) raster.bytes += Byte(EncodeSrgb(c));
@@ -96,8 +136,8 @@ Rgb Exposed(const Rgb& radiance, double exposure) {
   return color;
 }
 
-Raster ToneMapped(const RenderedImage& image, double exposure) {
-  return Rasterize(image, kDarkBackground,
+Raster ToneMapped(const RenderedImage& image, int size, double exposure) {
+  return Rasterize(image, size, kDarkBackground,
                    [&](int pixel) { return Exposed(image.radiance[pixel], exposure); });
 }
 
@@ -113,21 +153,6 @@ std::vector<double> DeltaE(const ImagePair& pair, double exposure) {
   return delta_e;
 }
 
-// The least round number that holds 98 % of the sphere's differences.
-double ColorRange(const std::vector<double>& delta_e) {
-  std::vector<double> sorted;
-  for (const double x : delta_e) {
-    if (x >= 0) sorted.push_back(x);
-  }
-  if (sorted.empty()) return 1;
-  std::ranges::sort(sorted);
-  const double needed = sorted[static_cast<size_t>(0.98 * static_cast<double>(sorted.size() - 1))];
-  for (const double range : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
-    if (needed <= range) return range;
-  }
-  return 100;
-}
-
 // Commands for an image of size w x h at pixel (x, y) of the canvas, from its top left.
 std::string Place(const Raster& raster, int x, int y, int w, int h, const Layout& layout) {
   const auto fraction = [](int a, int b) { return GnuplotNumber(static_cast<double>(a) / b); };
@@ -141,23 +166,25 @@ std::string Place(const Raster& raster, int x, int y, int w, int h, const Layout
          ") format='%uchar' using 1:2:3 with rgbimage notitle\n" + raster.bytes;
 }
 
-std::string ColorBar(double range, const Layout& layout) {
+std::string ColorBar(const Layout& layout) {
   constexpr int kSteps = 256, kColumns = 2;  // gnuplot draws no image of one column
   Raster raster{kColumns, kSteps};
   for (int row = 0; row < kSteps; ++row) {
-    const Rgb color = DifferenceColor(1 - (row + 0.5) / kSteps);
+    const Rgb color = DifferenceColorAt(1 - (row + 0.5) / kSteps);
     for (int column = 0; column < kColumns; ++column) {
       for (const double c : color) raster.bytes += Byte(c);
     }
   }
   std::string tics;
-  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    tics += std::string(tics.empty() ? "" : ", ") + "'" + GnuplotNumber(range * t) + "' " +
-            GnuplotNumber((1 - t) * kSteps - 0.5);
+  for (int i = 0; i <= kLastStop; ++i) {
+    tics += std::string(i == 0 ? "" : ", ") + "'" + (i == kLastStop ? "≥ " : "") +
+            GnuplotNumber(kDifferenceStops[i].delta_e) + "' " +
+            GnuplotNumber((1 - static_cast<double>(i) / kLastStop) * kSteps - 0.5);
   }
   const int height = layout.rows * layout.size;
-  return "unset title\nset border 15 linecolor '#555555'\nset y2tics (" + tics +
-         ") out\nset y2range [" + GnuplotNumber(kSteps - 0.5) + ":-0.5]\n" +
+  return "set title 'CIELAB ΔE' font ',17' offset 4,0.2\nset border 15 linecolor '#555555'\nset "
+         "y2tics (" +
+         tics + ") out\nset y2range [" + GnuplotNumber(kSteps - 0.5) + ":-0.5]\n" +
          Place(raster, layout.PanelLeft(3), kTop + height / 8, 26, height * 3 / 4, layout);
 }
 
@@ -189,66 +216,66 @@ std::string RowLabels(const std::vector<std::string>& rows, const Layout& layout
 
 void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
                    const std::string& path) {
-  const ImagePair& whole = picture.whole;
-  const SphereError error = CompareSpheres(picture.counted.measured, picture.counted.fitted);
-  const double exposure = ExposureOf(error);
-  const std::vector<double> delta_e = DeltaE(picture.counted, exposure);
-  const double range = ColorRange(delta_e);
-  bool all_measured = true;
-  const Raster map = Rasterize(whole.measured, kLightBackground, [&](int pixel) {
-    all_measured = all_measured && delta_e[pixel] >= 0;
-    Rgb color = delta_e[pixel] < 0 ? kNotMeasured : DifferenceColor(delta_e[pixel] / range);
-    for (double& c : color) c = LinearizeSrgb(c);
-    return color;
-  });
-
-  std::array<char, 300> caption;
-  std::string psnr = "infinite";
-  if (std::isfinite(error.psnr_db)) {
-    std::snprintf(caption.data(), caption.size(), "%.1f", error.psnr_db);
-    psnr = caption.data();
-  }
-  std::snprintf(caption.data(), caption.size(),
-                "exposed to a mean luminance of %g, sRGB curve, clipped at 1; PSNR %s dB, mean "
-                "ΔE %.2f%s",
-                kMeanLuminance, psnr.c_str(), error.mean_delta_e,
-                all_measured ? "" : ", of measured directions; grey: none");
+  const auto& [counted, whole] = picture.images;
+  const double exposure = ExposureOf(CompareSpheres(counted.measured, counted.fitted));
+  const std::vector<double> delta_e = DeltaE(counted, exposure);
   const Layout layout = picture.rows.empty() ? Layout{}
                                              : Layout{.rows = static_cast<int>(picture.rows.size()),
                                                       .size = 480,
                                                       .left = kGutter + 40};
-  const auto screen_y = [&](int pixels_from_bottom) {
-    return ", screen " + GnuplotNumber(static_cast<double>(pixels_from_bottom) / layout.height());
+  const int object = picture.rows.empty() ? layout.size - 2 * kMargin : layout.size;
+  bool all_measured = true;
+  const Raster map = Rasterize(whole.measured, object, kLightBackground, [&](int pixel) {
+    all_measured = all_measured && delta_e[pixel] >= 0;
+    Rgb color = delta_e[pixel] < 0 ? kNotMeasured : DifferenceColor(delta_e[pixel]);
+    for (double& c : color) c = LinearizeSrgb(c);
+    return color;
+  });
+
+  std::array<char, 300> figures;
+  if (std::isfinite(picture.error.psnr_db)) {
+    std::snprintf(figures.data(), figures.size(), "PSNR %.1f dB", picture.error.psnr_db);
+  } else {
+    std::snprintf(figures.data(), figures.size(), "equal");
+  }
+  const std::string psnr = figures.data();
+  std::snprintf(figures.data(), figures.size(), "%s, mean ΔE %.2f, of %s", psnr.c_str(),
+                picture.error.mean_delta_e, picture.of.c_str());
+  std::array<char, 100> exposed;
+  std::snprintf(exposed.data(), exposed.size(), "; mean luminance %g, sRGB", kMeanLuminance);
+  // Texts in lines from the bottom.
+  const auto line = [&](int number, const std::string& text, int y) {
+    return "set label " + std::to_string(number) + " " + GnuplotQuote(text) +
+           " at screen 0.5, screen " + GnuplotNumber(static_cast<double>(y) / layout.height()) +
+           " center noenhanced font ',17' textcolor '#444444'\n";
   };
   std::string script = "set multiplot\nunset border\nunset tics\nunset grid\nunset key\n";
-  script += "set label 1 " + GnuplotQuote(picture.source) + " at screen 0.5" +
-            screen_y(layout.height() - 38) + " center noenhanced font ',26' textcolor '#111111'\n" +
-            "set label 2 " +
-            GnuplotQuote("lit by " + std::to_string(options.lights) + " lights drawn from " +
-                         EnvironmentOf(options).name) +
-            " at screen 0.5" + screen_y(71) +
-            " center noenhanced font ',17' textcolor '#444444'\n" + "set label 3 '" +
-            caption.data() + "' at screen 0.5" + screen_y(34) +
-            " center font ',17' textcolor '#444444'\n" + RowLabels(picture.rows, layout) +
-            Separators(layout);
+  script += "set label 1 " + GnuplotTitle(PictureName(picture.source), layout.width(), 26) +
+            " at screen 0.5, screen " + GnuplotNumber(1 - 38.0 / layout.height()) +
+            " center textcolor '#111111'\n" + line(2, figures.data(), 71) +
+            line(3,
+                 "lit by " + EnvironmentOf(options).name + " from all around" + exposed.data() +
+                     (all_measured ? "" : "; grey: not measured, shown as what is next to it"),
+                 34) +
+            RowLabels(picture.rows, layout) + Separators(layout);
   const auto panel = [&](int index, const char* title, const Raster& raster) {
     script += std::string("set title '") + title + "' font ',22' offset 0,-0.3\n" +
               Place(raster, layout.PanelLeft(index), kTop, layout.size, layout.rows * layout.size,
                     layout) +
               "unset label\n";
   };
-  panel(0, "measured", ToneMapped(whole.measured, exposure));
-  panel(1, "fitted", ToneMapped(whole.fitted, exposure));
-  panel(2, "difference (CIELAB ΔE)", map);
-  script += "unset arrow\n" + ColorBar(range, layout);
+  panel(0, "measured", ToneMapped(whole.measured, object, exposure));
+  panel(1, "fitted", ToneMapped(whole.fitted, object, exposure));
+  panel(2, "difference: below 1 unseen", map);
+  script += "unset arrow\n" + ColorBar(layout);
   DrawPng(path, layout.width(), layout.height(), script);
 }
 
-void WriteImagePair(const PairPicture& picture, const std::string& path) {
-  const double exposure =
-      ExposureOf(CompareSpheres(picture.counted.measured, picture.counted.fitted));
-  const Raster left = ToneMapped(picture.whole.measured, exposure);
-  const Raster right = ToneMapped(picture.whole.fitted, exposure);
+void WriteImagePair(const ImagePairs& images, const std::string& path) {
+  const auto& [counted, whole] = images;
+  const double exposure = ExposureOf(CompareSpheres(counted.measured, counted.fitted));
+  const Raster left = ToneMapped(whole.measured, whole.measured.size, exposure);
+  const Raster right = ToneMapped(whole.fitted, whole.fitted.size, exposure);
   const size_t row = static_cast<size_t>(left.width) * kChannels;
   std::string pixels;
   for (size_t at = 0; at < left.bytes.size(); at += row) {
@@ -257,8 +284,8 @@ void WriteImagePair(const PairPicture& picture, const std::string& path) {
   WritePng(path, 2 * left.width, left.height, pixels);
 }
 
-void WriteImage(const RenderedImage& image, const std::string& path) {
-  const Raster raster = ToneMapped(image, ExposureOf(CompareSpheres(image, image)));
+void WriteImage(const RenderedImage& image, int size, const std::string& path) {
+  const Raster raster = ToneMapped(image, size, ExposureOf(CompareSpheres(image, image)));
   WritePng(path, raster.width, raster.height, raster.bytes);
 }
 

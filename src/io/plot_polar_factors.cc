@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trilobe/io/gnuplot.h"
@@ -18,7 +19,7 @@ namespace {
 constexpr int kMap = 340;  // across a disc
 constexpr int kCellWidth = 565, kCellHeight = 480;
 constexpr int kColumns = 3;
-constexpr int kTop = 90, kBottom = 110, kCurves = 380, kCurvesGap = 110;
+constexpr int kTop = 90;
 constexpr int kWidth = kColumns * kCellWidth + 60;
 
 constexpr int kPixels = 201;  // of the image that a disc is drawn by, along each side
@@ -36,14 +37,6 @@ std::vector<int> Shown(const FactorModel& model, Factor factor) {
     if (!absent) shown.push_back(t);
   }
   return shown;
-}
-
-// Commands that put what is plotted next at pixel (x, y) of the canvas, from its top left.
-std::string Margins(int x, int y, int width, int height, int canvas) {
-  const auto fraction = [](int a, int b) { return GnuplotNumber(static_cast<double>(a) / b); };
-  return "set lmargin at screen " + fraction(x, kWidth) + "\nset rmargin at screen " +
-         fraction(x + width, kWidth) + "\nset tmargin at screen " + fraction(canvas - y, canvas) +
-         "\nset bmargin at screen " + fraction(canvas - y - height, canvas) + "\n";
 }
 
 // The values of a table over a disc, row by row from the top, NaN off it and where no data are.
@@ -109,7 +102,7 @@ std::string Map(const ModelFile& file, Factor factor, int index, int x, int y, i
     for (float& value : disc) value = std::max(value, std::numeric_limits<float>::min());
   }
   const std::string radius = GnuplotNumber(last);
-  std::string script = Margins(x, y, kMap, kMap, canvas);
+  std::string script = PanelMargins(x, y, kMap, kMap, kWidth, canvas);
   script += range + "set xrange [-" + radius + ":" + radius + "]\nset yrange [-" + radius + ":" +
             radius + "]\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\n" +
             "unset key\nset title '" + FactorName(factor) + (is_D ? " [1/sr], " : ", ") +
@@ -158,7 +151,11 @@ void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::
   const ModelSpec& spec = model.spec();
   const std::vector<int> shown[] = {Shown(model, Factor::kD), Shown(model, Factor::kG)};
   const int rows = RowsOf(shown[0]) + RowsOf(shown[1]);
-  const int canvas = kTop + rows * kCellHeight + kCurvesGap + kCurves + kBottom;
+  PanelRows curves(kWidth);
+  std::vector<Panel> panels = CurvePanels(file, light, Factor::kF);
+  panels.push_back(AlbedoPanel(light));
+  curves.Add(std::move(panels), 2);
+  const int canvas = kTop + rows * kCellHeight + curves.height();
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
   int absent = 0;
   for (int m = 0; m < spec.lobes; ++m) absent += Absent(model, m) ? 1 : 0;
@@ -166,9 +163,11 @@ void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::
       absent > 0 ? "; " + std::to_string(absent) + " lobes with s = 0 not drawn" : "";
   std::string script =
       "set multiplot\nset label 1 " +
-      GnuplotQuote("Factors: " + name + "  (θ outwards, φ around, grey: no data" + note + ")") +
+      GnuplotTitle(
+          "Factors: " + PictureName(name) + "  (θ outwards, φ around, grey: no data" + note + ")",
+          kWidth, 22) +
       " at screen 0.5, screen " + GnuplotNumber(1 - 36.0 / canvas) +
-      " center noenhanced font ',22'\n"
+      " center\n"
       "set palette defined (0 '#440154', 0.25 '#3B528B', 0.5 '#21918C', 0.75 '#5EC962', 1 "
       "'#FDE725')\n";
   int row = 0;
@@ -180,32 +179,8 @@ void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::
     }
     row += RowsOf(maps);
   }
-  std::vector<double> theta_d;
-  for (int i = 0; i < spec.table_size(Factor::kF); ++i) {
-    theta_d.push_back(RadiansToDegrees(spec.f_axis.Theta(i)));
-  }
-  const int y = kTop + rows * kCellHeight + kCurvesGap;
-  const int width = (kWidth - 340) / 2;
-  const auto panel = [&](int x, const char* title, const std::string& setup,
-                         const std::string& plot) {
-    if (plot.empty()) return;
-    const std::string center =
-        " at screen " + GnuplotNumber((x + width / 2.0) / kWidth) + ", screen ";
-    script += Margins(x, y, width, kCurves, canvas) + "set border 3 linecolor '#555555'\n" +
-              "set tics nomirror out\nset grid xtics ytics\nset label 1 '" + title + "'" + center +
-              GnuplotNumber(1 - (y - 88.0) / canvas) + " center font ',19'\nset key" + center +
-              GnuplotNumber(1 - (y - 72.0) / canvas) +
-              " center top horizontal maxrows 2 font ',16'\n" + setup + plot + "\nunset label\n";
-  };
-  panel(110, "F, Fresnel factor",
-        "set xrange [0:90]\nset ytics nomirror\nset xtics nomirror 0,15,90\nset xlabel 'θ_d "
-        "[°]'\nset ylabel 'F, mean "
-        "1'\n",
-        CurvesPanel(file, light, Factor::kF, theta_d, false));
-  panel(110 + width + 140, "albedo, and share of all that is reflected",
-        "set xlabel ''\nset ylabel ''\nunset grid\nset grid ytics\nset ytics nomirror autofreq\n",
-        AlbedoPanel(light));
-  DrawPng(path, kWidth, canvas, script);
+  DrawPng(path, kWidth, canvas,
+          script + "set key noenhanced\n" + curves.Script(kTop + rows * kCellHeight, canvas));
 }
 
 }  // namespace trilobe

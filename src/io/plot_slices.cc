@@ -44,8 +44,9 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
 
   std::string script = data;
   script += "set multiplot title " +
-            GnuplotQuote("Measured (points) and fitted (lines): " + measured.source) +
-            " noenhanced font ',22'\n"
+            GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(measured.source),
+                         2000, 22) +
+            "\n"
             "set logscale y\n"
             "set format y '10^{%T}'\n"
             "set xrange [0:sqrt(90)]\n"

@@ -6,64 +6,74 @@
 namespace trilobe {
 namespace {
 
-PairPicture SphereOf(const NodeBrdf& measured, const SphericalBrdf& fitted,
-                     const AppearanceOptions& options) {
-  ImagePairs pairs = RenderPairs(measured, fitted, Shape::kSphere, /*whole_too=*/true, options);
-  return {.source = measured.table().source,
-          .rows = {},
-          .counted = std::move(pairs.counted),
-          .whole = std::move(pairs.whole)};
+// Pixels of a picture over those of the sphere that fits are judged by; what is drawn is as large
+// as a panel. Nodes take longer.
+constexpr double kSizeOfTable = 2, kSizeOfNodes = 1.7, kSizeOfCloth = 1.25;
+
+AppearanceOptions Larger(AppearanceOptions options, double times) {
+  options.size = static_cast<int>(options.size * times);
+  return options;
 }
+
+// Of the sphere that fits are judged by.
+std::string MeasureOf(const AppearanceOptions& options) {
+  const std::string size = std::to_string(options.size);
+  return "a sphere of " + size + " x " + size + " pixels under " + std::to_string(options.lights) +
+         " point lights";
+}
+
+SphereError ErrorOf(const ImagePair& pair) { return CompareSpheres(pair.measured, pair.fitted); }
 
 }  // namespace
 
 void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
-                 AppearanceOptions options) {
-  options.size = 320;
+                 const AppearanceOptions& options) {
   PairPicture picture{.source = measured.source,
                       .rows = {},
-                      .counted = RenderMeasuredPair(measured, fitted, options),
-                      .whole = {}};
-  picture.whole =
-      measured.unmeasured.empty() ? picture.counted : RenderSpherePair(measured, fitted, options);
+                      .error = ErrorOf(RenderMeasuredPair(measured, fitted, options)),
+                      .of = MeasureOf(options),
+                      .images = {}};
+  picture.images = RenderPicture(measured, fitted, Larger(options, kSizeOfTable));
   DrawImagePair(picture, options, path);
 }
 
 void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
-                 AppearanceOptions options) {
-  options.size = 220;
-  DrawImagePair(SphereOf(measured, fitted, options), options, path);
+                 const AppearanceOptions& options) {
+  PairPicture picture{.source = measured.table().source,
+                      .rows = {},
+                      .error = ErrorOf(RenderMeasuredPair(measured, fitted, options)),
+                      .of = MeasureOf(options),
+                      .images = {}};
+  picture.images = RenderPicture(measured, fitted, Shape::kSphere, Larger(options, kSizeOfNodes));
+  DrawImagePair(picture, options, path);
 }
 
-void DrawFittedSphere(const Material& fitted, const std::string& path, AppearanceOptions options) {
-  options.size = 320;
-  WriteImage(RenderSphere(fitted, options), path);
+void DrawFittedSphere(const Material& fitted, const std::string& path,
+                      const AppearanceOptions& options) {
+  WriteImage(RenderPicture(fitted, Larger(options, kSizeOfTable)), 594, path);
 }
 
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
-               AppearanceOptions options) {
-  options.size = 160;
-  ImagePairs pairs = RenderPairs(measured, fitted, Shape::kCloth, /*whole_too=*/true, options);
-  DrawImagePair({.source = measured.table().source,
-                 .rows = {"light along the thread", "light across the thread"},
-                 .counted = std::move(pairs.counted),
-                 .whole = std::move(pairs.whole)},
-                options, path);
+               const AppearanceOptions& options) {
+  PairPicture picture{
+      .source = measured.table().source,
+      .rows = {"light along the thread", "light across the thread"},
+      .error = {},
+      .of = "this picture",
+      .images = RenderPicture(measured, fitted, Shape::kCloth, Larger(options, kSizeOfCloth))};
+  picture.error = ErrorOf(picture.images.counted);
+  DrawImagePair(picture, options, path);
 }
 
 void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
                      const AppearanceOptions& options) {
-  WriteImagePair({.source = measured.source,
-                  .rows = {},
-                  .counted = RenderMeasuredPair(measured, fitted, options),
-                  .whole = RenderSpherePair(measured, fitted, options)},
-                 path);
+  WriteImagePair(RenderPicture(measured, fitted, options), path);
 }
 
 void WriteSpherePair(const PictureData& measured, const Material& fitted, const std::string& path,
                      const AppearanceOptions& options) {
   if (measured.nodes) {
-    WriteImagePair(SphereOf(*measured.nodes, fitted.spherical, options), path);
+    WriteImagePair(RenderPicture(*measured.nodes, fitted.spherical, Shape::kSphere, options), path);
   } else {
     CheckIsotropic(measured, fitted);
     WriteSpherePair(*measured.table, fitted.angular, path, options);

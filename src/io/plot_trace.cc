@@ -23,9 +23,10 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
   }
   const auto [low, high] = std::ranges::minmax(objectives);
   std::string script = GnuplotData("trace", rows);
-  script += "set multiplot layout 1,2 title " +
-            GnuplotQuote(title.empty() ? "Convergence" : "Convergence: " + title) +
-            " noenhanced font ',22'\nset lmargin 11\nset rmargin 3\n";
+  script +=
+      "set multiplot layout 1,2 title " +
+      GnuplotTitle(title.empty() ? "Convergence" : "Convergence: " + PictureName(title), 1600, 22) +
+      "\nset lmargin 11\nset rmargin 3\n";
   if (high > 10 * low) {
     script += "set logscale y\nset format y '10^{%T}'\nset yrange " +
               GnuplotLogRange(objectives, 30) + "\n";

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/io/sample_table.h"
 #include "trilobe/model/reconstruct.h"
 
 namespace trilobe {
@@ -58,6 +60,7 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
     drawings.emplace_back([path, draw] { draw(path); });
   };
   const Material fitted = MaterialOf(file.model);
+  std::optional<BrdfTable> sampled;
   if (measured.table != nullptr) CheckIsotropic(measured, fitted);
   add("factors.png", [&](const std::string& path) { DrawFactors(file, path); });
   if (measured.nodes) {
@@ -75,8 +78,21 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
     add("spheres.png",
         [&](const std::string& path) { DrawSpheres(table, fitted.angular, path, appearance); });
   } else {
-    add("spheres.png",
-        [&](const std::string& path) { DrawFittedSphere(fitted, path, appearance); });
+    if (measured.scattered != nullptr && HasSlices(*measured.scattered)) {
+      add("slices.png", [&](const std::string& path) {
+        DrawSlices(*measured.scattered, fitted.spherical, path);
+      });
+    }
+    if (measured.scattered != nullptr && fitted.angular) {
+      sampled = TableOfSamples(*measured.scattered);
+    }
+    add("spheres.png", [&](const std::string& path) {
+      if (sampled) {
+        DrawSpheres(*sampled, fitted.angular, path, appearance);
+      } else {
+        DrawFittedSphere(fitted, path, appearance);
+      }
+    });
   }
   if (!trace.empty()) {
     add("trace.png", [&](const std::string& path) { DrawTrace(trace, file.fit.source, path); });

@@ -32,20 +32,28 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
 // sample were turned; and over phi_o at several theta_o, lit from phi_i = 0 at a middling theta_i.
 void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path);
 
-// Measured and fitted material on a sphere under the lights of the options (whose size is not
-// used), and how far apart they are to the eye.
+// The same of scattered samples on no grid, in the plane of incidence: over theta_o, on the light's
+// side below 0, at a few theta_i that were measured, as samples up to a few degrees off show it;
+// and whether there are enough of them.
+bool HasSlices(const Measurement& scattered);
+void DrawSlices(const Measurement& scattered, const SphericalBrdf& fitted, const std::string& path);
+
+// Measured and fitted material on a sphere under the environment of the options, all of it, and how
+// far apart they are to the eye; the figures are those of the spheres that CompareAppearance
+// compares.
 void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
-                 AppearanceOptions options);
+                 const AppearanceOptions& options);
 
 void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
-                 AppearanceOptions options);
+                 const AppearanceOptions& options);
 
 // The fitted one alone, without text, where no measurement can be shown beside it.
-void DrawFittedSphere(const Material& fitted, const std::string& path, AppearanceOptions options);
+void DrawFittedSphere(const Material& fitted, const std::string& path,
+                      const AppearanceOptions& options);
 
 // The same on a draped cloth (ViewCloth), lit along its thread and across it.
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
-               AppearanceOptions options);
+               const AppearanceOptions& options);
 
 // The two spheres alone, side by side, without text.
 void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
@@ -85,8 +93,9 @@ void DrawTradeOff(std::span<const TradeOff> models, const std::string& path);
 void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace);
 
 // All pictures that the inputs allow, as factors.png, slices.png, spheres.png, cloth.png and
-// trace.png in an existing folder: slices need data at nodes or in a table, cloth such data at
-// nodes, trace needs records; without data spheres.png is of the fit alone. Returns their paths.
+// trace.png in an existing folder: cloth needs data at nodes, trace needs records. Of isotropic
+// scattered samples spheres.png shows a table of them (TableOfSamples) where they are dense;
+// without data, or where samples are few, it is of the fit alone. Returns their paths.
 std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,

@@ -23,7 +23,9 @@ std::string_view Trimmed(std::string_view text) {
 // What to show of a cell.
 std::string Quoted(std::string_view cell) {
   constexpr size_t kLongest = 40;
-  return "'" + std::string(cell.substr(0, kLongest)) + (cell.size() > kLongest ? "...'" : "'");
+  std::string quoted = "'";
+  quoted += cell.substr(0, kLongest);
+  return quoted + (cell.size() > kLongest ? "...'" : "'");
 }
 
 // The number that all of a cell is.

@@ -36,7 +36,7 @@ TEST(Limits, WithLittleMemoryEachCommandEnds) {
     const std::string limit = "-v " + std::to_string(kib);
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"fit", "synth:felt@12x12x24", "--solver=newton",
-                                   "--max_iterations=1", "--lobes=1", "--threads=1"},
+                                   "--max_iterations=1", "--lobes=1", "--threads=1", "--noplots"},
           {"info", "synth:felt@12x12x24"}}) {
       const ProgramResult result = RunWithin(limit, command);
       EXPECT_TRUE(result.status == 0 || result.status == 1)
@@ -58,7 +58,7 @@ TEST(Limits, OnSizesOfFilesAreErrorsOfWriting) {
   const std::string out = folder / "out";
   // A MERL file has 35 MB, and the first is found out before the work.
   const std::vector<std::string> commands[] = {
-      {"fit", "synth:felt@12x12x24", "--max_iterations=1", "--out=" + out},
+      {"fit", "synth:felt@12x12x24", "--max_iterations=1", "--noplots", "--out=" + out},
       {"synth", "felt", "--out=" + out + "/felt.binary"}};
   for (const std::vector<std::string>& command : commands) {
     std::filesystem::create_directory(out);

@@ -91,6 +91,21 @@ TEST(FitFolder, KeepsTheEarlierRunUntilThereIsANewModel) {
   EXPECT_EQ(Contents(out + "/report.json"), before);
 }
 
+// RunProgram lets a fit draw none; flags may come before the command.
+TEST(FitFolder, HasPicturesUnlessAskedForNone) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const std::vector<std::string> command = Quick({"--out=" + out, "fit", "synth:felt@30x30x60"});
+  const ProgramResult without = RunProgram(command, {"PATH=/nowhere"});
+  EXPECT_EQ(without.status, 0) << without.err;
+  EXPECT_THAT(without.err, HasSubstr("no pictures, as gnuplot is not installed"));
+  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json"));
+  ASSERT_EQ(RunProgram(command).status, 0);
+  EXPECT_THAT(Names(out),
+              UnorderedElementsAre("model.json", "trace.csv", "report.json", "factors.png",
+                                   "slices.png", "spheres.png", "trace.png"));
+}
+
 TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
@@ -336,7 +351,7 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   EXPECT_THAT(fit.out, StartsWith("verdict      "));
   EXPECT_THAT(fit.out, HasSubstr(" (Delta E of samples "));
   EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
-                                               "reconstruction.binary", "factors.png",
+                                               "reconstruction.binary", "factors.png", "slices.png",
                                                "spheres.png", "trace.png"));
   const nlohmann::json report = Json(out + "/report.json");
   EXPECT_TRUE(report["appearance"].is_null());

@@ -23,8 +23,7 @@ struct TerminalResult {
 // `signal` (none if 0), that many times.
 inline TerminalResult RunOnTerminal(const std::vector<std::string>& arguments,
                                     const std::string& cue, int signal, int times = 1) {
-  std::vector<std::string> words = {Program()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> words = CommandOf(Program(), arguments);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -49,6 +50,23 @@ struct ProgramResult {
   std::string out, err;
 };
 
+// The words of a command. A fit draws pictures, which takes its time, only in tests that ask for
+// them; and those of scenes and of several measurements draw none by themselves.
+inline std::vector<std::string> CommandOf(const std::string& program,
+                                          const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const auto asks = [&](const char* flag) {
+    return std::ranges::any_of(arguments,
+                               [&](const std::string& word) { return word.starts_with(flag); });
+  };
+  if (!arguments.empty() && arguments[0] == "fit" && !asks("--plots") && !asks("--noplots") &&
+      !asks("--scene")) {
+    words.emplace_back("--noplots");
+  }
+  return words;
+}
+
 // Runs the real program with these arguments, without a shell; each of `environment` ("PATH=") is
 // set for it. Or a copy of it.
 inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
@@ -56,8 +74,7 @@ inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
                                 const std::string& program = Program()) {
   const TemporaryFolder folder;
   const std::string out = folder / "out", err = folder / "err";
-  std::vector<std::string> words = {program};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> words = CommandOf(program, arguments);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

@@ -69,7 +69,7 @@ class GnuplotTest : public testing::Test {
   };
 
   static AppearanceOptions Appearance(int num_threads) {
-    return {.lights = 6, .num_threads = num_threads};
+    return {.lights = 6, .size = 16, .num_threads = num_threads};
   }
 
   std::filesystem::path folder_;
@@ -80,6 +80,24 @@ TEST(GnuplotQuoteTest, EscapesWhatGnuplotWouldRead) {
   EXPECT_EQ(GnuplotQuote("it's"), "'it’s'");
   EXPECT_EQ(GnuplotQuote("a\nb\tc\x7f"), "'a?b?c?'");
   EXPECT_EQ(GnuplotQuote("\xff_\xc3"), "'?_?'");
+}
+
+TEST(GnuplotTitleTest, FitsTheWidth) {
+  EXPECT_EQ(GnuplotTitle("copper", 2000, 26), "'copper' noenhanced font ',26'");
+  EXPECT_THAT(GnuplotTitle(std::string(98, 'm'), 2000, 26), testing::EndsWith("font ',22'"));
+  const std::string cut = GnuplotTitle(std::string(400, 'm') + "µ", 1000, 26);
+  EXPECT_THAT(cut, testing::EndsWith("…' noenhanced font ',12'"));
+  EXPECT_LT(cut.size(), 130U);
+}
+
+TEST(PictureNameTest, IsTheFile) {
+  EXPECT_EQ(PictureName("/a/b c/paint.bsdf"), "paint.bsdf");
+  EXPECT_EQ(PictureName("synth:copper@30x30x60"), "synth:copper@30x30x60");
+}
+
+TEST(LogTicsTest, AreAFewForAnyRange) {
+  EXPECT_EQ(LogTics({0.2, 3}, 'x'), "set format x '%g'\nset xtics (0.1, 0.2, 0.5, 1, 2, 5)\n");
+  EXPECT_EQ(LogTics({0.2, 300}, 'y'), "set format y '10^{%T}'\nset ytics autofreq\n");
 }
 
 TEST(GnuplotNumberTest, IsPlainOrAGap) {
@@ -297,6 +315,25 @@ TEST_F(GnuplotTest, WritesTwoSpheresSideBySide) {
       black, [](const HalfDiffAngles&, const Cosines&) { return Rgb{}; }, Path("black.png"),
       options);
   EXPECT_GT(ReadFile(Path("grey.png")).size(), ReadFile(Path("black.png")).size());
+}
+
+// Of scattered samples, too, those in the plane of incidence are held against the fit.
+TEST_F(GnuplotTest, DrawsScatteredSamplesAgainstTheFit) {
+  SampleCollector collector("few.csv", "test");
+  for (int i = 10; i < 80; i += 20) {
+    for (int o = 0; o < 80; o += 5) {
+      collector.Add({DegreesToRadians(i), 0, DegreesToRadians(o), kPi}, {0.1, 0.2, 0.3});
+    }
+  }
+  const Measurement few = collector.Take();
+  const SphericalBrdf fitted = [](const SphericalAngles& /*at*/) { return Rgb{0.1, 0.2, 0.2}; };
+  EXPECT_TRUE(HasSlices(few));
+  DrawSlices(few, fitted, Path("slices.png"));
+  EXPECT_EQ(PngSize(Path("slices.png")), std::pair(2000, 1000));
+  Measurement none = few;
+  for (SphericalAngles& at : none.samples.directions) at.phi_o = 1;
+  std::erase_if(none.samples.directions, [](const SphericalAngles& at) { return at.theta_o == 0; });
+  EXPECT_FALSE(HasSlices(none));
 }
 
 // What was not measured is shown, and its difference left out.

@@ -1,0 +1,123 @@
+#include "trilobe/appearance/mirrored_environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilobe {
+namespace {
+
+constexpr int kSize = 512;       // pixels across the finest map
+constexpr int kSamples = 2;      // of the environment along each side of a pixel
+constexpr int kRings = 26;       // of half vectors
+constexpr double kAspect = 1.5;  // of a cell: along its ring over across it
+// Side of the square that a cell's mean is of, over that of its area: less shows a lamp in spots,
+// more carries light over the horizon.
+constexpr double kBlur = 1.8;
+
+// The environment in the light's direction, nearest pixel. Beyond the rim of the disc the map goes
+// on where a path through the direction behind the object would.
+const Rgb& Reflected(const Environment& environment, double x, double y) {
+  const double radius = std::hypot(x, y);
+  if (radius > 1) {
+    const double inside = (radius - 2) / radius;  // on the other side
+    x *= inside;
+    y *= inside;
+  }
+  const double z2 = std::max(1 - x * x - y * y, 0.0), z = std::sqrt(z2);
+  const Direction light = {2 * z * x, 2 * z * y, 2 * z2 - 1};
+  const double row = std::acos(std::clamp(light[1], -1.0, 1.0)) / kPi * environment.height;
+  const double column = (std::atan2(light[0], -light[2]) / (2 * kPi) + 0.5) * environment.width;
+  return environment
+      .radiance[std::min(static_cast<int>(row), environment.height - 1) * environment.width +
+                std::min(static_cast<int>(column), environment.width - 1)];
+}
+
+std::vector<HalfCell> MakeCells() {
+  // Of the edge of a ring [rad].
+  const auto theta = [](double ring) { return kPi / 2 * std::pow(ring / kRings, 2.5); };
+  std::vector<HalfCell> cells;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const double inner = theta(ring), outer = theta(ring + 1), middle = theta(ring + 0.5);
+    const int around = std::max(
+        6, static_cast<int>(std::lround(2 * kPi * std::sin(middle) / (outer - inner) / kAspect)));
+    const double solid_angle = 2 * kPi * (std::cos(inner) - std::cos(outer)) / around;
+    for (int k = 0; k < around; ++k) {
+      // Turned by the golden angle from ring to ring, so that no spokes are seen.
+      const double phi = 2 * kPi * k / around + ring * kPi * (3 - std::sqrt(5.0));
+      cells.push_back(
+          {{std::sin(middle) * std::cos(phi), std::sin(middle) * std::sin(phi), std::cos(middle)},
+           solid_angle});
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
+  Level finest{kSize, {}};
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      Rgb sum{};
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const double x = column + (k % kSamples + 0.5) / kSamples;
+        const double y = row + (k / kSamples + 0.5) / kSamples;
+        const Rgb& seen = Reflected(environment, 2 * x / kSize - 1, 1 - 2 * y / kSize);
+        for (int c = 0; c < kChannels; ++c) sum[c] += seen[c] / (kSamples * kSamples);
+      }
+      finest.radiance.push_back(sum);
+    }
+  }
+  levels_.push_back(std::move(finest));
+  while (levels_.back().size > 2) {
+    const Level& fine = levels_.back();
+    Level coarse{fine.size / 2, {}};
+    for (int row = 0; row < coarse.size; ++row) {
+      for (int column = 0; column < coarse.size; ++column) {
+        Rgb mean{};
+        for (int k = 0; k < 4; ++k) {
+          const Rgb& part = fine.radiance[(2 * row + k / 2) * fine.size + 2 * column + k % 2];
+          for (int c = 0; c < kChannels; ++c) mean[c] += part[c] / 4;
+        }
+        coarse.radiance.push_back(mean);
+      }
+    }
+    levels_.push_back(std::move(coarse));
+  }
+}
+
+// Linear between the middles of pixels; x and y from -1 to 1.
+Rgb MirroredEnvironment::Level::At(double x, double y) const {
+  const double column = std::clamp((x + 1) / 2 * size - 0.5, 0.0, size - 1.0);
+  const double row = std::clamp((1 - y) / 2 * size - 0.5, 0.0, size - 1.0);
+  const int c0 = std::min(static_cast<int>(column), size - 2);
+  const int r0 = std::min(static_cast<int>(row), size - 2);
+  const double s = column - c0, t = row - r0;
+  const Rgb* const above = &radiance[r0 * size + c0];
+  const Rgb* const below = above + size;
+  Rgb mean;
+  for (int c = 0; c < kChannels; ++c) {
+    mean[c] = (1 - t) * ((1 - s) * above[0][c] + s * above[1][c]) +
+              t * ((1 - s) * below[0][c] + s * below[1][c]);
+  }
+  return mean;
+}
+
+Rgb MirroredEnvironment::Mean(const Direction& half, double solid_angle) const {
+  const double area = std::max(half[2] * solid_angle, 1e-12);
+  const double level = std::clamp(std::log2(kBlur * std::sqrt(area) * kSize / 2), 0.0,
+                                  static_cast<double>(levels_.size() - 1));
+  const int finer = std::min(static_cast<int>(level), static_cast<int>(levels_.size()) - 2);
+  const double t = level - finer;
+  const Rgb a = levels_[finer].At(half[0], half[1]), b = levels_[finer + 1].At(half[0], half[1]);
+  Rgb mean;
+  for (int c = 0; c < kChannels; ++c) mean[c] = (1 - t) * a[c] + t * b[c];
+  return mean;
+}
+
+const std::vector<HalfCell>& HalfCells() {
+  static const std::vector<HalfCell> cells = MakeCells();
+  return cells;
+}
+
+}  // namespace trilobe

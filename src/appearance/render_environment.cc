@@ -1,0 +1,98 @@
+#include "trilobe/appearance/render_environment.h"
+
+#include <cmath>
+#include <vector>
+
+#include "trilobe/appearance/color.h"
+#include "trilobe/appearance/mirrored_environment.h"
+#include "trilobe/appearance/prepared_light.h"
+
+namespace trilobe {
+namespace {
+
+// The light that the half vectors of a cell send to the eye.
+class CellLights {
+ public:
+  CellLights(const Environment& environment, const View& view)
+      : mirrored_(environment), view_(view) {}
+
+  int size() const { return static_cast<int>(cells_.size()); }
+
+  // Of a cell about the normal of a point. Calls `set_angles(half, light, incident)` if it is above
+  // the surface, and then `irradiance` holds.
+  template <typename Angles, typename SetAngles>
+  Incident<Angles> On(int point, int cell, const SetAngles& set_angles) const {
+    const auto& [local, solid_angle] = cells_[cell];
+    const Direction half = Turned(view_.points[point].normal, local);
+    if (!(half[2] > 0)) return {};
+    const Direction light = {2 * half[2] * half[0], 2 * half[2] * half[1],
+                             2 * half[2] * half[2] - 1};
+    Incident<Angles> incident{.cosines = CosinesOver(view_.points[point], light)};
+    if (!(incident.cosines.i > 0)) return incident;
+    set_angles(half, light, &incident);
+    incident.irradiance = mirrored_.Mean(half, solid_angle);
+    const double light_angle = 4 * half[2] * solid_angle;
+    for (double& x : incident.irradiance) x *= light_angle;
+    incident.weight = Luminance(incident.irradiance);
+    return incident;
+  }
+
+ private:
+  // By the smallest turn that takes z to the normal, which is no sudden one where the eye looks.
+  static Direction Turned(const Direction& n, const Direction& v) {
+    const double along = (n[0] * v[0] + n[1] * v[1]) / (1 + n[2]);
+    return {v[0] - n[0] * along + n[0] * v[2], v[1] - n[1] * along + n[1] * v[2],
+            n[2] * v[2] - n[0] * v[0] - n[1] * v[1]};
+  }
+
+  const MirroredEnvironment mirrored_;
+  const View& view_;
+  const std::vector<HalfCell>& cells_ = HalfCells();
+};
+
+}  // namespace
+
+RenderedImages RenderUnder(const Environment& environment, const View& view,
+                           std::span<const SphericalBrdf> materials,
+                           const std::function<bool(const SphericalAngles&)>& counts,
+                           int num_threads) {
+  const CellLights lights(environment, view);
+  return RenderBy(
+      view, lights.size(), static_cast<int>(materials.size()),
+      [&](int k, int cell) {
+        return lights.On<SphericalAngles>(
+            k, cell, [&](const Direction&, const Direction& light, auto* incident) {
+              const SurfacePoint& point = view.points[k];
+              incident->angles = {std::acos(incident->cosines.i), PhiOver(point, light),
+                                  std::acos(incident->cosines.o), PhiOver(point, kEye)};
+            });
+      },
+      [&](int m, const SphericalAngles& at, const Cosines&) { return materials[m](at); },
+      [&](const SphericalAngles& at, const Cosines&) { return counts(at); }, /*whole_too=*/true,
+      num_threads);
+}
+
+RenderedImages RenderUnder(const Environment& environment, const View& view,
+                           std::span<const AngularBrdf> materials,
+                           const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts,
+                           int num_threads) {
+  const CellLights lights(environment, view);
+  return RenderBy(
+      view, lights.size(), static_cast<int>(materials.size()),
+      [&](int k, int cell) {
+        return lights.On<HalfDiffAngles>(
+            k, cell, [&](const Direction& half, const Direction&, auto* incident) {
+              // As Prepare has it, light being half mirrored at the eye.
+              const double sin_d = std::hypot(half[0], half[1]);
+              const PreparedLight prepared = {
+                  half, {-half[1], half[0], 0}, std::atan2(sin_d, half[2]), sin_d};
+              incident->angles = AnglesOver(view.points[k].normal, prepared, incident->cosines);
+            });
+      },
+      [&](int m, const HalfDiffAngles& angles, const Cosines& cosines) {
+        return materials[m](angles, cosines);
+      },
+      counts, /*whole_too=*/true, num_threads);
+}
+
+}  // namespace trilobe
