@@ -293,6 +293,7 @@ RenderedImage RenderPicture(const Material& material, const AppearanceOptions& o
     return std::move(
         RenderUnder(environment, view, {&brdf, 1}, Everything, options.num_threads).whole[0]);
   }
+  CheckNotEmpty(material.spherical, "the material");
   const auto everything = [](const SphericalAngles&) { return true; };
   return std::move(
       RenderUnder(environment, view, {&material.spherical, 1}, everything, options.num_threads)

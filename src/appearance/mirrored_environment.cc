@@ -55,6 +55,7 @@ std::vector<HalfCell> MakeCells() {
 }  // namespace
 
 MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
+  CheckEnvironment(environment);
   Level finest{kSize, {}};
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {

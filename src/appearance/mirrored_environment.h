@@ -15,6 +15,7 @@ namespace trilobe {
 // 4, ... of them, each stand for the same solid angle.
 class MirroredEnvironment {
  public:
+  // Throws Error as CheckEnvironment does.
   explicit MirroredEnvironment(const Environment& environment);
 
   // The mean radiance of what mirrors reflect whose normals are within a solid angle [sr] around

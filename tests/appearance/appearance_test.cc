@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/test_util.h"
 #include "trilobe/appearance/color.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/tabulated_brdf.h"

@@ -48,7 +48,7 @@ TEST(Arguments, OfAppearance) {
     const std::string error = ErrorOf([&] { CompareAppearance(table, kGrey, options); });
     EXPECT_EQ(ErrorOf([&] { SphereJudge(table, options)(kGrey); }), error);
     EXPECT_EQ(ErrorOf([&] { CompareAppearance(nodes, kGreyOfAny, options); }), error);
-    EXPECT_EQ(ErrorOf([&] { RenderSphere(Isotropic(kGrey), options); }), error);
+    EXPECT_EQ(ErrorOf([&] { RenderMeasuredPair(table, kGrey, options); }), error);
     return error;
   };
   EXPECT_THAT(compare({.lights = 0}), HasSubstr("lights"));
@@ -66,8 +66,8 @@ TEST(Arguments, EmptyFunctions) {
   const auto empty = HasSubstr("not empty");
   EXPECT_THAT(ErrorOf([&] { CompareAppearance(table, nullptr, options); }), empty);
   EXPECT_THAT(ErrorOf([&] { CompareAppearance(nodes, nullptr, options); }), empty);
-  EXPECT_THAT(ErrorOf([&] { RenderSpherePair(table, nullptr, options); }), empty);
-  EXPECT_THAT(ErrorOf([&] { RenderSphere({}, options); }), empty);
+  EXPECT_THAT(ErrorOf([&] { RenderPicture(table, nullptr, options); }), empty);
+  EXPECT_THAT(ErrorOf([&] { RenderPicture(Material{}, options); }), empty);
   EXPECT_THAT(ErrorOf([] { Isotropic(nullptr); }), empty);
   const std::vector<Light> lights = DrawLights(StudioEnvironment(), 1);
   EXPECT_THAT(ErrorOf([&] { RenderSpheres({&kGrey, 1}, lights, 8, nullptr, 1); }), empty);
