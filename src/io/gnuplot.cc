@@ -29,6 +29,9 @@
 namespace trilobe {
 namespace {
 
+constexpr const char* kNoGnuplot =
+    "pictures need gnuplot, which is not on the PATH; install the package gnuplot-nox";
+
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -102,9 +105,7 @@ std::string RunGnuplot(const std::string& script, double max_seconds) {
   const int failure = posix_spawnp(&pid, "gnuplot", &actions, &attributes, arguments, environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) {
-    throw Error("pictures need gnuplot, which is not on the PATH; install the package gnuplot-nox");
-  }
+  if (failure == ENOENT) throw Error(kNoGnuplot);
   if (failure != 0) throw Error(std::string("cannot run gnuplot: ") + std::strerror(failure));
 
   const std::optional<int> status = WaitFor(pid, max_seconds);
@@ -238,6 +239,10 @@ bool HaveGnuplot() {
     if (access((std::filesystem::path(folder) / "gnuplot").c_str(), X_OK) == 0) return true;
   }
   return false;
+}
+
+void RequireGnuplot() {
+  if (!HaveGnuplot()) throw Error(kNoGnuplot);
 }
 
 void DrawPng(const std::string& path, int width, int height, const std::string& script,

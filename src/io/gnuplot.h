@@ -47,6 +47,8 @@ std::string LogTics(const AxisRange& range, char axis);
 
 // Whether there is a `gnuplot` on the PATH.
 bool HaveGnuplot();
+// Throws Error, which says what to install, unless there is.
+void RequireGnuplot();
 
 // Runs `gnuplot` on a script and writes the PNG picture that it draws to `path`, as a whole or not
 // at all. The script may carry data inline, also binary; it begins in the common style: a pngcairo

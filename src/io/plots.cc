@@ -7,6 +7,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
+#include "trilobe/io/gnuplot.h"
 #include "trilobe/io/sample_table.h"
 #include "trilobe/model/reconstruct.h"
 
@@ -62,6 +63,7 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
   const Material fitted = MaterialOf(file.model);
   std::optional<BrdfTable> sampled;
   if (measured.table != nullptr) CheckIsotropic(measured, fitted);
+  RequireGnuplot();  // so that none is drawn where others cannot be
   add("factors.png", [&](const std::string& path) { DrawFactors(file, path); });
   if (measured.nodes) {
     const NodeBrdf& nodes = *measured.nodes;
