@@ -62,7 +62,7 @@ inline std::vector<std::string> CommandOf(const std::string& program,
   };
   if (!arguments.empty() && arguments[0] == "fit" && !asks("--plots") && !asks("--noplots") &&
       !asks("--scene")) {
-    words.emplace_back("--noplots");
+    words.insert(words.begin() + 2, "--noplots");  // the last word may lack its value
   }
   return words;
 }
