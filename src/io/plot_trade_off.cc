@@ -10,6 +10,13 @@
 namespace trilobe {
 namespace {
 
+// Between tics: 1, 2, 5, 10, ..., for no more than five of them.
+double StepOf(const AxisRange& range) {
+  double step = 1;
+  for (int k = 0; (range.high - range.low) / step > 5; ++k) step *= k % 3 == 1 ? 2.5 : 2;
+  return step;
+}
+
 // A panel of `rows`: columns 0 (height), 2k + 1 (full) and 2k + 2 (pruned) for axis k.
 std::string Measure(const char* title, int axis, bool logarithmic,
                     const std::vector<std::vector<double>>& rows) {
@@ -25,7 +32,8 @@ std::string Measure(const char* title, int axis, bool logarithmic,
       logarithmic ? AxisRange{low / 1.6, high * 1.6} : AxisRange{low - 1, high + 1};
   const std::string full = std::to_string(2 * axis + 2), pruned = std::to_string(2 * axis + 3);
   return (logarithmic ? "set logscale x\n" + LogTics(range, 'x')
-                      : std::string("unset logscale x\nset format x '%g'\nset xtics autofreq\n")) +
+                      : "unset logscale x\nset format x '%g'\nset xtics " +
+                            GnuplotNumber(StepOf(range)) + "\n") +
          "set xrange [" + GnuplotNumber(range.low) + ":" + GnuplotNumber(range.high) +
          "]\nset title " + GnuplotQuote(title) + "\nplot $rows using " + full + ":1:($" + pruned +
          "-$" + full +
@@ -43,9 +51,9 @@ std::string Shortened(const std::string& name) {
 
 // A mark and its meaning, in pixels from the top left.
 std::string Legend(int number, const char* text, const char* color, int point_type, int x,
-                   int height) {
+                   int width, int height) {
   return "set label " + std::to_string(number) + " " + GnuplotQuote(text) + " at screen " +
-         GnuplotNumber(x / 1600.0) + "," + GnuplotNumber(1 - 30.0 / height) +
+         GnuplotNumber(static_cast<double>(x) / width) + "," + GnuplotNumber(1 - 30.0 / height) +
          " left front textcolor '" + color + "' offset 1.2,0 point pointtype " +
          std::to_string(point_type) + " pointsize 2 linewidth 2.5 linecolor '" + color + "'\n";
 }
@@ -65,26 +73,25 @@ void DrawTradeOff(std::span<const TradeOff> models, const std::string& path) {
     names += comma + GnuplotQuote(Shortened(name)) + " " + GnuplotNumber(y);
     ticks += comma + "'' " + GnuplotNumber(y);
   }
-  // Room for the longest name, in letters of some 15 pixels, but no more than for the panels.
-  constexpr int kWidth = 1600;
+  // Room for the longest name, in letters of some 15 pixels.
   size_t longest = 0;
-  for (const TradeOff& model : models) longest = std::max(longest, model.name.size());
-  const double left = std::clamp(15.0 * static_cast<double>(longest) + 50, 272.0, 0.5 * kWidth);
+  for (const TradeOff& model : models) longest = std::max(longest, Shortened(model.name).size());
+  const int left = std::max(272, 15 * static_cast<int>(longest) + 50), width = left + 1328;
   const int height = 190 + 44 * static_cast<int>(models.size());
   const auto from_top = [height](int pixels) { return GnuplotNumber(1 - pixels * 1.0 / height); };
   std::string script = GnuplotData("rows", rows);
-  script += "set multiplot layout 1,3 margins " + GnuplotNumber(left / kWidth) + ",0.98," +
-            GnuplotNumber(60.0 / height) + "," + from_top(105) +
+  script += "set multiplot layout 1,3 margins " + GnuplotNumber(static_cast<double>(left) / width) +
+            ",0.98," + GnuplotNumber(60.0 / height) + "," + from_top(105) +
             " spacing 0.035,0\nset format x '%g'\nset yrange [-0.6:" +
             GnuplotNumber(static_cast<double>(models.size()) - 0.4) + "]\n" +
-            Legend(1, "full model", kOkabeIto[5], 6, 640, height) +
-            Legend(2, "pruned model", kOkabeIto[4], 7, 850, height);
+            Legend(1, "full model", kOkabeIto[5], 6, left + 368, width, height) +
+            Legend(2, "pruned model", kOkabeIto[4], 7, left + 578, width, height);
   script += "set ytics (" + names + ") noenhanced\n";
   script += Measure("parameters of the model [bytes]", 0, true, rows);
   script += "unset label\nset ytics (" + ticks + ")\n";
   script += Measure("time x threads to make it [s]", 1, true, rows);
   script += Measure("PSNR [dB]", 2, false, rows);
-  DrawPng(path, 1600, height, script);
+  DrawPng(path, width, height, script);
 }
 
 }  // namespace trilobe
