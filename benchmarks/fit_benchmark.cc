@@ -71,7 +71,7 @@ void BM_ValueReference(benchmark::State& state) {
     double sum = 0;
     for (const WeightedSample& sample : samples) {
       for (int c = 0; c < kChannels; ++c) {
-        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+        const double residual = sample.rho[c] - UnclampedValue(model, sample.stencils, c);
         sum += sample.weight[c] * residual * residual;
       }
     }

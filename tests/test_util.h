@@ -139,7 +139,7 @@ inline BrdfTable TableOf(const FactorModel& model, const MerlGrid& grid) {
   for (int bin = 0; bin < grid.size(); ++bin) {
     if (!above[bin]) continue;
     const SampleStencils stencils = GridStencils(model.spec(), grid, bin);
-    for (int c = 0; c < kChannels; ++c) table.SetValue(c, bin, Evaluate(model, stencils, c));
+    for (int c = 0; c < kChannels; ++c) table.SetValue(c, bin, UnclampedValue(model, stencils, c));
   }
   return table;
 }

@@ -107,12 +107,18 @@ std::string Describe(const NodeChoice& choice) {
 std::string Describe(const FitReport::Guide& guide) {
   return "guide        a small model, fitted first, speaks for " + std::to_string(guide.samples) +
          " directions between the measured ones, each of weight " + Text(guide.weight) +
-         "; the solver's E counts them, all that follows does not\n";
+         "; E is of the measured directions alone, but where it says otherwise\n";
 }
 
 // What was chosen, and what it was chosen from.
 std::string Describe(const FitReport::Finished& finished) {
   std::string text;
+  if (finished.tamed) {
+    text +=
+        "between      the fit reached more than four times the largest measured value between the "
+        "samples, and was drawn to the guide there; E " +
+        Text(finished.tamed->E_before) + " -> " + Text(finished.tamed->E_after) + "\n";
+  }
   if (finished.tied) {
     // A fit that was stopped early gains more from the steps of the refit than tying costs.
     text += "data edge    entries read by few samples follow from their neighbours; E " +
@@ -167,6 +173,23 @@ std::string ParametersText(const FitReport& report) {
   return text;
 }
 
+std::string ReachText(const Reach& reach) {
+  constexpr double kNotable = 2;
+  if (std::max(reach.between, reach.beyond) < kNotable) return "";
+  const auto times = [](double x) { return Text(x, 3) + " times the largest measured value"; };
+  std::string text = "reach        ";
+  if (reach.beyond >= kNotable) {
+    text += "beyond " + Text(RadiansToDegrees(reach.max_theta), 3) +
+            " deg, where nothing was measured, the model reaches " + times(reach.beyond);
+  }
+  if (reach.between >= kNotable) {
+    text += (reach.beyond >= kNotable ? "; between the samples "
+                                      : "between the samples the model reaches ") +
+            times(reach.between);
+  }
+  return text + "\n";
+}
+
 nlohmann::ordered_json ToJson(const FitReport& report) {
   const FitInfo& fit = report.fit;
   const SolverSummary& summary = report.summary;
@@ -192,13 +215,20 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"candidates", ToJson(report.finished.candidates)},
           {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
           {"guide", report.guide
-                        ? Json{{"weight", report.guide->weight}, {"samples", report.guide->samples}}
+                        ? Json{{"weight", report.guide->weight},
+                               {"samples", report.guide->samples},
+                               {"initial_objective", summary.trace.front().minimised()},
+                               {"objective", summary.trace[summary.BestIteration()].minimised()}}
                         : Json()},
           {"matched_reflectance",
            report.finished.matched ? Json{{"error_before", report.finished.matched->error_before},
                                           {"error_after", report.finished.matched->error_after},
                                           {"objective_rise", report.finished.matched->rise}}
                                    : Json()},
+          {"tamed_between_samples",
+           report.finished.tamed ? Json{{"objective_before", report.finished.tamed->E_before},
+                                        {"objective_after", report.finished.tamed->E_after}}
+                                 : Json()},
           {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
           {"threads", fit.threads},
           {"options",
@@ -220,6 +250,9 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"mean_log_error", score.mean_log_error},
           {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
           {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
+          {"reach", report.reach ? Json{{"between_samples", report.reach->between},
+                                        {"beyond_samples", report.reach->beyond}}
+                                 : Json()},
           {"light", ToJson(report.light)},
           {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
           {"seconds",

@@ -17,6 +17,7 @@
 #include "trilobe/objective/score.h"
 #include "trilobe/prune/model_choice.h"
 #include "trilobe/solvers/node_choice.h"
+#include "trilobe/solvers/reach.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -51,6 +52,7 @@ struct FitReport {
   // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
   // of the sample leaves out (AnisotropyOf).
   std::optional<double> left_out;
+  std::optional<Reach> reach;  // of scattered samples
   LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
@@ -60,6 +62,9 @@ struct FitReport {
 std::string ModelName(const ModelSpec& spec);
 // "822 parameters"; of thinned tables not all are stored: the others follow.
 std::string ParametersText(const FitReport& report);
+// A line that says how large the model is where no sample says so, if that is more than somebody
+// would expect.
+std::string ReachText(const Reach& reach);
 
 // All there is to say but the verdict and the times, on standard output.
 void PrintDetails(const FitReport& report);

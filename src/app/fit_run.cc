@@ -158,6 +158,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   report.appearance = fit.appearance;
   report.samples_seen = fit.samples_seen;
   report.left_out = fit.left_out;
+  report.reach = fit.reach;
   report.light = std::move(fit.light);
   static_cast<FitResult::Seconds&>(report.seconds) = fit.seconds;
   report.peak_memory = PeakMemory();

@@ -81,6 +81,7 @@ void PrintSummary(const FitReport& report) {
             << EndText(summary.stop_reason) << "; E is "
             << Text(100 * report.score.relative_objective, 3) << " % of a black model's\n";
   if (report.appearance) std::cout << DescribeBriefly(*report.appearance);
+  if (report.reach) std::cout << ReachText(*report.reach);
 }
 
 void PrintSeconds(const FitReport& report) {

@@ -21,9 +21,10 @@ Progress::~Progress() {
 
 void Progress::Show(const IterationRecord& record) {
   if (!on_terminal_) return;
-  const double relative_change =
-      last_.objective > 0 ? (record.objective - last_.objective) / last_.objective : 0;
-  std::fprintf(stderr, "\r\033[Kiteration %d   E %.6g", record.iteration, record.objective);
+  const double before = last_.minimised(), now = record.minimised();
+  const double relative_change = before > 0 ? (now - before) / before : 0;
+  std::fprintf(stderr, "\r\033[Kiteration %d   E %s%.6g", record.iteration,
+               record.guided_objective ? "with the guide " : "", now);
   if (record.iteration > 0) {
     const double left =
         std::min((max_iterations_ - record.iteration) * record.seconds / record.iteration,

@@ -21,6 +21,10 @@ std::string BudgetText(const SceneBudget& budget) {
       return "E may rise by " + Text(100 * budget.amount) + " %";
     case SceneBudget::Unit::kPsnrDrop:
       return "PSNR may fall by " + amount + " dB";
+    case SceneBudget::Unit::kMeanDeltaE:
+      return "the sphere's mean Delta E may be " + amount;
+    case SceneBudget::Unit::kSpherePsnr:
+      return "the sphere's PSNR must be " + amount + " dB";
     case SceneBudget::Unit::kBytes:
       return "at most " + amount + " bytes";
     case SceneBudget::Unit::kSeconds:
@@ -35,6 +39,10 @@ Json ToJson(const SceneBudget& budget) {
       return {{"relative_rise", budget.amount}};
     case SceneBudget::Unit::kPsnrDrop:
       return {{"psnr_drop_db", budget.amount}};
+    case SceneBudget::Unit::kMeanDeltaE:
+      return {{"mean_delta_e", budget.amount}};
+    case SceneBudget::Unit::kSpherePsnr:
+      return {{"sphere_psnr_db", budget.amount}};
     case SceneBudget::Unit::kBytes:
       return {{"bytes", budget.amount}};
     case SceneBudget::Unit::kSeconds:
@@ -52,6 +60,15 @@ void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& o
   out << "\n"
       << Printable(fit.name + ": " + material.source) << "; " << BudgetText(material.budget)
       << "\n";
+  if (fit.full.mean_delta_e) {
+    const auto line = [&](const char* what, const SceneScore& score) {
+      out << what << "mean Delta E " << Text(*score.mean_delta_e, 3) << ", PSNR "
+          << Text(*score.sphere_psnr_db, 4) << " dB";
+    };
+    line("  sphere:   with nothing left out ", fit.full);
+    line("; as it is ", fit.pruned);
+    out << "\n";
+  }
   for (const std::string& note : fit.data_notes) out << "  note:     " << Printable(note) << "\n";
   if (fit.used_samples < fit.valid_samples) {
     out << "  left out: " << fit.valid_samples - fit.used_samples << " of " << fit.valid_samples
@@ -79,7 +96,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
                          {"objective_before", decision.E_before},
                          {"objective_after", decision.E_after}});
   }
-  return {
+  Json json = {
       {"name", fit.name},
       {"source", material.source},
       {"data_notes", fit.data_notes},
@@ -94,6 +111,12 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
       {"seconds", {{"fit", fit.fit_seconds}, {"prune", fit.prune_seconds}}},
       {"from_cache", {{"fit", fit.fit_from_cache}, {"prune", fit.prune_from_cache}}},
       {"decisions", decisions}};
+  if (fit.full.mean_delta_e) {
+    json["mean_delta_e"] = {{"full", *fit.full.mean_delta_e}, {"pruned", *fit.pruned.mean_delta_e}};
+    json["sphere_psnr_db"] = {{"full", *fit.full.sphere_psnr_db},
+                              {"pruned", *fit.pruned.sphere_psnr_db}};
+  }
+  return json;
 }
 
 }  // namespace

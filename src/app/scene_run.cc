@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "trilobe/app/appearance_report.h"
 #include "trilobe/app/command.h"
 #include "trilobe/app/flags.h"
 #include "trilobe/app/inputs.h"
@@ -125,6 +126,7 @@ SceneFitSettings SceneSettingsFromFlags() {
                             .extrapolated = source.extrapolated,
                             .program = ProgramName(),
                             .build = ProgramBuild(),
+                            .appearance = AppearanceOptionsFromFlags(),
                             .cache = CacheFromFlags(),
                             .stop = [] { return InterruptGuard::signal() != 0; }};
   settings.options.diagnose = false;  // nobody would see it

@@ -50,7 +50,7 @@ class MeasuredDirections {
   int num_left_out_ = 0;
 };
 
-// As a renderer would have it: the spline through G may undershoot.
+// As a renderer would have it, whatever the function: no light is taken away.
 AngularBrdf Clamped(const AngularBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const HalfDiffAngles& angles, const Cosines& cosines) {

@@ -22,7 +22,7 @@ Rgb EvaluatePolar(const FactorModel& model, const SphericalAngles& at) {
       .G_i = spec.g_axis.At(at.theta_i, at.phi_i),
       .G_o = spec.g_axis.At(at.theta_o, at.phi_o),
       .inverse_cosines = 1 / (wi[2] * wo[2])};
-  return {Evaluate(model, stencils, 0), Evaluate(model, stencils, 1), Evaluate(model, stencils, 2)};
+  return EvaluateAt(model, stencils);
 }
 
 }  // namespace

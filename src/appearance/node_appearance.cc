@@ -14,7 +14,7 @@
 namespace trilobe {
 namespace {
 
-// As a renderer would have it: a material of splines may undershoot.
+// As a renderer would have it, whatever the function: no light is taken away.
 SphericalBrdf Clamped(const SphericalBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const SphericalAngles& at) {

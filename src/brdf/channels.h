@@ -1,6 +1,7 @@
 #ifndef TRILOBE_BRDF_CHANNELS_H_
 #define TRILOBE_BRDF_CHANNELS_H_
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,6 +15,11 @@ inline constexpr const char* kChannelNames[kChannels] = {"red", "green", "blue"}
 using Rgb = std::array<double, kChannels>;
 
 inline double Mean(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
+// 0 in place of what is negative.
+inline Rgb AtLeastZero(const Rgb& rgb) {
+  return {std::max(rgb[0], 0.0), std::max(rgb[1], 0.0), std::max(rgb[2], 0.0)};
+}
 
 // |a - b| / |b|, b being what a should be; 0 where that is black.
 inline double RelativeDistance(const Rgb& a, const Rgb& b) {

@@ -125,17 +125,21 @@ void MatchReflectanceOf(const Objective& of, const StopCheck& stop, Looks* looks
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
   // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
-  const Objective of =
+  Objective of =
       options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
+  std::optional<TamedFit> tamed;
   std::optional<double> tied;
+  if (options.guide != nullptr) {
+    tamed = TameBetweenSamples(*options.guide, options.stop, &of, &model);
+  }
   if (!options.stop()) {
-    const double before = of.Value(model);
+    const double before = of.data().Value(model);
     if (TieEntriesAtDataEdge(of, &model, options.stop) && before > 0) {
-      tied = of.Value(model) / before - 1;
+      tied = of.data().Value(model) / before - 1;
     }
   }
   Canonicalize(objective, &model);
-  FinishedFit fit{.objective = objective, .model = std::move(model), .tied = tied};
+  FinishedFit fit{.objective = objective, .model = std::move(model), .tamed = tamed, .tied = tied};
   std::optional<Looks> looks;
   if (measured != nullptr) looks.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();

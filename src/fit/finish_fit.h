@@ -12,6 +12,7 @@
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/prune/model_choice.h"
+#include "trilobe/solvers/guide.h"
 
 namespace trilobe {
 
@@ -20,6 +21,7 @@ namespace trilobe {
 struct FinishOptions {
   double robust = 0;              // above 0: passes of reweighting with this delta (Reweighted)
   int max_parameters = 0;         // above 0: the form that looks best within so many (ChooseModel)
+  const Guide* guide = nullptr;   // that the objective has (TameBetweenSamples)
   bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
   AppearanceOptions appearance;
   StopCheck stop = {};
@@ -29,6 +31,8 @@ struct FinishedFit {
   Objective objective;  // for models of the spec that was chosen
   FactorModel model;    // in canonical form
   std::optional<TableLayout> layout = std::nullopt;
+  // Nothing where the fit did not run wild between the samples (TameBetweenSamples).
+  std::optional<TamedFit> tamed = std::nullopt;
   // By how much tying entries at the edge of the data raised E, as a fraction; nothing if it was
   // not done (TieEntriesAtDataEdge). After a robust fit E, here and of candidates, is that of the
   // reweighted samples.

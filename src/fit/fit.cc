@@ -13,7 +13,6 @@
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/objective/canonical_form.h"
-#include "trilobe/solvers/guide.h"
 
 namespace trilobe {
 namespace {
@@ -34,14 +33,12 @@ BrdfSamples SamplesToFit(const Measurement& measurement, const FitOptions& optio
   return options.select ? options.select(std::move(samples)) : samples;
 }
 
-std::optional<Objective> WithGuideOf(const Measurement& measurement, const FitOptions& options,
-                                     const Objective& data) {
+std::optional<Guide> GuideOf(const Measurement& measurement, const FitOptions& options,
+                             const Objective& data) {
   const double weight = GuideWeight(measurement, options);
   if (!(weight > 0)) return std::nullopt;
-  return Objective(
-      WithGuide(data,
-                {.weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop}),
-      data.spec(), options.weighting, options.num_threads);
+  return Guide(data,
+               {.weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop});
 }
 
 FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
@@ -147,7 +144,9 @@ class Fitting {
   }
 
   void Solve(FitResult* fit, FactorModel* model) {
-    const std::optional<Objective> guided = WithGuideOf(measurement_, options_, fit->objective);
+    const std::optional<Guide> guide = GuideOf(measurement_, options_, fit->objective);
+    std::optional<Objective> guided;
+    if (guide) guided.emplace(fit->objective, guide->With(fit->objective));
     const Objective& solved = guided ? *guided : fit->objective;
     const int added = solved.samples().size() - fit->objective.samples().size();
     if (added > 0) fit->guide = {solved.samples().multiplicity.back(), added};
@@ -168,7 +167,7 @@ class Fitting {
       fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
       options_.on_model(*fit);
     }
-    Finish(solved, std::move(*model), fit);
+    Finish(solved, guide ? &*guide : nullptr, std::move(*model), fit);
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.compare) Compare(fit);
@@ -176,10 +175,12 @@ class Fitting {
     fit->interrupted = options_.stop();
   }
 
-  void Finish(const Objective& solved, FactorModel model, FitResult* fit) const {
+  void Finish(const Objective& solved, const Guide* guide, FactorModel model,
+              FitResult* fit) const {
     FinishOptions finish{
         .robust = options_.robust,
         .max_parameters = options_.max_parameters,
+        .guide = guide,
         // One that was stopped early gains more by going on.
         .match_reflectance = options_.match_reflectance && HasEnded(fit->summary.stop_reason),
         .appearance = Appearance(),
@@ -191,7 +192,7 @@ class Fitting {
     } else {
       fit->objective = finished.objective;
     }
-    fit->finished = {finished.tied, std::move(finished.candidates), finished.chosen,
+    fit->finished = {finished.tamed, finished.tied, std::move(finished.candidates), finished.chosen,
                      finished.matched};
     fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
     fit->file.layout = std::move(finished.layout);
@@ -220,6 +221,9 @@ class Fitting {
     if (measurement_.anisotropic && !fit->model().spec().anisotropic()) {
       fit->left_out = AnisotropyOf(measurement_).share;
     }
+    if (!measurement_.table) {
+      fit->reach = ReachOf(fit->objective.samples(), fit->model(), options_.num_threads);
+    }
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
   }
 
@@ -239,7 +243,8 @@ FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
                       const ModelSpec& spec) {
   FitProblem problem{.data = Objective(SamplesToFit(measurement, options), spec, options.weighting,
                                        options.num_threads)};
-  problem.guided = WithGuideOf(measurement, options, problem.data);
+  const std::optional<Guide> guide = GuideOf(measurement, options, problem.data);
+  if (guide) problem.guided.emplace(problem.data, guide->With(problem.data));
   return problem;
 }
 

@@ -21,8 +21,10 @@
 #include "trilobe/model/weighting.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/objective/score.h"
+#include "trilobe/solvers/guide.h"
 #include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/node_choice.h"
+#include "trilobe/solvers/reach.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -50,7 +52,7 @@ struct FitOptions {
   double robust = 0;       // FinishOptions, as the next two
   int max_parameters = 0;  // above 0: --model=auto, of a table
   bool match_reflectance = true;
-  bool compare = true;  // makes `appearance`, `left_out` and `light` of the result, too
+  bool compare = true;  // makes `appearance`, `left_out`, `reach` and `light` of the result, too
   AppearanceOptions appearance = {};  // num_threads is replaced
   uint64_t seed = 1;
   int num_threads = 1;
@@ -93,6 +95,7 @@ struct FitResult {
   std::optional<Guide> guide = {};
   // What came after the solver (FinishedFit).
   struct Finished {
+    std::optional<TamedFit> tamed = {};
     std::optional<double> tied = {};
     std::vector<ModelCandidate> candidates = {};
     int chosen = -1;
@@ -105,6 +108,7 @@ struct FitResult {
   // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
   // of the sample leaves out (AnisotropyOf).
   std::optional<double> left_out = {};
+  std::optional<Reach> reach = {};  // of scattered samples
   LobeLight light = {};
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;

@@ -11,13 +11,15 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path) {
   if (trace.empty()) throw Error("the trace has no record, so there is nothing to draw");
   CheckDrawable({}, trace);
-  std::vector<std::vector<double>> rows;  // iteration, seconds, E, filtered, rejected
+  // Iteration, seconds, E that the solver lowers, filtered, rejected, E of the data.
+  std::vector<std::vector<double>> rows;
   std::vector<double> objectives;
+  const bool guided = trace.front().guided_objective.has_value();
   bool filtered = false, rejected = false;
   for (const IterationRecord& record : trace) {
-    rows.push_back({static_cast<double>(record.iteration), record.seconds, record.objective,
-                    record.filtered ? 1.0 : 0.0, record.accepted ? 0.0 : 1.0});
-    objectives.push_back(record.objective);
+    rows.push_back({static_cast<double>(record.iteration), record.seconds, record.minimised(),
+                    record.filtered ? 1.0 : 0.0, record.accepted ? 0.0 : 1.0, record.objective});
+    objectives.insert(objectives.end(), {record.minimised(), record.objective});
     filtered = filtered || record.filtered;
     rejected = rejected || !record.accepted;
   }
@@ -39,7 +41,12 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
               "'\nset xrange [0:" + GnuplotNumber(last > 0 ? 1.02 * last : 1) +
               "]\nplot $trace using " + column +
               ":3 with linespoints pointtype 7 pointsize 0.9 linewidth 2.5 linecolor '" +
-              kOkabeIto[4] + "' notitle";
+              kOkabeIto[4] + "' " + (guided ? "title 'of data and guide'" : "notitle");
+    if (guided) {
+      script += std::string(", '' using ") + column +
+                ":6 with linespoints pointtype 5 pointsize 0.7 linewidth 2 linecolor '" +
+                kOkabeIto[1] + "' title 'of the data alone'";
+    }
     const auto mark = [&](const char* flag, const char* symbol, const char* meaning) {
       script += std::string(", '' using ") + column + ":(" + flag +
                 " > 0 ? $3 : NaN) with points pointtype " + symbol +

@@ -42,7 +42,8 @@ void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace
     throw Error(name + " goes beyond 1e200, too far to draw; its factors are too large");
   }
   for (const IterationRecord& record : trace) {
-    if (record.objective <= kLargest && record.seconds <= kLargest) continue;
+    const double E = std::max(record.objective, record.minimised());
+    if (E <= kLargest && record.seconds <= kLargest) continue;
     throw Error("row " + std::to_string(record.iteration) +
                 " of the trace goes beyond 1e200, too far to draw");
   }

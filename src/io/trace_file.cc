@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kHeader =
     "iteration,seconds,objective,filtered,accepted,step,optimality";
-constexpr size_t kColumns = 7;
+constexpr std::string_view kGuided = ",guided_objective";  // of a fit with a guide, after these
 
 template <typename T>
 void Append(T value, std::string* text) {
@@ -32,15 +32,17 @@ std::string_view TakeUntil(char separator, std::string_view* text) {
   return head;
 }
 
+int CountCells(std::string_view row) { return static_cast<int>(std::ranges::count(row, ',')) + 1; }
+
 // One row, read from left to right.
 class Row {
  public:
   // Throws Error unless there are as many cells as columns.
-  Row(std::string_view text, const std::string& where) : rest_(text), where_(where) {
-    const auto cells = static_cast<size_t>(std::ranges::count(text, ',') + 1);
-    if (cells != kColumns) {
-      throw Error(where + ": " + std::to_string(cells) + " columns; a trace has " +
-                  std::to_string(kColumns));
+  Row(std::string_view text, int columns, const std::string& where) : rest_(text), where_(where) {
+    const int cells = CountCells(text);
+    if (cells != columns) {
+      throw Error(where + ": " + std::to_string(cells) + " columns; this trace has " +
+                  std::to_string(columns));
     }
   }
 
@@ -79,6 +81,8 @@ class Row {
 
 std::string FormatTrace(std::span<const IterationRecord> records) {
   std::string text(kHeader);
+  const bool guided = !records.empty() && records.front().guided_objective;
+  if (guided) text += kGuided;
   text += '\n';
   for (const IterationRecord& record : records) {
     Append(record.iteration, &text);
@@ -91,6 +95,10 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
     Append(record.step, &text);
     text += ',';
     if (record.optimality) Append(*record.optimality, &text);
+    if (guided) {
+      text += ',';
+      Append(record.minimised(), &text);
+    }
     text += '\n';
   }
   return text;
@@ -98,15 +106,17 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
 
 std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string& source) {
   std::vector<IterationRecord> records;
+  bool guided = false;
   for (int line = 1; line == 1 || !text.empty(); ++line) {
     std::string_view content = TakeUntil('\n', &text);
     if (content.ends_with('\r')) content.remove_suffix(1);  // saved by a spreadsheet
     const std::string where = source + ": line " + std::to_string(line);
     if (line == 1) {
-      if (content == kHeader) continue;
+      guided = content.ends_with(kGuided);
+      if (content.substr(0, content.size() - (guided ? kGuided.size() : 0)) == kHeader) continue;
       throw Error(where + ": not a trace; the first line must be " + std::string(kHeader));
     }
-    Row row(content, where);
+    Row row(content, CountCells(kHeader) + (guided ? 1 : 0), where);
     IterationRecord record;
     record.iteration = row.Take<int>("iteration");
     record.seconds = row.Take<double>("seconds");
@@ -115,6 +125,7 @@ std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string
     record.accepted = row.TakeBool("accepted");
     record.step = row.Take<double>("step");
     record.optimality = row.TakeOptional("optimality");
+    if (guided) record.guided_objective = row.Take<double>("guided_objective");
     records.push_back(record);
   }
   return records;

@@ -16,8 +16,8 @@ ContinuousModel::ContinuousModel(const FactorModel& model)
   CheckIsotropic(model.spec(), "a function of half and difference angles");
 }
 
-Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
-                                const Cosines& cosines) const {
+Rgb ContinuousModel::Unclamped(std::span<const Stencil> D, const Stencil& F,
+                               const Cosines& cosines) const {
   const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));
   const CatmullRom::Location o = spline_.Locate(std::acos(cosines.o));
   const auto product = [&](const std::vector<CatmullRom::Piece>& spline) {
@@ -38,14 +38,23 @@ Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
   return rho;
 }
 
-Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
+Rgb ContinuousModel::Unclamped(const HalfDiffAngles& angles, const Cosines& cosines) const {
   std::array<Stencil, kMaxLobes> D;
   const Stretches& stretches = model_.spec().stretches;
   stretches.ForEachThetaH(angles, [&](size_t k, double theta_h) {
     D[k] = LinearStencil(grid_.ThetaHCoordinate(theta_h), grid_.theta_h);
   });
-  return (*this)(std::span(D.data(), stretches.distinct().size()),
-                 LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
+  return Unclamped(std::span(D.data(), stretches.distinct().size()),
+                   LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
+}
+
+Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
+                                const Cosines& cosines) const {
+  return AtLeastZero(Unclamped(D, F, cosines));
+}
+
+Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
+  return AtLeastZero(Unclamped(angles, cosines));
 }
 
 Rgb ContinuousModel::operator()(const DirectionPair& directions) const {

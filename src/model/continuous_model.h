@@ -14,7 +14,7 @@ namespace trilobe {
 
 // A model as a function of directions, prepared for many calls: the splines through G and the
 // cosines are turned into cubics, so that a call costs two arc cosines and two cubics a G table.
-// The same value as Evaluate(model, ScatteredStencils(...)), to rounding.
+// The same value as EvaluateAt(model, ScatteredStencils(...)), to rounding, and so never negative.
 class ContinuousModel {
  public:
   // Keeps a reference to `model`, which must outlive it. Throws Error for an anisotropic one.
@@ -24,8 +24,12 @@ class ContinuousModel {
   // Cosines in (0, 1].
   Rgb operator()(std::span<const Stencil> D, const Stencil& F, const Cosines& cosines) const;
 
+  // The same without the bound: what E compares with the measurement (UnclampedValue).
+  Rgb Unclamped(std::span<const Stencil> D, const Stencil& F, const Cosines& cosines) const;
+
   // D and F linear between bin centres. `cosines` are those of `angles`.
   Rgb operator()(const HalfDiffAngles& angles, const Cosines& cosines) const;
+  Rgb Unclamped(const HalfDiffAngles& angles, const Cosines& cosines) const;
 
   // 0 where a direction is below the surface.
   Rgb operator()(const DirectionPair& directions) const;

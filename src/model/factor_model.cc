@@ -125,7 +125,7 @@ SampleStencils ScatteredStencils(const ModelSpec& spec, const SphericalAngles& a
   return stencils;
 }
 
-double Evaluate(const FactorModel& model, const SampleStencils& stencils, int channel) {
+double UnclampedValue(const FactorModel& model, const SampleStencils& stencils, int channel) {
   double rho = model.d()[channel];
   for (int m = 0; m < model.spec().lobes; ++m) {
     const std::span<const double> G = model.G(m, channel);
@@ -136,13 +136,17 @@ double Evaluate(const FactorModel& model, const SampleStencils& stencils, int ch
   return rho;
 }
 
+Rgb EvaluateAt(const FactorModel& model, const SampleStencils& stencils) {
+  return AtLeastZero({UnclampedValue(model, stencils, 0), UnclampedValue(model, stencils, 1),
+                      UnclampedValue(model, stencils, 2)});
+}
+
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions) {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
   const ModelSpec& spec = model.spec();
-  const SampleStencils stencils = spec.anisotropic()
-                                      ? ScatteredStencils(spec, ToSphericalAngles(directions))
-                                      : ScatteredStencils(spec, ToHalfDiff(directions));
-  return {Evaluate(model, stencils, 0), Evaluate(model, stencils, 1), Evaluate(model, stencils, 2)};
+  return EvaluateAt(model, spec.anisotropic()
+                               ? ScatteredStencils(spec, ToSphericalAngles(directions))
+                               : ScatteredStencils(spec, ToHalfDiff(directions)));
 }
 
 }  // namespace trilobe

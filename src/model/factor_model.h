@@ -103,12 +103,15 @@ SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin
 SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles);
 SampleStencils ScatteredStencils(const ModelSpec& spec, const SphericalAngles& angles);
 
-// BRDF of one channel [1/sr].
-double Evaluate(const FactorModel& model, const SampleStencils& stencils, int channel);
+// The sum above, of one channel [1/sr]: what E compares with the measurement. Where the spline
+// through G undershoots, it may be negative.
+double UnclampedValue(const FactorModel& model, const SampleStencils& stencils, int channel);
+
+// BRDF [1/sr]: the same, but 0 where that is negative.
+Rgb EvaluateAt(const FactorModel& model, const SampleStencils& stencils);
 
 // BRDF [1/sr] for any pair of directions, x being where an anisotropic material's azimuths begin; 0
-// where either is below the surface. Throws Error where
-// one is not a number.
+// where either is below the surface. Throws Error where one is not a number.
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions);
 
 }  // namespace trilobe

@@ -27,8 +27,8 @@ std::vector<Rgb> ForEach(int size, int num_threads, const Value& value) {
 
 }  // namespace
 
-std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
-                                 int num_threads) {
+std::vector<Rgb> UnclampedSamples(const FactorModel& model, const BrdfSamples& samples,
+                                  int num_threads) {
   CheckSamples(samples);
   const ModelSpec& spec = model.spec();
   if (spec.anisotropic()) {
@@ -37,24 +37,33 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
     }
     return ForEach(samples.size(), num_threads, [&](int j) {
       const SampleStencils at = ScatteredStencils(spec, samples.directions[j]);
-      return Rgb{Evaluate(model, at, 0), Evaluate(model, at, 1), Evaluate(model, at, 2)};
+      return Rgb{UnclampedValue(model, at, 0), UnclampedValue(model, at, 1),
+                 UnclampedValue(model, at, 2)};
     });
   }
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
                         samples.grid.theta_d == spec.f_axis.size && !spec.stretches.any();
-  const ContinuousModel evaluate(model);
+  const ContinuousModel continuous(model);
   if (own_bins) {
     const GridCosines cosines(samples.grid);
     return ForEach(samples.size(), num_threads, [&](int j) {
       const int row = samples.bins[j] / samples.grid.phi_d;
       const Stencil D = PointStencil(row / samples.grid.theta_d);
-      return evaluate({&D, 1}, PointStencil(row % samples.grid.theta_d), cosines(samples.bins[j]));
+      return continuous.Unclamped({&D, 1}, PointStencil(row % samples.grid.theta_d),
+                                  cosines(samples.bins[j]));
     });
   }
   return ForEach(samples.size(), num_threads, [&](int j) {
     const HalfDiffAngles angles = samples.Angles(j);
-    return evaluate(angles, ToCosines(angles));
+    return continuous.Unclamped(angles, ToCosines(angles));
   });
+}
+
+std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
+                                 int num_threads) {
+  std::vector<Rgb> rho = UnclampedSamples(model, samples, num_threads);
+  for (Rgb& value : rho) value = AtLeastZero(value);
+  return rho;
 }
 
 BrdfTable Reconstruct(const FactorModel& model, const std::string& source, const MerlGrid& grid,
@@ -69,7 +78,7 @@ BrdfTable Reconstruct(const FactorModel& model, const std::string& source, const
   BrdfTable table = MakeInvalidTable(source, grid);
   for (int j = 0; j < samples.size(); ++j) {
     for (int c = 0; c < kChannels; ++c) {
-      table.SetValue(c, samples.bins[j], std::max(rho[j][c], 0.0));
+      table.SetValue(c, samples.bins[j], rho[j][c]);
       if (!std::isfinite(table.stored[c][samples.bins[j]])) {
         throw Error(source + ": the model's value overflows at bin " +
                     std::to_string(samples.bins[j]) + "; its factors are too large");

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "trilobe/base/error.h"
 #include "trilobe/base/named.h"
+#include "trilobe/base/parallel.h"
 #include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/grid_cosines.h"
 
 namespace trilobe {
 namespace {
@@ -179,23 +182,42 @@ Weighting FindWeighting(std::string_view name) {
   return FindNamed("weighting", name, Weightings());
 }
 
-Weighting ForSamples(Weighting weighting, const BrdfSamples& samples) {
+Weighting ForSamples(Weighting weighting, const BrdfSamples& samples, int num_threads) {
   if (!weighting.formula) throw Error("weighting '" + weighting.name + "' has no formula");
-  if (weighting.needs_level && !(weighting.level > 0)) weighting.level = MeanReflectance(samples);
+  if (weighting.needs_level && !(weighting.level > 0)) {
+    weighting.level = MeanReflectance(samples, num_threads);
+  }
   return weighting;
 }
 
-double MeanReflectance(const BrdfSamples& samples) {
-  // Every few are enough, and so few that the sum costs nothing; an odd stride visits odd and even
-  // phi_d.
-  constexpr int kSamplesLookedAt = 1 << 15;
-  const int stride = std::max(1, samples.size() / kSamplesLookedAt) | 1;
+double MeanReflectance(const BrdfSamples& samples, int num_threads) {
+  constexpr int kBlock = 1 << 14;
+  struct Sums {
+    double light = 0, reflected = 0;
+  };
+  std::vector<Sums> blocks((samples.size() + kBlock - 1) / kBlock);
+  std::optional<GridCosines> of_bins;
+  if (samples.on_grid()) of_bins.emplace(samples.grid);
+  ParallelFor(static_cast<int>(blocks.size()), num_threads, [&](int block) {
+    Sums sums;
+    double solid_angle = 1;
+    for (int j = block * kBlock, row = -1; j < std::min(samples.size(), (block + 1) * kBlock);
+         ++j) {
+      // Of a row of bins it is the same.
+      if (of_bins && std::exchange(row, samples.bins[j] / samples.grid.phi_d) != row) {
+        solid_angle = samples.SolidAngle(j);
+      }
+      const Cosines cosines = of_bins ? (*of_bins)(samples.bins[j]) : samples.CosinesOf(j);
+      const double through = solid_angle * cosines.i * cosines.o;
+      sums.light += through;
+      sums.reflected += through * Mean(samples.rho[j]);
+    }
+    blocks[block] = sums;
+  });
   double light = 0, reflected = 0;
-  for (int j = 0; j < samples.size(); j += stride) {
-    const Cosines cosines = samples.CosinesOf(j);
-    const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
-    light += through;
-    reflected += through * Mean(samples.rho[j]);
+  for (const Sums& sums : blocks) {
+    light += sums.light;
+    reflected += sums.reflected;
   }
   return light > 0 ? reflected / light : 0;
 }

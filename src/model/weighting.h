@@ -51,12 +51,13 @@ Weighting FindWeighting(std::string_view name);
 
 // The same with the level of these samples, unless it has one already: copies that see fewer
 // samples keep the level of the whole. Throws Error if the weighting has no formula.
-Weighting ForSamples(Weighting weighting, const BrdfSamples& samples);
+Weighting ForSamples(Weighting weighting, const BrdfSamples& samples, int num_threads = 1);
 
 // The BRDF of a Lambertian material that reflects as much light as the samples do, all channels and
-// all directions taken together [1/sr]: the mean of rho*, weighted by cos theta_i cos theta_o and
-// solid angle. 0 for a black measurement.
-double MeanReflectance(const BrdfSamples& samples);
+// all directions taken together [1/sr]: the mean of rho* over all samples, weighted by
+// cos theta_i cos theta_o and solid angle; multiplicities do not count. 0 for a black measurement.
+// The same bits for any number of threads.
+double MeanReflectance(const BrdfSamples& samples, int num_threads = 1);
 
 }  // namespace trilobe
 

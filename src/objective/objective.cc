@@ -149,7 +149,7 @@ struct Objective::Prepared {
   Prepared(BrdfSamples all, const ModelSpec& of, const Weighting& weights, int num_threads)
       : samples(Checked(std::move(all), of, num_threads)),
         spec(of),
-        weighting(ForSamples(weights, samples)) {
+        weighting(ForSamples(weights, samples, num_threads)) {
     bool nonnegative = true;
     if (ReadsBinByBin(spec, samples)) {
       folded =
@@ -229,6 +229,12 @@ Objective::Objective(const Objective& other, const ModelSpec& spec)
     prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
   }
   coverage_ = CoverageOfParameters(prepared_->coverage, spec);
+  if (other.has_guide()) data_ = std::make_shared<const Objective>(other.data(), spec);
+}
+
+Objective::Objective(const Objective& data, BrdfSamples with_guide)
+    : Objective(std::move(with_guide), data.spec(), data.weighting(), data.num_threads()) {
+  data_ = std::make_shared<const Objective>(data);
 }
 
 const BrdfSamples& Objective::samples() const { return prepared_->samples; }

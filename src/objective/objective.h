@@ -30,6 +30,15 @@ class Objective {
   // prepared is shared, and this costs next to nothing. Throws Error as above.
   Objective(const Objective& other, const ModelSpec& spec);
 
+  // What a fit lowers that has a guide: `with_guide` are the samples of `data` and others, which
+  // say what a model is to be between these (WithGuide). Weights keep the level of the data.
+  Objective(const Objective& data, BrdfSamples with_guide);
+
+  // The objective of what was measured, by which models are judged: with a guide the one of its
+  // data, else this.
+  const Objective& data() const { return data_ == nullptr ? *this : *data_; }
+  bool has_guide() const { return data_ != nullptr; }
+
   const BrdfSamples& samples() const;
   const ModelSpec& spec() const { return spec_; }
   const Weighting& weighting() const;
@@ -75,6 +84,7 @@ class Objective {
   ModelSpec spec_;
   int num_threads_;
   std::vector<double> coverage_;
+  std::shared_ptr<const Objective> data_;  // null without a guide
 };
 
 }  // namespace trilobe

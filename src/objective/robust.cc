@@ -12,7 +12,7 @@ namespace trilobe {
 BrdfSamples Reweighted(const Objective& objective, const FactorModel& model, double delta) {
   if (!(delta > 0)) throw Error("the error from which a loss is linear must be above 0");
   BrdfSamples samples = objective.samples();
-  const std::vector<Rgb> fitted = EvaluateSamples(model, samples, objective.num_threads());
+  const std::vector<Rgb> fitted = UnclampedSamples(model, samples, objective.num_threads());
   const double level = objective.weighting().level;
   const double unit = level > 0 ? level : 1;
   samples.multiplicity.resize(samples.rho.size());

@@ -204,7 +204,7 @@ class ModelSearch {
       return all_.For(model.spec(), objective_.weighting()).Value(model);
     }
     const std::vector<Rgb> values =
-        EvaluateSamples(model, objective_.samples(), objective_.num_threads());
+        UnclampedSamples(model, objective_.samples(), objective_.num_threads());
     return ScoreValues(objective_, values).objective;
   }
 

@@ -1,6 +1,7 @@
 #include "trilobe/prune/prune.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
@@ -8,7 +9,6 @@
 
 #include "trilobe/model/gauge.h"
 #include "trilobe/model/lobes.h"
-#include "trilobe/objective/score.h"
 #include "trilobe/prune/lobe_search.h"
 #include "trilobe/prune/needed_layout.h"
 #include "trilobe/prune/prune_tables.h"
@@ -22,7 +22,7 @@ namespace {
 // Where lobes that went took more than this share of the budget, it may be better spent on nodes.
 constexpr double kDear = 0.5;
 
-// Towards a limit of PSNR: so often, and by this factor, the rise of E that is allowed grows.
+// Towards a limit of the error: so often, and by this factor, the rise of E that is allowed grows.
 constexpr int kStretches = 4;
 constexpr double kStretch = 3;
 
@@ -111,12 +111,10 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
   return pruning->Decide(what, std::move(to), taken, why);
 }
 
-// True where PSNR alone limits, and less than half of what it may fall is spent.
-bool SparesPsnr(const Pruning& pruning) {
-  if (!pruning.lowest_psnr() || pruning.guide() >= pruning.limit()) return false;
-  const PruneState& state = pruning.state();
-  return ScoreModel(*state.data, state.model).psnr_db >
-         *pruning.lowest_psnr() + pruning.options().max_psnr_drop_db / 2;
+// True where the error alone limits, and less than half of what it may grow is spent, in decibels.
+bool SparesError(const Pruning& pruning) {
+  if (!pruning.limits_error() || pruning.guide() >= pruning.limit()) return false;
+  return pruning.ErrorOf(pruning.state()) < std::sqrt(pruning.full_error() * pruning.max_error());
 }
 
 // Shape and nodes.
@@ -124,7 +122,7 @@ void ThinWithin(double guide, Pruning* pruning) {
   pruning->set_guide(std::max(guide, pruning->state().E));
   ChooseShape(pruning);
   ThinTables(pruning);
-  for (int round = 0; round < kStretches && SparesPsnr(*pruning); ++round) {
+  for (int round = 0; round < kStretches && SparesError(*pruning); ++round) {
     pruning->set_guide(std::min(
         pruning->limit(), pruning->E_full() + kStretch * (pruning->guide() - pruning->E_full())));
     ThinTables(pruning);
@@ -134,9 +132,9 @@ void ThinWithin(double guide, Pruning* pruning) {
 // With as few lobes as the budget allows; and with one more where that took most of it.
 void SpendBudget(Pruning* pruning) {
   const PruneState& state = pruning->state();
-  // The guide says nothing about a PSNR far away, so that E may rise beyond it here.
+  // The guide says nothing about an error far away, so that E may rise beyond it here.
   const double guide = pruning->guide();
-  const double wanted = pruning->lowest_psnr() ? pruning->limit() : guide;
+  const double wanted = pruning->limits_error() ? pruning->limit() : guide;
   PruneState with_one_more;
   bool dear = false;  // the last lobe
   size_t last_lobe = 0;
@@ -169,7 +167,7 @@ void AddLobes(Pruning* pruning) {
   }
   if (!pruning->Keeps(state)) {
     pruning->Record("nothing else left out", state, false,
-                    "the budget asks for a lower E than was found");
+                    "the budget asks for a better fit than was found");
   } else {
     ChooseShape(pruning);
     ThinTables(pruning);

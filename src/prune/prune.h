@@ -19,8 +19,12 @@ struct PruneOptions {
   double max_relative_rise = 0.01;
   // By how much the PSNR of `trilobe score` may fall [dB]. Below 0 it must rise.
   double max_psnr_drop_db = std::numeric_limits<double>::infinity();
+  // How far off a model looks, in any measure that is 0 where it is right and grows about as the
+  // root of E; and how far off it may look. In the place of PSNR. Null: it does not count.
+  std::function<double(const FactorModel&)> error = nullptr;
+  double max_error = std::numeric_limits<double>::infinity();
   // A budget in stored parameters instead: what is wanted is the lowest E that so many reach, and
-  // the two limits above do not count. A byte budget is 8 times as many.
+  // the limits above do not count. A byte budget is 8 times as many.
   int max_parameters = std::numeric_limits<int>::max();
 
   // What may be left out; what must not stays as it is.
@@ -63,7 +67,9 @@ struct PrunedModel {
 // moves, and only what is free is left out; where that is nothing, `full` comes back to the bit.
 //
 // Costs less than a fit by the solver `auto`; the same bits for any number of threads.
-// Throws Error for a budget that is no number, or less than one stored parameter.
+// Where a budget is relative to an E that is practically 0, so that it allows next to nothing, the
+// first decision says so. Throws Error for a budget that is no number, or less than one stored
+// parameter.
 PrunedModel Prune(const Objective& objective, const FactorModel& full, const PruneOptions& options);
 
 // The same for a fit that had a guide: models are fitted to `guided`, the samples of `measured` and

@@ -1,6 +1,7 @@
 #include "trilobe/prune/prune_anisotropic.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <optional>
@@ -9,7 +10,6 @@
 #include <vector>
 
 #include "trilobe/model/with_axes.h"
-#include "trilobe/objective/score.h"
 #include "trilobe/prune/lobe_search.h"
 #include "trilobe/prune/pruning.h"
 #include "trilobe/solvers/initial_model.h"
@@ -230,9 +230,9 @@ PrunedModel PruneFurther(const Pruning& pruning, PruneOptions options) {
   const PruneState& state = pruning.state();
   if (!pruning.by_parameters()) {
     if (state.E > 0) options.max_relative_rise = std::max(pruning.limit() / state.E - 1, 0.0);
-    if (pruning.lowest_psnr()) {
-      const double psnr_db = ScoreModel(*state.data, state.model).psnr_db;
-      options.max_psnr_drop_db = std::max(psnr_db - *pruning.lowest_psnr(), 0.0);
+    if (pruning.limits_error() && !options.error) {
+      const double growth = pruning.max_error() / pruning.ErrorOf(state);
+      options.max_psnr_drop_db = std::max(20 * std::log10(growth), 0.0);
     }
   }
   PrunedModel further = Prune(*state.data, state.model, options);
@@ -250,7 +250,7 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& guided,
   Pruning& pruning = search.pruning();
   if (!pruning.Keeps(pruning.state())) {
     pruning.Record("nothing left out", pruning.state(), false,
-                   "the budget asks for a lower E than was found");
+                   "the budget asks for a better fit than was found");
     return pruning.Result(LobeOrder::kByLight);
   }
   if (pruning.by_parameters()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "trilobe/base/error.h"
@@ -15,6 +16,14 @@ namespace trilobe {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of E
+
+// Of E of a black model: so little that nothing can be relative to it.
+constexpr double kPracticallyZero = 1e-9;
+
+// The measure of PSNR that is 0 where a model is right.
+double ErrorByPsnr(const PruneState& state) {
+  return std::pow(10, -ScoreModel(*state.data, state.model).psnr_db / 20);
+}
 
 }  // namespace
 
@@ -33,19 +42,38 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
       E_of_guide_(&data == &objective ? 0 : objective.Value(state_.model) - E_full_),
       by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
   if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
-      options.max_parameters < 1) {
+      std::isnan(options.max_error) || options.max_parameters < 1) {
     throw Error(
         "a budget must be a number, and at least one number must be left to store: check "
-        "max_relative_rise, max_psnr_drop_db and max_numbers");
+        "max_relative_rise, max_psnr_drop_db, max_error and max_parameters");
   }
   if (by_parameters_) return;
-  if (std::isfinite(options.max_psnr_drop_db)) {
-    lowest_psnr_ = ScoreModel(data, full).psnr_db - options.max_psnr_drop_db;
-  }
-  // Where E is the squared error, PSNR falls by as much at this E; elsewhere it is a start.
   limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
   if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(data));
-  guide_ = std::min(limit_, E_full_ * std::pow(10, options.max_psnr_drop_db / 10));
+  guide_ = limit_;
+  // Where E is the squared error, that grows by as much at this E; elsewhere it is a start.
+  if (options.error) {
+    error_ = [this](const PruneState& state) { return options_.error(state.model); };
+    full_error_ = ErrorOf(state_);
+    max_error_ = options.max_error;
+    const double growth = full_error_ > 0 ? max_error_ / full_error_ : kInfinity;
+    guide_ = std::min({limit_, growth * growth * E_full_, data.MeasuredEnergy()});
+  } else if (std::isfinite(options.max_psnr_drop_db)) {
+    error_ = ErrorByPsnr;
+    const double growth = std::pow(10, options.max_psnr_drop_db / 20);
+    full_error_ = ErrorOf(state_);
+    max_error_ = growth * full_error_;
+    guide_ = std::min(limit_, growth * growth * E_full_);
+  }
+  const bool relative = !options.error && options.max_relative_rise > 0;
+  if (relative && E_full_ <= kPracticallyZero * data.MeasuredEnergy()) {
+    std::ostringstream why;
+    why << std::setprecision(2) << "E of the full model is practically 0, "
+        << (data.MeasuredEnergy() > 0 ? E_full_ / data.MeasuredEnergy() : 0)
+        << " of a black model's, and a fraction of it buys nothing; give a budget in mean_delta_e, "
+           "sphere_psnr_db or bytes";
+    Record("what can be had for more E", state_, false, why.str());
+  }
 }
 
 PruneState Pruning::StateFor(const ModelSpec& spec) const {
@@ -81,7 +109,7 @@ bool Pruning::may_rise() const { return guide_ > E_full_ * (1 + kRounding); }
 bool Pruning::Keeps(const PruneState& state) const {
   if (by_parameters_) return true;
   if (!(state.E <= limit_ * (1 + kRounding))) return false;
-  return !lowest_psnr_ || ScoreModel(*state.data, state.model).psnr_db >= *lowest_psnr_;
+  return !limits_error() || ErrorOf(state) <= max_error_;
 }
 
 std::string Pruning::Against(double E, bool within) const {

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_PRUNE_PRUNING_H_
 #define TRILOBE_PRUNE_PRUNING_H_
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -66,13 +67,18 @@ class Pruning {
   double E_full() const { return E_full_; }
   bool may_rise() const;  // by more than rounding
   double limit() const { return limit_; }
-  // Where E is to go, limit() or less: by a limit of PSNR that is known only roughly.
+  // Where E is to go, limit() or less: by a limit of the error that is known only roughly.
   double guide() const { return guide_; }
   void set_guide(double guide) { guide_ = guide; }
   // Where E of fits is to go, of the data and of the guide's samples, for that of the data to be E.
   double ForFits(double E) const { return E + E_of_guide_; }
-  const std::optional<double>& lowest_psnr() const { return lowest_psnr_; }  // [dB], if limited
-  // The true test, of E and PSNR.
+  // Besides E: how far off the state's model is in what options() or a PSNR limit, and how far it
+  // may be; 0 where nothing but E counts.
+  bool limits_error() const { return error_ != nullptr; }
+  double ErrorOf(const PruneState& state) const { return error_ ? error_(state) : 0; }
+  double full_error() const { return full_error_; }
+  double max_error() const { return max_error_; }
+  // The true test, of E and error.
   bool Keeps(const PruneState& state) const;
   // E against the full model's, in words.
   std::string Against(double E, bool within) const;
@@ -93,7 +99,8 @@ class Pruning {
   const PruneOptions& options_;
   PruneState state_;
   double E_full_ = 0, E_of_guide_ = 0;
-  std::optional<double> lowest_psnr_;
+  std::function<double(const PruneState&)> error_;
+  double full_error_ = 0, max_error_ = 0;
   bool by_parameters_ = false;
   double limit_ = kInfinity;
   double guide_ = kInfinity;

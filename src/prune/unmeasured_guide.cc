@@ -31,7 +31,7 @@ UnmeasuredGuide::UnmeasuredGuide(const Objective& objective, const FactorModel& 
   }
   if (said_.bins.empty()) return;
   said_.rho.assign(said_.bins.size(), {});
-  said_.rho = EvaluateSamples(model, said_, objective.num_threads());
+  said_.rho = UnclampedSamples(model, said_, objective.num_threads());
   Rgb most{};
   for (const Rgb& rho : measured.rho) {
     for (int c = 0; c < kChannels; ++c) most[c] = std::max(most[c], rho[c]);

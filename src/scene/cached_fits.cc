@@ -21,16 +21,29 @@ FullFit DecodeFullFit(const Json& json) {
   return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds"), true};
 }
 
+// JSON has no infinite PSNR, that of an exact fit.
+Json EncodeDecibels(double x) { return std::isfinite(x) ? Json(x) : Json(); }
+
+double DecodeDecibels(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
 Json Encode(const SceneScore& score) {
-  // JSON has no infinite PSNR, that of an exact fit.
-  return {{"objective", score.objective},
-          {"psnr_db", std::isfinite(score.psnr_db) ? Json(score.psnr_db) : Json()}};
+  Json json = {{"objective", score.objective}, {"psnr_db", EncodeDecibels(score.psnr_db)}};
+  if (score.mean_delta_e) {
+    json["mean_delta_e"] = *score.mean_delta_e;
+    json["sphere_psnr_db"] = EncodeDecibels(*score.sphere_psnr_db);
+  }
+  return json;
 }
 
 SceneScore DecodeScore(const Json& json) {
-  const Json& psnr_db = json.at("psnr_db");
-  return {json.at("objective"),
-          psnr_db.is_null() ? std::numeric_limits<double>::infinity() : psnr_db.get<double>()};
+  SceneScore score = {json.at("objective"), DecodeDecibels(json.at("psnr_db"))};
+  if (json.contains("mean_delta_e")) {
+    score.mean_delta_e = json.at("mean_delta_e");
+    score.sphere_psnr_db = DecodeDecibels(json.at("sphere_psnr_db"));
+  }
+  return score;
 }
 
 Json Encode(const MaterialFit& fit) {

@@ -193,14 +193,23 @@ SceneDirections ReadDirections(const Node& node, const std::string& scene_file) 
 
 SceneBudget ReadBudget(const Node& node) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  node.CheckObject({"relative_rise", "psnr_drop_db", "bytes", "seconds"});
+  node.CheckObject(
+      {"mean_delta_e", "sphere_psnr_db", "relative_rise", "psnr_drop_db", "bytes", "seconds"});
   if (node.size() != 1) {
-    node.Fail("must have exactly one of relative_rise, psnr_drop_db, bytes, seconds");
+    node.Fail(
+        "must have exactly one of mean_delta_e, sphere_psnr_db, relative_rise, psnr_drop_db, "
+        "bytes, seconds");
   }
   using Unit = SceneBudget::Unit;
   if (node.Has("relative_rise")) {
     return {Unit::kRelativeRise,
             node["relative_rise"].Number(-1, 1e6, "a fraction of E, 0.01 for 1 %")};
+  }
+  if (node.Has("mean_delta_e")) {
+    return {Unit::kMeanDeltaE, node["mean_delta_e"].Number(0, 100, "a mean difference in CIELAB")};
+  }
+  if (node.Has("sphere_psnr_db")) {
+    return {Unit::kSpherePsnr, node["sphere_psnr_db"].Number(0, 1e3, "decibels")};
   }
   if (node.Has("psnr_drop_db")) {
     return {Unit::kPsnrDrop, node["psnr_drop_db"].Number(-1e3, 1e3, "decibels")};

@@ -11,17 +11,22 @@ namespace trilobe {
 
 enum class SceneChannels { kRgb, kLuminance };
 
-// What may be given up, in one of four units.
+// What may be given up, in one of six units.
 struct SceneBudget {
   enum class Unit {
     kRelativeRise,  // of E, over that of the fit with nothing left out; 0.01 is 1 %, and below 0
                     // E is to fall, by more lobes
     kPsnrDrop,      // [dB], below that of the fit with nothing left out; below 0 it is to rise
+    kMeanDeltaE,    // of the sphere beside the measured one, at most (SphereError)
+    kSpherePsnr,    // of the same [dB], at least
     kBytes,         // that the parameters of the model may take, 8 each
     kSeconds,       // of fitting and leaving out
   };
   Unit unit = Unit::kRelativeRise;
   double amount = 0.01;
+
+  // Of how the model looks beside its measurement.
+  bool of_look() const { return unit == Unit::kMeanDeltaE || unit == Unit::kSpherePsnr; }
 };
 
 // Which kinds of things may be left out.

@@ -18,6 +18,7 @@
 #include "trilobe/model/gauge.h"
 #include "trilobe/prune/prune_anisotropic.h"
 #include "trilobe/scene/cached_fits.h"
+#include "trilobe/scene/look.h"
 #include "trilobe/scene/luminance.h"
 
 namespace trilobe {
@@ -84,6 +85,11 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
       options.max_relative_rise = std::numeric_limits<double>::infinity();
       options.max_psnr_drop_db = amount;
       break;
+    case SceneBudget::Unit::kMeanDeltaE:
+    case SceneBudget::Unit::kSpherePsnr:
+      options.max_relative_rise = std::numeric_limits<double>::infinity();
+      options.max_error = MaxError(material.budget);
+      break;
     case SceneBudget::Unit::kBytes:
       options.max_parameters = static_cast<int>(std::min(amount / sizeof(double), 1e9));
       break;
@@ -94,7 +100,8 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
   options.colour = material.reductions.colour;
   options.shadowing = material.reductions.shadowing;
   options.tables = material.reductions.tables;
-  const bool wants_more = amount < 0 || unit == SceneBudget::Unit::kBytes;
+  const bool wants_more =
+      amount < 0 || unit == SceneBudget::Unit::kBytes || material.budget.of_look();
   options.max_lobes = options.lobes && wants_more ? kMoreLobes : 0;
   return options;
 }
@@ -190,6 +197,10 @@ class MaterialFitter {
     key.Add("then", "prune 5");
     key.Add("unit", static_cast<int>(material_.budget.unit));
     key.Add("amount", material_.budget.amount);
+    if (material_.budget.of_look()) {
+      key.Add("lights", settings_.appearance.lights);
+      key.Add("size", settings_.appearance.size);
+    }
     const SceneReductions& reductions = material_.reductions;
     key.Add("lobes", reductions.lobes);
     key.Add("colour", reductions.colour);
@@ -260,6 +271,39 @@ class MaterialFitter {
     return fit;
   }
 
+  static PrunedModel PruneWithin(const FitProblem& problem, const FactorModel& model,
+                                 const PruneOptions& options) {
+    return model.spec().anisotropic()
+               ? PruneAnisotropic(problem.data, problem.solved(), model, options)
+               : Prune(problem.data, problem.solved(), model, options);
+  }
+
+  // The search looks at a quarter of the pixels; that the budget is kept on all of them is seen
+  // afterwards, and the search repeated with a little less where it is not.
+  PrunedModel PruneByLook(const Look& look, const FitProblem& problem, const FactorModel& model,
+                          PruneOptions options) const {
+    constexpr int kTries = 3;
+    constexpr double kMargin = 0.98;
+    const SceneBudget& budget = material_.budget;
+    const auto error_of = [&](const SphereError& error) { return ErrorIn(budget.unit, error); };
+    const double most = MaxError(budget);
+    const double full_error = error_of(look.Of(model));
+    // What is beyond the budget on all pixels is so on a quarter of them.
+    double share = full_error > 0 ? error_of(look.Quickly(model)) / full_error : 1;
+    for (int k = 0;; ++k) {
+      options.max_error = share * most;
+      options.error = [&](const FactorModel& judged) { return error_of(look.Quickly(judged)); };
+      PrunedModel pruned = PruneWithin(problem, model, options);
+      const double error = error_of(look.Of(pruned.model));
+      if (error <= most || full_error > most || settings_.stop()) return pruned;
+      if (k == kTries) break;
+      share *= kMargin * most / error;
+    }
+    options.error = nullptr;
+    options.max_relative_rise = 0;
+    return PruneWithin(problem, model, options);  // what is free
+  }
+
   std::optional<MaterialFit> PruneAnew() {
     const std::optional<FullFit> full = Fit("scene");
     if (!full || settings_.stop()) return std::nullopt;
@@ -269,9 +313,14 @@ class MaterialFitter {
     const Objective& objective = problem.data;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
-    PrunedModel pruned = model.spec().anisotropic()
-                             ? PruneAnisotropic(objective, problem.solved(), model, prune_options)
-                             : Prune(objective, problem.solved(), model, prune_options);
+    std::optional<Look> look;
+    if (material_.budget.of_look()) {
+      AppearanceOptions appearance = settings_.appearance;
+      appearance.num_threads = num_threads_;
+      look.emplace(material_, measured(), appearance);
+    }
+    PrunedModel pruned = look ? PruneByLook(*look, problem, model, prune_options)
+                              : PruneWithin(problem, model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
@@ -284,6 +333,15 @@ class MaterialFitter {
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
+    if (look) {
+      const auto add = [&](const FactorModel& judged, SceneScore* score) {
+        const SphereError error = look->Of(judged);
+        score->mean_delta_e = error.mean_delta_e;
+        score->sphere_psnr_db = error.psnr_db;
+      };
+      add(model, &fit.full);
+      add(pruned.model, &fit.pruned);
+    }
     fit.file = {.model = std::move(pruned.model),
                 .unobserved = UnobservedParameters(of_pruned.coverage()),
                 .fit = full->file.fit,

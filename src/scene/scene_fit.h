@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/appearance/appearance.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/objective/score.h"
@@ -31,8 +32,9 @@ struct SceneFitSettings {
   double max_angle_deg = 90;
   double min_theta_d_deg = -1;
   bool extrapolated = false;
-  std::string program;  // "trilobe 0.1.0", for model files
-  std::string build;    // and which build of it: what another one has fitted is not reused
+  std::string program;           // "trilobe 0.1.0", for model files
+  std::string build;             // and which build of it: what another one has fitted is not reused
+  AppearanceOptions appearance;  // by which budgets of look are judged; threads are replaced
   FitCache cache;
   // Asked after each iteration, from several threads; true to stop and keep nothing.
   StopCheck stop = {};
@@ -42,6 +44,8 @@ struct SceneFitSettings {
 struct SceneScore {
   double objective = 0;  // E
   double psnr_db = 0;
+  // Of its sphere, as the scene sees it, where the budget is one of look.
+  std::optional<double> mean_delta_e = std::nullopt, sphere_psnr_db = std::nullopt;
 };
 
 // By how much of it E is higher, 0.01 for 1 %; 0 where there is nothing to be relative to.

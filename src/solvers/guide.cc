@@ -1,7 +1,5 @@
 #include "trilobe/solvers/guide.h"
 
-#include <gsl/gsl_qrng.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "trilobe/brdf/directions.h"
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/reach.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -27,6 +26,9 @@ constexpr int kDataPerSample = 6;  // samples of the data for one of the guide
 constexpr int kFew = 3, kEnough = 6;
 // Of few data, too, it says no more than so many times the largest value.
 constexpr double kMaxOfLargest = 2;
+// A fit that says more than so many times the largest value, where the guide may say half of it at
+// most, has run wild.
+constexpr double kWild = 2 * kMaxOfLargest;
 // With fewer samples than so many for each parameter of a guide it needs one itself, on fewer
 // nodes.
 constexpr int kSamplesPerParameter = 5;
@@ -61,42 +63,6 @@ GuideKind KindFor(const GuideOptions& options, int lobes) {
   return kind;
 }
 
-// Where the guide speaks: half vectors spaced as a highlight asks for, by the root of theta_h, and
-// wi over the hemisphere, by Halton's sequence, as far from the normal as the data are. Few data
-// leave all to it, retroreflection near the horizon as well, where hardly any of these are: half of
-// the pairs are then about half vectors spread evenly in theta_h.
-std::vector<SphericalAngles> PairsBetween(const BrdfSamples& data, size_t count, bool few) {
-  double max_theta = 0;
-  for (const SphericalAngles& at : data.directions) {
-    max_theta = std::max({max_theta, at.theta_i, at.theta_o});
-  }
-  const std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> halton(
-      gsl_qrng_alloc(gsl_qrng_halton, 4), gsl_qrng_free);
-  std::vector<SphericalAngles> pairs;
-  const size_t tries = 20 * count;
-  for (size_t k = 0; k < tries && pairs.size() < count; ++k) {
-    double u[4];
-    gsl_qrng_get(halton.get(), u);
-    SphericalAngles at;
-    if (!few || k % 2 == 0) {
-      const auto [wi, h] = ToDirections(SphericalAngles{max_theta * u[0], 2 * kPi * u[1],
-                                                        max_theta * u[2] * u[2], 2 * kPi * u[3]});
-      const double cosine = Dot(wi, h);
-      Direction wo;
-      for (int c = 0; c < 3; ++c) wo[c] = 2 * cosine * h[c] - wi[c];
-      if (!(cosine > 0 && wo[2] > 0)) continue;
-      at = ToSphericalAngles({wi, wo});
-    } else {
-      at = ToSphericalAngles(
-          ToDirections(HalfDiffAngles{max_theta * u[2], max_theta * u[0] * u[0], kPi * u[1]}));
-      at.phi_i += 2 * kPi * u[3];
-      at.phi_o += 2 * kPi * u[3];
-    }
-    if (std::max(at.theta_i, at.theta_o) <= max_theta) pairs.push_back(at);
-  }
-  return pairs;
-}
-
 // In each channel, to so many times the largest of the data.
 void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) {
   for (int c = 0; c < 3; ++c) {
@@ -106,6 +72,41 @@ void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) 
   }
 }
 
+// What `guide` says at these directions.
+BrdfSamples SamplesOf(const FactorModel& guide, std::vector<SphericalAngles> directions,
+                      const BrdfSamples& measured, int num_threads) {
+  BrdfSamples said;
+  said.source = measured.source;
+  said.grid = measured.grid;
+  said.directions = std::move(directions);
+  for (const SphericalAngles& at : said.directions) {
+    said.angles.push_back(ToHalfDiff(ToDirections(at)));
+  }
+  said.rho.assign(said.directions.size(), {});
+  said.rho = EvaluateSamples(guide, said, num_threads);
+  return said;
+}
+
+// Both, the latter of this weight each.
+BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said, double weight) {
+  samples.multiplicity.resize(samples.rho.size(), 1);
+  samples.multiplicity.resize(samples.rho.size() + said.rho.size(), weight);
+  const auto append = [](const auto& from, auto* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(said.angles, &samples.angles);
+  append(said.directions, &samples.directions);
+  append(said.rho, &samples.rho);
+  return samples;
+}
+
+// Directions between the samples where a fit is above so many times their largest value.
+std::vector<SphericalAngles> Above(double times, const Objective& guided, const FactorModel& fit) {
+  const BrdfSamples& measured = guided.data().samples();
+  return DirectionsAbove(times * LargestValue(measured), LargestTheta(measured), fit,
+                         guided.num_threads());
+}
+
 // The data and what `guide` says between them, enough for a model of so many parameters.
 BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int num_parameters,
                           double weight) {
@@ -113,34 +114,17 @@ BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int n
   const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
   const bool few = share < kFew * num_parameters;
   const auto count = static_cast<size_t>(few ? kEnough * num_parameters : share);
-  BrdfSamples said;
-  said.source = measured.source;
-  said.grid = measured.grid;
-  said.directions = PairsBetween(measured, count, few);
+  BrdfSamples said =
+      SamplesOf(guide,
+                DirectionsBetween(LargestTheta(measured), count,
+                                  few ? Spread::kRetroreflectionToo : Spread::kByHighlights),
+                measured, data.num_threads());
   if (said.directions.empty()) return measured;
-  for (const SphericalAngles& at : said.directions) {
-    said.angles.push_back(ToHalfDiff(ToDirections(at)));
-  }
-  said.rho.assign(said.directions.size(), {});
-  said.rho = EvaluateSamples(guide, said, data.num_threads());
-  for (Rgb& value : said.rho) {
-    for (double& x : value) x = std::max(x, 0.0);  // a spline may undershoot
-  }
   if (few) {
     LimitTo(kMaxOfLargest, measured.rho, &said.rho);
     weight *= share / static_cast<double>(count);
   }
-
-  BrdfSamples both = measured;
-  if (both.multiplicity.empty()) both.multiplicity.assign(measured.rho.size(), 1);
-  both.multiplicity.resize(measured.rho.size() + said.rho.size(), weight);
-  const auto append = [](const auto& from, auto* to) {
-    to->insert(to->end(), from.begin(), from.end());
-  };
-  append(said.angles, &both.angles);
-  append(said.directions, &both.directions);
-  append(said.rho, &both.rho);
-  return both;
+  return Joined(measured, said, weight);
 }
 
 // The guide of this number, from 0 (the finest), itself guided by the next where data are few.
@@ -165,7 +149,7 @@ FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data
 
 }  // namespace
 
-BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
+Guide::Guide(const Objective& data, const GuideOptions& options) {
   const BrdfSamples& measured = data.samples();
   if (!(options.weight > 0 && std::isfinite(options.weight))) {
     throw Error(measured.source + ": the weight of a guide must be finite and above 0");
@@ -174,8 +158,46 @@ BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
     throw Error(measured.source + ": a guide needs samples with their directions");
   }
   const GuideKind kind = KindFor(options, data.spec().lobes);
-  return WithSamplesOf(FitGuide(kind, 0, data, options.stop), data, data.spec().num_parameters(),
-                       kind.weight);
+  weight_ = kind.weight;
+  model_ = FitGuide(kind, 0, data, options.stop);
+}
+
+BrdfSamples Guide::With(const Objective& data) const {
+  return WithSamplesOf(model_, data, data.spec().num_parameters(), weight_);
+}
+
+std::optional<Objective> Guide::WhereLarge(const Objective& guided, const FactorModel& fit,
+                                           double times) const {
+  const BrdfSamples& measured = guided.data().samples();
+  const std::vector<SphericalAngles> large = Above(kMaxOfLargest, guided, fit);
+  if (large.empty()) return std::nullopt;
+  BrdfSamples said = SamplesOf(model_, large, measured, guided.num_threads());
+  LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+  return Objective(guided.data(), Joined(guided.samples(), said, times * weight_));
+}
+
+BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
+  return Guide(data, options).With(data);
+}
+
+std::optional<TamedFit> TameBetweenSamples(const Guide& guide, const StopCheck& stop,
+                                           Objective* guided, FactorModel* model) {
+  constexpr int kRounds = 4, kSteps = 20;
+  constexpr double kMore = 10;  // of what each of the guide's samples there counts, each round
+  if (Above(kWild, *guided, *model).empty()) return std::nullopt;
+  const double before = guided->data().Value(*model);
+  SolverOptions options;
+  options.max_iterations = kSteps;
+  options.diagnose = false;
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  double times = 1;
+  for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
+    std::optional<Objective> further = guide.WhereLarge(*guided, *model, times);
+    if (!further) break;
+    MakeSolver("varpro")->Solve(*further, options, model);
+    *guided = *std::move(further);
+  }
+  return TamedFit{before, guided->data().Value(*model)};
 }
 
 }  // namespace trilobe

@@ -65,7 +65,7 @@ void SetSpecularWeights(const std::vector<WeightedSample>& samples, FactorModel*
     for (int c = 0; c < kChannels; ++c) {
       double numerator = 0, denominator = 0;
       for (const WeightedSample& sample : samples) {
-        const double profile = Evaluate(unit, sample.stencils, c);
+        const double profile = UnclampedValue(unit, sample.stencils, c);
         numerator += sample.weight[c] * std::max(0.0, sample.rho[c] - model->d()[c]) * profile;
         denominator += sample.weight[c] * profile * profile;
       }

@@ -101,7 +101,7 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   const Objective judge = objective_of(Selected(samples, held));
   Objective fitted = objective_of(Selected(samples, kept));
   if (options.guide > 0) {
-    fitted = objective_of(WithGuide(fitted, {.weight = options.guide, .stop = options.stop}));
+    fitted = Objective(fitted, WithGuide(fitted, {.weight = options.guide, .stop = options.stop}));
   }
   std::optional<FactorModel> model;
   NodeChoice choice = {.model = FactorModel(ladder[0].spec), .held_out = judge.samples().size()};

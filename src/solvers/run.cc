@@ -64,14 +64,14 @@ bool Run::IsToStop() const {
 std::optional<StopReason> Run::ReasonToStop(bool may_converge) const {
   const SolverOptions& options = summary_.used;
   const IterationRecord& last = summary_.trace.back();
-  if (last.objective <= exact_objective_) return StopReason::kExactFit;
+  if (last.minimised() <= exact_objective_) return StopReason::kExactFit;
   if (last.optimality && *last.optimality <= options.optimality_tolerance) {
     return StopReason::kOptimal;
   }
   if (may_converge && summary_.trace.size() > 1 && last.accepted) {
-    const double before = summary_.trace[summary_.trace.size() - 2].objective;
+    const double before = summary_.trace[summary_.trace.size() - 2].minimised();
     // Absolute: a rise by the filter is no sign of convergence.
-    if (std::abs(before - last.objective) < options.relative_decrease_tolerance * before) {
+    if (std::abs(before - last.minimised()) < options.relative_decrease_tolerance * before) {
       return StopReason::kConverged;
     }
   }
@@ -93,7 +93,12 @@ bool Run::Record(const FactorModel& current, const Step& step) {
     const ScopedTimer timer = Time(&PhaseSeconds::tracing);
     record.objective = objective_.Value(current);
   }
-  if (record.iteration == 0 && !std::isfinite(record.objective)) {
+  if (objective_.has_guide()) {
+    const ScopedTimer timer = Time(&PhaseSeconds::tracing);
+    record.guided_objective = record.objective;
+    record.objective = objective_.data().Value(current);
+  }
+  if (record.iteration == 0 && !std::isfinite(record.minimised())) {
     throw Error(objective_.samples().source +
                 ": E overflows at the starting model; its factors are too large");
   }
@@ -103,7 +108,8 @@ bool Run::Record(const FactorModel& current, const Step& step) {
   record.step = RelativeDistance(current.parameters(), previous_.parameters());
   record.optimality = step.optimality;
   summary_.trace.push_back(record);
-  if (record.iteration == 0 || record.objective < summary_.final_objective) {
+  if (record.iteration == 0 || record.minimised() < best_objective_) {
+    best_objective_ = record.minimised();
     summary_.final_objective = record.objective;
     *model_ = current;
   }

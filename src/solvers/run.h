@@ -59,7 +59,7 @@ class Run {
   SolverSummary& summary() { return summary_; }  // for used options, notes and phases
   ScopedTimer Time(double PhaseSeconds::*phase) { return ScopedTimer(&(summary_.phases.*phase)); }
   double seconds() const;
-  double best_objective() const { return summary_.final_objective; }
+  double best_objective() const { return best_objective_; }  // of what is minimised
 
   // Records the starting point; false when there is nothing to do. Throws Error if E overflows
   // there.
@@ -85,6 +85,7 @@ class Run {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   const double exact_objective_;
   FactorModel* const model_;  // the best so far
+  double best_objective_ = 0;
   FactorModel previous_;
   std::optional<StopReason> reason_;
   SolverSummary summary_;

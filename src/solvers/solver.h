@@ -71,8 +71,10 @@ struct StartResult {
 struct SolverSummary {
   std::string solver;
   StopReason stop_reason = StopReason::kMaxIterations;
+  // E of the data at the start and of the returned model. That is the one with the lowest recorded
+  // E of what is minimised, which with a guide is another (IterationRecord::guided_objective).
   double initial_objective = 0;
-  double final_objective = 0;          // of the returned model: the lowest E that was recorded
+  double final_objective = 0;
   int iterations = 0;                  // made, which may be more than the returned model's number
   double seconds = 0;                  // of the last record: without the diagnosis
   std::vector<IterationRecord> trace;  // trace[0] is the starting point
@@ -86,6 +88,7 @@ struct SolverSummary {
 
   int BestIteration() const;  // the returned model's number in the trace
   int RejectedSteps() const;  // iterations whose step was taken back
+  bool has_guide() const { return !trace.empty() && trace.front().guided_objective.has_value(); }
 
   // One line: solver, iterations, E from and to, why it stopped.
   std::string BriefReport() const;

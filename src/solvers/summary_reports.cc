@@ -42,7 +42,7 @@ PhaseSeconds& PhaseSeconds::operator+=(const PhaseSeconds& other) {
 
 int SolverSummary::BestIteration() const {
   if (trace.empty()) return 0;
-  return std::ranges::min_element(trace, {}, &IterationRecord::objective)->iteration;
+  return std::ranges::min_element(trace, {}, &IterationRecord::minimised)->iteration;
 }
 
 int SolverSummary::RejectedSteps() const {
@@ -52,8 +52,12 @@ int SolverSummary::RejectedSteps() const {
 std::string SolverSummary::BriefReport() const {
   std::ostringstream out;
   out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
-      << initial_objective << " to " << final_objective << ", stopped by "
-      << StopReasonName(stop_reason);
+      << initial_objective << " to " << final_objective;
+  if (has_guide()) {
+    out << " (with the guide " << trace.front().minimised() << " to "
+        << trace[BestIteration()].minimised() << ")";
+  }
+  out << ", stopped by " << StopReasonName(stop_reason);
   return out.str();
 }
 
@@ -67,10 +71,18 @@ std::string SolverSummary::FullReport() const {
     if (RejectedSteps() > 0) out << ", " << RejectedSteps() << " steps taken back";
     out << std::setprecision(3) << ", last step " << trace.back().step << " of |x|";
   }
+  if (has_guide()) {
+    out << std::setprecision(6)
+        << "\n             with the guide, which is what the solver lowers: E "
+        << trace.front().minimised() << " -> " << trace[BestIteration()].minimised();
+  }
   out << "\noptions      " << OptionsText(*this) << "\n";
   for (const std::string& note : notes) out << "note         " << note << "\n";
   for (size_t k = 0; k < starts.size(); ++k) {
-    out << (k == 0 ? "starts       " : ", ") << starts[k].name << " " << starts[k].objective;
+    out << (k > 0         ? ", "
+            : has_guide() ? "starts       E with the guide: "
+                          : "starts       ")
+        << starts[k].name << " " << starts[k].objective;
   }
   if (!starts.empty()) out << "\n";
   out << std::setprecision(3);

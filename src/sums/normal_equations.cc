@@ -88,7 +88,7 @@ void EvaluateReference(const Objective& objective, const FactorModel& model, Hes
   for (const WeightedSample& sample : objective.weighted_samples()) {
     for (int c = 0; c < kChannels; ++c) {
       const double w = sample.weight[c];
-      const double residual = Evaluate(model, sample.stencils, c) - sample.rho[c];
+      const double residual = UnclampedValue(model, sample.stencils, c) - sample.rho[c];
       derivatives.Set(model, sample.stencils, c);
       for (const int k : derivatives.touched()) {
         const double w_k = w * derivatives[k];

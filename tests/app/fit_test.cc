@@ -103,7 +103,7 @@ TEST(Fit, WritesModelTraceAndReport) {
   const BrdfTable fitted = ReadMerl(out + "/reconstruction.binary");
   const int bin = fitted.grid.Index(10, 20, 90);
   const double expected =
-      Evaluate(file.model, GridStencils(file.model.spec(), fitted.grid, bin), 1);
+      UnclampedValue(file.model, GridStencils(file.model.spec(), fitted.grid, bin), 1);
   EXPECT_NEAR(fitted.Value(1, bin), expected, 1e-12 * expected);
 
   // `score` finds the very objective that the fit reported.

@@ -45,6 +45,7 @@ class Scattered : public ::testing::Test {
 TEST_F(Scattered, StoresTheModelThatWasSolved) {
   const json report = Fit("fit", {"--lobes=1", "--max_iterations=20", "--plots"});
   EXPECT_EQ(report["model"], "shared");
+  EXPECT_GT(report["reach"]["between_samples"], 0.1);
   const std::string path = folder_ / "fit/model.json";
   const ModelFile file = ReadModel(path);
   EXPECT_EQ(file.model.spec(),

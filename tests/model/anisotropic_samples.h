@@ -25,7 +25,7 @@ inline BrdfSamples PolarSamples(const FactorModel& model, int num_theta, int num
       const SampleStencils stencils = ScatteredStencils(model.spec(), at);
       Rgb rho;
       for (int c = 0; c < kChannels; ++c) {
-        rho[c] = Evaluate(model, stencils, c) * (noise > 0 ? random.LogNormal(noise) : 1);
+        rho[c] = UnclampedValue(model, stencils, c) * (noise > 0 ? random.LogNormal(noise) : 1);
       }
       samples.angles.push_back(ToHalfDiff(ToDirections(at)));
       samples.directions.push_back(at);

@@ -35,7 +35,7 @@ std::vector<Stencil> ReadingsOfD(const ModelSpec& spec, const SampleStencils& at
 void ExpectNear(const Rgb& rho, const FactorModel& model, const SampleStencils& stencils,
                 const std::string& what) {
   for (int c = 0; c < kChannels; ++c) {
-    const double expected = Evaluate(model, stencils, c);
+    const double expected = std::max(UnclampedValue(model, stencils, c), 0.0);
     ASSERT_NEAR(rho[c], expected, 1e-13 * std::abs(expected)) << what << ", channel " << c;
   }
 }
@@ -87,8 +87,9 @@ TEST(ContinuousModelTest, TakesDirections) {
   EXPECT_EQ(continuous({.wi = {0.6, 0, -0.8}, .wo = {0, 0, 1}}), Rgb{});
 }
 
-// A negative weight of the spline, where G may undershoot: the value is the model's, not clamped.
-TEST(ContinuousModelTest, DoesNotClamp) {
+// A negative weight of the spline, where G may undershoot: no light comes from there. What E sees
+// is not bounded.
+TEST(ContinuousModelTest, IsNeverNegative) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   for (double& x : model.parameters()) x = 1;
   for (double& d : model.d()) d = 0;
@@ -101,9 +102,15 @@ TEST(ContinuousModelTest, DoesNotClamp) {
     const double theta_o = node + beside * step;
     const DirectionPair pair = {{std::sin(node), 0, std::cos(node)},
                                 {0, std::sin(theta_o), std::cos(theta_o)}};
-    const double rho = continuous(pair)[0];
-    lowest = std::min(lowest, rho);
-    ASSERT_NEAR(rho, Evaluate(model, pair)[0], 1e-12);
+    const HalfDiffAngles angles = ToHalfDiff(pair);
+    const double unclamped =
+        UnclampedValue(model, ScatteredStencils(model.spec(), angles), /*channel=*/0);
+    lowest = std::min(lowest, unclamped);
+    ASSERT_NEAR(continuous.Unclamped(angles, ToCosines(angles))[0], unclamped, 1e-12);
+    ASSERT_NEAR(continuous(pair)[0], std::max(unclamped, 0.0), 1e-12);
+    ASSERT_GE(continuous(pair)[0], 0);
+    ASSERT_NEAR(Evaluate(model, pair)[0], std::max(unclamped, 0.0), 1e-12);
+    ASSERT_GE(Evaluate(model, pair)[0], 0);
   }
   EXPECT_LT(lowest, -1e-3);
 }

@@ -32,7 +32,8 @@ TEST(ReconstructTest, EqualsTheStencilsAtEveryBin) {
           ASSERT_EQ(table.stored[c][bin], -1);
           continue;
         }
-        const double expected = std::max(Evaluate(model, GridStencils(spec, kGrid, bin), c), 0.0);
+        const double expected =
+            std::max(UnclampedValue(model, GridStencils(spec, kGrid, bin), c), 0.0);
         ASSERT_NEAR(table.Value(c, bin), expected, 1e-12 * (1 + expected)) << bin;
       }
     }
@@ -49,7 +50,7 @@ TEST(ReconstructTest, InterpolatesOnAGridThatIsNotTheSpecs) {
 }
 
 // Catmull-Rom undershoots beside a peak, so G, and with it the model, can be negative.
-TEST(ReconstructTest, ClampsNegativeValues) {
+TEST(ReconstructTest, IsNeverNegative) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   for (double& x : model.parameters()) x = 1;
   for (double& d : model.d()) d = 0;
@@ -61,8 +62,13 @@ TEST(ReconstructTest, ClampsNegativeValues) {
     if (above[bin]) samples.bins.push_back(bin);
   }
   samples.rho.resize(samples.bins.size());
+  const std::vector<Rgb> unclamped = UnclampedSamples(model, samples, 1);
+  const std::vector<Rgb> rho = EvaluateSamples(model, samples, 1);
   double lowest = 0;
-  for (const Rgb& rho : EvaluateSamples(model, samples, 1)) lowest = std::min(lowest, rho[0]);
+  for (int j = 0; j < samples.size(); ++j) {
+    lowest = std::min(lowest, unclamped[j][0]);
+    ASSERT_EQ(rho[j][0], std::max(unclamped[j][0], 0.0));
+  }
   ASSERT_LT(lowest, -1e-3);
   const BrdfTable table = Reconstruct(model, "test", kGrid);
   EXPECT_EQ(ValidBins(table), above);

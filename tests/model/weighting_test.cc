@@ -315,8 +315,10 @@ TEST(MeanReflectance, IsTheLambertianOfTheSameLight) {
   }
   EXPECT_NEAR(MeanReflectance(ValidSamples(table)), 0.2, 1e-14);
   EXPECT_EQ(MeanReflectance(Scaled(ValidSamples(table), 0)), 0);
-  // By its definition, where it is not constant.
-  const BrdfSamples samples = ValidSamples(RandomTable(kGrid, 2));
+  // By its definition, where it is not constant; of many samples, none left out.
+  constexpr MerlGrid kMany = {.theta_h = 50, .theta_d = 50, .phi_d = 80};
+  const BrdfSamples samples = ValidSamples(RandomTable(kMany, 2));
+  ASSERT_GT(samples.size(), 100000);
   Exact light = 0, reflected = 0;
   for (int j = 0; j < samples.size(); ++j) {
     const HalfDiffAngles a = samples.Angles(j);
@@ -328,6 +330,7 @@ TEST(MeanReflectance, IsTheLambertianOfTheSameLight) {
   }
   const auto expected = static_cast<double>(reflected / light);
   EXPECT_NEAR(MeanReflectance(samples), expected, 1e-13 * expected);
+  EXPECT_EQ(MeanReflectance(samples, 3), MeanReflectance(samples));
 }
 
 TEST(PowerWeighting, EpsilonMayBeAMultipleOfTheLevel) {

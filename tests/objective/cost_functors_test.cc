@@ -75,10 +75,11 @@ TEST(SampleResidual, IsTheWeightedErrorOfTheModel) {
         double residuals[kChannels];
         ASSERT_TRUE(reading.residual(reading.blocks.data(), residuals));
         for (int c = 0; c < kChannels; ++c) {
-          const double rho = Evaluate(model, sample.stencils, c);
+          const double rho = UnclampedValue(model, sample.stencils, c);
           const double weight = std::sqrt(sample.weight[c]);
           // At most 20 roundings a lobe, of terms that do not cancel.
-          const double terms = sample.rho[c] + Evaluate(model, Magnitudes(sample.stencils), c);
+          const double terms =
+              sample.rho[c] + UnclampedValue(model, Magnitudes(sample.stencils), c);
           EXPECT_NEAR(residuals[c], weight * (rho - sample.rho[c]),
                       20 * kEpsilon * (1 + spec.lobes) * weight * terms)
               << name;

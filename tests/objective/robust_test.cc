@@ -25,7 +25,8 @@ double ErrorAt(const Objective& objective, const FactorModel& model, int j) {
   const Rgb w = weighting({sample.rho, ToCosines(objective.samples().Angles(j))});
   double square = 0;
   for (int c = 0; c < kChannels; ++c) {
-    square += w[c] * std::pow(Evaluate(model, sample.stencils, c) - sample.rho[c], 2) / kChannels;
+    square +=
+        w[c] * std::pow(UnclampedValue(model, sample.stencils, c) - sample.rho[c], 2) / kChannels;
   }
   return std::sqrt(square) / (weighting.level > 0 ? weighting.level : 1);
 }

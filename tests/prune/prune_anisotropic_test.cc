@@ -167,7 +167,7 @@ TEST(PruneAnisotropic, WithoutABudgetNothingMoves) {
   EXPECT_NEAR(none.model.E, none.E_full, 1e-12 * none.E_full);
   const Pruned less = PruneFitOf(material, start, {.max_relative_rise = -0.5});
   EXPECT_EQ(less.model.model.spec(), start.spec());
-  EXPECT_THAT(less.model.decisions.back().why, HasSubstr("a lower E than was found"));
+  EXPECT_THAT(less.model.decisions.back().why, HasSubstr("a better fit than was found"));
   EXPECT_THROW(PruneFitOf(material, start, {.max_relative_rise = std::nan("")}), Error);
 }
 

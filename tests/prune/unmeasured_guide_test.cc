@@ -93,7 +93,7 @@ TEST(UnmeasuredGuide, SaysNothingThatNoMeasurementCouldSay) {
     model.table(Factor::kG, 0)[k] = model.table(Factor::kG, 1)[k] = k % 3 == 0 ? 1 : 0;
   }
   std::ranges::fill(model.d(), 0.0);
-  const auto rho = EvaluateSamples(model, objective.samples(), 1);
+  const auto rho = UnclampedSamples(model, objective.samples(), 1);
   EXPECT_TRUE(std::ranges::any_of(rho, [](const Rgb& x) { return x[0] < 0; }));
   const auto expect_valid = [&] {
     const Objective guided = UnmeasuredGuide(objective, model).With(objective);

@@ -135,7 +135,7 @@ TEST(UsedSamples, AHistogramWeightsAndDrops) {
     const double count = histogram.counts[all.bins[j]];
     const WeightedSample sample = plain.Sample(j);
     for (int c = 0; c < kChannels; ++c) {
-      const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+      const double residual = sample.rho[c] - UnclampedValue(model, sample.stencils, c);
       sum += count * sample.weight[c] * residual * residual;
     }
     counts += count;

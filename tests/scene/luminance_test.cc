@@ -31,10 +31,12 @@ TEST(Luminance, OfAModelIsThatOfItsValues) {
     const FactorModel grey = LuminanceOf(model);
     for (const int bin : ValidSamples(RandomTable(kGrid, 3)).bins) {
       const SampleStencils at = GridStencils(spec, kGrid, bin);
-      const Rgb rho = {Evaluate(model, at, 0), Evaluate(model, at, 1), Evaluate(model, at, 2)};
+      const Rgb rho = {UnclampedValue(model, at, 0), UnclampedValue(model, at, 1),
+                       UnclampedValue(model, at, 2)};
       for (int c = 0; c < kChannels; ++c) {
         // A handful of additions and products of parameters >= 0, but for the spline's own weights.
-        EXPECT_NEAR(Evaluate(grey, at, c), Luminance(rho), 1e-13 * (1 + Luminance(rho))) << name;
+        EXPECT_NEAR(UnclampedValue(grey, at, c), Luminance(rho), 1e-13 * (1 + Luminance(rho)))
+            << name;
       }
     }
   }

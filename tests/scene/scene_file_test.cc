@@ -57,6 +57,12 @@ TEST(SceneFile, MaterialsTakeTheScenesLimitsUnlessTheyHaveTheirOwn) {
   EXPECT_EQ(own.channels, SceneChannels::kRgb);
   EXPECT_EQ(own.budget.unit, SceneBudget::Unit::kSeconds);
   EXPECT_EQ(own.budget.amount, 2.5);
+  const auto budget_of = [&](const std::string& json) {
+    return ParseScene(Text(R"(, "budget": )" + json), "scene.json").materials[0].budget;
+  };
+  EXPECT_EQ(budget_of(R"({"mean_delta_e": 1.5})").unit, SceneBudget::Unit::kMeanDeltaE);
+  EXPECT_EQ(budget_of(R"({"sphere_psnr_db": 40})").unit, SceneBudget::Unit::kSpherePsnr);
+  EXPECT_EQ(budget_of(R"({"sphere_psnr_db": 40})").amount, 40);
   EXPECT_TRUE(own.reductions.lobes);    // its own
   EXPECT_FALSE(own.reductions.tables);  // the scene's
   EXPECT_FALSE(own.reductions.samples);
@@ -185,6 +191,8 @@ TEST(SceneFile, BadOnesGetAnErrorWithKeyAndReason) {
       {budget(R"({"relative_rise": -1.01})"), "/budget/relative_rise:", "from -1 to"},
       {budget(R"({"relative_rise": "1 %"})"), "/budget/relative_rise:", "must be a number"},
       {budget(R"({"psnr_drop_db": 1001})"), "/budget/psnr_drop_db:", "must be decibels"},
+      {budget(R"({"mean_delta_e": -1})"), "/budget/mean_delta_e:", "from 0 to 100"},
+      {budget(R"({"sphere_psnr_db": "high"})"), "/budget/sphere_psnr_db:", "must be a number"},
       {budget(R"({"bytes": 7})"), "/budget/bytes:", "from 8 up, not 7"},
       {budget(R"({"seconds": 1e999})"), "", "not a scene file"},
       {Text("", R"(, "budget": {"seconds": null})"),

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ostream>
 
 #include "tests/io/test_directory.h"
+#include "trilobe/io/file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -67,6 +69,66 @@ TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
   const SceneScore again = ScoreOnScene({&fit->file.model, 1}, Material("felt"), Settings(), 2)[0];
   EXPECT_EQ(again.objective, fit->pruned.objective);
   EXPECT_EQ(again.psnr_db, fit->pruned.psnr_db);
+}
+
+// Budgets of what is seen hold on the sphere as `trilobe fit` renders it, and are spent.
+TEST(FitMaterial, KeepsWithinABudgetOfLook) {
+  SceneFitSettings settings = Settings();
+  settings.lobes = 2;
+  settings.appearance = {.lights = 6, .size = 48};
+  SceneMaterial material = Material("rubber@30x30x60");
+  material.directions = AllDirections();
+  material.channels = SceneChannels::kLuminance;
+  const auto fitted = [&](SceneBudget::Unit unit, double amount) {
+    material.budget = {unit, amount};
+    return *FitMaterial(material, settings, 1);
+  };
+  const MaterialFit strict = fitted(SceneBudget::Unit::kMeanDeltaE, 1e-6);
+  ASSERT_TRUE(strict.full.mean_delta_e && strict.pruned.sphere_psnr_db);
+  const double full = *strict.full.mean_delta_e;
+  ASSERT_GT(full, 0);
+  EXPECT_LE(*strict.pruned.mean_delta_e, full);  // what is free at most, or more lobes
+  for (const double amount : {full + 1, full + 3}) {
+    const MaterialFit fit = fitted(SceneBudget::Unit::kMeanDeltaE, amount);
+    EXPECT_LE(*fit.pruned.mean_delta_e, amount);
+    EXPECT_GT(*fit.pruned.mean_delta_e, full);
+    EXPECT_LT(2 * fit.num_parameters, fit.full_parameters) << amount;
+  }
+  const double least = *strict.full.sphere_psnr_db - 3;
+  const MaterialFit by_psnr = fitted(SceneBudget::Unit::kSpherePsnr, least);
+  EXPECT_GE(*by_psnr.pruned.sphere_psnr_db, least);
+  EXPECT_LT(by_psnr.num_parameters, by_psnr.full_parameters);
+  // No picture, no look.
+  const TestDirectory directory;
+  WriteFile(directory.Path("few.csv"), [](std::ostream& out) {
+    out << "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,20,30,1,1,1\n10,0,40,170,1,1,1\n";
+  });
+  material.source = directory.Path("few.csv");
+  EXPECT_THAT(ErrorOf([&] { FitMaterial(material, settings, 1); }),
+              testing::HasSubstr("samples on no grid make no picture"));
+}
+
+// 1 % of next to nothing.
+TEST(FitMaterial, SaysThatAFractionOfAnExactFitBuysNothing) {
+  SceneFitSettings settings = Settings();
+  settings.noise = 0;
+  settings.lobes = 0;
+  settings.weighting = "uniform";
+  SceneMaterial material = Material("felt@10x10x20");
+  const TestDirectory directory;
+  WriteFile(directory.Path("grey.csv"), [](std::ostream& out) {
+    out << "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+    for (int k = 1; k < 9; ++k) out << 10 * k << ",0," << 5 * k << ",170,0.25,0.25,0.25\n";
+  });
+  material.source = directory.Path("grey.csv");
+  material.directions = AllDirections();
+  const auto fit = FitMaterial(material, settings, 1);
+  ASSERT_TRUE(fit);
+  ASSERT_LT(fit->full.objective, 1e-20);
+  ASSERT_FALSE(fit->decisions.empty());
+  EXPECT_FALSE(fit->decisions.front().taken);
+  EXPECT_THAT(fit->decisions.front().why, testing::HasSubstr("practically 0"));
+  EXPECT_THAT(fit->decisions.front().why, testing::HasSubstr("mean_delta_e"));
 }
 
 TEST(FitMaterial, TakesFromTheCacheWhatItWouldMake) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "trilobe/model/reconstruct.h"
 #include "trilobe/model/with_axes.h"
 #include "trilobe/solvers/initial_model.h"
+#include "trilobe/solvers/reach.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -84,6 +86,40 @@ TEST(Guide, AddsSamplesBetweenThoseOfTheData) {
   }
   EXPECT_EQ(WithGuide(three, {.weight = 0.25}).rho, both.rho);
   EXPECT_THROW(WithGuide(one, {.weight = 0}), Error);
+}
+
+// What a solver lowers is E of both; what it tells as E is that of the data, from the start on.
+TEST(Guide, ObjectivesOfTheDataAreToldBesides) {
+  const Objective data(SteelAtNodes(), Spec(6), Weightings().front(), 2);
+  const Objective guided(data, WithGuide(data, {}));
+  EXPECT_TRUE(guided.has_guide());
+  EXPECT_FALSE(guided.data().has_guide());
+  EXPECT_EQ(guided.weighting().level, data.weighting().level);
+  EXPECT_EQ(&data.data(), &data);
+  ModelSpec finer = Spec(18);
+  EXPECT_EQ(Objective(guided, finer).data().MeasuredEnergy(), data.MeasuredEnergy());
+  const FactorModel start = FindInitialModel("moments").make(data, 1);
+  for (const char* const solver : {"varpro", "awls_block", "lm", "auto"}) {
+    FactorModel model = start;
+    SolverOptions options;
+    options.max_iterations = 6;
+    options.diagnose = false;
+    options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
+      EXPECT_EQ(record.objective, data.Value(current)) << solver;
+      EXPECT_NEAR(*record.guided_objective / guided.Value(current), 1, 1e-12) << solver;
+      return true;
+    };
+    const SolverSummary summary = MakeSolver(solver)->Solve(guided, options, &model);
+    EXPECT_EQ(summary.initial_objective, data.Value(start)) << solver;
+    EXPECT_EQ(summary.final_objective, data.Value(model)) << solver;
+    const IterationRecord& best = summary.trace[summary.BestIteration()];
+    EXPECT_EQ(best.objective, summary.final_objective) << solver;
+    EXPECT_NEAR(*best.guided_objective / guided.Value(model), 1, 1e-12) << solver;
+    EXPECT_LT(*best.guided_objective, *summary.trace.front().guided_objective) << solver;
+    EXPECT_THAT(summary.FullReport(), testing::HasSubstr("with the guide, which is what"))
+        << solver;
+    EXPECT_THAT(summary.BriefReport(), testing::HasSubstr(" (with the guide ")) << solver;
+  }
 }
 
 // Factors that trade between neighbouring nodes fit these as well, and are wrong in between.
@@ -169,6 +205,59 @@ TEST(Guide, KeepsAnIsotropicFitTameBetweenFewSamples) {
   const double with = error(guided, few), without = error(data, full);
   EXPECT_LT(with, 0.1);
   EXPECT_LT(1000 * with, without);
+}
+
+// 30 % of noise, and a G that is next to 0 where the data read an entry of D: that one grows, and
+// shines elsewhere.
+TEST(Guide, TamesAFitThatIsWildBetweenNoisySamples) {
+  const BrdfTable table = Synthesize(FindSynthMaterial("copper"), 0, 1);
+  const TabulatedBrdf between(table);
+  std::mt19937 random(3);
+  const auto draw = [&](double upto) {
+    return upto * static_cast<double>(random()) / 4294967296.0;
+  };
+  constexpr double kMaxTheta = 0.5;
+  BrdfSamples data, truth;
+  data.source = truth.source = "noisy";
+  const auto add = [&](double noise, BrdfSamples* to) {
+    const SphericalAngles at{
+        .theta_i = draw(kMaxTheta), .theta_o = draw(kMaxTheta), .phi_o = draw(2 * kPi)};
+    const HalfDiffAngles angles = ToHalfDiff(ToDirections(at));
+    to->directions.push_back(at);
+    to->angles.push_back(angles);
+    Rgb rho = between.Interpolate(angles);
+    for (double& x : rho) x *= std::exp(noise * (draw(1) + draw(1) + draw(1) + draw(1) - 2));
+    to->rho.push_back(rho);
+  };
+  while (data.size() < 200) add(0.5, &data);
+  while (truth.size() < 2000) add(0, &truth);
+  const ModelSpec spec = ModelSpec::SharedFactors(3).ForScattered(data.size());
+  const Objective objective(data, spec, FindWeighting("appearance"), 2);
+  const Guide guide(objective, {.isotropic = true});
+  Objective guided(objective, guide.With(objective));
+  FactorModel model = FindInitialModel("analytic").make(objective, 1);
+  SolverOptions options;
+  options.max_iterations = 60;
+  options.diagnose = false;
+  MakeSolver("varpro")->Solve(guided, options, &model);
+  const Objective right(truth, spec, FindWeighting("appearance"), 2);
+  const FactorModel wild = model;
+  ASSERT_GT(ReachOf(data, wild, 2).between, 4);
+  const std::optional<TamedFit> tamed = TameBetweenSamples(
+      guide, [] { return false; }, &guided, &model);
+  ASSERT_TRUE(tamed.has_value());
+  EXPECT_EQ(tamed->E_before, objective.Value(wild));
+  EXPECT_EQ(tamed->E_after, objective.Value(model));
+  EXPECT_LT(tamed->E_after, 1.1 * tamed->E_before);
+  EXPECT_LE(ReachOf(data, model, 2).between, 3);  // it looks at other directions, too
+  EXPECT_EQ(ReachOf(data, model, 1).beyond, ReachOf(data, model, 3).beyond);
+  EXPECT_LT(2 * right.Value(model), right.Value(wild));
+  // Then there is nothing to do.
+  const FactorModel tame = model;
+  EXPECT_FALSE(TameBetweenSamples(
+                   guide, [] { return false; }, &guided, &model)
+                   .has_value());
+  EXPECT_TRUE(std::ranges::equal(model.parameters(), tame.parameters()));
 }
 
 TEST(Guide, NeedsDirections) {

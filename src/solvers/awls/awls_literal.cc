@@ -137,7 +137,7 @@ class ReferenceSweep {
     for (const int j : samples) {
       const WeightedSample& sample = samples_[j];
       for (int c = channels.begin; c < channels.end; ++c) {
-        const double residual = sample.rho[c] - Evaluate(model, sample.stencils, c);
+        const double residual = sample.rho[c] - UnclampedValue(model, sample.stencils, c);
         const Response response = response_of(sample.stencils, c);
         change.AddSample(sample.weight[c], residual, response.p1, response.p2);
       }

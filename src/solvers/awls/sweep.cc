@@ -12,7 +12,7 @@ void Sweep::InBlocks(const IterationRecord& last, const OnElement& on_block, Fac
     (*this)(on_block, model);
     return;
   }
-  UpdateBlocks(last.objective, rounds_, on_block, model);
+  UpdateBlocks(last.minimised(), rounds_, on_block, model);
   UpdateG(on_block, model);
 }
 

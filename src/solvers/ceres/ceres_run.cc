@@ -25,7 +25,7 @@ class Recorder : public ceres::IterationCallback {
     if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;  // recorded by Run::Start
     Run::Step step{.accepted = iteration.step_is_successful};
     CeresPoint point = current_();
-    step.objective = step.accepted ? point.objective : run_.summary().trace.back().objective;
+    step.objective = step.accepted ? point.objective : run_.summary().trace.back().minimised();
     return run_.Record(point.model, step) ? ceres::SOLVER_CONTINUE
                                           : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }

@@ -66,7 +66,7 @@ Light LightOf(const Objective& objective, const FactorModel& model, Slopes slope
       part.through += through;
       for (int c = 0; c < kChannels; ++c) {
         part.light.reflectance.measured[c] += through * samples.rho[j][c];
-        part.light.reflectance.fitted[c] += through * Evaluate(model, at, c);
+        part.light.reflectance.fitted[c] += through * UnclampedValue(model, at, c);
         if (slopes == Slopes::kNone) continue;
         derivatives.Set(model, at, c);
         for (const int x : derivatives.touched()) {

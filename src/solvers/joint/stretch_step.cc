@@ -102,7 +102,7 @@ ExponentEquations SumsOver(const Objective& objective, const FactorModel& model,
     exponents.SetAngles(objective.samples().Angles(j));
     for (int c = 0; c < kChannels; ++c) {
       const double w = sample.weight[c];
-      const double w_r = w * (Evaluate(model, sample.stencils, c) - sample.rho[c]);
+      const double w_r = w * (UnclampedValue(model, sample.stencils, c) - sample.rho[c]);
       exponents.Set(sample.stencils, c, K.data());
       parameters.Set(model, sample.stencils, c);
       for (int k = 0; k < size; ++k) {
