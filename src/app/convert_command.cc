@@ -1,4 +1,7 @@
+#include <gflags/gflags.h>
+
 #include <iostream>
+#include <ostream>
 #include <string>
 
 #include "trilobe/app/command.h"
@@ -14,12 +17,40 @@
 #include "trilobe/io/merl_file.h"
 #include "trilobe/io/model_file.h"
 #include "trilobe/io/node_reconstruction.h"
+#include "trilobe/io/rgl_export.h"
 #include "trilobe/io/source.h"
 #include "trilobe/io/utia_file.h"
 #include "trilobe/model/reconstruct.h"
 
+DEFINE_double(error, 0,
+              "of a .bsdf file: how far it may be off the model, relative, in the median over "
+              "directions; finer tables are taken until it is met. 0: 0.005, of an anisotropic "
+              "model 0.02");
+
 namespace trilobe {
 namespace {
+
+constexpr const char* kTensorEnding = ".bsdf";
+
+// For renderers that read measurements of RGL.
+int ConvertToTensorFile(const std::string& source) {
+  if (!(FLAGS_error >= 0 && FLAGS_error <= 1)) throw Error("--error must be from 0 to 1");
+  if (!IsModelFile(source)) {
+    throw Error("--out=" + FLAGS_out + ": " + source +
+                " is a measurement, and trilobe writes .bsdf files of models; fit it first");
+  }
+  Inputs({source}).CheckOutput(FLAGS_out);
+  CheckWritable(FLAGS_out);
+  const FactorModel model = ReadModel(source).model;
+  const double usual = model.spec().anisotropic() ? 0.02 : 0.005;
+  const RglExport file = ExportRgl(model, {.max_error = FLAGS_error > 0 ? FLAGS_error : usual});
+  WriteFile(FLAGS_out, [&](std::ostream& out) { out << file.bytes; });
+  PrintLine("wrote " + FLAGS_out + ": RGL tensor file, " +
+            Text(static_cast<double>(file.bytes.size()) / 1e6, 2) + " MB, off the model by " +
+            Text(100 * file.median_error, 2) + " % in the median and " +
+            Text(100 * file.high_error, 2) + " % for one of a hundred directions");
+  return 0;
+}
 
 Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
@@ -46,6 +77,8 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
 
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
+  if (EndingOf(FLAGS_out) == kTensorEnding) return ConvertToTensorFile(source);
+  if (!IsDefault("error")) throw Error("--error goes with an --out that ends in .bsdf");
   const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
@@ -61,27 +94,33 @@ int RunConvert(std::span<const std::string> arguments) {
 Command ConvertCommand() {
   return {
       .name = "convert",
-      .summary = "write a measurement, or a model's reconstruction, in MERL layout or as CSV",
+      .summary = "write a measurement or a model in MERL layout, as CSV, or for a renderer",
       .arguments = "SOURCE|MODEL",
       .min_arguments = 1,
       .max_arguments = 1,
       .details =
           "Evaluates the input at the bin centres of a MERL .binary file and writes that to "
-          "--out, so that\nevery MERL viewer can show it. A MERL file is copied bit for bit. Of an "
+          "--out, so that\nevery MERL viewer can show it. A MERL file is copied bit for bit. Of "
+          "an "
           "RGL file, bins that were not\nmeasured are marked invalid (-1), unless --extrapolated "
           "is given. For a model file, all bins with both\ndirections above the surface are "
           "filled; "
-          "elsewhere bins are marked invalid. An\nanisotropic model is evaluated at the directions "
-          "of the UTIA database, for a .bin or .csv file. With --max_angle or\n--min_theta_d, bins "
+          "elsewhere bins are marked invalid. An\nanisotropic model is evaluated at the "
+          "directions "
+          "of the UTIA database, for a .bin or .csv file. With --max_angle or\n--min_theta_d, "
+          "bins "
           "beyond them are "
           "marked "
           "invalid, "
           "too, whatever the input. Scattered samples have no bins: that is an error.\nTo a FILE "
-          "that ends in .csv it writes the valid samples, scattered ones too, a row each, with all "
+          "that ends in .csv it writes the valid samples, scattered ones too, a row each, with "
+          "all "
           "their\ndigits; a whole table takes some 130 MB. To a FILE that ends in .bin it writes "
           "the input at the\ndirections of the UTIA database, -1 where it was not measured; "
-          "scattered samples must stand at them.\nA FILE with another ending is an error.",
-      .flags = WithSourceFlags({"out"}),
+          "scattered samples must stand at them.\nOf a model, to a FILE that ends in .bsdf it "
+          "writes an RGL tensor file, which Mitsuba 3 renders (`measured`).\nA FILE with another "
+          "ending is an error.",
+      .flags = WithSourceFlags({"out", "error"}),
       .run = RunConvert};
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <utility>
 
 #include "trilobe/base/error.h"
 #include "trilobe/io/content.h"
@@ -177,6 +179,47 @@ uint8_t TensorFile::Byte(std::string_view name) const {
   const Field& field = Find(name, kUint8, 1);
   if (field.data.size() != 1) Fail(name, "must have one entry");
   return LoadLittleEndian<uint8_t>(field.data.data());
+}
+
+void TensorFileWriter::AddFloat32(const std::string& name, const std::vector<int>& shape,
+                                  const std::vector<float>& values) {
+  std::string data(values.size() * sizeof(float), '\0');
+  std::memcpy(data.data(), values.data(), data.size());
+  fields_.push_back({name, kFloat32, shape, std::move(data)});
+}
+
+void TensorFileWriter::AddBytes(const std::string& name, std::string_view bytes) {
+  fields_.push_back({name, kUint8, {static_cast<int>(bytes.size())}, std::string(bytes)});
+}
+
+std::string TensorFileWriter::Bytes() const {
+  constexpr size_t kAlignment = sizeof(double);
+  size_t offset = kTensorMagic.size() + 2 + sizeof(uint32_t);
+  for (const Field& field : fields_) {
+    offset += sizeof(uint16_t) + field.name.size() + sizeof(uint16_t) + 1 +
+              sizeof(uint64_t) * (1 + field.shape.size());
+  }
+  std::string bytes(kTensorMagic);
+  const auto add = [&bytes](const auto& number) {
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+  };
+  bytes += std::string("\1\0", 2);
+  add(static_cast<uint32_t>(fields_.size()));
+  for (const Field& field : fields_) {
+    offset = (offset + kAlignment - 1) / kAlignment * kAlignment;
+    add(static_cast<uint16_t>(field.name.size()));
+    bytes += field.name;
+    add(static_cast<uint16_t>(field.shape.size()));
+    add(field.dtype);
+    add(static_cast<uint64_t>(offset));
+    for (const int size : field.shape) add(static_cast<uint64_t>(size));
+    offset += field.data.size();
+  }
+  for (const Field& field : fields_) {
+    bytes.resize((bytes.size() + kAlignment - 1) / kAlignment * kAlignment);
+    bytes += field.data;
+  }
+  return bytes;
 }
 
 }  // namespace trilobe

@@ -55,6 +55,24 @@ class TensorFile {
   std::vector<Field> fields_;
 };
 
+// Makes such a file: fields in the order in which they are added, each aligned to its items.
+class TensorFileWriter {
+ public:
+  void AddFloat32(const std::string& name, const std::vector<int>& shape,
+                  const std::vector<float>& values);
+  void AddBytes(const std::string& name, std::string_view bytes);
+  std::string Bytes() const;
+
+ private:
+  struct Field {
+    std::string name;
+    uint8_t dtype;
+    std::vector<int> shape;
+    std::string data;
+  };
+  std::vector<Field> fields_;
+};
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_IO_TENSOR_FILE_H_

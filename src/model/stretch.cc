@@ -8,14 +8,16 @@
 #include "trilobe/base/error.h"
 
 namespace trilobe {
+namespace {
 
-Stretch::Place::Place(double theta_d, double phi_d) {
-  // theta_d = 90 degrees has no highlight, and must not make it infinite.
-  constexpr double kMinCosine = 1e-4;
-  log_cosine = std::log(std::max(std::cos(theta_d), kMinCosine));
-  const double cosine = std::cos(phi_d);
-  cos2_phi = cosine * cosine;
-}
+// theta_d = 90 degrees has no highlight, and must not make it infinite.
+constexpr double kMinCosine = 1e-4;
+
+}  // namespace
+
+Stretch::Place::Place(const Cosines& cosines)
+    : log_cosine(std::log(std::max(cosines.theta_d, kMinCosine))),
+      cos2_phi(cosines.phi_d * cosines.phi_d) {}
 
 double Stretch::Factor(const Place& place) const {
   if (!any()) return 1;

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_MODEL_STRETCH_H_
 #define TRILOBE_MODEL_STRETCH_H_
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -19,7 +20,11 @@ namespace trilobe {
 struct Stretch {
   // A pair of directions, prepared for all stretches.
   struct Place {
-    Place(double theta_d, double phi_d);
+    Place(double theta_d, double phi_d) : Place(Cosines{std::cos(theta_d), std::cos(phi_d)}) {}
+    struct Cosines {
+      double theta_d, phi_d;
+    };
+    explicit Place(const Cosines& cosines);
     double log_cosine;  // of theta_d; at grazing angles of a little less
     double cos2_phi;
   };

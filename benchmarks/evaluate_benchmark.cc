@@ -1,0 +1,122 @@
+// What a renderer pays for a fitted model: a value, a density and a sample of Bsdf, beside those of
+// an analytic material with one GGX lobe, and the literal evaluation, in one run.
+//
+//   build/release/benchmarks/evaluate_benchmark
+//
+// Pairs of directions are distributed by cosines; the models have three lobes on the paper's
+// tables.
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "benchmarks/ggx.h"
+#include "trilobe/evaluate/bsdf.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+namespace {
+
+struct Call {
+  DirectionPair pair;
+  std::array<double, 2> u;
+};
+
+const std::vector<Call>& Calls() {
+  static const std::vector<Call> calls = [] {
+    std::mt19937_64 engine(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const auto direction = [&] {
+      const double r = std::sqrt(uniform(engine)), phi = 2 * kPi * uniform(engine);
+      return Direction{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
+    };
+    std::vector<Call> some(4096);
+    for (Call& call : some) {
+      call = {{direction(), direction()}, {uniform(engine), uniform(engine)}};
+    }
+    return some;
+  }();
+  return calls;
+}
+
+// Tables of a plausible material; only how they are read takes time.
+FactorModel Material(const ModelSpec& spec) {
+  FactorModel model(spec);
+  for (double& x : model.parameters()) x = 1;
+  for (int m = 0; m < spec.lobes; ++m) {
+    const double alpha = 0.1 * (1 + m);
+    for (int e = 0; e < spec.d_axis.size; ++e) {
+      const double cos2 = std::pow(std::cos(spec.d_axis.Theta(e)), 2);
+      model.table(Factor::kD, m)[e] = std::pow(cos2 * (alpha * alpha - 1) + 1, -2);
+    }
+  }
+  return model;
+}
+
+template <typename Function>
+void Run(benchmark::State& state, const Function& function) {
+  size_t k = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(function(Calls()[k++ % Calls().size()]));
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations()));
+}
+
+template <typename Material>
+void Value(benchmark::State& state, const Material& material) {
+  Run(state, [&](const Call& call) { return material.Value(call.pair.wi, call.pair.wo); });
+}
+template <typename Material>
+void SampleAndPdf(benchmark::State& state, const Material& material) {
+  Run(state, [&](const Call& call) {
+    const auto sample = material.SampleWi(call.pair.wo, call.u);
+    return sample.weight[0] + material.Pdf(call.pair.wo, call.pair.wi);
+  });
+}
+
+const FactorModel& Isotropic() {
+  static const FactorModel model = Material(ModelSpec::SharedFactors(3));
+  return model;
+}
+const FactorModel& Anisotropic() {
+  static const FactorModel model = Material(ModelSpec::Anisotropic(3));
+  return model;
+}
+
+void BM_ValueGgx(benchmark::State& state) { Value(state, Ggx()); }
+void BM_ValueIsotropic(benchmark::State& state) { Value(state, Bsdf<double>(Isotropic())); }
+void BM_ValueAnisotropic(benchmark::State& state) { Value(state, Bsdf<double>(Anisotropic())); }
+void BM_ValueReference(benchmark::State& state) {
+  Run(state, [](const Call& call) { return Evaluate(Isotropic(), call.pair); });
+}
+void BM_SampleAndPdfGgx(benchmark::State& state) { SampleAndPdf(state, Ggx()); }
+void BM_SampleAndPdfIsotropic(benchmark::State& state) {
+  SampleAndPdf(state, Bsdf<double>(Isotropic()));
+}
+void BM_SampleAndPdfAnisotropic(benchmark::State& state) {
+  SampleAndPdf(state, Bsdf<double>(Anisotropic()));
+}
+void BM_MakeIsotropic(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(Bsdf<double>(Isotropic()));
+}
+void BM_MakeAnisotropic(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(Bsdf<double>(Anisotropic()));
+}
+
+BENCHMARK(BM_ValueGgx);
+BENCHMARK(BM_ValueIsotropic);
+BENCHMARK(BM_ValueAnisotropic);
+BENCHMARK(BM_ValueReference);
+BENCHMARK(BM_SampleAndPdfGgx);
+BENCHMARK(BM_SampleAndPdfIsotropic);
+BENCHMARK(BM_SampleAndPdfAnisotropic);
+BENCHMARK(BM_MakeIsotropic)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_MakeAnisotropic)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace trilobe
+
+BENCHMARK_MAIN();

@@ -1,0 +1,253 @@
+#include "trilobe/io/rgl_export.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/evaluate/bsdf.h"
+#include "trilobe/io/bilinear_warp.h"
+#include "trilobe/io/counter_random.h"
+#include "trilobe/io/rgl_file.h"
+#include "trilobe/io/tensor_file.h"
+
+namespace trilobe {
+namespace {
+
+struct Size {
+  int theta_i, phi_i, n;
+};
+constexpr Size kIsotropic[] = {{8, 1, 32},  {16, 1, 32}, {16, 1, 64},
+                               {32, 1, 64}, {32, 1, 96}, {48, 1, 128}};
+constexpr Size kAnisotropic[] = {{8, 9, 32}, {8, 17, 32}, {12, 25, 32}, {12, 37, 48}};
+
+// Nodes of ndf, sigma and vndf over u = sqrt(2 theta / pi): those of a D of 90 bins are the odd
+// ones of the first, and it is linear between them as these tables are.
+constexpr int kNdf = 181, kVndf = 361;
+
+// The last theta at which a model is asked; what it says of the horizon itself means little.
+constexpr double kMaxTheta = 89.5 / 180 * kPi;
+
+double ThetaOf(double u) { return u * u * (kPi / 2); }
+
+Direction At(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+Direction Reflected(const Direction& wi, const Direction& m) {
+  const double twice = 2 * Dot(wi, m);
+  return {twice * m[0] - wi[0], twice * m[1] - wi[1], twice * m[2] - wi[2]};
+}
+
+// The tables of a file, from a model. The file's value is
+//   rho cos theta_o = rgb(x) ndf(m) / (4 sigma(wi)),  m the half vector, x where the warp sends m.
+class Tables {
+ public:
+  Tables(const FactorModel& model, const Size& size) : model_(model), bsdf_(model), size_(size) {
+    MakeNdf();
+    MakeSigma();
+    MakeVndf();
+    for (int t = 0; t < size.theta_i; ++t) {
+      theta_i_.push_back(kPi / 2 * std::pow(static_cast<double>(t) / (size.theta_i - 1), 0.6));
+    }
+    for (int p = 0; p < size.phi_i; ++p) {
+      phi_i_.push_back(size.phi_i == 1 ? 0 : -kPi + 2 * kPi * p / (size.phi_i - 1));
+    }
+    MakeValues();
+  }
+
+  std::string Bytes(const std::string& description) const {
+    const auto floats = [](const std::vector<double>& values) {
+      return std::vector<float>(values.begin(), values.end());
+    };
+    const int p = size_.phi_i, t = size_.theta_i, n = size_.n;
+    TensorFileWriter file;
+    file.AddBytes("description", description);
+    file.AddBytes("jacobian", std::string_view("\1", 1));
+    file.AddFloat32("phi_i", {p}, floats(phi_i_));
+    file.AddFloat32("theta_i", {t}, floats(theta_i_));
+    file.AddFloat32("ndf", {ndf_.rows, ndf_.columns}, floats(ndf_.values));
+    file.AddFloat32("sigma", {sigma_.rows, sigma_.columns}, floats(sigma_.values));
+    std::vector<float> vndf;
+    for (int slice = 0; slice < p * t; ++slice) {
+      vndf.insert(vndf.end(), vndf_.values.begin(), vndf_.values.end());
+    }
+    file.AddFloat32("vndf", {p, t, vndf_.rows, vndf_.columns}, vndf);
+    file.AddFloat32("luminance", {p, t, n, n}, luminance_);
+    file.AddFloat32("rgb", {p, t, kChannels, n, n}, rgb_);
+    return file.Bytes();
+  }
+
+ private:
+  double NdfAt(double u, double phi) const {
+    const double turns = phi / (2 * kPi) + 0.5;
+    return ndf_.At(0, {u, turns - std::floor(turns)});
+  }
+
+  // What the lobes' D say at a half vector, as strong as the lobes are at theta_d = 0, and what the
+  // diffuse term is beside that: so values are smooth in x.
+  void MakeNdf() {
+    const ModelSpec& spec = model_.spec();
+    const int rows = spec.anisotropic() ? 2 * std::max(spec.d_axis.phi_nodes, 24) + 1 : 2;
+    ndf_ = {rows, kNdf, {}};
+    std::vector<Rgb> lobes(std::max(spec.lobes, 1));
+    for (int row = 0; row < rows; ++row) {
+      const double phi = rows == 2 ? 0 : -kPi + 2 * kPi * row / (rows - 1);
+      for (int k = 0; k < kNdf; ++k) {
+        const double theta = ThetaOf(static_cast<double>(k) / (kNdf - 1));
+        double sum = 4 * Mean(DiffuseOf());
+        for (int m = 0; m < spec.lobes; ++m) {
+          for (int c = 0; c < kChannels; ++c) {
+            const Stencil D = spec.d_axis.At(theta, phi);
+            const std::span<const double> F = model_.F(m, c);
+            sum += model_.s(m)[c] * D(model_.D(m, c)) * F[F.size() / 4] / kChannels;
+          }
+        }
+        ndf_.values.push_back(sum);
+      }
+    }
+    const double largest = *std::ranges::max_element(ndf_.values);
+    if (!(largest > 0)) throw Error("the model is black; there is nothing to write");
+    // Nowhere so small that float32 or a ratio to it suffers.
+    for (double& x : ndf_.values) x = std::max(x / largest, 1e-7);
+  }
+
+  Rgb DiffuseOf() const { return {model_.d()[0], model_.d()[1], model_.d()[2]}; }
+
+  // One over the albedo, by which values change little from one theta_i to the next.
+  void MakeSigma() {
+    sigma_ = {2, kNdf, {}};
+    for (int row = 0; row < 2; ++row) {
+      for (int k = 0; k < kNdf; ++k) {
+        const double theta = std::min(ThetaOf(static_cast<double>(k) / (kNdf - 1)), kMaxTheta);
+        sigma_.values.push_back(1 / std::max(Mean(bsdf_.Albedo(At(theta, 0))), 1e-9));
+      }
+    }
+  }
+
+  // The density of half vectors over u, whatever their azimuth: as ndf has it, by projected solid
+  // angle, d(sin^2 theta), which rises as u^3 from 0.
+  void MakeVndf() {
+    vndf_ = {2, kVndf, {}};
+    for (int row = 0; row < 2; ++row) {
+      for (int k = 0; k < kVndf; ++k) {
+        const double u = static_cast<double>(k) / (kVndf - 1), theta = ThetaOf(u);
+        double mean = 0;
+        for (int r = 0; r + 1 < ndf_.rows; ++r) {
+          mean += NdfAt(u, -kPi + 2 * kPi * r / (ndf_.rows - 1)) / (ndf_.rows - 1);
+        }
+        vndf_.values.push_back(std::max(mean * std::sin(2 * theta) * u, 1e-9 * u * u * u));
+      }
+    }
+  }
+
+  void MakeValues() {
+    const BilinearWarp warp(vndf_);
+    const bool anisotropic = model_.spec().anisotropic();
+    const double least_cosine = std::cos(kMaxTheta);
+    const int n = size_.n;
+    std::vector<float> channel[kChannels];
+    for (const double phi_i : phi_i_) {
+      for (const double theta : theta_i_) {
+        const double theta_i = std::min(theta, kMaxTheta);
+        const Direction wi = At(theta_i, phi_i);
+        const double sigma = sigma_.At(0, {std::sqrt(theta_i * (2 / kPi)), 0});
+        for (std::vector<float>& values : channel) values.clear();
+        for (int node = 0; node < n * n; ++node) {
+          const SquarePoint x = {static_cast<double>(node % n) / (n - 1),
+                                 static_cast<double>(node / n) / (n - 1)};
+          const SquarePoint u = warp.Sample(0, x);
+          const double theta_m = ThetaOf(u.x), turn = (u.y - 0.5) * 2 * kPi;
+          const double phi_m = anisotropic ? turn : phi_i + turn;
+          const Direction m = At(theta_m, phi_m);
+          Direction wo = Reflected(wi, m);
+          const bool above = wo[2] > 0 && Dot(wi, m) > 0;
+          // What is below the horizon is read by interpolation next to it: there a lobe reflects as
+          // at the horizon, and the diffuse term, in proportion to the cosine, less than nothing.
+          const double cosine = wo[2];
+          wo[2] = std::max(wo[2], least_cosine);
+          const double length = std::sqrt(Dot(wo, wo));
+          for (double& a : wo) a /= length;
+          const double ndf = NdfAt(u.x, phi_m);
+          const auto f = bsdf_.Value(wi, wo);
+          double mean = 0;
+          for (int c = 0; c < kChannels; ++c) {
+            const double diffuse = model_.d()[c];
+            const double value = (diffuse * cosine + (f[c] - diffuse) * wo[2]) * 4 * sigma / ndf;
+            channel[c].push_back(static_cast<float>(value));
+            mean += value / kChannels;
+          }
+          // Renderers draw x by this: what is reflected, by the solid angles of x,
+          //   d omega_o = 4 (wi . m) sin theta_m (2 pi^2 u) du dv, du dv = dx dy / vndf.
+          const double density = vndf_.At(0, u);
+          const double spread =
+              4 * Dot(wi, m) * std::sin(theta_m) * 2 * kPi * kPi * u.x / std::max(density, 1e-12);
+          luminance_.push_back(
+              static_cast<float>(above ? std::max(mean * ndf / (4 * sigma) * spread, 0.0) : 0.0));
+        }
+        for (const std::vector<float>& values : channel) {
+          rgb_.insert(rgb_.end(), values.begin(), values.end());
+        }
+        const auto slice = std::span(luminance_).last(static_cast<size_t>(n) * n);
+        const float largest = *std::ranges::max_element(slice);
+        // Nothing that reflects is never drawn.
+        for (float& x : slice) x = largest > 0 ? std::max(x / largest, 1e-4F) : 1;
+      }
+    }
+  }
+
+  const FactorModel& model_;
+  const Bsdf<double> bsdf_;
+  const Size size_;
+  BilinearStack ndf_, sigma_, vndf_;
+  std::vector<double> theta_i_, phi_i_;
+  std::vector<float> rgb_, luminance_;
+};
+
+// Relative errors of rho cos theta_o, mean over the channels, ascending.
+std::vector<double> Errors(const FactorModel& model, const std::string& bytes) {
+  constexpr int kPairs = 20000;
+  const RglBrdf file = RglBrdf::Parse(bytes, "the file to be written");
+  const PreparedModel<double> prepared(model);
+  std::vector<double> errors;
+  const auto direction = [&](uint64_t k) {
+    const double r = std::sqrt(UniformAt(1, 2 * k)), phi = 2 * kPi * UniformAt(1, 2 * k + 1);
+    return Direction{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
+  };
+  for (uint64_t k = 0; k < kPairs; ++k) {
+    const DirectionPair pair = {direction(2 * k), direction(2 * k + 1)};
+    const Rgb expected = prepared.Value(pair.wi, pair.wo), is = file.Evaluate(pair);
+    if (Mean(expected) > 0) errors.push_back(RelativeDistance(is, expected));
+  }
+  std::ranges::sort(errors);
+  return errors;
+}
+
+}  // namespace
+
+RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options) {
+  CheckParameters(model);
+  const bool anisotropic = model.spec().anisotropic();
+  const std::span<const Size> sizes =
+      anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
+  RglExport result;
+  for (const Size& size : sizes) {
+    result =
+        RglExport{.bytes = {}, .theta_i = size.theta_i, .phi_i = size.phi_i, .resolution = size.n};
+    result.bytes = Tables(model, size).Bytes("a microfacet model, fitted by Trilobe");
+    const std::vector<double> errors = Errors(model, result.bytes);
+    if (errors.empty()) throw Error("the model is black; there is nothing to write");
+    result.median_error = errors[errors.size() / 2];
+    result.high_error = errors[errors.size() * 99 / 100];
+    if (result.median_error <= options.max_error) return result;
+  }
+  std::ostringstream message;
+  message << "the largest file, of " << result.bytes.size() / 1000000 << " MB, is off by "
+          << 100 * result.median_error << " % in the median, where --error=" << options.max_error
+          << " asks for less; give a larger --error";
+  throw Error(message.str());
+}
+
+}  // namespace trilobe

@@ -1,0 +1,250 @@
+#include "trilobe/evaluate/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/evaluate/materials.h"
+#include "tests/test_util.h"
+#include "trilobe/base/error.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+constexpr double kThetaO[] = {0, 15, 30, 45, 60, 75, 85, 89};  // [degrees]
+
+Direction WoAt(double degrees) { return DirectionAt(DegreesToRadians(degrees), 0.4); }
+
+// Half vectors in bins of theta_h, narrow near the normal, and of phi_h. The sphere of wi itself
+// would need bins as narrow as a mirror's peak.
+struct HalfVectorBins {
+  static constexpr int kTheta = 16, kPhi = 12, kCount = kTheta * kPhi;
+
+  static int Of(const Direction& wo, const Direction& wi) {
+    const Direction h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+    const double x = std::sqrt(std::atan2(std::hypot(h[0], h[1]), h[2]) / (kPi / 2));
+    const double turns = std::atan2(h[1], h[0]) / (2 * kPi) + 0.5;
+    return std::min(static_cast<int>(x * kTheta), kTheta - 1) * kPhi +
+           std::min(static_cast<int>(turns * kPhi), kPhi - 1);
+  }
+
+  // The integral of value(wi) over the directions wi above the surface with half vectors in a bin.
+  template <typename Value>
+  static double Integral(const Direction& wo, int bin, const Value& value) {
+    constexpr int kSteps = kSanitized ? 8 : 16;
+    double sum = 0;
+    for (int a = 0; a < kSteps; ++a) {
+      const double x = (bin / kPhi + (a + 0.5) / kSteps) / kTheta, theta = kPi / 2 * x * x;
+      for (int b = 0; b < kSteps; ++b) {
+        const double phi = 2 * kPi * ((bin % kPhi + (b + 0.5) / kSteps) / kPhi - 0.5);
+        const Direction h = DirectionAt(theta, phi);
+        const double wo_h = Dot(wo, h);
+        Direction wi;
+        for (int k = 0; k < 3; ++k) wi[k] = 2 * wo_h * h[k] - wo[k];
+        if (!(wo_h > 0 && wi[2] > 0)) continue;
+        // d omega_i = 4 (wo . h) sin theta dtheta dphi, dtheta = pi x dx.
+        sum += value(wi) * 4 * wo_h * std::sin(theta) * kPi * x;
+      }
+    }
+    return sum / (kSteps * kSteps) / kTheta * (2 * kPi / kPhi);
+  }
+};
+
+struct Drawn {
+  std::vector<int> counts = std::vector<int>(HalfVectorBins::kCount);
+  int lost = 0;
+  double largest_weight = 0;
+  Rgb sum{}, squares{};
+};
+
+Drawn Draw(const Bsdf<double>& bsdf, const Direction& wo, int n, uint64_t seed) {
+  Random random(seed);
+  Drawn drawn;
+  for (int k = 0; k < n; ++k) {
+    const auto sample = bsdf.SampleWi(wo, {random.Uniform(), random.Uniform()});
+    if (!(sample.pdf > 0)) {
+      ++drawn.lost;
+      continue;
+    }
+    EXPECT_NEAR(bsdf.Pdf(wo, sample.wi), sample.pdf, 1e-6 * sample.pdf);
+    ++drawn.counts[HalfVectorBins::Of(wo, sample.wi)];
+    for (int c = 0; c < kChannels; ++c) {
+      drawn.largest_weight = std::max(drawn.largest_weight, sample.weight[c]);
+      drawn.sum[c] += sample.weight[c];
+      drawn.squares[c] += sample.weight[c] * sample.weight[c];
+    }
+  }
+  return drawn;
+}
+
+// Pearson's chi^2 of what is drawn against the density, as many standard deviations above what is
+// expected; bins with little are taken together.
+double ChiSquared(const std::vector<int>& counts, const std::vector<double>& expected) {
+  double chi2 = 0, rest = 0;
+  int degrees = -1, rest_count = 0;
+  for (size_t k = 0; k < counts.size(); ++k) {
+    if (expected[k] < 20) {
+      rest += expected[k];
+      rest_count += counts[k];
+      continue;
+    }
+    chi2 += std::pow(counts[k] - expected[k], 2) / expected[k];
+    ++degrees;
+  }
+  if (rest > 5) {
+    chi2 += std::pow(rest_count - rest, 2) / rest;
+    ++degrees;
+  }
+  return degrees > 0 ? (chi2 - degrees) / std::sqrt(2.0 * degrees) : 0;
+}
+
+TEST(BsdfSampling, DrawsWithItsDensity) {
+  constexpr int kDraws = kSanitized ? 4000 : 20000;
+  for (const auto& [name, model] : TestMaterials()) {
+    const Bsdf<double> bsdf(model);
+    for (const double degrees : kThetaO) {
+      const Direction wo = WoAt(degrees);
+      const std::string where = name + ", theta_o = " + std::to_string(degrees);
+      const Drawn drawn = Draw(bsdf, wo, kDraws, 3);
+      EXPECT_LE(drawn.lost, 0.01 * kDraws) << where;
+      std::vector<double> expected(HalfVectorBins::kCount);
+      double total = 0;
+      for (int bin = 0; bin < HalfVectorBins::kCount; ++bin) {
+        expected[bin] = kDraws * HalfVectorBins::Integral(wo, bin, [&](const Direction& wi) {
+                          return bsdf.Pdf(wo, wi);
+                        });
+        total += expected[bin];
+      }
+      EXPECT_NEAR(total / kDraws, 1, 0.02) << where;
+      for (double& x : expected) x *= kDraws / total;  // the integral's own error
+      EXPECT_LT(ChiSquared(drawn.counts, expected), 5) << where;
+    }
+  }
+}
+
+TEST(BsdfSampling, WeightsAreBoundedAndAddUpToTheAlbedo) {
+  constexpr int kDraws = kSanitized ? 2000 : 10000;
+  for (const auto& [name, model] : TestMaterials()) {
+    // Whose neighbours have nothing to do with each other; and where a lobe is narrower by
+    // 1 / cos^2 theta_d, which has more detail towards grazing than the table.
+    if (name == "random numbers" || name == "stretched to the limits") continue;
+    const Bsdf<double> bsdf(model);
+    for (const double degrees : kThetaO) {
+      const Direction wo = WoAt(degrees);
+      const std::string where = name + ", theta_o = " + std::to_string(degrees);
+      const Drawn drawn = Draw(bsdf, wo, kDraws, 4);
+      const Rgb albedo = bsdf.Albedo(wo);
+      EXPECT_LE(degrees <= 85 ? drawn.largest_weight : 0, 4) << where;
+      for (int c = 0; c < kChannels; ++c) {
+        const double mean = drawn.sum[c] / kDraws;
+        const double variance = std::max(drawn.squares[c] / kDraws - mean * mean, 0.0);
+        // Standard errors of the sampling, and the error of the table of albedos.
+        const double of_table = degrees <= 75 ? 0.03 : degrees <= 85 ? 0.06 : 0.2;
+        EXPECT_NEAR(albedo[c], mean, 5 * std::sqrt(variance / kDraws) + of_table * mean + 1e-9)
+            << where;
+      }
+    }
+  }
+}
+
+// Near the horizon, where sampling by D loses one of five.
+TEST(BsdfSampling, HardlyDrawsBelowTheHorizon) {
+  const Bsdf<double> bsdf(AnalyticModel(ModelSpec::SharedFactors(3), 0.3, 0));
+  EXPECT_LE(Draw(bsdf, WoAt(85), 10000, 5).lost, 10);
+}
+
+TEST(BsdfSampling, MovesContinuouslyWithItsNumbers) {
+  for (const auto& [name, model] : TestMaterials()) {
+    const Bsdf<double> bsdf(model);
+    const Direction wo = WoAt(50);
+    constexpr double kStep = 1e-7;
+    int jumps = 0;
+    Random random(6);
+    for (int k = 0; k < 500; ++k) {
+      const double u = random.Uniform(0, 1 - kStep), v = random.Uniform(0, 1 - kStep);
+      const auto from = bsdf.SampleWi(wo, {u, v}), to = bsdf.SampleWi(wo, {u + kStep, v + kStep});
+      const double distance = std::hypot(to.wi[0] - from.wi[0], to.wi[1] - from.wi[1]);
+      jumps += distance > 0.05;
+    }
+    EXPECT_LE(jumps, 1) << name;  // from one component to the other
+  }
+}
+
+TEST(BsdfSampling, HasAnAnswerForAnyNumbersAndDirections) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  std::vector<NamedModel> models = TestMaterials();
+  models.push_back({"black", FactorModel(ModelSpec::SharedFactors(2))});
+  FactorModel dark = AnalyticModel(ModelSpec::SharedFactors(2), 0.1, 0.3);
+  for (double& s : dark.s(0)) s = 0;
+  models.push_back({"a lobe of nothing", dark});
+  FactorModel one = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
+  for (double& x : one.table(Factor::kD, 0)) x = 0;
+  one.table(Factor::kD, 0)[7] = 1;
+  models.push_back({"one bin", one});
+  const double numbers[] = {0, 1, -1, 2, 0.5, nan, infinity};
+  const Direction directions[] = {{0, 0, 1},        {0.6, 0, 0.8},   {1, 0, 1e-9}, {0, 0, 0},
+                                  {0.6, 0, -0.8},   {nan, 0, 1},     {0, 0, nan},  {3, 4, 5},
+                                  {0, 0, infinity}, {infinity, 0, 1}};
+  for (const auto& [name, model] : models) {
+    const Bsdf<double> bsdf(model);
+    const Bsdf<float> rounded(model);
+    for (const Direction& wo : directions) {
+      for (const double x : bsdf.Albedo(wo)) EXPECT_TRUE(std::isfinite(x) && x >= 0) << name;
+      for (const double u : numbers) {
+        for (const double v : numbers) {
+          const auto check = [&](const auto& sample) {
+            bool fine = std::isfinite(sample.pdf) && sample.pdf >= 0;
+            for (const auto x : sample.weight) fine = fine && std::isfinite(x) && x >= 0;
+            for (const auto x : sample.wi) fine = fine && std::isfinite(x);
+            EXPECT_TRUE(fine) << name << " " << wo[0] << " " << wo[2] << " " << u << " " << v;
+          };
+          check(bsdf.SampleWi(wo, {u, v}));
+          check(rounded.SampleWi(
+              {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])},
+              {static_cast<float>(u), static_cast<float>(v)}));
+        }
+      }
+      for (const Direction& wi : directions) {
+        const double pdf = bsdf.Pdf(wo, wi);
+        EXPECT_TRUE(std::isfinite(pdf) && pdf >= 0) << name;
+      }
+    }
+    EXPECT_EQ(bsdf.SampleWi({0.6, 0, -0.8}, {0.5, 0.5}).pdf, 0);
+    EXPECT_EQ(bsdf.Pdf({0, 0, 1}, {0.6, 0, -0.8}), 0);
+  }
+}
+
+TEST(BsdfTest, FloatAgreesWithDouble) {
+  for (const auto& [name, model] : TestMaterials()) {
+    const Bsdf<double> bsdf(model);
+    const Bsdf<float> rounded(model);
+    Random random(7);
+    for (int k = 0; k < 100; ++k) {
+      const Direction wo = DirectionAt(random.Uniform(0, 1.4), random.Uniform(-kPi, kPi));
+      const Direction wi = DirectionAt(random.Uniform(0, 1.4), random.Uniform(-kPi, kPi));
+      const auto in_float = [](const Direction& w) {
+        return std::array<float, 3>{static_cast<float>(w[0]), static_cast<float>(w[1]),
+                                    static_cast<float>(w[2])};
+      };
+      const double pdf = bsdf.Pdf(wo, wi);
+      EXPECT_NEAR(rounded.Pdf(in_float(wo), in_float(wi)), pdf, 0.01 * pdf) << name;
+      EXPECT_NEAR(rounded.Albedo(in_float(wo))[1], bsdf.Albedo(wo)[1], 1e-3) << name;
+    }
+  }
+}
+
+TEST(BsdfTest, RefusesAModelWhoseValuesOverflow) {
+  FactorModel model = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
+  for (double& s : model.s(0)) s = 1e300;
+  EXPECT_THROW(Bsdf<double>{model}, Error);
+  EXPECT_THROW(Bsdf<float>{model}, Error);
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
