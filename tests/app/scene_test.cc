@@ -289,7 +289,7 @@ TEST(Scene, BadUseIsAnError) {
       {{"plan", folder / "none.json"}, "none.json"},
       {{"plan", bad}, "bad.json: /materials: must be an array"},
       {{"plan", scene, "--out=x"}, "no flag --out"},
-      {{"plan", scene, "--max_angle=100"}, "--max_angle=100"},
+      {{"plan", scene, "--max_angle=100"}, "--max_angle is 100"},
       {{"compare", scene, "--max_angle=0", "--extrapolated"}, "--max_angle=0"},
       {{"plan", scene, "--nocache", "--cache=x"}, "contradict"},
       {{"fit"}, "needs a SOURCE, or --scene"},
