@@ -290,7 +290,7 @@ TEST(Scene, BadUseIsAnError) {
       {{"plan", bad}, "bad.json: /materials: must be an array"},
       {{"plan", scene, "--out=x"}, "no flag --out"},
       {{"plan", scene, "--max_angle=100"}, "--max_angle is 100"},
-      {{"compare", scene, "--max_angle=0", "--extrapolated"}, "--max_angle=0"},
+      {{"compare", scene, "--max_angle=0", "--extrapolated"}, "--max_angle is 0"},
       {{"plan", scene, "--nocache", "--cache=x"}, "contradict"},
       {{"fit"}, "needs a SOURCE, or --scene"},
       {{"fit", "--scene=" + scene}, "needs --out=DIR"},
