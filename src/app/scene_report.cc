@@ -60,6 +60,7 @@ void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& o
   out << "\n"
       << Printable(fit.name + ": " + material.source) << "; " << BudgetText(material.budget)
       << "\n";
+  out << "  verdict:  " << fit.verdict << "\n";
   if (fit.full.mean_delta_e) {
     const auto line = [&](const char* what, const SceneScore& score) {
       out << what << "mean Delta E " << Text(*score.mean_delta_e, 3) << ", PSNR "
@@ -99,6 +100,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   Json json = {
       {"name", fit.name},
       {"source", material.source},
+      {"verdict", fit.verdict},
       {"data_notes", fit.data_notes},
       {"budget", ToJson(material.budget)},
       {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},

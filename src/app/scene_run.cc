@@ -127,6 +127,7 @@ SceneFitSettings SceneSettingsFromFlags() {
                             .program = ProgramName(),
                             .build = ProgramBuild(),
                             .appearance = AppearanceOptionsFromFlags(),
+                            .verdicts = true,
                             .cache = CacheFromFlags(),
                             .stop = [] { return InterruptGuard::signal() != 0; }};
   settings.options.diagnose = false;  // nobody would see it

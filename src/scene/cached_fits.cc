@@ -62,12 +62,13 @@ Json Encode(const MaterialFit& fit) {
           {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
           {"numbers", fit.num_parameters},    {"decisions", decisions},
           {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds},
-          {"data_notes", fit.data_notes}};
+          {"data_notes", fit.data_notes},     {"verdict", fit.verdict}};
 }
 
 MaterialFit DecodeMaterialFit(const Json& json) {
   MaterialFit fit;
   fit.data_notes = json.at("data_notes");
+  fit.verdict = json.at("verdict");
   fit.valid_samples = json.at("valid_samples");
   fit.used_samples = json.at("used_samples");
   fit.full_parameters = json.at("full_numbers");

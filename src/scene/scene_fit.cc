@@ -2,20 +2,25 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <sstream>
 #include <utility>
 #include <variant>
 
+#include "trilobe/appearance/seen_samples.h"
+#include "trilobe/appearance/verdict.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/parallel.h"
 #include "trilobe/base/stopwatch.h"
 #include "trilobe/base/utc_time.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/file.h"
+#include "trilobe/io/picture_data.h"
 #include "trilobe/io/source.h"
 #include "trilobe/model/gauge.h"
+#include "trilobe/model/reconstruct.h"
 #include "trilobe/prune/prune_anisotropic.h"
 #include "trilobe/scene/cached_fits.h"
 #include "trilobe/scene/look.h"
@@ -206,6 +211,7 @@ class MaterialFitter {
     key.Add("colour", reductions.colour);
     key.Add("shadowing", reductions.shadowing);
     key.Add("tables", reductions.tables);
+    key.Add("verdict", settings_.verdicts);
     return key.text();
   }
 
@@ -304,6 +310,28 @@ class MaterialFitter {
     return PruneWithin(problem, model, options);  // what is free
   }
 
+  AppearanceOptions Appearance() const {
+    AppearanceOptions options = settings_.appearance;
+    options.num_threads = num_threads_;
+    return options;
+  }
+
+  // Nothing where the measurement makes no picture.
+  std::unique_ptr<Look> LookIfAny() {
+    if (PictureDataOf(measured()).empty()) return nullptr;
+    return std::make_unique<Look>(material_, measured(), Appearance());
+  }
+
+  // On the sphere, or of samples that make none, or of which no pixel sees one.
+  SeenError SeenOf(const Look* look, const BrdfSamples& samples, const FactorModel& model) const {
+    if (look != nullptr) {
+      const SphereError error = look->Of(model);
+      const auto sees = [](const PlaceError& place) { return place.share > 0; };
+      if (std::ranges::any_of(error.places, sees)) return error;
+    }
+    return CompareSamples(samples, EvaluateSamples(model, samples, num_threads_));
+  }
+
   std::optional<MaterialFit> PruneAnew() {
     const std::optional<FullFit> full = Fit("scene");
     if (!full || settings_.stop()) return std::nullopt;
@@ -313,14 +341,11 @@ class MaterialFitter {
     const Objective& objective = problem.data;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
-    std::optional<Look> look;
-    if (material_.budget.of_look()) {
-      AppearanceOptions appearance = settings_.appearance;
-      appearance.num_threads = num_threads_;
-      look.emplace(material_, measured(), appearance);
-    }
-    PrunedModel pruned = look ? PruneByLook(*look, problem, model, prune_options)
-                              : PruneWithin(problem, model, prune_options);
+    const bool by_look = material_.budget.of_look();
+    std::unique_ptr<Look> look;
+    if (by_look) look = std::make_unique<Look>(material_, measured(), Appearance());
+    PrunedModel pruned = by_look ? PruneByLook(*look, problem, model, prune_options)
+                                 : PruneWithin(problem, model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
@@ -333,6 +358,10 @@ class MaterialFitter {
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
+    if (settings_.verdicts) {
+      if (!look) look = LookIfAny();
+      fit.verdict = Words(VerdictOf(SeenOf(look.get(), of_pruned.samples(), pruned.model)));
+    }
     if (look) {
       const auto add = [&](const FactorModel& judged, SceneScore* score) {
         const SphereError error = look->Of(judged);

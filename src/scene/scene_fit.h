@@ -32,9 +32,12 @@ struct SceneFitSettings {
   double max_angle_deg = 90;
   double min_theta_d_deg = -1;
   bool extrapolated = false;
-  std::string program;           // "trilobe 0.1.0", for model files
-  std::string build;             // and which build of it: what another one has fitted is not reused
-  AppearanceOptions appearance;  // by which budgets of look are judged; threads are replaced
+  std::string program;  // "trilobe 0.1.0", for model files
+  std::string build;    // and which build of it: what another one has fitted is not reused
+  // By which budgets of look are judged, and verdicts, if there are to be any; threads are
+  // replaced.
+  AppearanceOptions appearance;
+  bool verdicts = false;
   FitCache cache;
   // Asked after each iteration, from several threads; true to stop and keep nothing.
   StopCheck stop = {};
@@ -44,7 +47,7 @@ struct SceneFitSettings {
 struct SceneScore {
   double objective = 0;  // E
   double psnr_db = 0;
-  // Of its sphere, as the scene sees it, where the budget is one of look.
+  // Of its sphere, as the scene sees it, where the budget is one of look or there is a verdict.
   std::optional<double> mean_delta_e = std::nullopt, sphere_psnr_db = std::nullopt;
 };
 
@@ -71,6 +74,9 @@ struct MaterialFit {
   int used_samples = 0;                 // of these, by the fit
   int full_parameters = 0;
   SceneScore full, pruned;
+  // What a person would see of the pruned model, as the scene sees it (Words); empty unless asked
+  // for.
+  std::string verdict;
   ModelFile file;          // the pruned model, and how the full one came about
   int num_parameters = 0;  // that it stores
   std::vector<PruneDecision> decisions;

@@ -123,6 +123,7 @@ TEST(Scene, AnExactFitLosesNothing) {
   const ProgramResult plan = RunQuickly(folder, {"plan", scene});
   ASSERT_EQ(plan.status, 0) << plan.err;
   EXPECT_THAT(plan.out, HasSubstr(" 0 %           0 dB "));
+  EXPECT_THAT(plan.out, HasSubstr("\n  verdict:  cannot be told apart\n"));
   EXPECT_THAT(plan.out, testing::Not(HasSubstr("nan")));
   const ProgramResult compared = RunQuickly(folder, {"compare", scene});
   EXPECT_THAT(compared.out, HasSubstr("infinite  infinite\n"));
@@ -153,6 +154,9 @@ TEST(Scene, IsPlannedFittedAndCompared) {
     EXPECT_LT(material["numbers"]["pruned"].get<int>(), material["numbers"]["full"].get<int>());
     EXPECT_LT(material["samples"]["used"].get<int>(), material["samples"]["valid"].get<int>());
     EXPECT_LE(material["relative_rise"].get<double>(), 0.05 + 1e-12);
+    const std::string verdict = material["verdict"];
+    EXPECT_FALSE(verdict.empty());
+    EXPECT_THAT(plan.out, HasSubstr(" %\n  verdict:  " + verdict + "\n"));
   }
 
   const ProgramResult of_scene = RunQuickly(folder, {"compare", scene, "--json"});
