@@ -42,8 +42,8 @@ class CachedCompiler(unittest.TestCase):
     @staticmethod
     def configure(root, compiler, environment):
         subprocess.run(["cmake", "-S", root, "-B", root / "build", "-G", "Ninja",
-                        f"-DCMAKE_CXX_COMPILER={compiler}", "-DCMAKE_CXX_COMPILER_LAUNCHER="
-                        f"{root}/scripts/cached_compiler.sh"],
+                        f"-DCMAKE_CXX_COMPILER={compiler}",
+                        f"-DCMAKE_CXX_COMPILER_LAUNCHER={root}/scripts/cached_compiler.sh"],
                        check=True, capture_output=True, env=environment)
 
     @staticmethod
