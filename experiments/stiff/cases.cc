@@ -289,7 +289,7 @@ StiffProblem DenormalTail() {
 StiffProblem FloatStorage() {
   return Changed(Regular(), [](double rho) {
     // Else gcc 12 leaves some values in double precision.
-    volatile float single = static_cast<float>(rho);
+    volatile auto single = static_cast<float>(rho);
     return static_cast<double>(single);
   });
 }

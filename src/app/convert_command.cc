@@ -39,16 +39,20 @@ int ConvertToTensorFile(const std::string& source) {
     throw Error("--out=" + FLAGS_out + ": " + source +
                 " is a measurement, and trilobe writes .bsdf files of models; fit it first");
   }
+  RefuseForModel(source, MeasurementFlags());
   Inputs({source}).CheckOutput(FLAGS_out);
   CheckWritable(FLAGS_out);
-  const FactorModel model = ReadModel(source).model;
-  const double usual = model.spec().anisotropic() ? 0.02 : 0.005;
-  const RglExport file = ExportRgl(model, {.max_error = FLAGS_error > 0 ? FLAGS_error : usual});
+  const ModelFile model = ReadModel(source);
+  const double measured = model.fit.max_angle > 0 ? model.fit.max_angle : 90;  // [degrees]
+  RglExportOptions options{.max_theta = DegreesToRadians(measured)};
+  if (FLAGS_error > 0) options.max_error = FLAGS_error;
+  const RglExport file = ExportRgl(model.model, options);
   WriteFile(FLAGS_out, [&](std::ostream& out) { out << file.bytes; });
   PrintLine("wrote " + FLAGS_out + ": RGL tensor file, " +
             Text(static_cast<double>(file.bytes.size()) / 1e6, 2) + " MB, off the model by " +
             Text(100 * file.median_error, 2) + " % in the median and " +
-            Text(100 * file.high_error, 2) + " % for one of a hundred directions");
+            Text(100 * file.high_error, 2) + " % for one of a hundred directions" +
+            (measured < 90 ? ", within the " + Text(measured) + " deg that were measured" : ""));
   return 0;
 }
 

@@ -40,7 +40,7 @@ bool MayChooseForm(const FitReport& report) {
   const bool named_start = std::ranges::find(InitialModels(), report.fit.init,
                                              &InitialModel::name) != InitialModels().end();
   return of_table && named_start && report.finished.candidates.empty() &&
-         ModelName(report.spec) == "shared";
+         ModelName(report.spec) == "shared" && report.spec.lobes >= ModelSpec().lobes;
 }
 
 std::string FormText(const FitReport& report) {
@@ -67,8 +67,10 @@ ReportedVerdict VerdictOn(const FitReport& report) {
        .ended = reason != StopReason::kMaxIterations && reason != StopReason::kMaxSeconds &&
                 reason != StopReason::kInterrupted,
        .may_choose_form = MayChooseForm(report),
+       .default_solver = report.summary.solver == Solvers().front().name,
        .irreducible = IrreducibleShare(report.score),
-       .left_out = report.left_out});
+       .left_out = report.left_out,
+       .reach_beyond = report.reach ? report.reach->beyond : 0});
 }
 
 void PrintSummary(const FitReport& report) {

@@ -35,8 +35,9 @@ std::string RequiredMeasurementOut(const std::string& command) {
   const std::string ending = EndingOf(out);
   if (std::ranges::find(kKnown, ending) == std::end(kKnown)) {
     throw Error("--out=" + out + ": trilobe " + command + " writes no '" + ending +
-                "'; end the name in .binary for MERL layout, in .bin for UTIA's directions, or in "
-                ".csv");
+                "'; end the name in .binary for MERL layout, in .bin for UTIA's directions, in "
+                ".csv" +
+                (command == "convert" ? ", or of a model in .bsdf for renderers" : ""));
   }
   return out;
 }

@@ -21,6 +21,8 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
       return "try --model=anisotropic: an isotropic model leaves out " +
              Text(100 * facts.left_out.value_or(0), 3) +
              " % of the energy, what changes as the sample turns";
+    case Advice::kChooseSolver:
+      return "try the default solver: this one may be the limit, and not the form of the model";
     case Advice::kChooseForm:
       return "try --model=auto: it spends as many parameters where they show, and takes some four "
              "times as long";
@@ -28,6 +30,9 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
       return Text(100 * facts.irreducible, 2) +
              " % of E is what the data differ by when light and eye change places (noise, or not "
              "reciprocal)";
+    case Advice::kKeepWithin:
+      return "render it only within the measured directions: beyond, it reaches " +
+             Text(facts.reach_beyond, 3) + " times the largest measured value; try --guide=10";
   }
   return "";
 }

@@ -271,7 +271,7 @@ RenderedImage SphereJudge::Render(const AngularBrdf& brdf) const {
   return std::move(RenderSpheres({&brdf, 1}, lights_, size_, counts_, num_threads_, kEvery)[0]);
 }
 
-ImagePairs PairsOf(RenderedImages images) {
+ImagePairs PairsOf(RenderedImages&& images) {
   auto& [counted, whole] = images;
   return {{std::move(counted[0]), std::move(counted[1])},
           {std::move(whole[0]), std::move(whole[1])}};

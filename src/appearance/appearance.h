@@ -119,7 +119,7 @@ ImagePair RenderMeasuredPair(const NodeBrdf& measured, const SphericalBrdf& fitt
 struct ImagePairs {
   ImagePair counted, whole;
 };
-ImagePairs PairsOf(RenderedImages images);  // of two materials
+ImagePairs PairsOf(RenderedImages&& images);  // of two materials
 ImagePairs RenderPicture(const BrdfTable& measured, const AngularBrdf& fitted,
                          const AppearanceOptions& options);
 // On a sphere, or on cloth (ViewCloth).

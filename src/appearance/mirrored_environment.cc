@@ -61,8 +61,9 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
     for (int column = 0; column < kSize; ++column) {
       Rgb sum{};
       for (int k = 0; k < kSamples * kSamples; ++k) {
+        const int line = k / kSamples;
         const double x = column + (k % kSamples + 0.5) / kSamples;
-        const double y = row + (k / kSamples + 0.5) / kSamples;
+        const double y = row + (line + 0.5) / kSamples;
         const Rgb& seen = Reflected(environment, 2 * x / kSize - 1, 1 - 2 * y / kSize);
         for (int c = 0; c < kChannels; ++c) sum[c] += seen[c] / (kSamples * kSamples);
       }

@@ -132,16 +132,19 @@ std::string NameOf(Fault fault) {
 }
 
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts) {
-  constexpr double kMuchLeftOut = 0.01, kMuchIrreducible = 0.3;
+  constexpr double kMuchLeftOut = 0.01, kMuchIrreducible = 0.3, kMuchReach = 10;
   std::vector<Advice> advice;
   if (facts.interrupted) advice.push_back(Advice::kGoOn);
+  if (facts.reach_beyond > kMuchReach) advice.push_back(Advice::kKeepWithin);
   if (verdict.visibility == Visibility::kNone) return advice;
   if (!facts.ended) {
     if (!facts.interrupted) advice.push_back(Advice::kIterate);
     return advice;
   }
   if (facts.left_out && *facts.left_out > kMuchLeftOut) advice.push_back(Advice::kAnisotropic);
-  if (facts.may_choose_form) advice.push_back(Advice::kChooseForm);
+  if (facts.may_choose_form) {
+    advice.push_back(facts.default_solver ? Advice::kChooseForm : Advice::kChooseSolver);
+  }
   if (facts.irreducible > kMuchIrreducible) advice.push_back(Advice::kDataDiffer);
   return advice;
 }
@@ -154,10 +157,14 @@ std::string NameOf(Advice advice) {
       return "iterate";
     case Advice::kAnisotropic:
       return "anisotropic";
+    case Advice::kChooseSolver:
+      return "choose_solver";
     case Advice::kChooseForm:
       return "choose_form";
     case Advice::kDataDiffer:
       return "data_differ";
+    case Advice::kKeepWithin:
+      return "keep_within";
   }
   return "";
 }

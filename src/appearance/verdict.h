@@ -48,19 +48,24 @@ struct FitFacts {
   bool ended = true;  // the solver found what it looks for; false: a limit stopped it
   // The form is the default one of an isotropic table, and --model=auto could be asked for.
   bool may_choose_form = false;
+  bool default_solver = true;
   double irreducible = 0;  // of E: what exchanged directions differ by in the data
   // Of the energy: what an isotropic model of anisotropic data leaves out; nothing where it is
   // none.
   std::optional<double> left_out = {};
+  // The largest value of the model where nothing was measured, over the largest measured one.
+  double reach_beyond = 0;
 };
 
 // What to do about it, or to know; the first is the most urgent.
 enum class Advice {
-  kGoOn,         // it was interrupted
-  kIterate,      // a limit stopped it
-  kAnisotropic,  // the form leaves the azimuth out
-  kChooseForm,   // the form is the limit
-  kDataDiffer,   // what is left is in good part noise, or not reciprocal: no model follows it
+  kGoOn,          // it was interrupted
+  kIterate,       // a limit stopped it
+  kAnisotropic,   // the form leaves the azimuth out
+  kChooseSolver,  // another solver than the default one may be the limit
+  kChooseForm,    // the form is the limit
+  kDataDiffer,    // what is left is in good part noise, or not reciprocal: no model follows it
+  kKeepWithin,    // what it says beyond the measured directions is not usable
 };
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts);
 std::string NameOf(Advice advice);  // "go_on", "iterate", ...

@@ -15,8 +15,9 @@ class StopCheck {
   StopCheck(std::nullptr_t) {}  // NOLINT(google-explicit-constructor)
   // Any function is one.
   template <std::predicate F>
-  requires(!std::same_as<F, StopCheck>) StopCheck(F ask)
-      : ask_(std::move(ask)) {}  // NOLINT(google-explicit-constructor)
+  requires(!std::same_as<F, StopCheck>)  // NOLINTNEXTLINE(google-explicit-constructor)
+      StopCheck(F ask)
+      : ask_(std::move(ask)) {}
 
   bool operator()() const { return ask_ && ask_(); }
 

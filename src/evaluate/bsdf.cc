@@ -6,7 +6,6 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
-#include "trilobe/math/arc_cosine.h"
 
 namespace trilobe {
 namespace {
@@ -16,7 +15,7 @@ constexpr double kMaxTheta = 89.5 / 180 * kPi;
 
 // Of the half vectors, at least so much is drawn by the cosine, too, lest something that the table
 // has no node at is never drawn: of what the lobes reflect.
-constexpr double kLeastCosine = 0.01;
+constexpr double kCosineShare = 0.01;
 
 // The azimuth between the half vector and wo up to which wi is above the surface, for
 //   0 < cos theta_i = 2 (wo . h) cos theta_h - cos theta_o. [rad]
@@ -26,6 +25,10 @@ Real MaxPhi(Real cos_o, Real sin_o, Real cos_h, Real sin_h) {
   const Real numerator = -cos_o * (2 * cos_h * cos_h - 1);
   if (numerator <= -denominator) return static_cast<Real>(kPi);
   return numerator >= denominator ? Real{0} : std::acos(numerator / denominator);
+}
+
+[[noreturn]] void Overflow() {
+  throw Error("the model's values overflow; its factors are too large");
 }
 
 // Above the surface, and a number.
@@ -90,6 +93,7 @@ struct Bsdf<Real>::Nodes : HalfVectorTable<Real>::Nodes {
 template <typename Real>
 Bsdf<Real>::Bsdf(const FactorModel& model) : model_(model) {
   diffuse_albedo_ = MeanOf(model_.diffuse()) * static_cast<Real>(kPi);
+  if (!(diffuse_albedo_ <= std::numeric_limits<float>::max())) Overflow();
   MakeTables(Nodes(model.spec()));
 }
 
@@ -137,7 +141,7 @@ void Bsdf<Real>::MakeTables(const Nodes& nodes) {
           for (int c = 0; c < kChannels; ++c) of_row[c] += value[c] * end / (nodes.s - 1);
           values.push_back(static_cast<float>(MeanOf(value)));
           if (!(values.back() <= std::numeric_limits<float>::max())) {
-            throw Error("the model's values overflow; its factors are too large");
+            Overflow();
           }
         }
         for (int c = 0; row > 0 && c < kChannels; ++c) {
@@ -164,8 +168,8 @@ typename Bsdf<Real>::Outgoing Bsdf<Real>::Prepare(const Vector& wo) const {
                                  anisotropic() && !at_normal ? std::atan2(wo[1], wo[0]) : Real{0},
                                  std::min((1 + outgoing.sin) / 2, Real{1}));
   const Real lobes = outgoing.at.total;
-  const Real diffuse = diffuse_albedo_ + static_cast<Real>(kLeastCosine) * lobes;
-  outgoing.diffuse_part = lobes > 0 ? diffuse / (diffuse + lobes) : Real{1};
+  const Real diffuse = diffuse_albedo_ + static_cast<Real>(kCosineShare) * lobes;
+  outgoing.cosine_part = lobes > 0 ? diffuse / (diffuse + lobes) : Real{1};
   return outgoing;
 }
 
@@ -204,7 +208,7 @@ Real Bsdf<Real>::Pdf(const Vector& wo, const Vector& wi) const {
   if (!(IsAbove(wo) && IsAbove(wi))) return 0;
   const Outgoing outgoing = Prepare(wo);
   const Real cosine = wi[2] * static_cast<Real>(1 / kPi);
-  return outgoing.diffuse_part * cosine + (1 - outgoing.diffuse_part) * LobesPdf(wo, outgoing, wi);
+  return outgoing.cosine_part * cosine + (1 - outgoing.cosine_part) * LobesPdf(wo, outgoing, wi);
 }
 
 template <typename Real>
@@ -214,7 +218,7 @@ typename Bsdf<Real>::Sample Bsdf<Real>::SampleWi(const Vector& wo,
   if (!IsAbove(wo)) return sample;
   const Outgoing outgoing = Prepare(wo);
   const Real below_one = 1 - std::numeric_limits<Real>::epsilon();
-  const Real part = outgoing.diffuse_part;
+  const Real part = outgoing.cosine_part;
   const auto inside = [&](Real x) { return x > 0 ? std::min(x, below_one) : Real{0}; };
   const Real u0 = inside(u[0]), u1 = inside(u[1]);
   Real lobes_pdf = 0;
@@ -227,7 +231,7 @@ typename Bsdf<Real>::Sample Bsdf<Real>::SampleWi(const Vector& wo,
     const Real around = 2 * u1 - 1;
     const auto drawn = half_vectors_.Draw(outgoing.at, inside((u0 - part) / (1 - part)),
                                           anisotropic() ? u1 : std::abs(around));
-    const Real sin_h = std::sqrt(drawn.y), cos_h = SineOf(sin_h);
+    const Real sin_h = std::sqrt(drawn.y), cos_h = std::sqrt(std::max(1 - drawn.y, Real{0}));
     const Real phi_max = MaxPhi(wo[2], outgoing.sin, cos_h, sin_h);
     const Real phi = phi_max * (anisotropic() ? 2 * drawn.s - 1 : std::copysign(drawn.s, around));
     const Real x = sin_h * std::cos(phi), y = sin_h * std::sin(phi);

@@ -53,13 +53,14 @@ class Bsdf {
   }
 
   // Directional albedo: the share of the light from w that is reflected, the integral of
-  // f cos theta over the hemisphere. From the tables of the sampling: within 3 % of itself up to 75
-  // degrees from the normal, 6 % up to 85.
+  // f cos theta over the hemisphere. From the tables of the sampling: of smooth tables, within 3 %
+  // of itself up to 75 degrees from the normal, 6 % up to 85.
   Colour Albedo(const Vector& w) const;
 
   // A direction wi for a given wo, by two numbers in [0, 1] (what is outside counts as its end):
   // `weight` is f cos theta_i / pdf, and pdf the density by solid angle [1/sr]. Where wo is below
-  // the surface, pdf and weight are 0.
+  // the surface and, rarely, by rounding, where wi is, pdf and weight are 0: skip these. wo comes
+  // first here and in Pdf, which is not symmetric.
   struct Sample {
     Vector wi{};
     Real pdf = 0;
@@ -75,7 +76,7 @@ class Bsdf {
   struct Outgoing {
     Real sin, cos_phi, sin_phi;
     typename HalfVectorTable<Real>::Condition at;
-    Real diffuse_part;
+    Real cosine_part;
   };
   struct Nodes;
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe {
@@ -48,6 +49,7 @@ HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<flo
       values_(values) {
   const int rows = static_cast<int>(y_.size());
   const int count = static_cast<int>(theta_o_.size()) * num_phi_o_;
+  if (num_s_ < 2 || num_s_ > kMaxS) throw Error("a table needs 2 to 33 nodes of s");
   largest_step_ = static_cast<int>(std::bit_floor(static_cast<unsigned>(rows)));
   for (int k = 0; k < kFirsts; ++k) {
     const double root = static_cast<double>(k) / (kFirsts - 1);

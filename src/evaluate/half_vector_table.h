@@ -13,7 +13,7 @@ namespace trilobe {
 template <typename Real>
 class HalfVectorTable {
  public:
-  // Nodes of y, ascending from 0 to 1; how many even steps of s there are from 0 to 1; nodes of
+  // Nodes of y, ascending from 0 to 1; how many nodes of s there are from 0 to 1, 2 to 33; nodes of
   // theta_o, ascending from 0 [rad], and how many even steps of phi_o there are around the circle.
   struct Nodes {
     std::vector<double> y;

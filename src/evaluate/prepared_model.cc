@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "trilobe/math/angles.h"
@@ -186,7 +187,7 @@ void PreparedModel<Real>::ReadG(const Pair& pair, Real* values) const {
   std::array<Real, kMaxLobes * kChannels> at_o;
   ReadPolar(g_, g_axis_, pair.wi, pair.theta_i, SineOf(cos_i), values);
   ReadPolar(g_, g_axis_, pair.wo, pair.theta_o, SineOf(cos_o), at_o.data());
-  const Real scale = 1 / (cos_i * cos_o);
+  const Real scale = 1 / std::max(cos_i * cos_o, std::numeric_limits<Real>::min());
   for (int t = 0; t < g_.count; ++t) values[t] *= at_o[t] * scale;
 }
 
@@ -210,6 +211,7 @@ bool PreparedModel<Real>::Read(const Vector& wi, const Vector& wo, Readings* rea
   for (Real& y : angles) y = std::max(y, Real{0});
   ArcCosinesOfOneMinus(&angles);
   std::tie(pair.theta_h, pair.theta_d, pair.theta_i, pair.theta_o) = std::tuple_cat(angles);
+  if (lobes_ == 0) return true;  // no table has entries
   ReadD(pair, readings->D.data());
   ReadAt(f_, PlaceInTheta(f_axis_, pair.theta_d), readings->F.data());
   ReadG(pair, readings->G.data());

@@ -12,8 +12,8 @@ namespace trilobe {
 
 // A model of any form as a function of directions, prepared for many calls: the splines through G
 // and the cosines are cubics, tables lie side by side as they are read, and azimuths are taken
-// where a table has some. The same value as Evaluate(model, directions), to rounding, but where a
-// spline through G undershoots: 0 there. Real is double or float. Immutable; any number of threads
+// where a table has some. The same value as Evaluate(model, directions), to rounding, but 0 where
+// that throws. Real is double or float. Immutable; any number of threads
 // may use one object, and no call allocates.
 template <typename Real>
 class PreparedModel {

@@ -73,8 +73,9 @@ std::vector<double> ThetasOf(const std::vector<InPlane>& samples) {
   }
   std::vector<double> chosen;
   const size_t curves = std::min(kCurves, enough.size());
-  for (size_t k = 0; k < curves; ++k)
+  for (size_t k = 0; k < curves; ++k) {
     chosen.push_back(enough[(2 * k + 1) * enough.size() / (2 * curves)]);
+  }
   return chosen;
 }
 

@@ -183,6 +183,9 @@ uint8_t TensorFile::Byte(std::string_view name) const {
 
 void TensorFileWriter::AddFloat32(const std::string& name, const std::vector<int>& shape,
                                   const std::vector<float>& values) {
+  size_t count = 1;
+  for (const int size : shape) count *= static_cast<size_t>(size);
+  if (count != values.size()) throw Error("field " + Quote(name) + " has another size than shape");
   std::string data(values.size() * sizeof(float), '\0');
   std::memcpy(data.data(), values.data(), data.size());
   fields_.push_back({name, kFloat32, shape, std::move(data)});

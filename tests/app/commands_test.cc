@@ -315,6 +315,8 @@ TEST(ConvertTest, WritesModelsForRenderers) {
   const json info = json::parse(RunProgram({"info", file, "--json"}).out);
   EXPECT_GT(info["bins"]["valid"], 1000000);
   ExpectError(RunProgram({"convert", "synth:felt@30x30x60", "--out=" + file}), "fit it first");
+  ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + file, "--noise=0.1"}),
+              "--noise");
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + file, "--error=2"}),
               "--error must be from 0 to 1");
   ExpectError(

@@ -41,8 +41,9 @@ AngularBrdf Gloss(double degrees) {
 template <typename Check>
 void ForMiddlePixels(const RenderedImage& image, double radius, const Check& check) {
   for (int k = 0; k < image.size * image.size; ++k) {
+    const int row = k / image.size;
     const double x = (k % image.size + 0.5) / image.size * 2 - 1;
-    const double y = 1 - (k / image.size + 0.5) / image.size * 2;
+    const double y = 1 - (row + 0.5) / image.size * 2;
     if (std::hypot(x, y) < radius) check(x, y, image.radiance[k]);
   }
 }

@@ -108,6 +108,16 @@ TEST(Advice, IsToChooseAFormWhereTheFormIsTheLimit) {
   EXPECT_THAT(AdviceOn(seen, {}), IsEmpty());  // it has been chosen, or there is no choice
 }
 
+TEST(Advice, IsToChooseTheSolverBeforeTheForm) {
+  EXPECT_THAT(AdviceOn({Visibility::kHardly}, {.may_choose_form = true, .default_solver = false}),
+              ElementsAre(Advice::kChooseSolver));
+}
+
+TEST(Advice, IsToKeepWithinWhatWasMeasuredHoweverGoodThatIs) {
+  EXPECT_THAT(AdviceOn({}, {.reach_beyond = 7000}), ElementsAre(Advice::kKeepWithin));
+  EXPECT_THAT(AdviceOn({}, {.reach_beyond = 3}), IsEmpty());
+}
+
 TEST(Advice, IsToGoOnBeforeAnythingElse) {
   const Verdict seen{Visibility::kVisible}, same;
   EXPECT_THAT(AdviceOn(seen, {.ended = false, .may_choose_form = true}),

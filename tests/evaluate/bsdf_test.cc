@@ -38,8 +38,9 @@ struct HalfVectorBins {
   static double Integral(const Direction& wo, int bin, const Value& value) {
     constexpr int kSteps = kSanitized ? 8 : 16;
     double sum = 0;
+    const int ring = bin / kPhi;
     for (int a = 0; a < kSteps; ++a) {
-      const double x = (bin / kPhi + (a + 0.5) / kSteps) / kTheta, theta = kPi / 2 * x * x;
+      const double x = (ring + (a + 0.5) / kSteps) / kTheta, theta = kPi / 2 * x * x;
       for (int b = 0; b < kSteps; ++b) {
         const double phi = 2 * kPi * ((bin % kPhi + (b + 0.5) / kSteps) / kPhi - 0.5);
         const Direction h = DirectionAt(theta, phi);
@@ -191,9 +192,10 @@ TEST(BsdfSampling, HasAnAnswerForAnyNumbersAndDirections) {
   const Direction directions[] = {{0, 0, 1},        {0.6, 0, 0.8},   {1, 0, 1e-9}, {0, 0, 0},
                                   {0.6, 0, -0.8},   {nan, 0, 1},     {0, 0, nan},  {3, 4, 5},
                                   {0, 0, infinity}, {infinity, 0, 1}};
-  for (const auto& [name, model] : models) {
-    const Bsdf<double> bsdf(model);
-    const Bsdf<float> rounded(model);
+  for (const NamedModel& named : models) {
+    const std::string& name = named.name;
+    const Bsdf<double> bsdf(named.model);
+    const Bsdf<float> rounded(named.model);
     for (const Direction& wo : directions) {
       for (const double x : bsdf.Albedo(wo)) EXPECT_TRUE(std::isfinite(x) && x >= 0) << name;
       for (const double u : numbers) {
@@ -243,6 +245,9 @@ TEST(BsdfTest, RefusesAModelWhoseValuesOverflow) {
   FactorModel model = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
   for (double& s : model.s(0)) s = 1e300;
   EXPECT_THROW(Bsdf<double>{model}, Error);
+  EXPECT_THROW(Bsdf<float>{model}, Error);
+  for (double& s : model.s(0)) s = 1;
+  for (double& d : model.d()) d = 1e39;
   EXPECT_THROW(Bsdf<float>{model}, Error);
 }
 

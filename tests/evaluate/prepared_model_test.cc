@@ -84,6 +84,9 @@ TEST(PreparedModelTest, IsZeroBelowTheSurfaceAndOfNoDirections) {
     }
     const Rgb grazing = prepared.Value({1, 0, 1e-300}, {-1, 0, 1e-300});
     for (const double x : grazing) EXPECT_TRUE(x >= 0) << name;
+    for (const double x : prepared.Value({1, 0, 1e-300}, {0, 1, 1e-300})) {
+      EXPECT_TRUE(x >= 0) << name;
+    }
   }
 }
 

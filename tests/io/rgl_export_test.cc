@@ -40,7 +40,7 @@ TEST(RglExport, IsTheModelWhereOurReaderLooks) {
   EXPECT_LT(errors[990], 0.1);
 }
 
-// What Mitsuba 3, pbrt-v4 and powitacq ask for, field by field.
+// What Mitsuba 3 and powitacq_rgb ask for, field by field.
 TEST(RglExport, HasTheFieldsThatRenderersRead) {
   const RglExport exported = ExportRgl(Plastic(), {.max_error = 1});
   const TensorFile file(exported.bytes, "plastic.bsdf");
