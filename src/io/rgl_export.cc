@@ -209,9 +209,7 @@ class Tables {
           const Direction m = At(theta_m, phi_m);
           Direction wo = Reflected(wi, m);
           const bool above = wo[2] > 0 && Dot(wi, m) > 0;
-          // What is below the horizon is read by interpolation next to it: there a lobe reflects as
-          // at the horizon, and the diffuse term, in proportion to the cosine, less than nothing.
-          const double cosine = wo[2];
+          // What is below the horizon is read by interpolation next to it; as at the horizon.
           wo[2] = std::max(wo[2], least_cosine);
           const double length = std::sqrt(Dot(wo, wo));
           for (double& a : wo) a /= length;
@@ -219,8 +217,7 @@ class Tables {
           const auto f = bsdf_.Value(wi, wo);
           double mean = 0;
           for (int c = 0; c < kChannels; ++c) {
-            const double diffuse = model_.d()[c];
-            const double value = (diffuse * cosine + (f[c] - diffuse) * wo[2]) * 4 * sigma / ndf;
+            const double value = f[c] * wo[2] * 4 * sigma / ndf;
             channel[c].push_back(static_cast<float>(value));
             mean += value / kChannels;
           }
