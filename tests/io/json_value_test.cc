@@ -181,14 +181,15 @@ TEST(JsonValue, AFileThatIsTooLargeIsNotRead) {
   const TestDirectory directory;
   const std::string path = directory.Make("huge.json", "{}");
   EXPECT_EQ(ReadJsonText(path, "t"), "{}");
+  // The first error takes room of its own.
+  EXPECT_THAT(ErrorOf([&] { ReadJsonText(directory.Path("none"), "t"); }),
+              HasSubstr("cannot read"));
   std::filesystem::resize_file(path, size_t{1} << 29);  // of zeros that take no room
   const int64_t peak = PeakOf([&] {
     EXPECT_EQ(ErrorOf([&] { ReadJsonText(path, "t"); }),
               "t: it has 536870912 bytes; at most 16777216 can be read");
   });
   EXPECT_LT(peak, 1 << 20);
-  EXPECT_THAT(ErrorOf([&] { ReadJsonText(directory.Path("none"), "t"); }),
-              HasSubstr("cannot read"));
 }
 
 TEST(JsonValue, ErrorsSayWhere) {
