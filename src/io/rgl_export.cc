@@ -49,33 +49,29 @@ Direction Reflected(const Direction& wi, const Direction& m) {
 //   rho cos theta_o = rgb(x) ndf(m) / (4 sigma(wi)),  m the half vector, x where the warp sends m.
 class Tables {
  public:
-  Tables(const FactorModel& model, const Size& size, double max_theta)
-      : model_(model),
-        bsdf_(model),
-        size_(size),
-        least_cosine_(std::cos(std::min(max_theta, kMaxTheta))) {
+  Tables(const FactorModel& model, double max_theta)
+      : model_(model), bsdf_(model), least_cosine_(std::cos(std::min(max_theta, kMaxTheta))) {
     MakeNdf();
     MakeSigma();
     MakeVndf();
-    for (int t = 0; t < size.theta_i; ++t) {
-      theta_i_.push_back(kPi / 2 * std::pow(static_cast<double>(t) / (size.theta_i - 1), 0.6));
-    }
-    for (int p = 0; p < size.phi_i; ++p) {
-      phi_i_.push_back(size.phi_i == 1 ? 0 : -kPi + 2 * kPi * p / (size.phi_i - 1));
-    }
-    MakeValues();
   }
 
-  std::string Bytes(const std::string& description) const {
+  std::string Bytes(const Size& size, const std::string& description) const {
     const auto floats = [](const std::vector<double>& values) {
       return std::vector<float>(values.begin(), values.end());
     };
-    const int p = size_.phi_i, t = size_.theta_i, n = size_.n;
+    const int p = size.phi_i, t = size.theta_i, n = size.n;
+    std::vector<double> theta_i, phi_i;
+    for (int k = 0; k < t; ++k) {
+      theta_i.push_back(kPi / 2 * std::pow(static_cast<double>(k) / (t - 1), 0.6));
+    }
+    for (int k = 0; k < p; ++k) phi_i.push_back(p == 1 ? 0 : -kPi + 2 * kPi * k / (p - 1));
+    const Values values = ValuesAt(phi_i, theta_i, n);
     TensorFileWriter file;
     file.AddBytes("description", description);
     file.AddBytes("jacobian", std::string_view("\1", 1));
-    file.AddFloat32("phi_i", {p}, floats(phi_i_));
-    file.AddFloat32("theta_i", {t}, floats(theta_i_));
+    file.AddFloat32("phi_i", {p}, floats(phi_i));
+    file.AddFloat32("theta_i", {t}, floats(theta_i));
     file.AddFloat32("ndf", {ndf_.rows, ndf_.columns}, floats(ndf_.values));
     file.AddFloat32("sigma", {sigma_.rows, sigma_.columns}, floats(sigma_.values));
     std::vector<float> vndf;
@@ -83,8 +79,8 @@ class Tables {
       vndf.insert(vndf.end(), vndf_.values.begin(), vndf_.values.end());
     }
     file.AddFloat32("vndf", {p, t, vndf_.rows, vndf_.columns}, vndf);
-    file.AddFloat32("luminance", {p, t, n, n}, luminance_);
-    file.AddFloat32("rgb", {p, t, kChannels, n, n}, rgb_);
+    file.AddFloat32("luminance", {p, t, n, n}, values.luminance);
+    file.AddFloat32("rgb", {p, t, kChannels, n, n}, values.rgb);
     return file.Bytes();
   }
 
@@ -187,18 +183,23 @@ class Tables {
     }
   }
 
-  void MakeValues() {
+  struct Values {
+    std::vector<float> rgb;        // [phi_i][theta_i][channel][n][n]
+    std::vector<float> luminance;  // [phi_i][theta_i][n][n]
+  };
+  Values ValuesAt(const std::vector<double>& all_phi_i, const std::vector<double>& all_theta_i,
+                  int n) const {
+    Values values;
     const BilinearWarp warp(vndf_);
     const bool anisotropic = model_.spec().anisotropic();
     const double least_cosine = std::cos(kMaxTheta);
-    const int n = size_.n;
     std::vector<float> channel[kChannels];
-    for (const double phi_i : phi_i_) {
-      for (const double theta : theta_i_) {
+    for (const double phi_i : all_phi_i) {
+      for (const double theta : all_theta_i) {
         const double theta_i = std::min(theta, kMaxTheta);
         const Direction wi = At(theta_i, phi_i);
         const double sigma = sigma_.At(0, {std::sqrt(theta_i * (2 / kPi)), 0});
-        for (std::vector<float>& values : channel) values.clear();
+        for (std::vector<float>& of_channel : channel) of_channel.clear();
         for (int node = 0; node < n * n; ++node) {
           const int row = node / n, column = node % n;
           const SquarePoint x = {static_cast<double>(column) / (n - 1),
@@ -226,27 +227,25 @@ class Tables {
           const double density = vndf_.At(0, u);
           const double spread =
               4 * Dot(wi, m) * std::sin(theta_m) * 2 * kPi * kPi * u.x / std::max(density, 1e-12);
-          luminance_.push_back(
-              static_cast<float>(above ? std::max(mean * ndf / (4 * sigma) * spread, 0.0) : 0.0));
+          values.luminance.push_back(
+              static_cast<float>(above ? mean * ndf / (4 * sigma) * spread : 0));
         }
-        for (const std::vector<float>& values : channel) {
-          rgb_.insert(rgb_.end(), values.begin(), values.end());
+        for (const std::vector<float>& of_channel : channel) {
+          values.rgb.insert(values.rgb.end(), of_channel.begin(), of_channel.end());
         }
-        const auto slice = std::span(luminance_).last(static_cast<size_t>(n) * n);
+        const auto slice = std::span(values.luminance).last(static_cast<size_t>(n) * n);
         const float largest = *std::ranges::max_element(slice);
         // Nothing that reflects is never drawn.
         for (float& x : slice) x = largest > 0 ? std::max(x / largest, 1e-4F) : 1;
       }
     }
+    return values;
   }
 
   const FactorModel& model_;
   const Bsdf<double> bsdf_;
-  const Size size_;
   const double least_cosine_;  // of what was measured
   BilinearStack ndf_, sigma_, vndf_;
-  std::vector<double> theta_i_, phi_i_;
-  std::vector<float> rgb_, luminance_;
 };
 
 // Relative errors of rho cos theta_o, mean over the channels, ascending.
@@ -277,12 +276,12 @@ RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options) {
   const std::span<const Size> sizes =
       anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
   const double max_error = options.max_error.value_or(anisotropic ? 0.02 : 0.005);
+  const Tables tables(model, options.max_theta);
   RglExport result;
   for (const Size& size : sizes) {
     result =
         RglExport{.bytes = {}, .theta_i = size.theta_i, .phi_i = size.phi_i, .resolution = size.n};
-    result.bytes =
-        Tables(model, size, options.max_theta).Bytes("a microfacet model, fitted by Trilobe");
+    result.bytes = tables.Bytes(size, "a microfacet model, fitted by Trilobe");
     const std::vector<double> errors = Errors(model, result.bytes, options.max_theta);
     if (errors.empty()) throw Error("the model is black; there is nothing to write");
     result.median_error = errors[errors.size() / 2];
