@@ -72,8 +72,8 @@ void Value(benchmark::State& state, const Material& material) {
 template <typename Material>
 void SampleAndPdf(benchmark::State& state, const Material& material) {
   Run(state, [&](const Call& call) {
-    const auto sample = material.SampleWi(call.pair.wo, call.u);
-    return sample.weight[0] + material.Pdf(call.pair.wo, call.pair.wi);
+    const auto sample = material.SampleWo(call.pair.wi, call.u);
+    return sample.weight[0] + material.Pdf(call.pair.wi, call.pair.wo);
   });
 }
 

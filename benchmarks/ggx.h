@@ -29,39 +29,39 @@ struct Ggx {
   }
 
   Rgb Value(const Direction& wi, const Direction& wo) const {
-    if (!(wi[2] > 0 && wo[2] > 0)) return {};
-    Direction h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+    if (!(wo[2] > 0 && wi[2] > 0)) return {};
+    Direction h = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
     const double length = std::sqrt(Dot(h, h));
     const double shape =
-        D(h[2] / length) / (4 * wi[2] * wo[2] * (1 + Lambda(wi[2]) + Lambda(wo[2])));
+        D(h[2] / length) / (4 * wo[2] * wi[2] * (1 + Lambda(wo[2]) + Lambda(wi[2])));
     const double k = 1 - length / 2, k5 = k * k * k * k * k;
     Rgb rho;
     for (int c = 0; c < kChannels; ++c) rho[c] = diffuse[c] + shape * (f0[c] + (1 - f0[c]) * k5);
     return rho;
   }
 
-  double Pdf(const Direction& wo, const Direction& wi) const {
-    if (!(wi[2] > 0 && wo[2] > 0)) return 0;
-    const Direction h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  double Pdf(const Direction& wi, const Direction& wo) const {
+    if (!(wo[2] > 0 && wi[2] > 0)) return 0;
+    const Direction h = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
     const double cos_h = h[2] / std::sqrt(Dot(h, h));
-    return diffuse_part * wi[2] / kPi +
-           (1 - diffuse_part) * D(cos_h) / (4 * wo[2] * (1 + Lambda(wo[2])));
+    return diffuse_part * wo[2] / kPi +
+           (1 - diffuse_part) * D(cos_h) / (4 * wi[2] * (1 + Lambda(wi[2])));
   }
 
   struct Sample {
-    Direction wi{};
+    Direction wo{};
     double pdf = 0;
     Rgb weight{};
   };
-  Sample SampleWi(const Direction& wo, const std::array<double, 2>& u) const {
+  Sample SampleWo(const Direction& wi, const std::array<double, 2>& u) const {
     Sample sample;
     const double phi = 2 * kPi * u[1];
     if (u[0] < diffuse_part) {
       const double r2 = u[0] / diffuse_part, r = std::sqrt(r2);
-      sample.wi = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r2)};
+      sample.wo = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r2)};
     } else {
       const double v = (u[0] - diffuse_part) / (1 - diffuse_part);
-      Direction w = {alpha * wo[0], alpha * wo[1], wo[2]};
+      Direction w = {alpha * wi[0], alpha * wi[1], wi[2]};
       const double length = std::sqrt(Dot(w, w));
       for (double& x : w) x /= length;
       const double z = (1 - v) * (1 + w[2]) - w[2], r = std::sqrt(std::max(1 - z * z, 0.0));
@@ -69,13 +69,13 @@ struct Ggx {
                      z + w[2]};
       const double scale = 1 / std::sqrt(Dot(h, h));
       for (double& x : h) x *= scale;
-      const double twice = 2 * Dot(wo, h);
-      for (int a = 0; a < 3; ++a) sample.wi[a] = twice * h[a] - wo[a];
+      const double twice = 2 * Dot(wi, h);
+      for (int a = 0; a < 3; ++a) sample.wo[a] = twice * h[a] - wi[a];
     }
-    if (!(sample.wi[2] > 0)) return sample;
-    sample.pdf = Pdf(wo, sample.wi);
-    sample.weight = Value(sample.wi, wo);
-    for (double& x : sample.weight) x *= sample.wi[2] / sample.pdf;
+    if (!(sample.wo[2] > 0)) return sample;
+    sample.pdf = Pdf(wi, sample.wo);
+    sample.weight = Value(wi, sample.wo);
+    for (double& x : sample.weight) x *= sample.wo[2] / sample.pdf;
     return sample;
   }
 };

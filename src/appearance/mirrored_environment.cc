@@ -44,9 +44,7 @@ std::vector<HalfCell> MakeCells() {
     for (int k = 0; k < around; ++k) {
       // Turned by the golden angle from ring to ring, so that no spokes are seen.
       const double phi = 2 * kPi * k / around + ring * kPi * (3 - std::sqrt(5.0));
-      cells.push_back(
-          {{std::sin(middle) * std::cos(phi), std::sin(middle) * std::sin(phi), std::cos(middle)},
-           solid_angle});
+      cells.push_back({ToDirection({middle, phi}), solid_angle});
     }
   }
   return cells;

@@ -6,16 +6,15 @@
 #include "trilobe/base/error.h"
 
 namespace trilobe {
-namespace {
 
-Direction ToDirection(double theta, double phi) {
+Direction ToDirection(const PolarAngles& angles) {
+  const auto [theta, phi] = angles;
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
-double Phi(const Direction& w) { return std::atan2(w[1], w[0]); }
-
-}  // namespace
+PolarAngles ToPolarAngles(const Direction& w) {
+  return {std::atan2(std::hypot(w[0], w[1]), w[2]), std::atan2(w[1], w[0])};
+}
 
 void CheckAngles(const HalfDiffAngles& angles) {
   constexpr double kMaxTheta = kPi / 2 + 1e-6;
@@ -68,19 +67,20 @@ bool IsAboveSurface(const SphericalAngles& angles) {
 }
 
 DirectionPair ToDirections(const SphericalAngles& angles) {
-  return {ToDirection(angles.theta_i, angles.phi_i), ToDirection(angles.theta_o, angles.phi_o)};
+  return {ToDirection({angles.theta_i, angles.phi_i}), ToDirection({angles.theta_o, angles.phi_o})};
 }
 
 SphericalAngles ToSphericalAngles(const DirectionPair& pair) {
-  return {Theta(pair.wi), Phi(pair.wi), Theta(pair.wo), Phi(pair.wo)};
+  const PolarAngles i = ToPolarAngles(pair.wi), o = ToPolarAngles(pair.wo);
+  return {i.theta, i.phi, o.theta, o.phi};
 }
 
 PolarAngles HalfVector(const DirectionPair& pair) {
   const auto& [wi, wo] = pair;
   const Direction h{wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
   constexpr double kAtNormal = 1e-9;
-  const double theta = Theta(h);
-  return {theta, theta <= kAtNormal ? 0 : Phi(h)};
+  const auto [theta, phi] = ToPolarAngles(h);
+  return {theta, theta <= kAtNormal ? 0 : phi};
 }
 
 Cosines ToCosines(const HalfDiffAngles& angles) {

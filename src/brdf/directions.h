@@ -56,6 +56,8 @@ struct PolarAngles {
   double theta = 0;
   double phi = 0;
 };
+Direction ToDirection(const PolarAngles& angles);
+PolarAngles ToPolarAngles(const Direction& w);  // of any length; phi from -pi to pi
 // The half vector of two directions above the surface; its phi is 0 where it is within 1e-9 of the
 // normal.
 PolarAngles HalfVector(const DirectionPair& pair);

@@ -8,9 +8,15 @@
 #include "trilobe/brdf/channels.h"
 #include "trilobe/evaluate/half_vector_table.h"
 #include "trilobe/evaluate/prepared_model.h"
+#include "trilobe/math/angles.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
+
+// The theta up to which models are tabulated [rad], of wi as of wo: of models whose cosines are
+// splined, as the paper's, G / cos theta is constant beyond. What is made of a model for renderers
+// (Bsdf, files) takes what lies beyond as it is there.
+inline constexpr double kGrazingTheta = DegreesToRadians(89.5);
 
 // A fitted material as a renderer holds it: value, sampling, albedo, for models of every form. Made
 // once from a model, immutable, safe to use from any number of threads; no call allocates.
@@ -21,16 +27,20 @@ namespace trilobe {
 // material's azimuths begin. Values are f [1/sr], without a cosine, and 0 where a direction is
 // below the surface or not a number. Reciprocal. Real is double or float.
 //
+// Order of arguments, everywhere: wi, then wo. wi is the direction that is known, and wo the one
+// that is drawn; so have it Mitsuba, and the RGL files and their loader, whose tables depend on
+// theta_i. A path tracer that comes from the eye passes the direction to the eye as wi.
+//
 // Sampling. A mixture of two: a cosine for the diffuse term, and half vectors of all lobes together
-// from a table for each of some directions wo, made when the object is (HalfVectorTable). The table
-// has what the lobes reflect, f cos theta_i, in the mean over the channels, over two numbers:
+// from a table for each of some directions wi, made when the object is (HalfVectorTable). The table
+// has what the lobes reflect, f cos theta_o, in the mean over the channels, over two numbers:
 //   y = sin^2 theta_h, by which equal steps are equal projected solid angles of h (paper eq. 8
 //   assumes equal bins of theta_h, which MERL's are not), and
-//   s, the azimuth of h from that of wo, in parts of the range phi_max in which wi is above the
-//   surface: cos phi_max = -cot theta_o cot 2 theta_h.
-// So nothing that is drawn lies below the horizon, whatever theta_o; and G, F and the stretch of a
+//   s, the azimuth of h from that of wi, in parts of the range phi_max in which wo is above the
+//   surface: cos phi_max = -cot theta_i cot 2 theta_h.
+// So nothing that is drawn lies below the horizon, whatever theta_i; and G, F and the stretch of a
 // lobe, which reads its D elsewhere, are in the table as well as D is. Which of the two is drawn is
-// chosen by what they reflect at this theta_o, so that weights stay near the albedo.
+// chosen by what they reflect at this theta_i, so that weights stay near the albedo.
 template <typename Real>
 class Bsdf {
  public:
@@ -57,23 +67,22 @@ class Bsdf {
   // of itself up to 75 degrees from the normal, 6 % up to 85.
   Colour Albedo(const Vector& w) const;
 
-  // A direction wi for a given wo, by two numbers in [0, 1] (what is outside counts as its end):
-  // `weight` is f cos theta_i / pdf, and pdf the density by solid angle [1/sr]. Where wo is below
-  // the surface and, rarely, by rounding, where wi is, pdf and weight are 0: skip these. wo comes
-  // first here and in Pdf, which is not symmetric.
+  // A direction wo for a given wi, by two numbers in [0, 1] (what is outside counts as its end):
+  // `weight` is f cos theta_o / pdf, and pdf the density by solid angle [1/sr]. Where wi is below
+  // the surface and, rarely, by rounding, where wo is, pdf and weight are 0: skip these.
   struct Sample {
-    Vector wi{};
+    Vector wo{};
     Real pdf = 0;
     Colour weight{};
   };
-  Sample SampleWi(const Vector& wo, const std::array<Real, 2>& u) const;
+  Sample SampleWo(const Vector& wi, const std::array<Real, 2>& u) const;
 
-  // The density with which SampleWi draws wi [1/sr].
-  Real Pdf(const Vector& wo, const Vector& wi) const;
+  // The density with which SampleWo draws wo for wi [1/sr]; not symmetric.
+  Real Pdf(const Vector& wi, const Vector& wo) const;
 
  private:
-  // A direction wo, what is drawn for it, and how often the cosine is.
-  struct Outgoing {
+  // A direction wi, what is drawn for it, and how often the cosine is.
+  struct Incident {
     Real sin, cos_phi, sin_phi;
     typename HalfVectorTable<Real>::Condition at;
     Real cosine_part;
@@ -81,13 +90,13 @@ class Bsdf {
   struct Nodes;
 
   void MakeTables(const Nodes& nodes);
-  Outgoing Prepare(const Vector& wo) const;
-  Real LobesPdf(const Vector& wo, const Outgoing& outgoing, const Vector& wi) const;
+  Incident Prepare(const Vector& wi) const;
+  Real LobesPdf(const Vector& wi, const Incident& incident, const Vector& wo) const;
 
   PreparedModel<Real> model_;
   HalfVectorTable<Real> half_vectors_;
   Real diffuse_albedo_ = 0;     // mean over the channels
-  std::vector<Colour> albedo_;  // of the lobes [node of wo]
+  std::vector<Colour> albedo_;  // of the lobes [node of wi]
 };
 
 extern template class Bsdf<double>;

@@ -6,22 +6,13 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
+#include "trilobe/math/linear_density.h"
 
 namespace trilobe {
 namespace {
 
 // Nodes of s that there may be.
 constexpr int kMaxS = 33;
-
-// The t in [0, 1] up to which a density that goes from `a` to `b`, both >= 0 and not both 0, has
-// the part u of its integral: a t + (b - a) t^2 / 2 = u (a + b) / 2, so written that nothing
-// cancels.
-template <typename Real>
-Real InvertLinear(Real a, Real b, Real u) {
-  const Real twice = u * (a + b);
-  const Real root = a + std::sqrt(std::max(a * a + (b - a) * twice, Real{0}));
-  return root > 0 ? std::min(twice / root, Real{1}) : u;
-}
 
 // Bins that y is looked up by: of its fourth root, which is about that of theta_h's square root.
 constexpr int kFirsts = 512;
@@ -43,12 +34,12 @@ int IntervalOf(const std::vector<Real>& nodes, Real x) {
 template <typename Real>
 HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<float>& values)
     : y_(nodes.y.begin(), nodes.y.end()),
-      theta_o_(nodes.theta_o.begin(), nodes.theta_o.end()),
+      theta_i_(nodes.theta_i.begin(), nodes.theta_i.end()),
       num_s_(nodes.s),
-      num_phi_o_(nodes.phi_o),
+      num_phi_i_(nodes.phi_i),
       values_(values) {
   const int rows = static_cast<int>(y_.size());
-  const int count = static_cast<int>(theta_o_.size()) * num_phi_o_;
+  const int count = static_cast<int>(theta_i_.size()) * num_phi_i_;
   if (num_s_ < 2 || num_s_ > kMaxS) throw Error("a table needs 2 to 33 nodes of s");
   largest_step_ = static_cast<int>(std::bit_floor(static_cast<unsigned>(rows)));
   for (int k = 0; k < kFirsts; ++k) {
@@ -73,7 +64,7 @@ HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<flo
 }
 
 template <typename Real>
-typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_o, Real phi_o,
+typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_i, Real phi_i,
                                                                     Real end) const {
   Condition at;
   const auto add = [&](int node, Real weight) {
@@ -81,21 +72,21 @@ typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_o
     at.node[at.count] = node;
     at.weight[at.count++] = weight;
   };
-  const int ring = IntervalOf(theta_o_, theta_o);
-  const Real t = std::clamp((theta_o - theta_o_[ring]) / (theta_o_[ring + 1] - theta_o_[ring]),
+  const int ring = IntervalOf(theta_i_, theta_i);
+  const Real t = std::clamp((theta_i - theta_i_[ring]) / (theta_i_[ring + 1] - theta_i_[ring]),
                             Real{0}, Real{1});
-  if (num_phi_o_ == 1) {
+  if (num_phi_i_ == 1) {
     add(ring, 1 - t);
     add(ring + 1, t);
   } else {
-    const Real turns = phi_o * static_cast<Real>(0.5 / kPi);
-    const Real x = (turns - std::floor(turns)) * static_cast<Real>(num_phi_o_);
-    const int low = std::min(static_cast<int>(x), num_phi_o_ - 1), high = (low + 1) % num_phi_o_;
+    const Real turns = phi_i * static_cast<Real>(0.5 / kPi);
+    const Real x = (turns - std::floor(turns)) * static_cast<Real>(num_phi_i_);
+    const int low = std::min(static_cast<int>(x), num_phi_i_ - 1), high = (low + 1) % num_phi_i_;
     const Real f = x - static_cast<Real>(low);
-    add(ring * num_phi_o_ + low, (1 - t) * (1 - f));
-    add(ring * num_phi_o_ + high, (1 - t) * f);
-    add((ring + 1) * num_phi_o_ + low, t * (1 - f));
-    add((ring + 1) * num_phi_o_ + high, t * f);
+    add(ring * num_phi_i_ + low, (1 - t) * (1 - f));
+    add(ring * num_phi_i_ + high, (1 - t) * f);
+    add((ring + 1) * num_phi_i_ + low, t * (1 - f));
+    add((ring + 1) * num_phi_i_ + high, t * f);
   }
   at.end = end;
   const int row = IntervalOfY(end);
@@ -170,7 +161,8 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
   }
   const Real mass = after - before;
   const Real part = mass > 0 ? std::clamp((wanted - before) / mass, Real{0}, Real{1}) : Real{0.5};
-  const Real t = InvertLinear(OfRow(at, low), OfRow(at, low + 1), part);
+  const Real from = OfRow(at, low), to = OfRow(at, low + 1);
+  const Real t = InvertLinearIntegral(part * (from + to) / 2, from, to);
   for (int k = 0; k < num_s_; ++k) first[k] += t * (second[k] - first[k]);
   Real left = (first[0] + first[num_s_ - 1]) / -2;
   for (int k = 0; k < num_s_; ++k) left += first[k];
@@ -181,9 +173,7 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
     if (left < cell) break;
     left -= cell;
   }
-  const Real cell = (first[k] + first[k + 1]) / 2;
-  const Real f = InvertLinear(first[k], first[k + 1],
-                              cell > 0 ? std::clamp(left / cell, Real{0}, Real{1}) : Real{0.5});
+  const Real f = InvertLinearIntegral(std::max(left, Real{0}), first[k], first[k + 1]);
   return {std::min(y_[low] + t * (y_[low + 1] - y_[low]), at.end),
           (static_cast<Real>(k) + f) / static_cast<Real>(num_s_ - 1),
           first[k] + f * (first[k + 1] - first[k])};

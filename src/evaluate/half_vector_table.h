@@ -7,23 +7,23 @@
 
 namespace trilobe {
 
-// A density over two numbers, y in [0, 1] and s in [0, 1], that depends on a direction wo: bilinear
-// in (y, s) between nodes, and linear between nodes of wo. Bsdf has the half vectors' in it.
+// A density over two numbers, y in [0, 1] and s in [0, 1], that depends on a direction wi: bilinear
+// in (y, s) between nodes, and linear between nodes of wi. Bsdf has the half vectors' in it.
 // Sampled by inversion, marginal first, so that samples move continuously with the random numbers.
 template <typename Real>
 class HalfVectorTable {
  public:
   // Nodes of y, ascending from 0 to 1; how many nodes of s there are from 0 to 1, 2 to 33; nodes of
-  // theta_o, ascending from 0 [rad], and how many even steps of phi_o there are around the circle.
+  // theta_i, ascending from 0 [rad], and how many even steps of phi_i there are around the circle.
   struct Nodes {
     std::vector<double> y;
     int s = 2;
-    std::vector<double> theta_o;
-    int phi_o = 1;
+    std::vector<double> theta_i;
+    int phi_i = 1;
   };
 
   HalfVectorTable() = default;
-  // `values`, all finite and >= 0, of any scale: [theta_o][phi_o][y][s].
+  // `values`, all finite and >= 0, of any scale: [theta_i][phi_i][y][s].
   HalfVectorTable(const Nodes& nodes, const std::vector<float>& values);
 
   // Where a direction lies between the nodes, and the y at which its density ends.
@@ -34,7 +34,7 @@ class HalfVectorTable {
     Real end = 1;
     Real total = 0;  // the integral of what the density is in proportion to
   };
-  Condition At(Real theta_o, Real phi_o, Real end) const;
+  Condition At(Real theta_i, Real phi_i, Real end) const;
 
   // What the density is in proportion to, of which Condition::total is the integral.
   Real Value(const Condition& at, Real y, Real s) const;
@@ -54,13 +54,13 @@ class HalfVectorTable {
     return &values_[(static_cast<size_t>(node) * y_.size() + row) * num_s_];
   }
 
-  std::vector<Real> y_, theta_o_;
+  std::vector<Real> y_, theta_i_;
   std::vector<int> first_;  // an interval of y that is not above the one of y = (k / 511)^4
   int largest_step_ = 0;    // by which intervals are searched
-  int num_s_ = 0, num_phi_o_ = 1;
-  std::vector<float> values_;    // [node of wo][y][s]
-  std::vector<Real> of_row_;     // [node of wo][y]: integral over all s
-  std::vector<Real> cumulated_;  // [node of wo][y]: that over y up to this one
+  int num_s_ = 0, num_phi_i_ = 1;
+  std::vector<float> values_;    // [node of wi][y][s]
+  std::vector<Real> of_row_;     // [node of wi][y]: integral over all s
+  std::vector<Real> cumulated_;  // [node of wi][y]: that over y up to this one
 };
 
 extern template class HalfVectorTable<double>;

@@ -4,20 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "trilobe/math/linear_density.h"
+
 namespace trilobe {
 namespace {
 
 double Lerp(double t, double a, double b) { return (1 - t) * a + t * b; }
-
-// Integral from 0 to t of the linear function that is a at 0 and b at 1.
-double LinearIntegral(double t, double a, double b) { return t * (a + 0.5 * t * (b - a)); }
-
-// The t in [0, 1] at which that integral is `value`, in the form that does not cancel; 0 where the
-// function vanishes.
-double InverseLinearIntegral(double value, double a, double b) {
-  const double root = std::sqrt(std::max(a * a + 2 * value * (b - a), 0.0));
-  return a + root > 0 ? std::clamp(2 * value / (a + root), 0.0, 1.0) : 0.0;
-}
 
 // Where `value` lies in running integrals at the nodes 0 .. count-1: the last interval that begins
 // at or below it.
@@ -114,14 +106,14 @@ SquarePoint BilinearWarp::Sample(int slice, const SquarePoint& uniform) const {
   const int row = FindInterval(rows, uniform.y, [&](int r) { return marginal[r]; });
   const double* integral = &row_integral_[(slice * rows + row) * columns];
   const double* p = &density_.values[(slice * rows + row) * columns];
-  const double v = InverseLinearIntegral(uniform.y - marginal[row], integral[columns - 1],
-                                         integral[2 * columns - 1]);
+  const double v = InvertLinearIntegral(uniform.y - marginal[row], integral[columns - 1],
+                                        integral[2 * columns - 1]);
   const auto along_row = [&](int c) { return Lerp(v, integral[c], integral[c + columns]); };
   const double part = uniform.x * along_row(columns - 1);
   const int column = FindInterval(columns, part, along_row);
   const double u =
-      InverseLinearIntegral(part - along_row(column), Lerp(v, p[column], p[column + columns]),
-                            Lerp(v, p[column + 1], p[column + columns + 1]));
+      InvertLinearIntegral(part - along_row(column), Lerp(v, p[column], p[column + columns]),
+                           Lerp(v, p[column + 1], p[column + columns + 1]));
   return {(column + u) / (columns - 1), (row + v) / (rows - 1)};
 }
 

@@ -31,14 +31,7 @@ constexpr Size kAnisotropic[] = {{8, 9, 32}, {8, 17, 32}, {12, 25, 32}, {12, 37,
 // ones of the first, and it is linear between them as these tables are.
 constexpr int kNdf = 181, kVndf = 361;
 
-// The last theta at which a model is asked; what it says of the horizon itself means little.
-constexpr double kMaxTheta = 89.5 / 180 * kPi;
-
 double ThetaOf(double u) { return u * u * (kPi / 2); }
-
-Direction At(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
 
 Direction Reflected(const Direction& wi, const Direction& m) {
   const double twice = 2 * Dot(wi, m);
@@ -50,7 +43,7 @@ Direction Reflected(const Direction& wi, const Direction& m) {
 class Tables {
  public:
   Tables(const FactorModel& model, double max_theta)
-      : model_(model), bsdf_(model), least_cosine_(std::cos(std::min(max_theta, kMaxTheta))) {
+      : model_(model), bsdf_(model), least_cosine_(std::cos(std::min(max_theta, kGrazingTheta))) {
     MakeNdf();
     MakeSigma();
     MakeVndf();
@@ -101,13 +94,13 @@ class Tables {
   Seen SeenAt(double u, double phi_m) const {
     constexpr int kThetas = 8, kPhis = 12;
     const double theta_m = ThetaOf(u);
-    const Direction m = At(theta_m, phi_m);
+    const Direction m = ToDirection({theta_m, phi_m});
     Seen seen;
     int count = 0;
     for (int t = 0; t < kThetas; ++t) {
       const double theta_i = std::acos(1 - (t + 0.5) / kThetas * (1 - least_cosine_));
       for (int p = 0; p < kPhis; ++p) {
-        const Direction wi = At(theta_i, phi_m + 2 * kPi * p / kPhis);
+        const Direction wi = ToDirection({theta_i, phi_m + 2 * kPi * p / kPhis});
         const Direction wo = Reflected(wi, m);
         if (wo[2] < least_cosine_ || Dot(wi, m) <= 0) continue;
         const double albedo = std::max(Mean(bsdf_.Albedo(wi)), 1e-9);
@@ -148,8 +141,8 @@ class Tables {
     sigma_ = {2, kNdf, {}};
     for (int row = 0; row < 2; ++row) {
       for (int k = 0; k < kNdf; ++k) {
-        const double theta = std::min(ThetaOf(static_cast<double>(k) / (kNdf - 1)), kMaxTheta);
-        sigma_.values.push_back(1 / std::max(Mean(bsdf_.Albedo(At(theta, 0))), 1e-9));
+        const double theta = std::min(ThetaOf(static_cast<double>(k) / (kNdf - 1)), kGrazingTheta);
+        sigma_.values.push_back(1 / std::max(Mean(bsdf_.Albedo(ToDirection({theta, 0}))), 1e-9));
       }
     }
   }
@@ -192,12 +185,12 @@ class Tables {
     Values values;
     const BilinearWarp warp(vndf_);
     const bool anisotropic = model_.spec().anisotropic();
-    const double least_cosine = std::cos(kMaxTheta);
+    const double least_cosine = std::cos(kGrazingTheta);
     std::vector<float> channel[kChannels];
     for (const double phi_i : all_phi_i) {
       for (const double theta : all_theta_i) {
-        const double theta_i = std::min(theta, kMaxTheta);
-        const Direction wi = At(theta_i, phi_i);
+        const double theta_i = std::min(theta, kGrazingTheta);
+        const Direction wi = ToDirection({theta_i, phi_i});
         const double sigma = sigma_.At(0, {std::sqrt(theta_i * (2 / kPi)), 0});
         for (std::vector<float>& of_channel : channel) of_channel.clear();
         for (int node = 0; node < n * n; ++node) {
@@ -207,7 +200,7 @@ class Tables {
           const SquarePoint u = warp.Sample(0, x);
           const double theta_m = ThetaOf(u.x), turn = (u.y - 0.5) * 2 * kPi;
           const double phi_m = anisotropic ? turn : phi_i + turn;
-          const Direction m = At(theta_m, phi_m);
+          const Direction m = ToDirection({theta_m, phi_m});
           Direction wo = Reflected(wi, m);
           const bool above = wo[2] > 0 && Dot(wi, m) > 0;
           // What is below the horizon is read by interpolation next to it; as at the horizon.

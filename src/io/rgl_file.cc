@@ -87,9 +87,6 @@ BilinearStack ReadNonNegative(const TensorFile& file, const char* name,
   return stack;
 }
 
-double Theta(const Direction& w) { return std::atan2(std::hypot(w[0], w[1]), w[2]); }
-double Phi(const Direction& w) { return std::atan2(w[1], w[0]); }
-
 // phi is taken modulo 2 pi.
 SquarePoint ToSquare(double theta, double phi) {
   const double turns = phi / (2 * kPi) + 0.5;
@@ -144,10 +141,6 @@ SphericalAngles Copied(const SphericalAngles& at, int copy) {
   return {at.theta_i, of(at.phi_i), at.theta_o, of(at.phi_o)};
 }
 
-Direction FromAngles(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
 Direction WithSigns(const Direction& w, const std::array<double, 2>& signs) {
   return {signs[0] * w[0], signs[1] * w[1], w[2]};
 }
@@ -189,9 +182,10 @@ RglBrdf::Value RglBrdf::LookUp(const DirectionPair& directions) const {
   const auto signs = FoldingSigns(tables_->symmetry, directions.wi);
   const Direction wi = WithSigns(directions.wi, signs), wo = WithSigns(directions.wo, signs);
   const Direction half = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
-  const double theta_i = Theta(wi), phi_i = Phi(wi);
+  const auto [theta_i, phi_i] = ToPolarAngles(wi);
+  const auto [theta_m, phi_m] = ToPolarAngles(half);
   const SquarePoint u_i = ToSquare(theta_i, phi_i);
-  const SquarePoint u_m = ToSquare(Theta(half), isotropic() ? Phi(half) - phi_i : Phi(half));
+  const SquarePoint u_m = ToSquare(theta_m, isotropic() ? phi_m - phi_i : phi_m);
 
   SliceBlend blend;  // over (phi_i, theta_i)
   const double around =
@@ -237,7 +231,7 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
     const double phi_i = t.phi_i[slice / thetas], theta_i = t.theta_i[slice % thetas];
     const bool at_end = slice / thetas == 0 || slice / thetas == last;
     const int copies = t.symmetry == 4 && at_end ? 2 : t.symmetry;
-    const Direction wi = FromAngles(theta_i, phi_i);
+    const Direction wi = ToDirection({theta_i, phi_i});
     const SquarePoint u_i = ToSquare(theta_i, phi_i);
     SliceBlend blend;
     blend.Add(slice, 1);
@@ -248,7 +242,7 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
       const SquarePoint x = {static_cast<double>(column) / (columns - 1),
                              static_cast<double>(row) / (rows - 1)};
       const SquarePoint u_m = t.vndf.Sample(slice, x);
-      const Direction m = FromAngles(u_m.x * u_m.x * (kPi / 2), (u_m.y - 0.5) * (2 * kPi));
+      const Direction m = ToDirection({u_m.x * u_m.x * (kPi / 2), (u_m.y - 0.5) * (2 * kPi)});
       const double cos_d = Dot(wi, m);
       const Direction wo = {2 * cos_d * m[0] - wi[0], 2 * cos_d * m[1] - wi[1],
                             2 * cos_d * m[2] - wi[2]};
@@ -259,7 +253,7 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
         const double value = t.rgb.At(slice * kChannels + channel, x) * t.ndf.At(0, u_m) / divisor;
         rho[channel] = value > 0 ? std::min(value, std::numeric_limits<double>::max()) : 0.0;
       }
-      const double theta_o = Theta(wo);
+      const auto [theta_o, phi_o] = ToPolarAngles(wo);
       for (int copy = 0; copy < copies; ++copy) {
         if (!above) {
           collector.LeaveOut(&BinCounts::below_surface);
@@ -268,7 +262,7 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
         } else if (!extrapolated && !t.mask.Measured(blend, x)) {
           collector.LeaveOut(&BinCounts::extrapolated);
         } else {
-          collector.Add(Copied({theta_i, phi_i, theta_o, Phi(wo)}, copy), rho);
+          collector.Add(Copied({theta_i, phi_i, theta_o, phi_o}, copy), rho);
         }
       }
     }

@@ -158,7 +158,7 @@ DirectionList ReadList(const Node& node) {
     const double phi = DegreesToRadians(
         entry["phi"].Number(-360, 360, "an azimuth in degrees, that of o less that of i"));
     const Direction wi = {std::sin(i), 0, std::cos(i)};
-    const Direction wo = {std::sin(o) * std::cos(phi), std::sin(o) * std::sin(phi), std::cos(o)};
+    const Direction wo = ToDirection({o, phi});
     list.directions.push_back(ToHalfDiff({wi, wo}));
   }
   return list;

@@ -28,6 +28,17 @@ std::vector<HalfDiffAngles> Spread() {
   return angles;
 }
 
+TEST(Directions, ToPolarAnglesAndBack) {
+  for (const PolarAngles& at :
+       {PolarAngles{0.3, 1}, PolarAngles{1e-7, -3}, PolarAngles{kPi / 2, 3.1}}) {
+    Direction w = ToDirection(at);
+    EXPECT_NEAR(Dot(w, w), 1, 1e-15);
+    for (double& x : w) x *= 3;  // of any length
+    EXPECT_NEAR(ToPolarAngles(w).theta, at.theta, 1e-15);
+    EXPECT_NEAR(ToPolarAngles(w).phi, at.phi, 1e-14);
+  }
+}
+
 TEST(Directions, AreUnitVectorsWhoseBisectorIsTheHalfVector) {
   for (const HalfDiffAngles& a : Spread()) {
     const auto [wi, wo] = ToDirections(a);

@@ -16,26 +16,26 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
-constexpr double kThetaO[] = {0, 15, 30, 45, 60, 75, 85, 89};  // [degrees]
+constexpr double kThetaI[] = {0, 15, 30, 45, 60, 75, 85, 89};  // [degrees]
 
-Direction WoAt(double degrees) { return DirectionAt(DegreesToRadians(degrees), 0.4); }
+Direction WiAt(double degrees) { return DirectionAt(DegreesToRadians(degrees), 0.4); }
 
-// Half vectors in bins of theta_h, narrow near the normal, and of phi_h. The sphere of wi itself
+// Half vectors in bins of theta_h, narrow near the normal, and of phi_h. The sphere of wo itself
 // would need bins as narrow as a mirror's peak.
 struct HalfVectorBins {
   static constexpr int kTheta = 16, kPhi = 12, kCount = kTheta * kPhi;
 
-  static int Of(const Direction& wo, const Direction& wi) {
-    const Direction h = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
+  static int Of(const Direction& wi, const Direction& wo) {
+    const Direction h = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
     const double x = std::sqrt(std::atan2(std::hypot(h[0], h[1]), h[2]) / (kPi / 2));
     const double turns = std::atan2(h[1], h[0]) / (2 * kPi) + 0.5;
     return std::min(static_cast<int>(x * kTheta), kTheta - 1) * kPhi +
            std::min(static_cast<int>(turns * kPhi), kPhi - 1);
   }
 
-  // The integral of value(wi) over the directions wi above the surface with half vectors in a bin.
+  // The integral of value(wo) over the directions wo above the surface with half vectors in a bin.
   template <typename Value>
-  static double Integral(const Direction& wo, int bin, const Value& value) {
+  static double Integral(const Direction& wi, int bin, const Value& value) {
     constexpr int kSteps = kSanitized ? 8 : 16;
     double sum = 0;
     const int ring = bin / kPhi;
@@ -44,12 +44,12 @@ struct HalfVectorBins {
       for (int b = 0; b < kSteps; ++b) {
         const double phi = 2 * kPi * ((bin % kPhi + (b + 0.5) / kSteps) / kPhi - 0.5);
         const Direction h = DirectionAt(theta, phi);
-        const double wo_h = Dot(wo, h);
-        Direction wi;
-        for (int k = 0; k < 3; ++k) wi[k] = 2 * wo_h * h[k] - wo[k];
-        if (!(wo_h > 0 && wi[2] > 0)) continue;
-        // d omega_i = 4 (wo . h) sin theta dtheta dphi, dtheta = pi x dx.
-        sum += value(wi) * 4 * wo_h * std::sin(theta) * kPi * x;
+        const double wi_h = Dot(wi, h);
+        Direction wo;
+        for (int k = 0; k < 3; ++k) wo[k] = 2 * wi_h * h[k] - wi[k];
+        if (!(wi_h > 0 && wo[2] > 0)) continue;
+        // d omega_o = 4 (wi . h) sin theta dtheta dphi, dtheta = pi x dx.
+        sum += value(wo) * 4 * wi_h * std::sin(theta) * kPi * x;
       }
     }
     return sum / (kSteps * kSteps) / kTheta * (2 * kPi / kPhi);
@@ -63,17 +63,17 @@ struct Drawn {
   Rgb sum{}, squares{};
 };
 
-Drawn Draw(const Bsdf<double>& bsdf, const Direction& wo, int n, uint64_t seed) {
+Drawn Draw(const Bsdf<double>& bsdf, const Direction& wi, int n, uint64_t seed) {
   Random random(seed);
   Drawn drawn;
   for (int k = 0; k < n; ++k) {
-    const auto sample = bsdf.SampleWi(wo, {random.Uniform(), random.Uniform()});
+    const auto sample = bsdf.SampleWo(wi, {random.Uniform(), random.Uniform()});
     if (!(sample.pdf > 0)) {
       ++drawn.lost;
       continue;
     }
-    EXPECT_NEAR(bsdf.Pdf(wo, sample.wi), sample.pdf, 1e-6 * sample.pdf);
-    ++drawn.counts[HalfVectorBins::Of(wo, sample.wi)];
+    EXPECT_NEAR(bsdf.Pdf(wi, sample.wo), sample.pdf, 1e-6 * sample.pdf);
+    ++drawn.counts[HalfVectorBins::Of(wi, sample.wo)];
     for (int c = 0; c < kChannels; ++c) {
       drawn.largest_weight = std::max(drawn.largest_weight, sample.weight[c]);
       drawn.sum[c] += sample.weight[c];
@@ -108,16 +108,16 @@ TEST(BsdfSampling, DrawsWithItsDensity) {
   constexpr int kDraws = kSanitized ? 4000 : 20000;
   for (const auto& [name, model] : TestMaterials()) {
     const Bsdf<double> bsdf(model);
-    for (const double degrees : kThetaO) {
-      const Direction wo = WoAt(degrees);
-      const std::string where = name + ", theta_o = " + std::to_string(degrees);
-      const Drawn drawn = Draw(bsdf, wo, kDraws, 3);
+    for (const double degrees : kThetaI) {
+      const Direction wi = WiAt(degrees);
+      const std::string where = name + ", theta_i = " + std::to_string(degrees);
+      const Drawn drawn = Draw(bsdf, wi, kDraws, 3);
       EXPECT_LE(drawn.lost, 0.01 * kDraws) << where;
       std::vector<double> expected(HalfVectorBins::kCount);
       double total = 0;
       for (int bin = 0; bin < HalfVectorBins::kCount; ++bin) {
-        expected[bin] = kDraws * HalfVectorBins::Integral(wo, bin, [&](const Direction& wi) {
-                          return bsdf.Pdf(wo, wi);
+        expected[bin] = kDraws * HalfVectorBins::Integral(wi, bin, [&](const Direction& wo) {
+                          return bsdf.Pdf(wi, wo);
                         });
         total += expected[bin];
       }
@@ -135,11 +135,11 @@ TEST(BsdfSampling, WeightsAreBoundedAndAddUpToTheAlbedo) {
     // 1 / cos^2 theta_d, which has more detail towards grazing than the table.
     if (name == "random numbers" || name == "stretched to the limits") continue;
     const Bsdf<double> bsdf(model);
-    for (const double degrees : kThetaO) {
-      const Direction wo = WoAt(degrees);
-      const std::string where = name + ", theta_o = " + std::to_string(degrees);
-      const Drawn drawn = Draw(bsdf, wo, kDraws, 4);
-      const Rgb albedo = bsdf.Albedo(wo);
+    for (const double degrees : kThetaI) {
+      const Direction wi = WiAt(degrees);
+      const std::string where = name + ", theta_i = " + std::to_string(degrees);
+      const Drawn drawn = Draw(bsdf, wi, kDraws, 4);
+      const Rgb albedo = bsdf.Albedo(wi);
       EXPECT_LE(degrees <= 85 ? drawn.largest_weight : 0, 4) << where;
       for (int c = 0; c < kChannels; ++c) {
         const double mean = drawn.sum[c] / kDraws;
@@ -156,20 +156,20 @@ TEST(BsdfSampling, WeightsAreBoundedAndAddUpToTheAlbedo) {
 // Near the horizon, where sampling by D loses one of five.
 TEST(BsdfSampling, HardlyDrawsBelowTheHorizon) {
   const Bsdf<double> bsdf(AnalyticModel(ModelSpec::SharedFactors(3), 0.3, 0));
-  EXPECT_LE(Draw(bsdf, WoAt(85), 10000, 5).lost, 10);
+  EXPECT_LE(Draw(bsdf, WiAt(85), 10000, 5).lost, 10);
 }
 
 TEST(BsdfSampling, MovesContinuouslyWithItsNumbers) {
   for (const auto& [name, model] : TestMaterials()) {
     const Bsdf<double> bsdf(model);
-    const Direction wo = WoAt(50);
+    const Direction wi = WiAt(50);
     constexpr double kStep = 1e-7;
     int jumps = 0;
     Random random(6);
     for (int k = 0; k < 500; ++k) {
       const double u = random.Uniform(0, 1 - kStep), v = random.Uniform(0, 1 - kStep);
-      const auto from = bsdf.SampleWi(wo, {u, v}), to = bsdf.SampleWi(wo, {u + kStep, v + kStep});
-      const double distance = std::hypot(to.wi[0] - from.wi[0], to.wi[1] - from.wi[1]);
+      const auto from = bsdf.SampleWo(wi, {u, v}), to = bsdf.SampleWo(wi, {u + kStep, v + kStep});
+      const double distance = std::hypot(to.wo[0] - from.wo[0], to.wo[1] - from.wo[1]);
       jumps += distance > 0.05;
     }
     EXPECT_LE(jumps, 1) << name;  // from one component to the other
@@ -196,28 +196,28 @@ TEST(BsdfSampling, HasAnAnswerForAnyNumbersAndDirections) {
     const std::string& name = named.name;
     const Bsdf<double> bsdf(named.model);
     const Bsdf<float> rounded(named.model);
-    for (const Direction& wo : directions) {
-      for (const double x : bsdf.Albedo(wo)) EXPECT_TRUE(std::isfinite(x) && x >= 0) << name;
+    for (const Direction& wi : directions) {
+      for (const double x : bsdf.Albedo(wi)) EXPECT_TRUE(std::isfinite(x) && x >= 0) << name;
       for (const double u : numbers) {
         for (const double v : numbers) {
           const auto check = [&](const auto& sample) {
             bool fine = std::isfinite(sample.pdf) && sample.pdf >= 0;
             for (const auto x : sample.weight) fine = fine && std::isfinite(x) && x >= 0;
-            for (const auto x : sample.wi) fine = fine && std::isfinite(x);
-            EXPECT_TRUE(fine) << name << " " << wo[0] << " " << wo[2] << " " << u << " " << v;
+            for (const auto x : sample.wo) fine = fine && std::isfinite(x);
+            EXPECT_TRUE(fine) << name << " " << wi[0] << " " << wi[2] << " " << u << " " << v;
           };
-          check(bsdf.SampleWi(wo, {u, v}));
-          check(rounded.SampleWi(
-              {static_cast<float>(wo[0]), static_cast<float>(wo[1]), static_cast<float>(wo[2])},
+          check(bsdf.SampleWo(wi, {u, v}));
+          check(rounded.SampleWo(
+              {static_cast<float>(wi[0]), static_cast<float>(wi[1]), static_cast<float>(wi[2])},
               {static_cast<float>(u), static_cast<float>(v)}));
         }
       }
-      for (const Direction& wi : directions) {
-        const double pdf = bsdf.Pdf(wo, wi);
+      for (const Direction& wo : directions) {
+        const double pdf = bsdf.Pdf(wi, wo);
         EXPECT_TRUE(std::isfinite(pdf) && pdf >= 0) << name;
       }
     }
-    EXPECT_EQ(bsdf.SampleWi({0.6, 0, -0.8}, {0.5, 0.5}).pdf, 0);
+    EXPECT_EQ(bsdf.SampleWo({0.6, 0, -0.8}, {0.5, 0.5}).pdf, 0);
     EXPECT_EQ(bsdf.Pdf({0, 0, 1}, {0.6, 0, -0.8}), 0);
   }
 }
@@ -228,15 +228,15 @@ TEST(BsdfTest, FloatAgreesWithDouble) {
     const Bsdf<float> rounded(model);
     Random random(7);
     for (int k = 0; k < 100; ++k) {
-      const Direction wo = DirectionAt(random.Uniform(0, 1.4), random.Uniform(-kPi, kPi));
       const Direction wi = DirectionAt(random.Uniform(0, 1.4), random.Uniform(-kPi, kPi));
+      const Direction wo = DirectionAt(random.Uniform(0, 1.4), random.Uniform(-kPi, kPi));
       const auto in_float = [](const Direction& w) {
         return std::array<float, 3>{static_cast<float>(w[0]), static_cast<float>(w[1]),
                                     static_cast<float>(w[2])};
       };
-      const double pdf = bsdf.Pdf(wo, wi);
-      EXPECT_NEAR(rounded.Pdf(in_float(wo), in_float(wi)), pdf, 0.01 * pdf) << name;
-      EXPECT_NEAR(rounded.Albedo(in_float(wo))[1], bsdf.Albedo(wo)[1], 1e-3) << name;
+      const double pdf = bsdf.Pdf(wi, wo);
+      EXPECT_NEAR(rounded.Pdf(in_float(wi), in_float(wo)), pdf, 0.01 * pdf) << name;
+      EXPECT_NEAR(rounded.Albedo(in_float(wi))[1], bsdf.Albedo(wi)[1], 1e-3) << name;
     }
   }
 }
