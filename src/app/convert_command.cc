@@ -21,6 +21,7 @@
 #include "trilobe/io/source.h"
 #include "trilobe/io/utia_file.h"
 #include "trilobe/model/reconstruct.h"
+#include "trilobe/view/glsl_file.h"
 
 DEFINE_double(error, 0,
               "of a .bsdf file: how far it may be off the model, relative, in the median over "
@@ -31,17 +32,35 @@ namespace trilobe {
 namespace {
 
 constexpr const char* kTensorEnding = ".bsdf";
+constexpr const char* kShaderEnding = ".glsl";
 
-// For renderers that read measurements of RGL.
-int ConvertToTensorFile(const std::string& source) {
-  if (!(FLAGS_error >= 0 && FLAGS_error <= 1)) throw Error("--error must be from 0 to 1");
+// A file that is made of a model alone: its errors before any work.
+void CheckModelOnly(const std::string& source, const std::string& ending) {
   if (!IsModelFile(source)) {
-    throw Error("--out=" + FLAGS_out + ": " + source +
-                " is a measurement, and trilobe writes .bsdf files of models; fit it first");
+    throw Error("--out=" + FLAGS_out + ": " + source + " is a measurement, and trilobe writes " +
+                ending + " files of models; fit it first");
   }
   RefuseForModel(source, MeasurementFlags());
   Inputs({source}).CheckOutput(FLAGS_out);
   CheckWritable(FLAGS_out);
+}
+
+// For shaders.
+int ConvertToShader(const std::string& source) {
+  if (!IsDefault("error")) throw Error("--error goes with an --out that ends in .bsdf");
+  CheckModelOnly(source, kShaderEnding);
+  const GlslFile file = FormatGlsl(ReadModel(source), source);
+  WriteFile(FLAGS_out, [&](std::ostream& out) { out << file.text; });
+  PrintLine("wrote " + FLAGS_out + ": GLSL ES 3.00 with a texture of " +
+            std::to_string(file.width) + " x " + std::to_string(file.height) + ", " +
+            Text(static_cast<double>(file.text.size()) / 1e6, 2) + " MB");
+  return 0;
+}
+
+// For renderers that read measurements of RGL.
+int ConvertToTensorFile(const std::string& source) {
+  if (!(FLAGS_error >= 0 && FLAGS_error <= 1)) throw Error("--error must be from 0 to 1");
+  CheckModelOnly(source, kTensorEnding);
   const ModelFile model = ReadModel(source);
   const double measured = model.fit.max_angle > 0 ? model.fit.max_angle : 90;  // [degrees]
   RglExportOptions options{.max_theta = DegreesToRadians(measured)};
@@ -82,6 +101,7 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
   if (EndingOf(FLAGS_out) == kTensorEnding) return ConvertToTensorFile(source);
+  if (EndingOf(FLAGS_out) == kShaderEnding) return ConvertToShader(source);
   if (!IsDefault("error")) throw Error("--error goes with an --out that ends in .bsdf");
   const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
@@ -122,7 +142,8 @@ Command ConvertCommand() {
           "their\ndigits; a whole table takes some 130 MB. To a FILE that ends in .bin it writes "
           "the input at the\ndirections of the UTIA database, -1 where it was not measured; "
           "scattered samples must stand at them.\nOf a model, to a FILE that ends in .bsdf it "
-          "writes an RGL tensor file, which Mitsuba 3 renders (`measured`).\nA FILE with another "
+          "writes an RGL tensor file, which Mitsuba 3 renders (`measured`), and to one that ends "
+          "in .glsl\nfunctions for shaders.\nA FILE with another "
           "ending is an error.",
       .flags = WithSourceFlags({"out", "error"}),
       .run = RunConvert};

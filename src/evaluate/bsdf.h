@@ -80,6 +80,9 @@ class Bsdf {
   // The density with which SampleWo draws wo for wi [1/sr]; not symmetric.
   Real Pdf(const Vector& wi, const Vector& wo) const;
 
+  // What half vectors are drawn by.
+  const HalfVectorTable<Real>& half_vectors() const { return half_vectors_; }
+
  private:
   // A direction wi, what is drawn for it, and how often the cosine is.
   struct Incident {

@@ -46,6 +46,16 @@ class HalfVectorTable {
   };
   Sample Draw(const Condition& at, Real u_y, Real u_s) const;
 
+  // What it is made of, for shaders, which have no objects: nodes, values [node of wi][y][s], and of
+  // these the integrals over s, and over y up to each. [node of wi][y]
+  const std::vector<Real>& y() const { return y_; }
+  const std::vector<Real>& theta_i() const { return theta_i_; }
+  int num_s() const { return num_s_; }
+  int num_phi_i() const { return num_phi_i_; }
+  const std::vector<float>& values() const { return values_; }
+  const std::vector<Real>& of_row() const { return of_row_; }
+  const std::vector<Real>& cumulated() const { return cumulated_; }
+
  private:
   int IntervalOfY(Real y) const;
   Real Cumulated(const Condition& at, int row) const;

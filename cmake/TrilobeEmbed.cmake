@@ -1,0 +1,25 @@
+# cmake -Dout=FILE.cc -Dfiles=A;B;... -P TrilobeEmbed.cmake: writes a C++ file with the text of some files, as
+# view/web_files.h declares it. Raw strings need no escapes, but compilers take no longer ones than
+# 64 KB everywhere: longer texts are cut into several, which stand side by side as one.
+cmake_minimum_required(VERSION 3.25)
+set(code "// Made by cmake/TrilobeEmbed.cmake from the files of web/.\n#include \"${header}\"\n\n")
+string(APPEND code "namespace trilobe {\n\nstd::span<const WebFile> WebFiles() {\n")
+string(APPEND code "  static constexpr WebFile kFiles[] = {\n")
+foreach(file IN LISTS files)
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} hex HEX)
+  # Bytes, so that no character of a file means anything to CMake.
+  string(LENGTH "${hex}" size)
+  set(literal)
+  set(at 0)
+  while(at LESS size)
+    string(SUBSTRING "${hex}" ${at} 8000 part)
+    string(REGEX REPLACE "(..)" "\\\\x\\1" part "${part}")
+    string(APPEND literal "\n       \"${part}\"")
+    math(EXPR at "${at} + 8000")
+  endwhile()
+  math(EXPR bytes "${size} / 2")
+  string(APPEND code "      {\"${name}\", std::string_view(${literal}, ${bytes})},\n")
+endforeach()
+string(APPEND code "  };\n  return kFiles;\n}\n\n}  // namespace trilobe\n")
+file(WRITE ${out} "${code}")

@@ -1,0 +1,16 @@
+#include "trilobe/view/web_files.h"
+
+#include <string>
+
+#include "trilobe/base/error.h"
+
+namespace trilobe {
+
+std::string_view WebText(std::string_view name) {
+  for (const WebFile& file : WebFiles()) {
+    if (file.name == name) return file.text;
+  }
+  throw Error("the program was built without web/" + std::string(name));
+}
+
+}  // namespace trilobe

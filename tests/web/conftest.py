@@ -1,0 +1,98 @@
+"""What the tests of shaders and pages share: the program, models of every form, and a browser. They skip where
+Playwright (PyPI) or Debian's chromium is not there."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+BUILD = Path(os.environ.get("TRILOBE_BUILD", REPOSITORY / "build/release"))
+# WebGL 2 without a graphics card.
+SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+
+
+def run(*arguments: str | Path) -> str:
+    """Runs trilobe and returns what it prints; its own error line is that of the test."""
+    command = [str(BUILD / "bin/trilobe"), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{' '.join(command)}: {done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        pytest.skip("chromium is not installed")
+    with playwright.sync_playwright() as started:
+        launched = started.chromium.launch(executable_path=chromium, args=SOFTWARE)
+        yield launched
+        launched.close()
+
+
+@pytest.fixture(scope="session")
+def fits(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two fits, each in a folder with its pair.png: out/plastic and out/shot_silk."""
+    out = tmp_path_factory.mktemp("fits") / "out"
+    run("fit", "synth:plastic", "synth:shot_silk", "--solver=awls", "--max_iterations=3", f"--out={out}")
+    return out
+
+
+def models(folder: Path, fits: Path) -> dict[str, Path]:
+    """Models of every form by name, made of a fitted one."""
+    plastic = json.loads((fits / "plastic/model.json").read_text())
+    made: dict[str, dict[str, Any]] = {"fitted": plastic}
+    stretched = dict(plastic, version=2, stretch={"along": -0.3, "across": 0.2})
+    made["stretched"] = stretched
+    made["stretched_by_lobe"] = dict(
+        plastic,
+        version=2,
+        stretch=[
+            {"along": -0.3, "across": 0.2},
+            {"along": 0.4, "across": 0.0},
+            {"along": -0.3, "across": 0.2},
+        ],
+    )
+    # F for each lobe, D for each channel, G shared by all.
+    shaded = [[value * (1 - 0.3 * c) for value in plastic["D"][0]] for c in range(3)]
+    made["other_sharing"] = dict(
+        plastic,
+        D=[[[v * (1 + 0.1 * m) for v in row] for row in shaded] for m in range(3)],
+        F=[plastic["F"]] * 3,
+        G=plastic["G"][0],
+        sharing={
+            "D": {"per_lobe": True, "per_channel": True},
+            "F": {"per_lobe": True, "per_channel": True},
+            "G": {"per_lobe": False, "per_channel": False},
+        },
+    )
+    made["thinned"] = dict(
+        plastic,
+        F=[{"size": 90, "nodes": [0, 40, 80], "values": [row[0], row[40], row[80]]} for row in plastic["F"]],
+    )
+    made["five_lobes"] = dict(
+        plastic,
+        lobes=5,
+        s=[*plastic["s"], *plastic["s"][:2]],
+        D=[*plastic["D"], *plastic["D"][1:]],
+        G=[*plastic["G"], *plastic["G"][:2]],
+    )
+    made["lambertian"] = {
+        key: plastic[key] for key in ("format", "version", "kind")
+    } | {"lobes": 0, "d": [0.1, 0.2, 0.3], "s": [], "D": [], "F": [], "G": []}
+    paths = {}
+    for name, model in made.items():
+        model.pop("dead", None)
+        paths[name] = folder / f"{name}.json"
+        paths[name].write_text(json.dumps(model))
+    paths["anisotropic"] = fits / "shot_silk/model.json"
+    return paths
