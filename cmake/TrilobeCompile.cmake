@@ -4,6 +4,8 @@
 #   whether the compiler found an FMA instruction to use.
 # -fopenmp-simd: `#pragma omp simd reduction` lets one named loop reassociate its sum, where
 #   -ffast-math would let all of them. No OpenMP runtime is involved.
+# -fno-semantic-interposition: nobody replaces a function of a shared library, so that position-independent
+#   code inlines what other code does.
 # -fmacro-prefix-map: __FILE__ does not depend on where the repository lies, so that a compiler's cache
 #   serves any checkout.
 # -Wno-restrict: g++ 12 warns of "literal" + std::string(...) for no reason (GCC bug 105651).
@@ -12,6 +14,7 @@
 # -Wno-pass-failed: clang warns where a `simd` loop is not vectorised, as under sanitizers none is.
 function(trilobe_compile_options target)
   target_compile_options(${target} PRIVATE -ffp-contract=off -fopenmp-simd
+    -fno-semantic-interposition
     -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/= -Wall -Wextra -Wshadow
     -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

@@ -1,0 +1,328 @@
+// The module trilobe._core: model files and their evaluation. It needs trilobe::evaluate alone, so
+// that it holds no GPL code. The Python above it (trilobe/brdf.py) checks and broadcasts arrays;
+// what comes here is already [n][3] beside each other in memory, or one row that counts for all.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "owned_array.h"
+#include "trilobe/base/error.h"
+#include "trilobe/evaluate/bsdf.h"
+#include "trilobe/io/read_model.h"
+
+namespace nb = nanobind;
+
+namespace trilobe::python {
+namespace {
+
+template <typename Real>
+using Input = nb::ndarray<const Real, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+template <typename Real>
+using Output = nb::ndarray<Real, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+// Rows of an input array; a single one counts for all.
+template <typename Real, size_t kWidth>
+class Rows {
+ public:
+  Rows(const Input<Real>& array, size_t count, const char* name)
+      : data_(array.data()), step_(array.shape(0) == 1 ? 0 : kWidth) {
+    if (array.shape(1) != kWidth || (array.shape(0) != count && array.shape(0) != 1)) {
+      throw Error(std::string(name) + " does not have as many rows as there are results");
+    }
+  }
+
+  std::array<Real, kWidth> operator[](size_t k) const {
+    std::array<Real, kWidth> row;
+    for (size_t a = 0; a < kWidth; ++a) row[a] = data_[k * step_ + a];
+    return row;
+  }
+
+ protected:
+  const Real* data_;
+  size_t step_;
+};
+
+// Directions: of unit length whatever they are given as, and (0, 0, 0), where everything is 0, if
+// they are none.
+template <typename Real>
+class Directions : Rows<Real, 3> {
+ public:
+  using Rows<Real, 3>::Rows;
+
+  std::array<Real, 3> operator[](size_t k) const {
+    std::array<Real, 3> w = Rows<Real, 3>::operator[](k);
+    const Real square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+    constexpr Real kRounding = static_cast<Real>(sizeof(Real) == 4 ? 2e-6 : 1e-12);
+    if (std::abs(square - 1) <= kRounding) return w;
+    // By the largest first, lest the square overflow or vanish.
+    const Real largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
+    if (!(largest > 0 && std::isfinite(largest))) return {};
+    for (Real& x : w) x /= largest;
+    const Real length = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    for (Real& x : w) x /= length;
+    return std::isfinite(length) ? w : std::array<Real, 3>{};
+  }
+};
+
+template <typename Real>
+void CheckWidth(const Output<Real>& out, size_t width) {
+  if (out.shape(1) != width) throw Error("an array of results has the wrong width");
+}
+
+// A model file, and what evaluates it, made when it is first asked for.
+class Material {
+ public:
+  Material(const nb::bytes& text, const std::string& source)
+      : file_(ParseModel({text.c_str(), text.size()}, source)) {
+    CheckParameters(file_.model);
+  }
+  Material(const Material&) = delete;
+  Material& operator=(const Material&) = delete;
+
+  const ModelFile& file() const { return file_; }
+  const ModelSpec& spec() const { return file_.model.spec(); }
+
+  template <typename Real>
+  const Bsdf<Real>& Of() const {
+    auto& made = [this]() -> auto& {
+      if constexpr (std::is_same_v<Real, float>) {
+        return single_;
+      } else {
+        return double_;
+      }
+    }
+    ();
+    std::call_once(made.once, [&] { made.bsdf = std::make_unique<Bsdf<Real>>(file_.model); });
+    return *made.bsdf;
+  }
+
+ private:
+  template <typename Real>
+  struct Made {
+    std::once_flag once;
+    std::unique_ptr<const Bsdf<Real>> bsdf;
+  };
+
+  ModelFile file_;
+  mutable Made<float> single_;
+  mutable Made<double> double_;
+};
+
+template <typename Real>
+void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
+          const Output<Real>& out, bool cosine) {
+  const size_t count = out.shape(0);
+  CheckWidth(out, kChannels);
+  const Directions<Real> in(wi, count, "wi"), away(wo, count, "wo");
+  Real* to = out.data();
+  const nb::gil_scoped_release released;
+  const Bsdf<Real>& bsdf = material.Of<Real>();
+  for (size_t k = 0; k < count; ++k, to += kChannels) {
+    const auto o = away[k];
+    const auto f = bsdf.Value(in[k], o);
+    const Real scale = cosine ? std::max(o[2], Real{0}) : Real{1};
+    for (int c = 0; c < kChannels; ++c) to[c] = f[c] * scale;
+  }
+}
+
+// Rows of (1 + lobes) colours: the diffuse term, then each lobe.
+template <typename Real>
+void EvalComponents(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
+                    const Output<Real>& out) {
+  const size_t count = out.shape(0);
+  const int lobes = material.spec().lobes;
+  CheckWidth(out, static_cast<size_t>((1 + lobes) * kChannels));
+  const Directions<Real> in(wi, count, "wi"), away(wo, count, "wo");
+  Real* to = out.data();
+  const nb::gil_scoped_release released;
+  const Bsdf<Real>& bsdf = material.Of<Real>();
+  std::array<typename Bsdf<Real>::Colour, kMaxLobes> values{};
+  for (size_t k = 0; k < count; ++k) {
+    const auto i = in[k], o = away[k];
+    const bool above = i[2] > 0 && o[2] > 0;
+    bsdf.LobeValues(i, o, values.data());
+    for (const Real d : bsdf.diffuse()) *to++ = above ? d : Real{0};
+    for (int m = 0; m < lobes; ++m) to = std::copy(values[m].begin(), values[m].end(), to);
+  }
+}
+
+template <typename Real>
+void Pdf(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
+         const Output<Real>& out) {
+  const size_t count = out.shape(0);
+  CheckWidth(out, 1);
+  const Directions<Real> in(wi, count, "wi"), away(wo, count, "wo");
+  const nb::gil_scoped_release released;
+  const Bsdf<Real>& bsdf = material.Of<Real>();
+  for (size_t k = 0; k < count; ++k) out.data()[k] = bsdf.Pdf(in[k], away[k]);
+}
+
+// Rows of wo, pdf and weight: 7 numbers.
+template <typename Real>
+void Sample(const Material& material, const Input<Real>& wi, const Input<Real>& u,
+            const Output<Real>& out) {
+  const size_t count = out.shape(0);
+  CheckWidth(out, 7);
+  const Directions<Real> in(wi, count, "wi");
+  const Rows<Real, 2> numbers(u, count, "u");
+  Real* to = out.data();
+  const nb::gil_scoped_release released;
+  const Bsdf<Real>& bsdf = material.Of<Real>();
+  for (size_t k = 0; k < count; ++k) {
+    const auto sample = bsdf.SampleWo(in[k], numbers[k]);
+    to = std::copy(sample.wo.begin(), sample.wo.end(), to);
+    *to++ = sample.pdf;
+    to = std::copy(sample.weight.begin(), sample.weight.end(), to);
+  }
+}
+
+template <typename Real>
+void Albedo(const Material& material, const Input<Real>& wi, const Output<Real>& out) {
+  const size_t count = out.shape(0);
+  CheckWidth(out, kChannels);
+  const Directions<Real> in(wi, count, "wi");
+  Real* to = out.data();
+  const nb::gil_scoped_release released;
+  const Bsdf<Real>& bsdf = material.Of<Real>();
+  for (size_t k = 0; k < count; ++k) {
+    const auto albedo = bsdf.Albedo(in[k]);
+    to = std::copy(albedo.begin(), albedo.end(), to);
+  }
+}
+
+Factor FactorOf(const std::string& name) {
+  for (const Factor factor : kFactors) {
+    if (name == FactorName(factor)) return factor;
+  }
+  throw Error("there is no factor '" + name + "'; there are D, F and G");
+}
+
+const char* RuleName(Axis::Rule rule) {
+  switch (rule) {
+    case Axis::Rule::kRootTheta:
+      return "root_theta";
+    case Axis::Rule::kTheta:
+      return "theta";
+    case Axis::Rule::kSpline:
+      return "spline";
+    case Axis::Rule::kPolar:
+      break;
+  }
+  return "polar";
+}
+
+nb::dict AxisOf(const Material& material, const std::string& factor) {
+  const ModelSpec& spec = material.spec();
+  const Axis& axis = spec.axis(FactorOf(factor));
+  const TableSharing& sharing = spec.sharing(FactorOf(factor));
+  nb::dict dict;
+  dict["rule"] = RuleName(axis.rule);
+  dict["size"] = axis.size;
+  dict["per_lobe"] = sharing.per_lobe;
+  dict["per_channel"] = sharing.per_channel;
+  if (axis.polar()) {
+    dict["theta_nodes"] = axis.theta;
+    dict["phi_nodes"] = axis.phi_nodes;
+  } else {
+    std::vector<double> theta;
+    for (int entry = 0; entry < axis.size; ++entry) theta.push_back(axis.Theta(entry));
+    dict["theta"] = theta;
+  }
+  return dict;
+}
+
+nb::object TablesOf(const Material& material, const std::string& name) {
+  const FactorModel& model = material.file().model;
+  const Factor factor = FactorOf(name);
+  std::vector<double> values;
+  const size_t tables = model.spec().lobes > 0 ? model.spec().num_tables(factor) : 0;
+  const size_t size = model.spec().table_size(factor);
+  for (size_t k = 0; k < tables; ++k) {
+    const auto table = model.table(factor, static_cast<int>(k));
+    values.insert(values.end(), table.begin(), table.end());
+  }
+  return OwnedArray(std::move(values), {tables, size});
+}
+
+nb::object UnobservedOf(const Material& material, const std::string& name) {
+  const FactorModel& model = material.file().model;
+  const Factor factor = FactorOf(name);
+  const size_t tables = model.spec().lobes > 0 ? model.spec().num_tables(factor) : 0;
+  const size_t size = model.spec().table_size(factor);
+  std::vector<bool> all = material.file().unobserved;
+  all.resize(model.parameters().size(), false);
+  std::vector<uint8_t> marks;
+  for (size_t k = 0; k < tables; ++k) {
+    const auto begin = all.begin() + model.TableOffset(factor, static_cast<int>(k));
+    marks.insert(marks.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
+  }
+  return OwnedArray(std::move(marks), {tables, size});
+}
+
+template <typename Real>
+void BindEvaluation(nb::class_<Material>* material) {
+  const auto released = nb::arg().noconvert();
+  material->def("eval", &Eval<Real>, released, released, released, nb::arg())
+      .def("eval_components", &EvalComponents<Real>, released, released, released)
+      .def("pdf", &Pdf<Real>, released, released, released)
+      .def("sample", &Sample<Real>, released, released, released)
+      .def("albedo", &Albedo<Real>, released, released);
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param): nanobind's
+  nb::set_leak_warnings(false);  // of objects that live when the interpreter ends
+  nb::exception<Error>(m, "Error", PyExc_ValueError).doc() =
+      "Bad input or an impossible request. Its text is one line: what is wrong, where, what to do.";
+  nb::class_<Material> material(m, "Material", "A model file, prepared for evaluation.");
+  material.def(nb::init<const nb::bytes&, const std::string&>(), nb::arg("text"), nb::arg("source"))
+      .def_prop_ro("lobes", [](const Material& self) { return self.spec().lobes; })
+      .def_prop_ro("anisotropic", [](const Material& self) { return self.spec().anisotropic(); })
+      .def_prop_ro("d",
+                   [](const Material& self) {
+                     const auto d = self.file().model.d();
+                     return OwnedArray(std::vector<double>(d.begin(), d.end()), {d.size()});
+                   })
+      .def_prop_ro("s",
+                   [](const Material& self) {
+                     std::vector<double> values;
+                     const size_t lobes = self.spec().lobes;
+                     for (size_t m = 0; m < lobes; ++m) {
+                       const auto s = self.file().model.s(static_cast<int>(m));
+                       values.insert(values.end(), s.begin(), s.end());
+                     }
+                     return OwnedArray(std::move(values), {lobes, size_t{kChannels}});
+                   })
+      .def_prop_ro("stretch",
+                   [](const Material& self) {
+                     std::vector<std::pair<double, double>> of_lobes;
+                     for (int m = 0; m < self.spec().lobes; ++m) {
+                       const Stretch& stretch = self.spec().stretches.of(m);
+                       of_lobes.emplace_back(stretch.along, stretch.across);
+                     }
+                     return of_lobes;
+                   })
+      .def("axis", &AxisOf, nb::arg("factor"))
+      .def("tables", &TablesOf, nb::arg("factor"))
+      .def("unobserved", &UnobservedOf, nb::arg("factor"));
+  BindEvaluation<float>(&material);
+  BindEvaluation<double>(&material);
+}
+
+}  // namespace trilobe::python

@@ -1,0 +1,504 @@
+"""Models, evaluated and sampled over arrays, and edited."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trilobe import _core
+from trilobe._arrays import (
+    Floats,
+    as_array,
+    check_width,
+    common_shape,
+    of_one_precision,
+    rows,
+)
+from trilobe._core import Error
+from trilobe._table import Table
+
+CHANNELS = ("red", "green", "blue")
+_POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
+_AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
+
+
+class Sample(NamedTuple):
+    """Directions that were drawn, as ``Brdf.sample`` returns them."""
+
+    wo: Floats
+    """Unit vectors (..., 3)."""
+    pdf: Floats
+    """Density by solid angle [1/sr], (...); 0 where nothing was drawn."""
+    weight: Floats
+    """f cos(theta_o) / pdf of three channels, (..., 3)."""
+
+
+class Brdf:
+    """A multi-lobe microfacet model of tables, of any form (docs/model.md).
+
+        f = d + sum over lobes of s D(h) F(theta_d) G(wi) G(wo) / (cos theta_i cos theta_o)
+
+    Directions are arrays (..., 3) that broadcast against each other, away from the surface, z
+    along its normal, x where the azimuths of an anisotropic material begin. They are made unit
+    vectors; below the surface, and where they are no directions, everything is 0. Arrays of
+    float32 are computed and returned as such, everything else as float64. Arrays of other
+    libraries are taken by DLPack; results are numpy's.
+
+    Immutable, and free for use by any number of threads: Python's lock is released.
+
+    Args:
+        d: diffuse term [1/sr], (3,), or one number.
+        s: specular weights, (lobes, 3).
+        D: distribution of normals: (lobes, 90) over theta_h, or a `Table`.
+        F: Fresnel factor: (3, 90) over theta_d, or a `Table`.
+        G: shadowing: (lobes, 90) over theta, or a `Table`.
+        like: a model whose form (sharing, axes, stretch) plain arrays have, in place of the
+            paper's isotropic one.
+        stretch: of an isotropic model, (along, across), or one such pair a lobe
+            (docs/model.md#stretched-highlights).
+
+    `Table`s bring their axes and sharing along. All entries are finite and 0 or more.
+    """
+
+    _material: _core.Material
+    _text: str
+
+    def __init__(
+        self,
+        d: ArrayLike,
+        s: ArrayLike,
+        D: ArrayLike,
+        F: ArrayLike,
+        G: ArrayLike,
+        *,
+        like: Brdf | None = None,
+        stretch: Any = None,
+    ) -> None:
+        """Makes a model of its tables."""
+        if like is not None and not isinstance(like, Brdf):
+            raise Error("like must be a trilobe.Brdf")
+        self._set(_text_of(d, s, {"D": D, "F": F, "G": G}, like, stretch), "the arrays of the model")
+
+    def _set(self, text: str, source: str) -> None:
+        self._material = _core.Material(text.encode("utf-8", "surrogatepass"), source)
+        self._text = text
+
+    @classmethod
+    def from_json(cls, text: str, source: str = "the text") -> Brdf:
+        """The model in the text of a model file (docs/file-formats.md); errors call it `source`."""
+        if not isinstance(text, str):
+            raise Error("the text of a model file must be a str")
+        brdf = cls.__new__(cls)
+        brdf._set(text, source)
+        return brdf
+
+    def to_json(self) -> str:
+        """The text of its model file."""
+        return self._text
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a model file, which `load` and the program read; whole, or not at all."""
+        write_text(path, self._text)
+
+    # What it evaluates.
+
+    def eval(self, wi: Any, wo: Any, *, components: bool = False) -> Floats:
+        """The BRDF f [1/sr], without a cosine.
+
+        Args:
+            wi: directions (..., 3).
+            wo: directions (..., 3).
+            components: return the parts, of which f is the sum.
+
+        Returns:
+            (..., 3) red, green, blue; with `components` (..., 1 + lobes, 3), the diffuse term
+            first. f is 0 where the sum of the parts is below 0, as splines through G may make it.
+        """
+        wi, wo, shape = _pair(wi, wo)
+        if not components:
+            out = np.empty((_count(shape), 3), wi.dtype)
+            self._material.eval(wi, wo, out, False)
+            return out.reshape(*shape, 3)
+        width = 1 + self.lobes
+        out = np.empty((_count(shape), width * 3), wi.dtype)
+        self._material.eval_components(wi, wo, out)
+        return out.reshape(*shape, width, 3)
+
+    def eval_cos(self, wi: Any, wo: Any) -> Floats:
+        """f cos(theta_o) [1/sr], as renderers ask for it: (..., 3)."""
+        wi, wo, shape = _pair(wi, wo)
+        out = np.empty((_count(shape), 3), wi.dtype)
+        self._material.eval(wi, wo, out, True)
+        return out.reshape(*shape, 3)
+
+    def pdf(self, wi: Any, wo: Any) -> Floats:
+        """The density [1/sr] with which ``sample(wi, u)`` draws wo: (...)."""
+        wi, wo, shape = _pair(wi, wo)
+        out = np.empty((_count(shape), 1), wi.dtype)
+        self._material.pdf(wi, wo, out)
+        return out.reshape(shape)
+
+    def sample(self, wi: Any, u: Any) -> Sample:
+        """Draws directions wo for given wi.
+
+        Args:
+            wi: directions (..., 3).
+            u: two numbers from 0 to 1 for each, (..., 2). Half vectors are drawn from what the
+                lobes reflect at this wi, the diffuse term by a cosine (docs/rendering.md).
+
+        Returns:
+            wo (..., 3), pdf [1/sr] (...) and weight = f cos(theta_o) / pdf (..., 3). The latter
+            two are 0 where wi is below the surface and, rarely, by rounding at the horizon.
+        """
+        wi, u = of_one_precision(wi=wi, u=u)
+        check_width(wi, "wi", 3, "directions")
+        check_width(u, "u", 2, "pairs of random numbers")
+        shape = common_shape(wi, u)
+        out = np.empty((_count(shape), 7), wi.dtype)
+        self._material.sample(rows(wi, shape), rows(u, shape), out)
+        out = out.reshape(*shape, 7)
+        return Sample(out[..., :3], out[..., 3], out[..., 4:])
+
+    def albedo(self, wi: Any) -> Floats:
+        """The share of the light from wi that is reflected, (..., 3).
+
+        From the tables that `sample` draws by: within 3 % of itself up to 75 degrees from the
+        normal, 6 % up to 85.
+        """
+        (wi,) = of_one_precision(wi=wi)
+        check_width(wi, "wi", 3, "directions")
+        shape = wi.shape[:-1]
+        out = np.empty((_count(shape), 3), wi.dtype)
+        self._material.albedo(_all_rows(wi, shape), out)
+        return out.reshape(*shape, 3)
+
+    # What it is made of.
+
+    @property
+    def lobes(self) -> int:
+        """How many specular lobes there are."""
+        return self._material.lobes
+
+    @property
+    def anisotropic(self) -> bool:
+        """Whether f changes when the material is turned about its normal."""
+        return self._material.anisotropic
+
+    @property
+    def stretch(self) -> list[tuple[float, float]]:
+        """The exponents (along, across) of each lobe; all 0 without a stretch."""
+        return self._material.stretch
+
+    @property
+    def d(self) -> Table:
+        """The diffuse term [1/sr]: (channel)."""
+        return _frozen(Table(self._material.d, ("channel",), {"channel": CHANNELS}))
+
+    @property
+    def s(self) -> Table:
+        """The specular weights: (lobe, channel)."""
+        coords = {"lobe": np.arange(self.lobes), "channel": CHANNELS}
+        return _frozen(Table(self._material.s, ("lobe", "channel"), coords))
+
+    @property
+    def D(self) -> Table:
+        """The distribution of normals: (lobe, theta_h), or of anisotropic models (lobe, theta_h, phi_h)."""
+        return self._table("D")
+
+    @property
+    def F(self) -> Table:
+        """The Fresnel factor: (channel, theta_d)."""
+        return self._table("F")
+
+    @property
+    def G(self) -> Table:
+        """Shadowing: (lobe, theta), or of anisotropic models (lobe, theta, phi)."""
+        return self._table("G")
+
+    def unobserved(self, factor: Literal["D", "F", "G"]) -> NDArray[np.bool_]:
+        """Which entries of a table no sample of the fit has touched, in the table's shape."""
+        if factor not in _AXIS:
+            raise Error(f"there is no factor {factor!r}; there are D, F and G")
+        marks: NDArray[np.bool_] = self._material.unobserved(factor).astype(bool)
+        return marks.reshape(self._table(factor).shape)
+
+    @property
+    def fit(self) -> dict[str, Any]:
+        """How the model came about, as its file says; empty of one that was made of arrays."""
+        fit = json.loads(self._text).get("fit", {})
+        return fit if isinstance(fit, dict) else {}
+
+    def replace(
+        self,
+        *,
+        d: ArrayLike | None = None,
+        s: ArrayLike | None = None,
+        D: ArrayLike | None = None,
+        F: ArrayLike | None = None,
+        G: ArrayLike | None = None,
+        stretch: Any = None,
+    ) -> Brdf:
+        """The same model with some of its parts replaced by arrays of the same shape."""
+        return Brdf(
+            self.d if d is None else d,
+            self.s if s is None else s,
+            self.D if D is None else D,
+            self.F if F is None else F,
+            self.G if G is None else G,
+            like=self,
+            stretch=stretch,
+        )
+
+    def _table(self, name: str) -> Table:
+        axis = self._material.axis(name)
+        dims: list[str] = []
+        shape: list[int] = []
+        coords: dict[str, Any] = {}
+        if axis["per_lobe"] or self.lobes == 0:
+            dims.append("lobe")
+            shape.append(self.lobes)
+            coords["lobe"] = np.arange(self.lobes)
+        if axis["per_channel"]:
+            dims.append("channel")
+            shape.append(3)
+            coords["channel"] = CHANNELS
+        if axis["rule"] == "polar":
+            theta, phi = _POLAR[name]
+            dims += [theta, phi]
+            shape += [len(axis["theta_nodes"]), axis["phi_nodes"]]
+            coords[theta] = np.radians(axis["theta_nodes"])
+            coords[phi] = 2 * np.pi * np.arange(axis["phi_nodes"]) / axis["phi_nodes"]
+        else:
+            dims.append(_AXIS[name])
+            shape.append(axis["size"])
+            coords[_AXIS[name]] = np.array(axis["theta"])
+        values = self._material.tables(name).reshape(shape)
+        return _frozen(Table(values, tuple(dims), coords, axis))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other is a model of the same form and the same numbers."""
+        if not isinstance(other, Brdf):
+            return NotImplemented
+        if self.lobes != other.lobes or self.stretch != other.stretch:
+            return False
+        if not (np.array_equal(self.d, other.d) and np.array_equal(self.s, other.s)):
+            return False
+        return all(
+            self._material.axis(name) == other._material.axis(name)
+            and np.array_equal(self._material.tables(name), other._material.tables(name))
+            for name in "DFG"
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """What it is, in short."""
+        kind = "anisotropic" if self.anisotropic else "isotropic"
+        return f"<trilobe.Brdf: {kind}, {self.lobes} lobes>"
+
+    def __reduce__(self) -> Any:
+        """Pickles and copies by the text of the model file."""
+        return Brdf.from_json, (self._text,)
+
+
+def load(path: str | os.PathLike[str]) -> Brdf:
+    """Reads a model file, or the model.json of a folder that `trilobe fit` has written.
+
+    Raises:
+        Error: if there is no such file, or it is no model.
+    """
+    name = _path_of(path)
+    if name.is_dir():
+        name = name / "model.json"
+    try:
+        content = name.read_bytes()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise Error(f"cannot read {_printable(name)}: {reason}") from None
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise Error(f"{_printable(name)} is no model file: it is not UTF-8 ({error.reason})") from None
+    return Brdf.from_json(text, str(name))
+
+
+def _path_of(path: Any) -> Path:
+    try:
+        return Path(os.fsdecode(path))
+    except TypeError:
+        raise Error(f"a path must be a str or a path, not {type(path).__name__}") from None
+
+
+def _printable(path: Path) -> str:
+    return repr(str(path).encode("utf-8", "replace").decode("utf-8"))
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Writes a file beside its place and moves it there."""
+    name = _path_of(path)
+    temporary = None
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="utf-8", dir=name.parent, prefix=".trilobe-", delete=False
+        ) as file:
+            temporary = file.name
+            file.write(text)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(temporary, 0o666 & ~umask)
+        os.replace(temporary, name)
+    except (OSError, ValueError) as error:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+        reason = getattr(error, "strerror", None) or str(error)
+        raise Error(f"cannot write {_printable(name)}: {reason}") from None
+
+
+def _count(shape: tuple[int, ...]) -> int:
+    return int(np.prod(shape, dtype=np.int64))
+
+
+def _pair(wi: Any, wo: Any) -> tuple[Floats, Floats, tuple[int, ...]]:
+    wi, wo = of_one_precision(wi=wi, wo=wo)
+    check_width(wi, "wi", 3, "directions")
+    check_width(wo, "wo", 3, "directions")
+    shape = common_shape(wi, wo)
+    return rows(wi, shape), rows(wo, shape), shape
+
+
+def _all_rows(array: Floats, shape: tuple[int, ...]) -> Floats:
+    return np.ascontiguousarray(array.reshape(_count(shape), array.shape[-1]))
+
+
+def _frozen(table: Table) -> Table:
+    table.flags.writeable = False
+    return table
+
+
+# From arrays to the text of a model file, which C++ checks and reads.
+
+
+def _text_of(
+    d: ArrayLike,
+    s: ArrayLike,
+    tables: dict[str, ArrayLike],
+    like: Brdf | None,
+    stretch: Any,
+) -> str:
+    weights = as_array(s, "s").astype(np.float64)
+    if weights.ndim != 2 or weights.shape[1] != 3:
+        raise Error(f"s has the shape {weights.shape}, and must have (lobes, 3)")
+    lobes = len(weights)
+    diffuse = as_array(d, "d").astype(np.float64)
+    if diffuse.shape not in ((), (1,), (3,)):
+        raise Error(f"d has the shape {diffuse.shape}, and must have (3,)")
+    json_of: dict[str, Any] = {
+        "format": "trilobe-model",
+        "version": 1,
+        "kind": "isotropic",
+        "lobes": lobes,
+        "sharing": {},
+    }
+    axes = {name: _axis_of(name, values, like, lobes) for name, values in tables.items()}
+    for name, (_, axis) in axes.items():
+        json_of["sharing"][name] = {key: axis[key] for key in ("per_lobe", "per_channel")}
+    polar = {name: axis for name, (_, axis) in axes.items() if axis["rule"] == "polar"}
+    if polar:
+        if set(polar) != {"D", "G"}:
+            raise Error("of an anisotropic model both D and G are over theta and phi")
+        json_of["kind"] = "anisotropic"
+        json_of["theta_nodes"] = {name: list(axis["theta_nodes"]) for name, axis in polar.items()}
+        json_of["phi_nodes"] = {
+            name: [360.0 * k / axis["phi_nodes"] for k in range(axis["phi_nodes"])]
+            for name, axis in polar.items()
+        }
+    pairs = _stretch_of(stretch, like, lobes)
+    if pairs is not None:
+        json_of["version"] = 2
+        json_of["stretch"] = pairs
+    numbers = {"d": np.broadcast_to(diffuse, (3,)), "s": weights}
+    numbers.update({name: values for name, (values, _) in axes.items()})
+    for name, values in numbers.items():
+        if not (np.isfinite(values).all() and (values >= 0).all()):
+            wrong = np.argwhere(~(np.isfinite(values) & (values >= 0)))[0]
+            place = ", ".join(str(k) for k in wrong)
+            raise Error(
+                f"{name}[{place}] is {values[tuple(wrong)]}; all entries of a model must be finite and >= 0"
+            )
+        json_of[name] = values.tolist()
+    return json.dumps(json_of)
+
+
+def _axis_of(
+    name: str, given: ArrayLike, like: Brdf | None, lobes: int
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """The values in the shape that a file has, and the axis."""
+    array = as_array(given, name).astype(np.float64)
+    if isinstance(given, Table) and given.rules:
+        axis = given.rules
+    elif isinstance(given, Table) and given.dims:
+        axis = _axis_by_names(name, given)
+    elif like is not None:
+        axis = like._material.axis(name)
+    else:
+        axis = {
+            "rule": "",
+            "size": array.shape[-1] if array.ndim > 0 else 0,
+            "per_lobe": name != "F",
+            "per_channel": name == "F",
+        }
+    if lobes == 0:  # of whose tables a file has none
+        return np.empty(0), axis
+    shape: tuple[int, ...] = (lobes,) if axis["per_lobe"] else ()
+    if axis["per_channel"]:
+        shape += (3,)
+    if axis["rule"] == "polar":
+        shape += (len(axis["theta_nodes"]), axis["phi_nodes"])
+    else:
+        shape += (axis["size"],)
+    if array.shape != shape:
+        raise Error(f"{name} has the shape {array.shape}, and must have {shape}")
+    return array, axis
+
+
+def _axis_by_names(name: str, table: Table) -> dict[str, Any]:
+    """The axis of a table that somebody else made, by the names of its axes."""
+    *shared, last = table.dims
+    axis: dict[str, Any] = {"rule": "", "size": table.shape[-1]}
+    if name in _POLAR and tuple(table.dims[-2:]) == _POLAR[name]:
+        *shared, theta, _ = table.dims
+        if theta not in table.coords:
+            raise Error(f"{name} needs coords[{theta!r}], where its rows stand in radians")
+        axis["rule"] = "polar"
+        # To the nearest of the numbers that people write, as 15 degrees.
+        axis["theta_nodes"] = np.degrees(as_array(table.coords[theta], theta)).round(12).tolist()
+        axis["phi_nodes"] = table.shape[-1]
+    elif last != _AXIS[name]:
+        raise Error(f"{name} has the axes {table.dims}, and the last must be {_AXIS[name]!r}")
+    if shared not in (["lobe"], ["channel"], ["lobe", "channel"], []):
+        raise Error(f"{name} has the axes {table.dims}; begin with 'lobe', 'channel', or both")
+    axis["per_lobe"], axis["per_channel"] = "lobe" in shared, "channel" in shared
+    return axis
+
+
+def _stretch_of(stretch: Any, like: Brdf | None, lobes: int) -> Any:
+    if stretch is None:
+        pairs = like.stretch if like is not None and like.lobes == lobes else []
+        if not any(x != 0 for pair in pairs for x in pair):
+            return None
+        stretch = pairs if len(set(pairs)) > 1 else pairs[0]
+    array = as_array(stretch, "stretch").astype(np.float64)
+    if array.shape not in ((2,), (lobes, 2)):
+        raise Error(f"stretch has the shape {array.shape}, and must have (2,) or ({lobes}, 2)")
+    if not np.isfinite(array).all():
+        raise Error("stretch must be finite")
+    pairs = [{"along": along, "across": across} for along, across in array.reshape(-1, 2).tolist()]
+    if not array.any():
+        return None
+    return pairs[0] if array.ndim == 1 else pairs

@@ -1,0 +1,231 @@
+"""Models over arrays: values, sampling, tables, files, and what is told of bad arguments."""
+
+import copy
+import pickle
+import threading
+
+import numpy as np
+import pytest
+
+import trilobe
+
+from models import anisotropic, directions, independent, isotropic, lambertian, literal, stretched
+
+ALL = [isotropic, anisotropic, independent, stretched, lambertian]
+
+
+@pytest.mark.parametrize("make", ALL)
+def test_equals_the_formula(make):
+    brdf = make()
+    wi, wo = directions(300, 1), directions(300, 2)
+    wanted = literal(brdf, wi, wo)
+    np.testing.assert_allclose(brdf.eval(wi, wo), wanted, rtol=1e-8, atol=1e-12)
+    single = brdf.eval(wi.astype(np.float32), wo.astype(np.float32))
+    assert single.dtype == np.float32
+    np.testing.assert_allclose(single, wanted, rtol=5e-3, atol=1e-4)
+
+
+@pytest.mark.parametrize("make", ALL)
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_its_parts_agree(make, dtype):
+    brdf = make()
+    wi, wo = directions(200, 3).astype(dtype), directions(200, 4).astype(dtype)
+    close = {"rtol": 2e-3 if dtype == np.float32 else 1e-9, "atol": 1e-6}
+    f = brdf.eval(wi, wo)
+    parts = brdf.eval(wi, wo, components=True)
+    assert parts.shape == (200, 1 + brdf.lobes, 3)
+    np.testing.assert_allclose(np.maximum(parts.sum(axis=-2), 0), f, **close)
+    np.testing.assert_allclose(brdf.eval_cos(wi, wo), f * wo[:, 2:], **close)
+    np.testing.assert_allclose(brdf.eval(wo, wi), f, **close)
+    drawn = brdf.sample(wi, np.random.default_rng(5).random((200, 2)).astype(dtype))
+    there = drawn.pdf > 0
+    assert there.mean() > 0.98
+    np.testing.assert_allclose(brdf.pdf(wi, drawn.wo)[there], drawn.pdf[there], rtol=0.02)
+    np.testing.assert_allclose(
+        (brdf.eval_cos(wi, drawn.wo) / drawn.pdf[:, None])[there], drawn.weight[there], rtol=0.02
+    )
+
+
+def test_albedo_is_the_mean_weight():
+    brdf = isotropic()
+    for cosine in (1, 0.5):
+        wi = [np.sqrt(1 - cosine**2), 0, cosine]
+        weight = brdf.sample(wi, np.random.default_rng(6).random((40000, 2))).weight
+        np.testing.assert_allclose(weight.mean(axis=0), brdf.albedo(wi), rtol=0.03)
+
+
+def test_broadcasts_like_numpy():
+    brdf = isotropic()
+    wi, wo = directions(4, 7).reshape(4, 1, 3), directions(5, 8).reshape(1, 5, 3)
+    f = brdf.eval(wi, wo)
+    assert f.shape == (4, 5, 3)
+    np.testing.assert_array_equal(f[2, 3], brdf.eval(wi[2, 0], wo[0, 3]))
+    assert brdf.eval([0, 0, 1], wo).shape == (1, 5, 3)
+    assert brdf.pdf([0, 0, 1], [0, 0, 1]).shape == ()
+    assert brdf.eval(np.empty((0, 3)), wo[0, :1]).shape == (0, 3)
+    assert brdf.sample(wi, np.full((1, 5, 2), 0.5)).weight.shape == (4, 5, 3)
+    assert brdf.albedo(wi).shape == (4, 1, 3)
+
+
+def test_takes_arrays_as_they_lie():
+    brdf = isotropic()
+    wi, wo = directions(64, 9), directions(64, 10)
+    f = brdf.eval(wi, wo)
+    frozen = wi.copy()
+    frozen.flags.writeable = False
+    np.testing.assert_array_equal(brdf.eval(frozen, wo), f)
+    np.testing.assert_array_equal(brdf.eval(np.asfortranarray(wi), wo), f)
+    np.testing.assert_array_equal(brdf.eval(wi[::-2], wo[::-2]), f[::-2])
+    np.testing.assert_array_equal(brdf.eval(wi.astype(">f8"), wo.tolist()), f)
+    # Of half precision, and integers.
+    assert brdf.eval(wi.astype(np.float16), wo.astype(np.float32)).dtype == np.float32
+    np.testing.assert_array_equal(brdf.eval(np.array([0, 0, 1]), [0, 0, 1]),
+                                  brdf.eval([0.0, 0, 1], [0.0, 0, 1]))
+
+
+class Exported:
+    """Something of another library, which has no more than DLPack."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __dlpack__(self, **options):
+        return self._array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self._array.__dlpack_device__()
+
+
+class Elsewhere(Exported):
+    """In the memory of a GPU."""
+
+    def __dlpack__(self, **options):
+        raise BufferError("cannot export a tensor of cuda:0 to the CPU")
+
+    def __dlpack_device__(self):
+        return (2, 0)
+
+
+def test_takes_dlpack():
+    brdf = isotropic()
+    wi, wo = directions(8, 11), directions(8, 12)
+    np.testing.assert_array_equal(brdf.eval(Exported(wi), Exported(wo)), brdf.eval(wi, wo))
+    with pytest.raises(trilobe.Error, match="wo cannot be read as an array in the CPU's memory"):
+        brdf.eval(wi, Elsewhere(wo))
+
+
+def test_is_zero_where_there_is_no_light():
+    brdf = isotropic()
+    up = np.array([0.0, 0, 1])
+    none = [[0, 0, -1], [0, 0, 0], [1, 0, 0], [np.nan, 0, 1], [np.inf, 0, 1], [0, 0, -np.inf]]
+    for w in none:
+        for dtype in (np.float32, np.float64):
+            w = np.array(w, dtype)
+            assert (brdf.eval(w, up.astype(dtype)) == 0).all()
+            assert (brdf.eval(up.astype(dtype), w, components=True) == 0).all()
+            assert brdf.pdf(w, up.astype(dtype)) == 0
+            assert (brdf.albedo(w) == 0).all()
+            drawn = brdf.sample(w, [0.3, 0.4])
+            assert drawn.pdf == 0 and (drawn.weight == 0).all()
+
+
+def test_directions_need_not_be_unit_vectors():
+    brdf = isotropic()
+    wi, wo = directions(20, 13), directions(20, 14)
+    f = brdf.eval(wi, wo)
+    for scale in (3, 1e-200, 1e200):
+        np.testing.assert_allclose(brdf.eval(wi * scale, wo), f, rtol=1e-9)
+
+
+@pytest.mark.parametrize("make", ALL)
+def test_goes_through_a_file(make, tmp_path):
+    brdf = make()
+    path = tmp_path / "model.json"
+    brdf.save(path)
+    for other in (trilobe.load(path), trilobe.load(tmp_path), trilobe.load(str(path)),
+                  copy.deepcopy(brdf), pickle.loads(pickle.dumps(brdf)), brdf.replace()):
+        assert other == brdf
+    assert [name.name for name in tmp_path.iterdir()] == ["model.json"]
+
+
+def test_tables_know_their_axes():
+    brdf = anisotropic()
+    assert brdf.D.dims == ("lobe", "theta_h", "phi_h")
+    assert brdf.F.dims == ("channel", "theta_d")
+    np.testing.assert_allclose(np.degrees(brdf.G.coords["theta"]), [0, 20, 50, 80])
+    np.testing.assert_allclose(np.degrees(isotropic().G.coords["theta"][:2]), [0.5, 1.5])
+    assert (brdf.D * 2).dims == brdf.D.dims
+    assert brdf.D[0].dims == ()
+    with pytest.raises(ValueError, match="read-only"):
+        brdf.D[0] = 1
+    assert pickle.loads(pickle.dumps(brdf.D)).dims == brdf.D.dims
+
+
+def test_is_edited_by_replacing():
+    brdf = isotropic()
+    wi, wo = directions(50, 15), directions(50, 16)
+    twice = brdf.replace(D=brdf.D * 2, d=np.asarray(brdf.d) * 2)
+    np.testing.assert_allclose(twice.eval(wi, wo), 2 * brdf.eval(wi, wo), rtol=1e-9)
+    back = trilobe.Brdf(brdf.d, brdf.s, brdf.D, brdf.F, brdf.G)
+    assert back == brdf
+    fewer = trilobe.Brdf(brdf.d, brdf.s[:1], brdf.D[:1], brdf.F, brdf.G[:1])
+    np.testing.assert_allclose(fewer.eval(wi, wo, components=True)[:, 1],
+                               brdf.eval(wi, wo, components=True)[:, 1])
+
+
+BAD = [
+    (lambda b: b.eval([0, 1], [0, 0, 1]), r"wi has the shape \(2,\); directions are an array of the"),
+    (lambda b: b.eval(1, [0, 0, 1]), r"wi has the shape \(\)"),
+    (lambda b: b.eval(np.ones((2, 3)), np.ones((3, 3))), "do not go together"),
+    (lambda b: b.eval("up", [0, 0, 1]), "wi has the dtype <U2"),
+    (lambda b: b.eval([0, 0, 1j], [0, 0, 1]), "wi has the dtype complex128"),
+    (lambda b: b.eval(None, [0, 0, 1]), "wi has the dtype object"),
+    (lambda b: b.eval([[0, 0, 1], [0]], [0, 0, 1]), "wi cannot be read as an array"),
+    (lambda b: b.sample([0, 0, 1], [0.5]), r"u has the shape \(1,\)"),
+    (lambda b: b.replace(D=b.D[:, :9]), r"D has the shape \(3, 9\), and must have \(3, 90\)"),
+    (lambda b: b.replace(D=-np.asarray(b.D)), r"D\[0, 0\] is -[0-9.e-]+; all entries"),
+    (lambda b: b.replace(s=np.asarray(b.s) * np.nan), r"s\[0, 0\] is nan"),
+    (lambda b: b.replace(s=[1, 2, 3]), r"s has the shape \(3,\), and must have \(lobes, 3\)"),
+    (lambda b: b.replace(d=np.full(3, np.inf)), r"d\[0\] is inf"),
+    (lambda b: b.replace(stretch=(1, 2, 3)), "stretch has the shape"),
+    (lambda b: b.replace(stretch=(1, 20)), "stretch"),
+    (lambda b: b.unobserved("H"), "there is no factor 'H'"),
+    (lambda b: b.save("/no/such/folder/x.json"), "cannot write '/no/such/folder/x.json'"),
+    (lambda b: b.save(7), "a path must be a str"),
+    (lambda b: trilobe.load("/no/such/model.json"), "cannot read '/no/such/model.json': No such file"),
+    (lambda b: trilobe.load(b"\0"), "cannot read"),
+    (lambda b: trilobe.load(None), "a path must be"),
+    (lambda b: trilobe.Brdf.from_json("{}", "x.json"), "x.json"),
+    (lambda b: trilobe.Brdf.from_json("\ud800"), "the text"),
+    (lambda b: trilobe.Brdf.from_json(b.to_json()[:99]), "the text"),
+    (lambda b: trilobe.Brdf(0, [[1, 1, 1]] * 9, *([np.ones((9, 90))] * 3)), r"must have \(3, 90\)"),
+    (lambda b: trilobe.Brdf(0, [[1, 1, 1]] * 9, np.ones((9, 90)), np.ones((3, 90)),
+                            np.ones((9, 90))), "lobes"),
+    (lambda b: trilobe.Brdf(0, [[1, 1, 1]], [[1, 1]], np.ones((3, 90)), np.ones((1, 90))), "D"),
+]
+
+
+@pytest.mark.parametrize(("ask", "told"), BAD)
+def test_says_in_a_line_what_is_wrong(ask, told):
+    with pytest.raises(trilobe.Error, match=told) as caught:
+        ask(isotropic())
+    assert "\n" not in str(caught.value)
+    assert isinstance(caught.value, ValueError)
+
+
+def test_many_threads_may_use_one_model():
+    brdf = anisotropic()
+    wi, wo = directions(2000, 17), directions(2000, 18)
+    results = [None] * 8
+
+    def work(k):
+        results[k] = brdf.eval(wi, wo), brdf.sample(wi, np.full(2, 0.3)).weight
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for f, weight in results:
+        np.testing.assert_array_equal(f, results[0][0])
+        np.testing.assert_array_equal(weight, results[0][1])

@@ -1,0 +1,127 @@
+"""No argument whatever ends the interpreter: each call returns, or raises Error in one line.
+
+TRILOBE_FUZZ_CALLS says how many calls of each function there are; CI makes few.
+"""
+
+import os
+
+import numpy as np
+import pytest
+
+import trilobe
+
+from models import anisotropic, directions, independent, isotropic, lambertian, stretched
+
+hypothesis = pytest.importorskip("hypothesis")
+st = pytest.importorskip("hypothesis.strategies")
+hnp = pytest.importorskip("hypothesis.extra.numpy")
+
+CALLS = int(os.environ.get("TRILOBE_FUZZ_CALLS", "60"))
+settings = hypothesis.settings(
+    max_examples=CALLS, deadline=None, database=None,
+    suppress_health_check=list(hypothesis.HealthCheck),
+)
+MODELS = [make() for make in (isotropic, anisotropic, independent, stretched, lambertian)]
+
+numbers = st.one_of(
+    st.floats(), st.integers(), st.booleans(), st.complex_numbers(), st.text(max_size=5),
+    st.none(), st.binary(max_size=5), st.dates(),
+)
+dtypes = st.sampled_from(["f2", "f4", "f8", ">f8", "i1", "i8", "u2", "?", "c8", "S3", "O"])
+
+
+@st.composite
+def arrays(draw):
+    """Of any dtype and shape, in any order in memory, most of them nearly right."""
+    nearly = st.sampled_from([(3,), (1, 3), (4, 3), (2, 4, 3), (0, 3), (2,), (4, 2), (90,), (3, 90)])
+    shape = draw(st.one_of(nearly, hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4)))
+    dtype = draw(st.one_of(st.sampled_from(["f4", "f8"]), dtypes))
+    if draw(st.booleans()) and dtype in ("f4", "f8"):
+        array = np.random.default_rng(draw(st.integers(0, 99))).normal(size=shape).astype(dtype)
+    else:
+        with np.errstate(all="ignore"):
+            array = draw(hnp.arrays(dtype, shape) if dtype != "O"
+                         else st.just(np.full(shape, None, object)))
+    how = draw(st.integers(0, 5))
+    if how == 1:
+        array = np.asfortranarray(array)
+    elif how == 2:
+        array.flags.writeable = False
+    elif how == 3 and array.ndim > 0:
+        array = array[::-1]
+    elif how == 4:
+        array = np.broadcast_to(array, (2, *array.shape))
+    elif how == 5:
+        array = np.repeat(array, 2, axis=-1)[..., ::2] if array.ndim > 0 else array
+    return array
+
+
+anything = st.one_of(arrays(), arrays(), arrays(), numbers, st.lists(numbers, max_size=4),
+                     st.lists(st.lists(st.floats(), max_size=3), max_size=3))
+models = st.sampled_from(MODELS)
+
+
+def holds(call):
+    """Calls, and looks at what is raised or returned."""
+    try:
+        result = call()
+    except trilobe.Error as error:
+        assert str(error) and "\n" not in str(error)
+        return
+    for array in result if isinstance(result, tuple) else (result,):
+        if isinstance(array, np.ndarray):
+            assert array.dtype in (np.float32, np.float64)
+            assert not np.isnan(array).any()
+
+
+@settings
+@hypothesis.given(models, anything, anything, st.booleans())
+def test_evaluates_anything(brdf, wi, wo, components):
+    holds(lambda: brdf.eval(wi, wo, components=components))
+    holds(lambda: brdf.eval_cos(wi, wo))
+    holds(lambda: brdf.pdf(wi, wo))
+
+
+@settings
+@hypothesis.given(models, anything, anything)
+def test_samples_anything(brdf, wi, u):
+    holds(lambda: brdf.sample(wi, u))
+    holds(lambda: brdf.albedo(wi))
+
+
+@settings
+@hypothesis.given(models, st.dictionaries(
+    st.sampled_from(["d", "s", "D", "F", "G", "stretch", "like"]), anything, max_size=3))
+def test_edits_by_anything(brdf, parts):
+    def edit():
+        if "like" in parts:
+            whole = {name: getattr(brdf, name) for name in "dsDFG"}
+            return trilobe.Brdf(**{**whole, **parts})
+        return brdf.replace(**parts)
+
+    try:
+        edited = edit()
+    except trilobe.Error as error:
+        assert "\n" not in str(error)
+        return
+    holds(lambda: edited.eval(directions(3, 1), directions(3, 2)))
+
+
+@settings
+@hypothesis.given(models, st.integers(0, 10**6), st.integers(0, 127), st.one_of(
+    st.none(), st.binary(max_size=40), st.text(max_size=40)))
+def test_reads_anything(brdf, place, letter, other):
+    text = brdf.to_json()
+    place %= len(text)
+    changed = text[:place] + chr(letter) + text[place + 1:] if other is None else other
+    try:
+        trilobe.Brdf.from_json(changed).albedo([0, 0, 1])
+    except trilobe.Error as error:
+        assert "\n" not in str(error)
+
+
+@settings
+@hypothesis.given(st.one_of(numbers, st.lists(numbers, max_size=2)))
+def test_loads_anything(path):
+    with pytest.raises(trilobe.Error):
+        trilobe.load(path)
