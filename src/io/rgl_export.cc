@@ -8,6 +8,7 @@
 #include <span>
 #include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "trilobe/base/error.h"
@@ -15,6 +16,7 @@
 #include "trilobe/io/bilinear_warp.h"
 #include "trilobe/io/counter_random.h"
 #include "trilobe/io/rgl_file.h"
+#include "trilobe/io/smooth_spectrum.h"
 #include "trilobe/io/tensor_file.h"
 
 namespace trilobe {
@@ -26,6 +28,11 @@ struct Size {
 constexpr Size kIsotropic[] = {{8, 1, 32},  {16, 1, 32}, {16, 1, 64},
                                {32, 1, 64}, {32, 1, 96}, {48, 1, 128}};
 constexpr Size kAnisotropic[] = {{8, 9, 32}, {8, 17, 32}, {12, 25, 32}, {12, 37, 48}};
+constexpr int kUsual = 4;  // so many first ones are of usual size
+
+// Of `spectra` [nm]. Between them renderers take them as linear, and beyond them as constant.
+constexpr double kFirstWavelength = 400, kWavelengthStep = 20;
+constexpr int kWavelengths = 16;
 
 // Nodes of ndf, sigma and vndf over u = sqrt(2 theta / pi): those of a D of 90 bins are the odd
 // ones of the first, and it is linear between them as these tables are.
@@ -42,14 +49,23 @@ Direction Reflected(const Direction& wi, const Direction& m) {
 //   rho cos theta_o = rgb(x) ndf(m) / (4 sigma(wi)),  m the half vector, x where the warp sends m.
 class Tables {
  public:
-  Tables(const FactorModel& model, double max_theta)
-      : model_(model), bsdf_(model), least_cosine_(std::cos(std::min(max_theta, kGrazingTheta))) {
+  Tables(const FactorModel& model, PairBrdf value, double max_theta)
+      : model_(model),
+        value_(std::move(value)),
+        bsdf_(model),
+        least_cosine_(std::cos(std::min(max_theta, kGrazingTheta))) {
     MakeNdf();
     MakeSigma();
     MakeVndf();
   }
 
-  std::string Bytes(const Size& size, const std::string& description) const {
+  // The fields of a file, but for those of colour; theta_i stands at 90 t^0.6 degrees, t from 0 to
+  // 1.
+  struct File {
+    TensorFileWriter writer;
+    std::vector<float> rgb;  // [phi_i][theta_i][channel][n][n]
+  };
+  File Fields(const Size& size, const std::string& description) const {
     const auto floats = [](const std::vector<double>& values) {
       return std::vector<float>(values.begin(), values.end());
     };
@@ -59,22 +75,22 @@ class Tables {
       theta_i.push_back(kPi / 2 * std::pow(static_cast<double>(k) / (t - 1), 0.6));
     }
     for (int k = 0; k < p; ++k) phi_i.push_back(p == 1 ? 0 : -kPi + 2 * kPi * k / (p - 1));
-    const Values values = ValuesAt(phi_i, theta_i, n);
-    TensorFileWriter file;
-    file.AddBytes("description", description);
-    file.AddBytes("jacobian", std::string_view("\1", 1));
-    file.AddFloat32("phi_i", {p}, floats(phi_i));
-    file.AddFloat32("theta_i", {t}, floats(theta_i));
-    file.AddFloat32("ndf", {ndf_.rows, ndf_.columns}, floats(ndf_.values));
-    file.AddFloat32("sigma", {sigma_.rows, sigma_.columns}, floats(sigma_.values));
+    Values values = ValuesAt(phi_i, theta_i, n);
+    File file;
+    file.rgb = std::move(values.rgb);
+    file.writer.AddBytes("description", description);
+    file.writer.AddBytes("jacobian", std::string_view("\1", 1));
+    file.writer.AddFloat32("phi_i", {p}, floats(phi_i));
+    file.writer.AddFloat32("theta_i", {t}, floats(theta_i));
+    file.writer.AddFloat32("ndf", {ndf_.rows, ndf_.columns}, floats(ndf_.values));
+    file.writer.AddFloat32("sigma", {sigma_.rows, sigma_.columns}, floats(sigma_.values));
     std::vector<float> vndf;
     for (int slice = 0; slice < p * t; ++slice) {
       vndf.insert(vndf.end(), vndf_.values.begin(), vndf_.values.end());
     }
-    file.AddFloat32("vndf", {p, t, vndf_.rows, vndf_.columns}, vndf);
-    file.AddFloat32("luminance", {p, t, n, n}, values.luminance);
-    file.AddFloat32("rgb", {p, t, kChannels, n, n}, values.rgb);
-    return file.Bytes();
+    file.writer.AddFloat32("vndf", {p, t, vndf_.rows, vndf_.columns}, vndf);
+    file.writer.AddFloat32("luminance", {p, t, n, n}, values.luminance);
+    return file;
   }
 
  private:
@@ -208,7 +224,7 @@ class Tables {
           const double length = std::sqrt(Dot(wo, wo));
           for (double& a : wo) a /= length;
           const double ndf = NdfAt(u.x, phi_m);
-          const auto f = bsdf_.Value(wi, wo);
+          const Rgb f = value_({wi, wo});
           double mean = 0;
           for (int c = 0; c < kChannels; ++c) {
             const double value = f[c] * wo[2] * 4 * sigma / ndf;
@@ -236,17 +252,59 @@ class Tables {
   }
 
   const FactorModel& model_;
+  const PairBrdf value_;
   const Bsdf<double> bsdf_;
   const double least_cosine_;  // of what was measured
   BilinearStack ndf_, sigma_, vndf_;
 };
 
-// Relative errors of rho cos theta_o, mean over the channels, ascending.
-std::vector<double> Errors(const FactorModel& model, const std::string& bytes, double max_theta) {
+// [slice][channel][node] of colours to [slice][wavelength][node], and what the colours lose.
+std::vector<float> SpectraOf(const std::vector<float>& rgb, const std::vector<double>& wavelengths,
+                             const Size& size, RglExport* result) {
+  SmoothSpectra spectrum_of(wavelengths);
+  const size_t nodes = static_cast<size_t>(size.n) * size.n;
+  const size_t slices = rgb.size() / (nodes * kChannels);
+  std::vector<float> spectra(slices * wavelengths.size() * nodes);
+  int off = 0;
+  for (size_t slice = 0; slice < slices; ++slice) {
+    const float* from = &rgb[slice * kChannels * nodes];
+    float* to = &spectra[slice * wavelengths.size() * nodes];
+    for (size_t node = 0; node < nodes; ++node) {
+      const auto spectrum = spectrum_of({from[node], from[nodes + node], from[2 * nodes + node]});
+      for (size_t l = 0; l < wavelengths.size(); ++l) {
+        to[l * nodes + node] = static_cast<float>(spectrum[l]);
+      }
+      result->color_error = std::max(result->color_error, spectrum_of.error());
+      if (spectrum_of.error() > 1e-3) ++off;
+    }
+  }
+  result->colors_off = off / static_cast<double>(slices * nodes);
+  return spectra;
+}
+
+RglExport FileOf(const Tables& tables, const Size& size, const std::string& description,
+                 bool spectral) {
+  RglExport result = {
+      .bytes = {}, .theta_i = size.theta_i, .phi_i = size.phi_i, .resolution = size.n};
+  Tables::File file = tables.Fields(size, description);
+  if (spectral) {
+    std::vector<double> wavelengths;
+    for (int l = 0; l < kWavelengths; ++l) {
+      wavelengths.push_back(kFirstWavelength + l * kWavelengthStep);
+    }
+    file.writer.AddFloat32("wavelengths", {kWavelengths}, {wavelengths.begin(), wavelengths.end()});
+    file.writer.AddFloat32("spectra", {size.phi_i, size.theta_i, kWavelengths, size.n, size.n},
+                           SpectraOf(file.rgb, wavelengths, size, &result));
+  } else {
+    file.writer.AddFloat32("rgb", {size.phi_i, size.theta_i, kChannels, size.n, size.n}, file.rgb);
+  }
+  result.bytes = file.writer.Bytes();
+  return result;
+}
+
+std::vector<CompletedMeasurement::Place> PlacesOf(const PairBrdf& brdf, double max_theta) {
   constexpr int kPairs = 20000;
-  const RglBrdf file = RglBrdf::Parse(bytes, "the file to be written");
-  const PreparedModel<double> prepared(model);
-  std::vector<double> errors;
+  std::vector<CompletedMeasurement::Place> places;
   const auto direction = [&](uint64_t k) {
     const double r = std::sqrt(UniformAt(1, 2 * k)), phi = 2 * kPi * UniformAt(1, 2 * k + 1);
     return Direction{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
@@ -254,38 +312,79 @@ std::vector<double> Errors(const FactorModel& model, const std::string& bytes, d
   for (uint64_t k = 0; k < kPairs; ++k) {
     const DirectionPair pair = {direction(2 * k), direction(2 * k + 1)};
     if (std::min(pair.wi[2], pair.wo[2]) < std::cos(max_theta)) continue;
-    const Rgb expected = prepared.Value(pair.wi, pair.wo), is = file.Evaluate(pair);
-    if (Mean(expected) > 0) errors.push_back(RelativeDistance(is, expected));
+    const Rgb expected = brdf(pair);
+    if (Mean(expected) > 0) places.push_back({pair, expected});
+  }
+  return places;
+}
+
+// Relative errors of rho cos theta_o.
+void Judge(const std::vector<CompletedMeasurement::Place>& places, RglExport* result) {
+  const RglBrdf file = RglBrdf::Parse(result->bytes, "the file to be written");
+  std::vector<double> errors;
+  for (const CompletedMeasurement::Place& place : places) {
+    errors.push_back(RelativeDistance(file.Evaluate(place.at), place.measured));
   }
   std::ranges::sort(errors);
-  return errors;
+  result->median_error = errors[errors.size() / 2];
+  result->high_error = errors[errors.size() * 99 / 100];
+}
+
+// The first file that is exact enough, or else of all of them the smallest that is hardly worse
+// than the best.
+RglExport Smallest(const Tables& tables, std::span<const Size> sizes,
+                   const std::vector<CompletedMeasurement::Place>& places, double max_error,
+                   const std::string& description, bool spectral) {
+  if (places.empty()) throw Error("there is no light to write");
+  constexpr double kHardlyWorse = 1.1;
+  std::vector<RglExport> files;
+  for (const Size& size : sizes) {
+    files.push_back(FileOf(tables, size, description, spectral));
+    Judge(places, &files.back());
+    if (files.back().median_error <= max_error) return files.back();
+  }
+  const auto error = [](const RglExport& file) { return file.median_error; };
+  const double best = std::ranges::min_element(files, {}, error)->median_error;
+  return *std::ranges::find_if(
+      files, [&](const RglExport& file) { return file.median_error <= kHardlyWorse * best; });
+}
+
+RglExport Export(const FactorModel& model, const PairBrdf& value,
+                 const std::vector<CompletedMeasurement::Place>& places,
+                 const std::string& description, bool any_error, const RglExportOptions& options) {
+  const bool anisotropic = model.spec().anisotropic();
+  std::span<const Size> sizes =
+      anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
+  if (any_error) sizes = sizes.first(kUsual);
+  const double max_error = options.max_error.value_or(anisotropic ? 0.02 : 0.005);
+  const Tables tables(model, value, options.max_theta);
+  RglExport result = Smallest(tables, sizes, places, max_error, description, options.spectral);
+  if (any_error || result.median_error <= max_error) return result;
+  std::ostringstream message;
+  message << "no file is exact enough: one of " << static_cast<double>(result.bytes.size()) / 1e6
+          << " MB is off by " << 100 * result.median_error << " % in the median, where "
+          << 100 * max_error << " % is asked for; allow a larger error";
+  throw Error(message.str());
 }
 
 }  // namespace
 
 RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options) {
   CheckParameters(model);
-  const bool anisotropic = model.spec().anisotropic();
-  const std::span<const Size> sizes =
-      anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
-  const double max_error = options.max_error.value_or(anisotropic ? 0.02 : 0.005);
-  const Tables tables(model, options.max_theta);
-  RglExport result;
-  for (const Size& size : sizes) {
-    result =
-        RglExport{.bytes = {}, .theta_i = size.theta_i, .phi_i = size.phi_i, .resolution = size.n};
-    result.bytes = tables.Bytes(size, "a microfacet model, fitted by Trilobe");
-    const std::vector<double> errors = Errors(model, result.bytes, options.max_theta);
-    if (errors.empty()) throw Error("the model is black; there is nothing to write");
-    result.median_error = errors[errors.size() / 2];
-    result.high_error = errors[errors.size() * 99 / 100];
-    if (result.median_error <= max_error) return result;
-  }
-  std::ostringstream message;
-  message << "the largest file, of " << result.bytes.size() / 1000000 << " MB, is off by "
-          << 100 * result.median_error << " % in the median, where " << 100 * max_error
-          << " % is asked for; allow a larger error";
-  throw Error(message.str());
+  const PreparedModel<double> prepared(model);
+  const PairBrdf value = [&](const DirectionPair& pair) {
+    return prepared.Value(pair.wi, pair.wo);
+  };
+  return Export(model, value, PlacesOf(value, options.max_theta),
+                "a microfacet model, fitted by Trilobe", false, options);
+}
+
+RglExport ExportRgl(const FactorModel& model, const CompletedMeasurement& measured,
+                    const RglExportOptions& options) {
+  CheckParameters(model);
+  return Export(model, measured.value, measured.places,
+                "measured values, between which a model stands that Trilobe fitted to them",
+                !options.max_error, options);
 }
 
 }  // namespace trilobe

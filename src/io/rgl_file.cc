@@ -15,6 +15,7 @@
 #include "trilobe/io/content.h"
 #include "trilobe/io/measurement_format.h"
 #include "trilobe/io/rgl_mask.h"
+#include "trilobe/io/spectrum.h"
 #include "trilobe/io/tensor_file.h"
 
 namespace trilobe {
@@ -85,6 +86,32 @@ BilinearStack ReadNonNegative(const TensorFile& file, const char* name,
               "has a negative entry: number " + std::to_string(negative - stack.values.begin()));
   }
   return stack;
+}
+
+// `rgb`, or `spectra` at `wavelengths`, as the database's *_spec.bsdf files and those for spectral
+// renderers have them, as colours: those of linear sRGB. [p][t][3]
+BilinearStack ReadColors(const TensorFile& file, int p, int t, const std::string& source) {
+  if (file.Has("rgb") || !file.Has("spectra")) return ReadStack(file, "rgb", {p, t, kChannels});
+  const std::vector<double> wavelengths = file.Float32("wavelengths", 1).values;
+  const SpectralColor color(wavelengths, source);
+  const auto count = static_cast<int>(wavelengths.size());
+  const BilinearStack spectra = ReadStack(file, "spectra", {p, t, count});
+  const size_t nodes = static_cast<size_t>(spectra.rows) * spectra.columns;
+  BilinearStack rgb = {spectra.rows, spectra.columns,
+                       std::vector<double>(static_cast<size_t>(p) * t * kChannels * nodes)};
+  std::vector<double> spectrum(count);
+  for (size_t slice = 0; slice < static_cast<size_t>(p) * t; ++slice) {
+    for (size_t node = 0; node < nodes; ++node) {
+      for (int l = 0; l < count; ++l) {
+        spectrum[l] = spectra.values[(slice * count + l) * nodes + node];
+      }
+      const Rgb at_node = color(spectrum);
+      for (int c = 0; c < kChannels; ++c) {
+        rgb.values[(slice * kChannels + c) * nodes + node] = at_node[c];
+      }
+    }
+  }
+  return rgb;
 }
 
 // phi is taken modulo 2 pi.
@@ -165,7 +192,7 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   if (const int slice = BilinearWarp::FirstVanishing(vndf); slice >= 0) {
     file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i");
   }
-  BilinearStack rgb = ReadStack(file, "rgb", {p, t, kChannels});
+  BilinearStack rgb = ReadColors(file, p, t, source);
   RglMask mask(file, theta_i, p * t, rgb.rows, rgb.columns);
   return RglBrdf(std::make_unique<const Tables>(
       Tables{phi_i, theta_i, symmetry, ReadNonNegative(file, "ndf", {}),
@@ -307,7 +334,7 @@ BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const Merl
 
 MeasurementFormat RglFormat() {
   return {.name = "rgl",
-          .description = "an RGL *_rgb.bsdf file",
+          .description = "an RGL .bsdf file",
           .ending = ".bsdf",
           .is_text = false,
           .recognise = IsContent<Content::Kind::kTensor>,

@@ -13,10 +13,11 @@
 
 namespace trilobe {
 
-// A material measured at RGL/EPFL (`*_rgb.bsdf`, Dupuy and Jakob 2018), as a function.
+// A material measured at RGL/EPFL (`*_rgb.bsdf` and `*_spec.bsdf`, Dupuy and Jakob 2018), as a
+// function.
 class RglBrdf {
  public:
-  // Throws Error on anything that is not a whole, consistent RGB tensor file.
+  // Throws Error on anything that is not a whole, consistent tensor file of a material.
   static RglBrdf Parse(std::string_view bytes, const std::string& source);
   RglBrdf(RglBrdf&&) noexcept;
   RglBrdf& operator=(RglBrdf&&) noexcept;

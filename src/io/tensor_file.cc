@@ -152,7 +152,7 @@ const TensorFile::Field& TensorFile::Find(std::string_view name, uint8_t dtype, 
     }
     return field;
   }
-  Fail(name, "is missing; only *_rgb.bsdf files, not the spectral ones, can be read");
+  Fail(name, "is missing; a material of the RGL database has it");
 }
 
 Tensor TensorFile::Float32(std::string_view name, int ndim) const {

@@ -314,7 +314,14 @@ TEST(ConvertTest, WritesModelsForRenderers) {
   // A file that the program reads as it reads measured ones.
   const json info = json::parse(RunProgram({"info", file, "--json"}).out);
   EXPECT_GT(info["bins"]["valid"], 1000000);
-  ExpectError(RunProgram({"convert", "synth:felt@30x30x60", "--out=" + file}), "fit it first");
+  EXPECT_EQ(RunProgram({"convert", folder / "model.json", "--out=" + file, "--spectral"}).status,
+            0);
+  EXPECT_THAT(RunProgram({"info", file}).out, HasSubstr("RGL measurement"));
+  const ProgramResult measured =
+      RunProgram({"convert", "synth:felt@30x30x60", "--noise=0.1", "--out=" + file});
+  EXPECT_EQ(measured.status, 0) << measured.err;
+  EXPECT_THAT(measured.out, ContainsRegex("fitted synth:felt@30x30x60 by .* parameters, in .* s"));
+  EXPECT_THAT(measured.out, ContainsRegex("RGB, .* MB, off the measurement by .* %"));
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + file, "--noise=0.1"}),
               "--noise");
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + file, "--error=2"}),
@@ -322,8 +329,14 @@ TEST(ConvertTest, WritesModelsForRenderers) {
   ExpectError(
       RunProgram({"convert", folder / "model.json", "--out=" + (folder / "x.csv"), "--error=0.1"}),
       "ends in .bsdf");
-  ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "no/way.bsdf")}),
-              "way.bsdf");
+  ExpectError(RunProgram({"convert", "synth:felt", "--out=" + (folder / "x.csv"), "--spectral"}),
+              "--spectral goes with an --out that ends in .bsdf");
+  for (const std::string& source : {std::string("synth:felt"), folder / "model.json"}) {
+    const ProgramResult result =
+        RunProgram({"convert", source, "--out=" + (folder / "no/way.bsdf")});
+    ExpectError(result, "way.bsdf': there is no folder '");
+    EXPECT_EQ(result.out, "");
+  }
 }
 
 // What info prints of scattered samples, and convert makes of them, is the same for each format.

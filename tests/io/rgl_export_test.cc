@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "tests/evaluate/materials.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/io/completed_measurement.h"
 #include "trilobe/io/rgl_file.h"
 #include "trilobe/io/tensor_file.h"
+#include "trilobe/model/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -59,6 +62,90 @@ TEST(RglExport, HasTheFieldsThatRenderersRead) {
     for (const double x : file.Float32(name, 2).values) EXPECT_GT(x, 0);
   }
   for (const double x : file.Float32("luminance", 4).values) EXPECT_GE(x, 0);
+}
+
+// What pbrt-v4 asks for (MeasuredBRDF::Create): these fields and no other type or rank, extents
+// that agree, and as many rows as columns.
+void ExpectWhatPbrtReads(const RglExport& exported) {
+  const TensorFile file(exported.bytes, "x.bsdf");
+  const int p = exported.phi_i, t = exported.theta_i, n = exported.resolution;
+  EXPECT_FALSE(file.Bytes("description").empty());
+  EXPECT_EQ(file.Byte("jacobian"), 1);
+  const Tensor phi = file.Float32("phi_i", 1), wavelengths = file.Float32("wavelengths", 1);
+  EXPECT_THAT(phi.shape, ElementsAre(p));
+  EXPECT_THAT(file.Float32("theta_i", 1).shape, ElementsAre(t));
+  const int bands = wavelengths.shape[0];
+  EXPECT_GE(bands, 2);
+  EXPECT_TRUE(std::ranges::is_sorted(wavelengths.values, std::less_equal<>()));
+  EXPECT_GE(wavelengths.values.front(), 360);
+  EXPECT_LE(wavelengths.values.back(), 830);
+  file.Float32("ndf", 2);
+  file.Float32("sigma", 2);
+  const std::vector<int> vndf = file.Float32("vndf", 4).shape;
+  EXPECT_EQ(vndf[0], p);
+  EXPECT_EQ(vndf[1], t);
+  EXPECT_THAT(file.Float32("luminance", 4).shape, ElementsAre(p, t, n, n));
+  const Tensor spectra = file.Float32("spectra", 5);
+  EXPECT_THAT(spectra.shape, ElementsAre(p, t, bands, n, n));
+  for (const double x : spectra.values) EXPECT_GE(x, 0);
+  // It takes two azimuths or fewer as isotropic, and others only around the whole circle.
+  if (p > 2) {
+    EXPECT_EQ(std::lround(2 * kPi / (phi.values.back() - phi.values.front())), 1);
+  }
+  EXPECT_FALSE(file.Has("rgb"));  // Mitsuba's variants with RGB colours do not take such files
+}
+
+TEST(RglExport, SpectralFilesHaveTheFieldsThatPbrtReads) {
+  ExpectWhatPbrtReads(ExportRgl(Plastic(), {.max_error = 1, .spectral = true}));
+  ExpectWhatPbrtReads(ExportRgl(AnalyticModel(ModelSpec::Anisotropic(1), 0.4, 0.2),
+                                {.max_error = 1, .spectral = true}));
+}
+
+TEST(RglExport, SpectraHaveTheColoursOfTheModel) {
+  const RglExport rgb = ExportRgl(Plastic(), {.max_error = 1});
+  const RglExport spectral = ExportRgl(Plastic(), {.max_error = 1, .spectral = true});
+  EXPECT_LT(spectral.color_error, 1e-4);
+  EXPECT_EQ(spectral.colors_off, 0);
+  EXPECT_NEAR(spectral.median_error, rgb.median_error, 1e-4);
+  const RglBrdf a = RglBrdf::Parse(rgb.bytes, "a"), b = RglBrdf::Parse(spectral.bytes, "b");
+  Random random(1);
+  for (int k = 0; k < 1000; ++k) {
+    const DirectionPair pair = {DirectionAt(random.Uniform(0, 1.5), random.Uniform(-kPi, kPi)),
+                                DirectionAt(random.Uniform(0, 1.5), random.Uniform(-kPi, kPi))};
+    EXPECT_LT(RelativeDistance(b.Evaluate(pair), a.Evaluate(pair)), 1e-4);
+  }
+}
+
+// A measurement that the model is twice as dark as: its values, not the model's.
+TEST(RglExport, HasTheValuesOfAMeasurement) {
+  const FactorModel model = Plastic();
+  FactorModel twice = model;
+  for (int m = 0; m < 3; ++m) {
+    for (double& s : twice.s(m)) s *= 2;
+  }
+  for (double& d : twice.d()) d *= 2;
+  const Measurement measured = {
+      .source = "twice", .kind = "test", .table = Reconstruct(twice, "twice")};
+  const RglExport file = ExportRgl(model, Complete(measured, model, 1), {.max_error = 0.02});
+  EXPECT_LE(file.median_error, 0.02);
+  const RglBrdf brdf = RglBrdf::Parse(file.bytes, "twice.bsdf");
+  const DirectionPair pair = {DirectionAt(0.4, 0.1), DirectionAt(0.5, 2.5)};
+  EXPECT_LT(RelativeDistance(brdf.Evaluate(pair), Evaluate(twice, pair)), 0.05);
+}
+
+// Noise that no table follows is no reason to write none, and none for a large one.
+TEST(RglExport, OfANoisyMeasurementIsTheSmallestThatIsHardlyWorse) {
+  const FactorModel model = Plastic();
+  Random random(1);
+  Measurement noisy = {.source = "noisy", .kind = "test", .table = Reconstruct(model, "noisy")};
+  for (std::vector<double>& plane : noisy.table->stored) {
+    for (double& x : plane) x *= x < 0 ? 1 : std::max(1 + 0.2 * random.Normal(), 0.0);
+  }
+  const CompletedMeasurement completed = Complete(noisy, model, 1);
+  const RglExport file = ExportRgl(model, completed);
+  EXPECT_GT(file.median_error, 0.05);
+  EXPECT_LE(file.bytes.size(), 400000U);
+  EXPECT_THROW(ExportRgl(model, completed, {.max_error = 0.001}), Error);
 }
 
 TEST(RglExport, TakesAnisotropicModelsAroundTheWholeCircle) {

@@ -20,6 +20,7 @@
 #include "trilobe/io/file.h"
 #include "trilobe/io/hemisphere_grid.h"
 #include "trilobe/io/source.h"
+#include "trilobe/io/spectrum.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -124,6 +125,81 @@ class SlowRgl {
 
   const TinyRgl& file_;
 };
+
+// `spectra` in the place of `rgb`, each node's from its three numbers: a constant, and what is
+// added below 490 and above 590 nm.
+std::vector<TensorField> WithSpectra(const TinyRgl& file, const std::vector<float>& wavelengths) {
+  std::vector<TensorField> fields = file.Fields();
+  const auto rgb = std::ranges::find(fields, "rgb", &TensorField::name);
+  const std::vector<uint64_t> shape = rgb->shape;
+  fields.erase(rgb);
+  const size_t nodes = shape[3] * shape[4];
+  std::vector<float> spectra;
+  for (size_t slice = 0; slice < shape[0] * shape[1]; ++slice) {
+    for (const float wavelength : wavelengths) {
+      for (size_t node = 0; node < nodes; ++node) {
+        const float* of = &file.rgb[slice * 3 * nodes + node];
+        spectra.push_back(of[0] + (wavelength < 490 ? of[nodes] : 0) +
+                          (wavelength > 590 ? of[2 * nodes] : 0));
+      }
+    }
+  }
+  fields.push_back(
+      FloatField("spectra", {shape[0], shape[1], wavelengths.size(), shape[3], shape[4]}, spectra));
+  fields.push_back(FloatField("wavelengths", {wavelengths.size()}, wavelengths));
+  return fields;
+}
+
+TEST(RglBrdf, ReadsSpectraAsTheirColours) {
+  TinyRgl file;
+  file.FillRandom(5);
+  std::vector<float> wavelengths;
+  for (int k = 0; k < 40; ++k) wavelengths.push_back(static_cast<float>(390 + 10 * k));
+  const RglBrdf spectral =
+      RglBrdf::Parse(TensorBytes(WithSpectra(file, wavelengths)), "tiny_spec.bsdf");
+  // The same nodes as colours, by the spectra of their three parts.
+  const std::vector<double> at(wavelengths.begin(), wavelengths.end());
+  const SpectralColor color(at, "test");
+  std::array<Rgb, 3> parts{};
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> spectrum;
+    for (const double x : at) spectrum.push_back(k == 0 || (k == 1 ? x < 490 : x > 590) ? 1 : 0);
+    parts[k] = color(spectrum);
+  }
+  TinyRgl rgb = file;
+  const size_t nodes = static_cast<size_t>(file.rgb_rows) * file.rgb_columns;
+  for (size_t slice = 0; slice < file.theta_i.size(); ++slice) {
+    for (size_t node = 0; node < nodes; ++node) {
+      const size_t first = slice * 3 * nodes + node;
+      for (int c = 0; c < kChannels; ++c) {
+        double value = 0;
+        for (int k = 0; k < 3; ++k) value += parts[k][c] * file.rgb[first + k * nodes];
+        rgb.rgb[first + c * nodes] = static_cast<float>(value);
+      }
+    }
+  }
+  const RglBrdf expected = Parse(rgb);
+  for (const double theta_i : {0.1, 0.5, 1.0, 1.4}) {
+    const DirectionPair pair = Reflect(theta_i, 0.3, 0.05, 1.1);
+    EXPECT_LT(RelativeDistance(spectral.Evaluate(pair), expected.Evaluate(pair)), 1e-6);
+  }
+}
+
+TEST(RglBrdf, RefusesSpectraWithoutWavelengths) {
+  TinyRgl file;
+  file.FillRandom(5);
+  std::vector<TensorField> fields = WithSpectra(file, {400, 440, 480, 520, 560, 600, 640, 680});
+  const TensorField wavelengths = fields.back();
+  fields.pop_back();
+  EXPECT_THAT(ErrorOf([&] { RglBrdf::Parse(TensorBytes(fields), "x.bsdf"); }),
+              HasSubstr("wavelengths"));
+  fields.push_back(FloatField("wavelengths", {7}, {400, 440, 480, 520, 560, 600, 650}));
+  EXPECT_THAT(ErrorOf([&] { RglBrdf::Parse(TensorBytes(fields), "x.bsdf"); }),
+              HasSubstr("spectra"));
+  fields.back() = FloatField("wavelengths", {8}, {400, 440, 480, 520, 560, 600, 640, 630});
+  EXPECT_THAT(ErrorOf([&] { RglBrdf::Parse(TensorBytes(fields), "x.bsdf"); }),
+              HasSubstr("must ascend"));
+}
 
 TEST(RglFile, AgreesWithTheDefinitionOnUnevenTables) {
   TinyRgl file;

@@ -1,0 +1,21 @@
+#ifndef TRILOBE_APP_WRITE_FOR_RENDERER_H_
+#define TRILOBE_APP_WRITE_FOR_RENDERER_H_
+
+#include <string>
+#include <vector>
+
+namespace trilobe {
+
+// Whether `path` ends as a file does that WriteForRenderer writes.
+bool IsForRenderer(const std::string& path);
+
+// The flags that are for such files alone.
+std::vector<std::string> RendererFlags();
+
+// Writes a model or a measurement to --out as a file that renderers read, by its ending, and says
+// on standard output what it is and how far off. Throws Error.
+void WriteForRenderer(const std::string& source);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_WRITE_FOR_RENDERER_H_
