@@ -4,14 +4,48 @@
     f = brdf.eval(wi, wo)                     # [1/sr], without a cosine
     wo, pdf, weight = brdf.sample(wi, u)
 
-docs/python.md of the project has a tour, and the conventions.
+    result = trilobe.fit(trilobe.read("material.binary"))
+    result.model.save("model.json")
+
+docs/python.md of the project has a tour, and the conventions. `trilobe.plot` draws, by matplotlib; `trilobe.mitsuba`
+is a BSDF for Mitsuba 3.
 """
 
 from trilobe._brdf import Brdf, Sample, load
 from trilobe._core import Error
+from trilobe._fitting import (
+    Result,
+    Solver,
+    fit,
+    fit_many,
+    initial_models,
+    score,
+    solvers,
+    synthetic_materials,
+    weightings,
+)
+from trilobe._measurement import Measurement, convert, read
 from trilobe._table import Table
 
-__all__ = ["Brdf", "Error", "Sample", "Table", "load"]
+__all__ = [
+    "Brdf",
+    "Error",
+    "Measurement",
+    "Result",
+    "Sample",
+    "Solver",
+    "Table",
+    "convert",
+    "fit",
+    "fit_many",
+    "initial_models",
+    "load",
+    "read",
+    "score",
+    "solvers",
+    "synthetic_materials",
+    "weightings",
+]
 __version__ = "0.1.0"
 
 Error.__module__ = "trilobe"

@@ -314,9 +314,9 @@ def load(path: str | os.PathLike[str]) -> Brdf:
         Error: if there is no such file, or it is no model.
     """
     name = _path_of(path)
-    if name.is_dir():
-        name = name / "model.json"
     try:
+        if name.is_dir():
+            name = name / "model.json"
         content = name.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
@@ -328,11 +328,22 @@ def load(path: str | os.PathLike[str]) -> Brdf:
     return Brdf.from_json(text, str(name))
 
 
-def _path_of(path: Any) -> Path:
+def text_of_path(path: Any) -> str:
+    """A path as a str; an Error where it is none."""
     try:
-        return Path(os.fsdecode(path))
+        text = os.fsdecode(path)
+        text.encode("utf-8")
     except TypeError:
         raise Error(f"a path must be a str or a path, not {type(path).__name__}") from None
+    except UnicodeError:
+        raise Error(f"{ascii(path)} is no path that can be written in UTF-8") from None
+    if "\0" in text:
+        raise Error(f"{text!r} is no path: it has a null character")
+    return text
+
+
+def _path_of(path: Any) -> Path:
+    return Path(text_of_path(path))
 
 
 def _printable(path: Path) -> str:

@@ -153,6 +153,23 @@ Json ToJson(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+void TellFit(const FitResult& fit, FitReport* report) {
+  report->interrupted = fit.interrupted;
+  report->spec = fit.model().spec();
+  report->summary = fit.summary;
+  report->nodes = fit.nodes;
+  report->guide = fit.guide;
+  report->finished = fit.finished;
+  report->stored_parameters = fit.stored_parameters;
+  report->score = fit.score;
+  report->appearance = fit.appearance;
+  report->samples_seen = fit.samples_seen;
+  report->left_out = fit.left_out;
+  report->reach = fit.reach;
+  report->light = fit.light;
+  static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
+}
+
 std::string ModelName(const ModelSpec& spec) {
   if (spec.anisotropic()) return "anisotropic";
   const auto is = [&spec](const ModelSpec& named) {

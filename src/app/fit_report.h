@@ -58,6 +58,9 @@ struct FitReport {
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
 };
 
+// What a fit has to say of itself, which is all but the source's part and the program's.
+void TellFit(const FitResult& fit, FitReport* report);
+
 // The value of --model that stands for a spec, which a model file may have brought.
 std::string ModelName(const ModelSpec& spec);
 // "822 parameters"; of thinned tables not all are stored: the others follow.

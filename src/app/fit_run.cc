@@ -146,21 +146,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (!begun) return std::nullopt;
   ModelFile file = file_of(fit);
   report.fit = file.fit;
-  report.interrupted = fit.interrupted;
-  report.spec = fit.model().spec();
-  report.summary = std::move(fit.summary);
+  TellFit(fit, &report);
   report.summary.phases.reading = report.seconds.read;
-  report.nodes = std::move(fit.nodes);
-  report.guide = fit.guide;
-  report.finished = std::move(fit.finished);
-  report.stored_parameters = fit.stored_parameters;
-  report.score = fit.score;
-  report.appearance = fit.appearance;
-  report.samples_seen = fit.samples_seen;
-  report.left_out = fit.left_out;
-  report.reach = fit.reach;
-  report.light = std::move(fit.light);
-  static_cast<FitResult::Seconds&>(report.seconds) = fit.seconds;
   report.peak_memory = PeakMemory();
   return FitRun{.measured = std::move(measured),
                 .objective = std::move(fit.objective),

@@ -9,6 +9,7 @@
 #include "trilobe/app/inputs.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/result_folder.h"
+#include "trilobe/app/score_report.h"
 #include "trilobe/app/verdict_report.h"
 #include "trilobe/appearance/seen_samples.h"
 #include "trilobe/brdf/tabulated_brdf.h"
@@ -22,16 +23,6 @@
 namespace trilobe {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-// Place of a sample's bin along each axis.
-struct BinPosition {
-  int h, d, p;
-};
-BinPosition PositionOf(const MerlGrid& grid, int bin) {
-  return {bin / (grid.theta_d * grid.phi_d), bin / grid.phi_d % grid.theta_d, bin % grid.phi_d};
-}
-
 // The values of a function at the samples. [samples.size()]
 std::vector<Rgb> ValuesAt(const AngularBrdf& brdf, const BrdfSamples& samples) {
   std::vector<Rgb> values;
@@ -40,62 +31,6 @@ std::vector<Rgb> ValuesAt(const AngularBrdf& brdf, const BrdfSamples& samples) {
     values.push_back(brdf(angles, ToCosines(angles)));
   }
   return values;
-}
-
-// What was compared, and what came out.
-struct Scored {
-  std::string model;  // its path
-  ScoreReport score;
-  std::optional<AppearanceReport> appearance = {};
-  ReportedVerdict verdict = {};
-};
-
-Json ToJson(const Scored& scored, const Objective& objective) {
-  const BrdfSamples& samples = objective.samples();
-  const ScoreReport& report = scored.score;
-  const std::optional<AppearanceReport>& appearance = scored.appearance;
-  Json json = {{"verdict", ToJson(scored.verdict)},
-               {"model", scored.model},
-               {"source", samples.source},
-               {"weighting", objective.weighting().name},
-               {"valid_samples", report.valid_samples},
-               {"objective", report.objective},
-               {"relative_objective", report.relative_objective},
-               {"irreducible_objective", report.irreducible_objective},
-               {"psnr_db", report.psnr_db},
-               {"psnr_peak", report.psnr_peak},
-               {"rmse", report.rmse},
-               {"rmse_red", report.rmse_channel[0]},
-               {"rmse_green", report.rmse_channel[1]},
-               {"rmse_blue", report.rmse_channel[2]},
-               {"mean_relative_error", report.mean_relative_error},
-               {"mean_log_error", report.mean_log_error},
-               {"max_absolute_error", report.max_absolute_error},
-               {"appearance", appearance ? ToJson(*appearance) : Json()},
-               {"worst_bins", Json::array()}};
-  for (const WorstSample& worst : report.worst) {
-    Json place = Json::object();  // of a bin
-    if (samples.on_grid()) {
-      const auto [h, d, p] = PositionOf(samples.grid, samples.bins[worst.sample]);
-      place = {{"h", h}, {"d", d}, {"p", p}};
-    }
-    place.update({{"theta_h_deg", RadiansToDegrees(worst.angles.theta_h)},
-                  {"theta_d_deg", RadiansToDegrees(worst.angles.theta_d)},
-                  {"phi_d_deg", RadiansToDegrees(worst.angles.phi_d)}});
-    if (!samples.directions.empty()) {
-      const SphericalAngles& at = samples.directions[worst.sample];
-      place.update({{"theta_i_deg", RadiansToDegrees(at.theta_i)},
-                    {"phi_i_deg", RadiansToDegrees(at.phi_i)},
-                    {"theta_o_deg", RadiansToDegrees(at.theta_o)},
-                    {"phi_o_deg", RadiansToDegrees(at.phi_o)}});
-    }
-    place.update({{"channel", kChannelNames[worst.channel]},
-                  {"measured", worst.measured},
-                  {"fitted", worst.fitted},
-                  {"weighted_squared_error", worst.error}});
-    json["worst_bins"].push_back(std::move(place));
-  }
-  return json;
 }
 
 void PrintSummary(const Scored& scored, const Objective& objective) {

@@ -193,7 +193,7 @@ BAD = [
     (lambda b: b.save("/no/such/folder/x.json"), "cannot write '/no/such/folder/x.json'"),
     (lambda b: b.save(7), "a path must be a str"),
     (lambda b: trilobe.load("/no/such/model.json"), "cannot read '/no/such/model.json': No such file"),
-    (lambda b: trilobe.load(b"\0"), "cannot read"),
+    (lambda b: trilobe.load(b"\0"), "is no path"),
     (lambda b: trilobe.load(None), "a path must be"),
     (lambda b: trilobe.Brdf.from_json("{}", "x.json"), "x.json"),
     (lambda b: trilobe.Brdf.from_json("\ud800"), "the text"),

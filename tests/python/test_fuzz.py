@@ -125,3 +125,68 @@ def test_reads_anything(brdf, place, letter, other):
 def test_loads_anything(path):
     with pytest.raises(trilobe.Error):
         trilobe.load(path)
+
+
+def has_fits():
+    try:
+        import trilobe._fit  # noqa: F401
+    except ImportError:
+        return False
+    return True
+
+
+needs_fits = pytest.mark.skipif(not has_fits(), reason="only what evaluates is built")
+
+
+@needs_fits
+@settings
+@hypothesis.given(anything, anything, anything, st.one_of(st.none(), st.booleans(), numbers),
+                  st.dictionaries(st.sampled_from(["max_angle", "min_theta_d", "source"]), numbers, max_size=1))
+def test_measures_anything(wi, wo, rho, anisotropic, others):
+    try:
+        measurement = trilobe.Measurement(wi, wo, rho, anisotropic=anisotropic, **others)
+    except trilobe.Error as error:
+        assert "\n" not in str(error)
+        return
+    counts = measurement.counts
+    assert counts["valid"] == len(measurement.rho) == len(measurement.wi)
+    assert np.isfinite(measurement.wi).all() and (measurement.rho >= 0).all()
+
+
+@needs_fits
+@settings
+@hypothesis.given(st.one_of(numbers, st.sampled_from(["synth:plastic@4x4x8", "synth:felt@3x4", "synth:shot_silk@3x4"])),
+                  st.dictionaries(st.sampled_from(["noise", "missing", "seed", "max_angle", "min_theta_d",
+                                                   "extrapolated", "radiometry", "threads"]), anything, max_size=2))
+def test_reads_any_source(source, options):
+    try:
+        measurement = trilobe.read(source, **options)
+        measurement.valid.sum(), measurement.reason.max(initial=0)
+    except trilobe.Error as error:
+        assert "\n" not in str(error)
+
+
+FIT_OPTIONS = ["model", "solver", "lobes", "stretch", "d_nodes", "g_nodes", "f_bins", "nodes", "init", "start",
+               "weighting", "guide", "robust", "match_reflectance", "max_numbers", "seed", "threads",
+               "max_iterations", "max_seconds", "tolerance", "g_filter", "memory", "starts", "unheard_of"]
+names = st.sampled_from(["auto", "awls", "lm", "independent", "isotropic", "anisotropic", "moments", "log", "held_out",
+                         "6x8", "4rx4"])
+
+
+@needs_fits
+@settings
+@hypothesis.given(st.dictionaries(st.sampled_from(FIT_OPTIONS), st.one_of(names, anything), max_size=3))
+def test_fits_by_any_option(options):
+    options = {"solver": "awls", "max_seconds": 0.05, **options, "progress": False}
+    options["max_iterations"] = options.get("max_iterations", 1)
+    if isinstance(options["max_iterations"], int):
+        options["max_iterations"] = min(options["max_iterations"], 1)
+    try:
+        result = trilobe.fit(TINY, **options)
+    except trilobe.Error as error:
+        assert "\n" not in str(error)
+        return
+    holds(lambda: result.model.eval([0, 0, 1], [0, 0, 1]))
+
+
+TINY = trilobe.read("synth:plastic@6x6x12") if has_fits() else None

@@ -1,0 +1,333 @@
+#include "trilobe/fit/fit.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "fit_module.h"
+#include "owned_array.h"
+#include "trilobe/app/fit_report.h"
+#include "trilobe/base/peak_memory.h"
+#include "trilobe/base/utc_time.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/io/trace_file.h"
+#include "trilobe/math/openblas.h"
+#include "trilobe/solvers/solver_options.h"
+
+namespace nb = nanobind;
+
+namespace trilobe::python {
+namespace {
+
+// What the thread that fits tells the one that waits for it, and is told.
+class Course {
+ public:
+  void Stop() { stopped_ = true; }
+  bool stopped() const { return stopped_; }
+
+  void Show(const IterationRecord& record) {
+    const std::lock_guard lock(mutex_);
+    latest_ = record;
+    ++count_;
+  }
+
+  // How many records there have been; iteration, seconds and E of the last.
+  std::tuple<int, int, double, double> Latest() const {
+    const std::lock_guard lock(mutex_);
+    return {count_, latest_.iteration, latest_.seconds, latest_.minimised()};
+  }
+
+ private:
+  std::atomic<bool> stopped_ = false;
+  mutable std::mutex mutex_;
+  IterationRecord latest_;
+  int count_ = 0;
+};
+
+// A fit that is through; without a model where it was stopped before it began.
+struct Outcome {
+  bool begun = false;
+  std::string model_text, trace_text, report_text;
+  std::vector<IterationRecord> trace;
+  bool interrupted = false;
+};
+
+Axis NodesOf(const nb::dict& options, const char* name) {
+  const auto [rings, of_root, phis] = OptionOf<std::tuple<int, bool, int>>(
+      options, name, "nodes: theta x phi, as '6x48', or '12rx48' for steps of the root of theta");
+  if (rings < 2 || rings > 90 || phis < 2 || phis > 720) {
+    throw Error(std::string(name) + " must be 2 to 90 theta by 2 to 720 phi");
+  }
+  Axis axis = Axis::EvenPolar(rings, of_root ? Axis::Steps::kOfRoot : Axis::Steps::kOfTheta, phis);
+  CheckAxis(axis, name[0] == 'd' ? "D" : "G");
+  return axis;
+}
+
+template <typename T>
+std::optional<T> MaybeOf(const nb::dict& options, const char* name, const char* must_be) {
+  if (options.contains(name) && options[name].is_none()) return std::nullopt;
+  return OptionOf<T>(options, name, must_be);
+}
+
+FormOptions FormOf(const nb::dict& options) {
+  using Kind = FormOptions::Kind;
+  const auto model = OptionOf<std::string>(options, "model", "a name");
+  const std::vector<std::pair<std::string, Kind>> kinds = {{"shared", Kind::kShared},
+                                                           {"isotropic", Kind::kIsotropic},
+                                                           {"anisotropic", Kind::kAnisotropic},
+                                                           {"independent", Kind::kIndependent},
+                                                           {"auto", Kind::kIsotropic}};
+  FormOptions form;
+  bool known = false;
+  for (const auto& [name, kind] : kinds) {
+    if (name != model) continue;
+    form.kind = kind;
+    known = true;
+  }
+  if (!known) {
+    throw Error("unknown model '" + model +
+                "'; known: shared, isotropic, anisotropic, independent, auto");
+  }
+  form.lobes = MaybeOf<int>(options, "lobes", "an integer");
+  std::vector<Stretch> stretches;
+  for (const auto& [along, across] : OptionOf<std::vector<std::pair<double, double>>>(
+           options, "stretch", "(along, across), once or for each lobe")) {
+    stretches.push_back({.along = along, .across = across});
+  }
+  if (!stretches.empty()) form.stretches = Stretches(stretches);
+  const size_t lobes = form.kind == Kind::kIndependent ? 1 : form.lobes.value_or(3);
+  if (stretches.size() > 1 && stretches.size() != lobes) {
+    throw Error("stretch has " + std::to_string(stretches.size()) + " pairs for " +
+                std::to_string(lobes) + " lobes; give one, or one a lobe");
+  }
+  if (!options["d_nodes"].is_none()) form.d_nodes = NodesOf(options, "d_nodes");
+  if (!options["g_nodes"].is_none()) form.g_nodes = NodesOf(options, "g_nodes");
+  form.f_bins = MaybeOf<int>(options, "f_bins", "an integer");
+  form.nodes_by_held_out = OptionOf<bool>(options, "nodes_by_held_out", "True or False");
+  CheckForm(form);
+  return form;
+}
+
+OptionValue ValueOf(const nb::dict& options, const std::string& name, const OptionValue& like) {
+  return std::visit(
+      [&](const auto& of_type) -> OptionValue {
+        using T = std::decay_t<decltype(of_type)>;
+        return OptionOf<T>(options, name.c_str(),
+                           std::is_same_v<T, bool>          ? "True or False"
+                           : std::is_same_v<T, std::string> ? "a name"
+                           : std::is_same_v<T, double>      ? "a number"
+                                                            : "an integer");
+      },
+      like);
+}
+
+// What is given for the solver, by the names of the program's flags. Throws Error for what this
+// solver does not read.
+std::vector<std::pair<const SolverOption*, OptionValue>> SolverValues(const SolverEntry& solver,
+                                                                      const nb::dict& given) {
+  const std::vector<const SolverOption*> read = OptionsReadBy(solver.options);
+  std::vector<std::pair<const SolverOption*, OptionValue>> values;
+  for (const auto& [key, value] : given) {
+    const auto name = nb::cast<std::string>(key);
+    const SolverOption* found = nullptr;
+    std::string known;
+    for (const SolverOption* const option : read) {
+      if (option->help.empty()) continue;  // an argument of every fit
+      known += (known.empty() ? "" : ", ") + option->flag;
+      if (option->flag == name) found = option;
+    }
+    if (found == nullptr) {
+      throw Error("solver " + solver.name + " does not take " + name + "; it takes " + known);
+    }
+    const OptionValue like =
+        found->unit ? OptionValue(found->unit->default_value) : found->get(SolverOptions());
+    values.emplace_back(found, ValueOf(given, name, like));
+  }
+  return values;
+}
+
+SolverOptions MakeOptions(const std::vector<std::pair<const SolverOption*, OptionValue>>& given,
+                          const SolverEntry& solver, uint64_t seed, const ModelSpec& spec) {
+  SolverOptions options;
+  // Of flags that are no members, the default may depend on the form.
+  for (const SolverOption* const option : OptionsReadBy(solver.options)) {
+    if (option->help.empty()) continue;
+    std::optional<OptionValue> value;
+    for (const auto& [of, is] : given) {
+      if (of == option) value = is;
+    }
+    if (!value && !option->unit) continue;
+    if (!value) value = OptionValue(option->unit->default_value);
+    if (option->unit) {
+      CheckInRange(option->flag, *value, option->unit->range);
+      if (option->unit->to_member) {
+        value = option->unit->to_member(std::get<double>(*value), spec);
+      }
+    }
+    CheckInRange(option->flag, *value, option->range);
+    option->set(*value, &options);
+  }
+  options.seed = seed;
+  return options;
+}
+
+FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
+  FitOptions fit;
+  fit.form = FormOf(options);
+  fit.init = OptionOf<std::string>(options, "init", "a name");
+  FindInitialModel(fit.init);  // its error
+  const SolverEntry& solver = FindSolver(OptionOf<std::string>(options, "solver", "a name"));
+  fit.solver = solver.name;
+  fit.seed = OptionOf<uint64_t>(options, "seed", "an integer from 0");
+  const auto values = SolverValues(solver, solver_options);
+  fit.solver_options = [values, &solver, seed = fit.seed](const ModelSpec& spec) {
+    return MakeOptions(values, solver, seed, spec);
+  };
+  CheckSolverOptions(fit.solver_options(ModelSpec()));
+  fit.weighting = FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
+  fit.guide = MaybeOf<double>(options, "guide", "a number");
+  if (fit.guide && !(*fit.guide >= 0 && *fit.guide <= 1e6)) {
+    throw Error("guide must be from 0 to 1e6");
+  }
+  fit.robust = OptionOf<double>(options, "robust", "a number");
+  if (!(fit.robust >= 0 && fit.robust <= 1e6)) throw Error("robust must be from 0 to 1e6");
+  const int numbers = OptionOf<int>(options, "max_numbers", "an integer");
+  if (numbers < 1) throw Error("max_numbers must be at least 1");
+  if (OptionOf<std::string>(options, "model", "a name") == "auto") fit.max_parameters = numbers;
+  fit.match_reflectance = OptionOf<bool>(options, "match_reflectance", "True or False");
+  if (const auto start = MaybeOf<nb::bytes>(options, "start", "the text of a model file")) {
+    fit.start_model = ParseModel({start->c_str(), start->size()}, "start").model;
+    fit.init = "start";
+  }
+  fit.num_threads = ThreadsOf(options);
+  return fit;
+}
+
+Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict& solver_options,
+               Course* course) {
+  FitOptions fit_options = OptionsOf(options, solver_options);
+  const std::shared_ptr<const Measurement> data = measured.data;
+  FitReport report;
+  report.noise = measured.noise;
+  report.seed = static_cast<int64_t>(fit_options.seed);
+  report.seconds.read = measured.seconds;
+  const nb::gil_scoped_release released;
+  { const BlasCall memory_is_there; }
+  Outcome outcome;
+  fit_options.stop = [course] { return course->stopped(); };
+  fit_options.on_begin = [&outcome] { outcome.begun = true; };
+  fit_options.on_progress = [course](const IterationRecord& record) { course->Show(record); };
+  const FitResult fit = Fit(*data, fit_options);
+  outcome.interrupted = fit.interrupted;
+  if (!outcome.begun) return outcome;
+  ModelFile file = fit.file;
+  file.fit.program = std::string("trilobe ") + TRILOBE_VERSION;
+  file.fit.date = UtcNow();
+  report.data_notes = data->notes;
+  report.bins = CountsOf(*data);
+  report.fit = file.fit;
+  TellFit(fit, &report);
+  report.summary.phases.reading = report.seconds.read;
+  report.peak_memory = PeakMemory();
+  outcome.model_text = FormatModel(file);
+  outcome.trace = fit.summary.trace;
+  outcome.trace_text = FormatTrace(fit.summary.trace);
+  outcome.report_text =
+      ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return outcome;
+}
+
+// Columns of the trace, by the names that trace.csv has.
+nb::dict TraceColumns(const Outcome& outcome) {
+  const auto column = [&](const auto& value_of) {
+    using T = std::decay_t<decltype(value_of(outcome.trace[0]))>;
+    std::vector<T> values;
+    for (const IterationRecord& record : outcome.trace) values.push_back(value_of(record));
+    const size_t count = values.size();
+    return OwnedArray(std::move(values), {count});
+  };
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  nb::dict columns;
+  columns["iteration"] = column([](const IterationRecord& r) { return int64_t{r.iteration}; });
+  columns["seconds"] = column([](const IterationRecord& r) { return r.seconds; });
+  columns["objective"] = column([](const IterationRecord& r) { return r.objective; });
+  columns["filtered"] = column([](const IterationRecord& r) { return uint8_t{r.filtered}; });
+  columns["accepted"] = column([](const IterationRecord& r) { return uint8_t{r.accepted}; });
+  columns["step"] = column([](const IterationRecord& r) { return r.step; });
+  columns["optimality"] =
+      column([&](const IterationRecord& r) { return r.optimality.value_or(kUnknown); });
+  columns["guided_objective"] =
+      column([&](const IterationRecord& r) { return r.guided_objective.value_or(kUnknown); });
+  return columns;
+}
+
+nb::list SolverList() {
+  nb::list list;
+  for (const SolverEntry& solver : Solvers()) {
+    nb::dict options;
+    for (const SolverOption* const option : OptionsReadBy(solver.options)) {
+      if (option->help.empty()) continue;
+      const OptionValue value =
+          option->unit ? OptionValue(option->unit->default_value) : option->get(SolverOptions());
+      std::visit(
+          [&](const auto& is) { options[option->flag.c_str()] = nb::make_tuple(is, option->help); },
+          value);
+    }
+    list.append(nb::make_tuple(solver.name, solver.description, solver.reference, options));
+  }
+  return list;
+}
+
+// (name, description) of each entry of a list.
+template <typename T>
+nb::list Names(const std::vector<T>& entries) {
+  nb::list list;
+  for (const T& entry : entries) list.append(nb::make_tuple(entry.name, entry.description));
+  return list;
+}
+
+}  // namespace
+
+void BindFit(nb::module_* module) {
+  nb::class_<Course>(*module, "Course", "How far a fit has come; and the way to stop it.")
+      .def(nb::init<>())
+      .def("stop", &Course::Stop)
+      .def("latest", &Course::Latest);
+  nb::class_<Outcome>(*module, "Outcome", "What a fit has come to.")
+      .def_ro("begun", &Outcome::begun)
+      .def_ro("interrupted", &Outcome::interrupted)
+      .def_prop_ro("model_text",
+                   [](const Outcome& self) {
+                     return nb::bytes(self.model_text.data(), self.model_text.size());
+                   })
+      .def_ro("trace_text", &Outcome::trace_text)
+      .def_prop_ro("report_text",
+                   [](const Outcome& self) {
+                     return nb::bytes(self.report_text.data(), self.report_text.size());
+                   })
+      .def("trace", &TraceColumns);
+  module->def("fit", &RunFit, nb::arg("measured"), nb::arg("options"), nb::arg("solver_options"),
+              nb::arg("course"));
+  module->def("solvers", &SolverList);
+  module->def("initial_models", [] { return Names(InitialModels()); });
+  module->def("weightings", [] { return Names(Weightings()); });
+}
+
+}  // namespace trilobe::python

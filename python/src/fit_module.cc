@@ -1,0 +1,59 @@
+// The module trilobe._fit: measurements, fits and scores, by the whole library. What it says of
+// them is the program's reports. Python loads it when it is first needed.
+
+#include "fit_module.h"
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace nb = nanobind;
+
+namespace trilobe::python {
+
+int ThreadsOf(const nb::dict& options) {
+  const int threads = OptionOf<int>(options, "threads", "an integer");
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (threads < 0) throw Error("threads is negative; give 0 for all cores");
+  return threads == 0 ? cores : std::min(threads, cores);
+}
+
+SourceOptions SourceOptionsOf(const nb::dict& options) {
+  SourceOptions source{
+      .noise = OptionOf<double>(options, "noise", "a number"),
+      .missing = OptionOf<double>(options, "missing", "a number"),
+      .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
+      .num_threads = ThreadsOf(options),
+      .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),
+      .min_theta_d_deg = OptionOf<double>(options, "min_theta_d", "a number of degrees"),
+      .extrapolated = OptionOf<bool>(options, "extrapolated", "True or False"),
+      .radiometry = OptionOf<std::string>(options, "radiometry", "a name")};
+  CheckSourceOptions(source);
+  return source;
+}
+
+NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
+  nb::set_leak_warnings(false);
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres Solver would log is in the reports
+  gflags::SetVersionString(TRILOBE_VERSION);
+  // The module's own translation comes before that of std::runtime_error.
+  static PyObject* const error_type = nb::module_::import_("trilobe._core").attr("Error").ptr();
+  Py_INCREF(error_type);
+  nb::register_exception_translator(
+      [](const std::exception_ptr& exception, void* /*payload*/) {
+        try {
+          std::rethrow_exception(exception);
+        } catch (const Error& error) {
+          PyErr_SetString(error_type, error.what());
+        }
+      },
+      nullptr);
+  BindMeasurement(&m);
+  BindFit(&m);
+  BindScore(&m);
+}
+
+}  // namespace trilobe::python

@@ -1,0 +1,45 @@
+#ifndef TRILOBE_PYTHON_FIT_MODULE_H_
+#define TRILOBE_PYTHON_FIT_MODULE_H_
+
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "trilobe/base/error.h"
+#include "trilobe/io/measurement.h"
+#include "trilobe/io/measurement_format.h"
+
+namespace trilobe::python {
+
+// A measurement, and how it was read. Shared with fits that run while Python forgets it.
+struct Measured {
+  std::shared_ptr<const Measurement> data;
+  double noise = 0;
+  int64_t seed = 1;
+  double seconds = 0;  // that reading it took
+};
+
+// An option by its name, which must be of this type.
+template <typename T>
+T OptionOf(const nanobind::dict& options, const char* name, const char* must_be) {
+  T value{};
+  if (!options.contains(name) || !nanobind::try_cast<T>(options[name], value)) {
+    throw Error(std::string(name) + " must be " + must_be);
+  }
+  return value;
+}
+
+// The threads to use: as many as are wanted, but no more than there are cores; 0 is all of these.
+int ThreadsOf(const nanobind::dict& options);
+// How a source is read.
+SourceOptions SourceOptionsOf(const nanobind::dict& options);
+
+void BindMeasurement(nanobind::module_* module);
+void BindFit(nanobind::module_* module);
+void BindScore(nanobind::module_* module);
+
+}  // namespace trilobe::python
+
+#endif  // TRILOBE_PYTHON_FIT_MODULE_H_

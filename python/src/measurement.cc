@@ -1,0 +1,272 @@
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fit_module.h"
+#include "owned_array.h"
+#include "trilobe/app/bin_counts.h"
+#include "trilobe/app/write_measurement.h"
+#include "trilobe/base/stopwatch.h"
+#include "trilobe/io/file.h"
+#include "trilobe/io/node_reconstruction.h"
+#include "trilobe/io/read_model.h"
+#include "trilobe/io/rgl_export.h"
+#include "trilobe/io/source.h"
+#include "trilobe/io/synth.h"
+#include "trilobe/io/utia_file.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/view/glsl_file.h"
+
+namespace nb = nanobind;
+
+namespace trilobe::python {
+namespace {
+
+using Doubles = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+Measured Read(const std::string& source, const nb::dict& options) {
+  const SourceOptions source_options = SourceOptionsOf(options);
+  const nb::gil_scoped_release released;
+  Stopwatch stopwatch;
+  Measured measured{
+      .data = std::make_shared<const Measurement>(LoadMeasurement(source, source_options)),
+      .noise = source_options.noise,
+      .seed = static_cast<int64_t>(source_options.seed)};
+  measured.seconds = stopwatch.Lap();
+  return measured;
+}
+
+DirectionPair PairOf(const double* wi, const double* wo) {
+  const auto unit = [](const double* w) {
+    const double length = std::hypot(w[0], w[1], w[2]);
+    return Direction{w[0] / length, w[1] / length, w[2] / length};
+  };
+  return {unit(wi), unit(wo)};
+}
+
+// Scattered samples. Whether azimuths matter is for `azimuths` to say: "yes", "no", or "auto".
+Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
+                    const std::string& source, const std::string& azimuths,
+                    const nb::dict& options) {
+  const size_t count = rho.shape(0);
+  for (const Doubles* const array : {&wi, &wo, &rho}) {
+    if (array->shape(0) != count || array->shape(1) != 3) {
+      throw Error("wi, wo and rho must have the same shape (n, 3)");
+    }
+  }
+  const SourceOptions source_options = SourceOptionsOf(options);
+  const nb::gil_scoped_release released;
+  SampleCollector collector(source, "set of arrays");
+  for (size_t k = 0; k < count; ++k) {
+    const DirectionPair pair = PairOf(wi.data() + 3 * k, wo.data() + 3 * k);
+    collector.Add(ToSphericalAngles(pair),
+                  {rho.data()[3 * k], rho.data()[3 * k + 1], rho.data()[3 * k + 2]});
+  }
+  Measurement measurement = azimuths == "auto" ? collector.TakeByAzimuths() : collector.Take();
+  if (azimuths != "auto") measurement.anisotropic = azimuths == "yes";
+  if (source_options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
+  DecideMeasured(source_options, &measurement);
+  return {.data = std::make_shared<const Measurement>(std::move(measurement))};
+}
+
+// What is valid stays 0; the others are the keys of ReasonsOf, from 1 on.
+std::vector<std::string> ReasonNames() {
+  std::vector<std::string> names = {"valid"};
+  for (const LeftOut& left_out : ReasonsOf({})) names.push_back(left_out.key);
+  return names;
+}
+
+uint8_t ReasonNamed(const char* name) {
+  const std::vector<std::string> names = ReasonNames();
+  const auto at = std::ranges::find(names, name);
+  return static_cast<uint8_t>(at - names.begin());
+}
+
+// Why each bin of a table is left out, as CountBins has it.
+std::vector<uint8_t> ReasonsOfBins(const BrdfTable& table) {
+  const uint8_t below = ReasonNamed("below_surface"), non_finite = ReasonNamed("non_finite"),
+                negative = ReasonNamed("negative");
+  const std::array<uint8_t, 5> unmeasured = {
+      0, ReasonNamed("extrapolated"), ReasonNamed("beyond_nodes"), ReasonNamed("beyond_max_angle"),
+      ReasonNamed("below_min_theta_d")};
+  const std::vector<bool> above = BinsAboveSurface(table.grid);
+  std::vector<uint8_t> reasons(table.grid.size());
+  for (int bin = 0; bin < table.grid.size(); ++bin) {
+    const std::array<double, 3> stored = {table.stored[0][bin], table.stored[1][bin],
+                                          table.stored[2][bin]};
+    if (!above[bin]) {
+      reasons[bin] = below;
+    } else if (!std::ranges::all_of(stored, [](double x) { return std::isfinite(x); })) {
+      reasons[bin] = non_finite;
+    } else if (std::ranges::any_of(stored, [](double x) { return x < 0; })) {
+      reasons[bin] = negative;
+    } else {
+      reasons[bin] = unmeasured[static_cast<size_t>(ReasonOf(table, bin))];
+    }
+  }
+  return reasons;
+}
+
+size_t CountOf(const Measured& measured) {
+  const Measurement& data = *measured.data;
+  return data.table ? data.table->grid.size() : data.samples.size();
+}
+
+nb::object DirectionsOf(const Measured& measured, bool incident) {
+  const Measurement& data = *measured.data;
+  const size_t count = CountOf(measured);
+  std::vector<double> values;
+  {
+    const nb::gil_scoped_release released;
+    values.reserve(3 * count);
+    for (size_t k = 0; k < count; ++k) {
+      const int at = static_cast<int>(k);
+      const DirectionPair pair = data.table ? ToDirections(data.table->grid.Center(at))
+                                 : data.samples.directions.empty()
+                                     ? ToDirections(data.samples.Angles(at))
+                                     : ToDirections(data.samples.directions[k]);
+      const Direction& w = incident ? pair.wi : pair.wo;
+      values.insert(values.end(), w.begin(), w.end());
+    }
+  }
+  return OwnedArray(std::move(values), {count, size_t{3}});
+}
+
+nb::object ValuesOf(const Measured& measured) {
+  const Measurement& data = *measured.data;
+  const size_t count = CountOf(measured);
+  std::vector<double> values;
+  {
+    const nb::gil_scoped_release released;
+    values.reserve(3 * count);
+    for (size_t k = 0; k < count; ++k) {
+      for (int c = 0; c < kChannels; ++c) {
+        values.push_back(data.table ? data.table->Value(c, static_cast<int>(k))
+                                    : data.samples.rho[k][c]);
+      }
+    }
+  }
+  return OwnedArray(std::move(values), {count, size_t{3}});
+}
+
+nb::object ReasonsOfAll(const Measured& measured) {
+  const Measurement& data = *measured.data;
+  std::vector<uint8_t> reasons =
+      data.table ? ReasonsOfBins(*data.table) : std::vector<uint8_t>(data.samples.size());
+  const size_t count = reasons.size();
+  return OwnedArray(std::move(reasons), {count});
+}
+
+// What `trilobe convert` writes, of a model file's text or of a measurement.
+std::string WriteText(const std::string& path, const std::string& text) {
+  WriteFile(path, [&](std::ostream& out) { out << text; });
+  return path;
+}
+
+std::string ConvertModel(const nb::bytes& model_text, const std::string& path, double error,
+                         int num_threads) {
+  const ModelFile file = ParseModel({model_text.c_str(), model_text.size()}, "the model");
+  const nb::gil_scoped_release released;
+  const std::string ending = EndingOf(path);
+  if (ending == ".glsl") return WriteText(path, FormatGlsl(file, "the model").text);
+  if (ending == ".bsdf") {
+    if (!(error >= 0 && error <= 1)) throw Error("error must be from 0 to 1");
+    RglExportOptions options;
+    if (file.fit.max_angle > 0) options.max_theta = DegreesToRadians(file.fit.max_angle);
+    if (error > 0) options.max_error = error;
+    return WriteText(path, ExportRgl(file.model, options).bytes);
+  }
+  Measurement measurement;
+  if (file.model.spec().anisotropic()) {
+    if (ending != ".bin" && ending != ".csv") {
+      throw Error(path +
+                  ": an anisotropic model is written as .bin (UTIA's directions), .csv, "
+                  ".bsdf or .glsl");
+    }
+    measurement = ReconstructAtNodes(file.model, "the model", kUtiaGrid);
+  } else {
+    measurement = {.source = "the model",
+                   .kind = "reconstruction",
+                   .table = Reconstruct(file.model, "the model", {}, num_threads)};
+  }
+  WriteMeasurement(measurement, path, num_threads);
+  return path;
+}
+
+void CheckEnding(const std::string& path) {
+  const std::string ending = EndingOf(path);
+  for (const char* const known : {".binary", ".bin", ".csv", ".bsdf", ".glsl"}) {
+    if (ending == known) return;
+  }
+  throw Error(path +
+              ": end the name in .binary (MERL layout), .bin (UTIA's), .csv, or of a model "
+              "in .bsdf (RGL tensor file) or .glsl");
+}
+
+}  // namespace
+
+void BindMeasurement(nb::module_* module) {
+  module->attr("REASONS") = ReasonNames();
+  nb::class_<Measured>(*module, "Measured", "A measurement in memory.")
+      .def_prop_ro("source", [](const Measured& self) { return self.data->source; })
+      .def_prop_ro("kind", [](const Measured& self) { return self.data->kind; })
+      .def_prop_ro("anisotropic", [](const Measured& self) { return self.data->anisotropic; })
+      .def_prop_ro("notes", [](const Measured& self) { return self.data->notes; })
+      .def_prop_ro("max_angle", [](const Measured& self) { return MaxAngleDegrees(*self.data); })
+      .def_prop_ro("counts_json",
+                   [](const Measured& self) { return ToJson(CountsOf(*self.data)).dump(); })
+      .def_prop_ro("grid",
+                   [](const Measured& self) {
+                     std::vector<int> sizes;
+                     if (self.data->table) {
+                       const MerlGrid& grid = self.data->table->grid;
+                       sizes = {grid.theta_h, grid.theta_d, grid.phi_d};
+                     }
+                     return sizes;
+                   })
+      .def("directions", &DirectionsOf, nb::arg("incident"))
+      .def("values", &ValuesOf)
+      .def("reasons", &ReasonsOfAll);
+  module->def("read", &Read, nb::arg("source"), nb::arg("options"));
+  module->def("from_arrays", &FromArrays, nb::arg("wi"), nb::arg("wo"), nb::arg("rho"),
+              nb::arg("source"), nb::arg("azimuths"), nb::arg("options"));
+  module->def(
+      "convert_model",
+      [](const nb::bytes& text, const std::string& path, double error, const nb::dict& options) {
+        CheckEnding(path);
+        return ConvertModel(text, path, error, ThreadsOf(options));
+      },
+      nb::arg("text"), nb::arg("path"), nb::arg("error"), nb::arg("options"));
+  module->def(
+      "convert_measurement",
+      [](const Measured& measured, const std::string& path, const nb::dict& options) {
+        CheckEnding(path);
+        const std::string ending = EndingOf(path);
+        if (ending == ".bsdf" || ending == ".glsl") {
+          throw Error(path + ": such a file is made of a model; fit the measurement first");
+        }
+        const int threads = ThreadsOf(options);
+        const nb::gil_scoped_release released;
+        return WriteMeasurement(*measured.data, path, threads);
+      },
+      nb::arg("measured"), nb::arg("path"), nb::arg("options"));
+  module->def("synthetic_materials", [] {
+    std::vector<std::string> names;
+    for (const SynthMaterial& material : SynthMaterials()) names.push_back(material.name);
+    return names;
+  });
+}
+
+}  // namespace trilobe::python

@@ -1,0 +1,121 @@
+#include "trilobe/objective/score.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fit_module.h"
+#include "owned_array.h"
+#include "trilobe/app/score_report.h"
+#include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/material.h"
+#include "trilobe/appearance/seen_samples.h"
+#include "trilobe/io/picture_data.h"
+#include "trilobe/io/read_model.h"
+#include "trilobe/model/reconstruct.h"
+#include "trilobe/model/weighting.h"
+
+namespace nb = nanobind;
+
+namespace trilobe::python {
+namespace {
+
+FactorModel ModelOf(const nb::bytes& text) {
+  return ParseModel({text.c_str(), text.size()}, "the model").model;
+}
+
+// The text of what `trilobe score --json` prints.
+nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const nb::dict& options) {
+  const FactorModel model = ModelOf(model_text);
+  const Weighting weighting = FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
+  const int threads = ThreadsOf(options);
+  const std::shared_ptr<const Measurement> data = measured.data;
+  std::string text;
+  {
+    const nb::gil_scoped_release released;
+    const Objective objective(SamplesOf(*data), model.spec(), weighting, threads);
+    Scored scored{.model = "the model", .score = ScoreModel(objective, model)};
+    std::optional<SeenError> seen;
+    const PictureData pictured = PictureDataOf(*data);
+    if (pictured.empty()) {
+      const BrdfSamples& samples = objective.samples();
+      seen = CompareSamples(samples, EvaluateSamples(model, samples, threads));
+    } else {
+      scored.appearance = CompareAppearance(pictured, MaterialOf(model), {.num_threads = threads});
+    }
+    scored.verdict =
+        MakeVerdict(scored.appearance, seen, {.irreducible = IrreducibleShare(scored.score)});
+    text = ToJson(scored, objective).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+  return nb::bytes(text.data(), text.size());
+}
+
+nb::object ImageOf(const RenderedImage& image) {
+  std::vector<double> values;
+  for (const Rgb& radiance : image.radiance) {
+    values.insert(values.end(), radiance.begin(), radiance.end());
+  }
+  const size_t width = image.size, height = image.radiance.size() / width;
+  return OwnedArray(std::move(values), {height, width, size_t{3}});
+}
+
+int SizeOf(const nb::dict& options) {
+  const int size = OptionOf<int>(options, "size", "an integer");
+  if (size < 1 || size > 2048) throw Error("size must be from 1 to 2048 pixels");
+  return size;
+}
+
+// Linear radiance of a model on a sphere under the built-in light. [size][size][3]
+nb::object RenderModel(const nb::bytes& model_text, const nb::dict& options) {
+  const FactorModel model = ModelOf(model_text);
+  const AppearanceOptions appearance{.size = SizeOf(options), .num_threads = ThreadsOf(options)};
+  RenderedImage image;
+  {
+    const nb::gil_scoped_release released;
+    image = RenderPicture(MaterialOf(model), appearance);
+  }
+  return ImageOf(image);
+}
+
+// The same beside a measurement, of measured directions alone, and the exposure of both.
+nb::tuple RenderPair(const nb::bytes& model_text, const Measured& measured,
+                     const nb::dict& options) {
+  const FactorModel model = ModelOf(model_text);
+  const AppearanceOptions appearance{.size = SizeOf(options), .num_threads = ThreadsOf(options)};
+  const std::shared_ptr<const Measurement> data = measured.data;
+  std::optional<ImagePair> pair;
+  {
+    const nb::gil_scoped_release released;
+    const PictureData pictured = PictureDataOf(*data);
+    const Material material = MaterialOf(model);
+    if (pictured.table != nullptr) {
+      CheckIsotropic(pictured, material);
+      pair = RenderPicture(*pictured.table, material.angular, appearance).counted;
+    } else if (pictured.nodes) {
+      pair = RenderPicture(*pictured.nodes, material.spherical, Shape::kSphere, appearance).counted;
+    } else {
+      throw Error(data->source + ": samples on no grid make no picture; draw the slices");
+    }
+  }
+  const double exposure = CompareSpheres(pair->measured, pair->fitted).exposure;
+  return nb::make_tuple(ImageOf(pair->measured), ImageOf(pair->fitted), exposure);
+}
+
+}  // namespace
+
+void BindScore(nb::module_* module) {
+  module->def("score", &Score, nb::arg("model"), nb::arg("measured"), nb::arg("options"));
+  module->def("render", &RenderModel, nb::arg("model"), nb::arg("options"));
+  module->def("render_pair", &RenderPair, nb::arg("model"), nb::arg("measured"),
+              nb::arg("options"));
+}
+
+}  // namespace trilobe::python

@@ -1,0 +1,64 @@
+"""Batches of fits, by the program."""
+
+from __future__ import annotations
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+from typing import Any
+
+from trilobe._brdf import text_of_path
+from trilobe._core import Error
+
+
+def _program(given: Any) -> str:
+    if given is not None:
+        return text_of_path(given)
+    beside = os.path.join(os.path.dirname(sys.executable), "trilobe")
+    found = beside if os.access(beside, os.X_OK) else shutil.which("trilobe")
+    if found is None:
+        raise Error("the program trilobe is neither beside this Python nor on the PATH; give program=PATH")
+    return found
+
+
+def _flag(name: str, value: Any) -> str:
+    if isinstance(value, bool):
+        return f"--{name}" if value else f"--no{name}"
+    return f"--{name}={value}"
+
+
+def run(sources: list[str], out: str, workers: int, program: Any, flags: dict[str, Any]) -> list[dict[str, Any]]:
+    """Runs `trilobe fit`, and reads what it has gathered."""
+    if not isinstance(workers, int):
+        raise Error("workers must be an integer")
+    if not sources:
+        raise Error("there is no source to fit")
+    # Two sources are a batch; of one, the batch is asked for as the first part of one.
+    command = [_program(program), "fit", *sources, f"--out={out}", f"--threads={workers}"]
+    command += ["--shard=1/1"] if len(sources) == 1 else []
+    command += [_flag(name, value) for name, value in flags.items()]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    try:
+        _, told = process.communicate()
+    except KeyboardInterrupt:
+        _, told = process.communicate()  # which has had the signal, too, and finishes what it can
+        raise
+    # 3: some could not be fitted, which their rows say.
+    if process.returncode not in (0, 3):
+        lines = [line for line in told.splitlines() if line.strip()]
+        raise Error(lines[-1].removeprefix("trilobe: ") if lines else f"trilobe ended with {process.returncode}")
+    table = os.path.join(out, "fits.csv")
+    try:
+        with open(table, newline="", encoding="utf-8") as file:
+            return [{key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    except OSError as error:
+        raise Error(f"cannot read '{table}': {error.strerror}") from None
+
+
+def _number(text: Any) -> Any:
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return text

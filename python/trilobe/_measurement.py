@@ -1,0 +1,266 @@
+"""Measurements: read from any file, or made of arrays."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trilobe._arrays import as_array
+from trilobe._brdf import Brdf, load, text_of_path
+from trilobe._core import Error
+
+
+def fits() -> Any:
+    """The module that fits; an Error that says why not, where there is none."""
+    try:
+        from trilobe import _fit
+    except ImportError as error:
+        here = Path(__file__).parent
+        if any(here.glob("_fit.*.so")):
+            raise Error(
+                f"what fits cannot be loaded ({error}); install the packages of the group run in dependencies.txt"
+            ) from None
+        raise Error(
+            "this package only evaluates models; install it without TRILOBE_BUILD_LIBRARY=OFF to read and fit "
+            "measurements"
+        ) from None
+    return _fit
+
+
+class Measurement:
+    """What was measured of a material: a table on a grid of half-vector angles, or scattered samples.
+
+    Args:
+        wi: directions towards the light (n, 3), away from the surface, z along its normal; any length.
+        wo: directions towards the detector (n, 3).
+        rho: BRDF values [1/sr] without a cosine, (n, 3), or (n,) or (n, 1) of all channels.
+        anisotropic: whether azimuths matter, so that turning the sample changes what is measured. By default
+            they do where light comes from several azimuths; say False of an isotropic material that was
+            measured from anywhere.
+        source: what reports call it.
+        max_angle: theta_i and theta_o beyond it are left out [degrees].
+        min_theta_d: half angles between wi and wo below it are left out [degrees]; -1 as far as the detector
+            shows that it stood in its own light.
+
+    Samples that are below the surface, negative or not finite are left out, and counted (`counts`).
+    Immutable. What follows from it is computed when it is first asked for.
+    """
+
+    def __init__(
+        self,
+        wi: ArrayLike,
+        wo: ArrayLike,
+        rho: ArrayLike,
+        *,
+        anisotropic: bool | None = None,
+        source: str = "arrays",
+        max_angle: float = 90,
+        min_theta_d: float = -1,
+    ) -> None:
+        """Makes a measurement of arrays."""
+        arrays = {}
+        for name, values in (("wi", wi), ("wo", wo), ("rho", rho)):
+            array = as_array(values, name).astype(np.float64)
+            if name == "rho" and (array.ndim == 1 or (array.ndim == 2 and array.shape[1] == 1)):
+                array = np.repeat(array.reshape(-1, 1), 3, axis=1)
+            if array.ndim != 2 or array.shape[1] != 3:
+                raise Error(f"{name} has the shape {array.shape}, and must have (n, 3)")
+            arrays[name] = np.ascontiguousarray(array)
+        lengths = {name: len(array) for name, array in arrays.items()}
+        if len(set(lengths.values())) > 1:
+            raise Error(f"wi, wo and rho have {', '.join(map(str, lengths.values()))} rows, and must have the same")
+        if anisotropic not in (None, True, False):
+            raise Error("anisotropic must be True, False or None")
+        azimuths = {None: "auto", True: "yes", False: "no"}[anisotropic]
+        options = source_options(max_angle=max_angle, min_theta_d=min_theta_d)
+        self._set(fits().from_arrays(*arrays.values(), _name(source), azimuths, options))
+
+    def _set(self, data: Any) -> None:
+        self._data = data
+        self._cache: dict[str, NDArray[Any]] = {}
+
+    @classmethod
+    def _of(cls, data: Any) -> Measurement:
+        measurement = cls.__new__(cls)
+        measurement._set(data)
+        return measurement
+
+    @property
+    def source(self) -> str:
+        """The file, or the name of what it was made from."""
+        return str(self._data.source)
+
+    @property
+    def kind(self) -> str:
+        """What it is, as "MERL measurement"."""
+        return str(self._data.kind)
+
+    @property
+    def anisotropic(self) -> bool:
+        """Whether azimuths matter."""
+        return bool(self._data.anisotropic)
+
+    @property
+    def grid(self) -> tuple[int, int, int] | None:
+        """Of a table, how many bins there are of theta_h, theta_d and phi_d; None of scattered samples."""
+        return tuple(self._data.grid) or None
+
+    @property
+    def notes(self) -> list[str]:
+        """What looks wrong in the data, a sentence each."""
+        return list(self._data.notes)
+
+    @property
+    def max_angle(self) -> float:
+        """No theta_i or theta_o of a valid sample is beyond this [degrees]."""
+        return float(self._data.max_angle)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many samples there were, how many are valid, and why the others are not."""
+        counts: dict[str, int] = json.loads(self._data.counts_json)
+        return counts
+
+    @property
+    def wi(self) -> NDArray[np.float64]:
+        """Directions towards the light, (n, 3), of each bin of a table or of each valid sample.
+
+        Bins come theta_h first and phi_d fastest, and stand for their centres, half vectors leaning towards x.
+        """
+        return self._cached("wi", lambda: self._data.directions(True))
+
+    @property
+    def wo(self) -> NDArray[np.float64]:
+        """Directions towards the detector, (n, 3)."""
+        return self._cached("wo", lambda: self._data.directions(False))
+
+    @property
+    def rho(self) -> NDArray[np.float64]:
+        """The BRDF [1/sr], (n, 3), as it is stored, whether valid or not."""
+        return self._cached("rho", self._data.values)
+
+    @property
+    def reason(self) -> NDArray[np.uint8]:
+        """Why each is left out, (n,): a number in `Measurement.reasons`; 0 is valid."""
+        return self._cached("reason", self._data.reasons)
+
+    @property
+    def reasons(self) -> list[str]:
+        """What the numbers of `reason` stand for."""
+        return list(fits().REASONS)
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Which of them a fit sees, (n,)."""
+        return self._cached("valid", lambda: np.asarray(self.reason == 0))
+
+    def _cached(self, name: str, make: Callable[[], NDArray[Any]]) -> NDArray[Any]:
+        if name not in self._cache:
+            array = make()
+            array.flags.writeable = False
+            self._cache[name] = array
+        return self._cache[name]
+
+    def __repr__(self) -> str:
+        """What it is, in short."""
+        counts = self.counts
+        return f"<trilobe.Measurement {self.source}: {self.kind}, {counts['valid']} of {counts['total']} valid>"
+
+
+def read(
+    source: str | os.PathLike[str],
+    *,
+    noise: float = 0,
+    missing: float = 0,
+    seed: int = 1,
+    max_angle: float = 90,
+    min_theta_d: float = -1,
+    extrapolated: bool = False,
+    radiometry: str = "brdf",
+    threads: int = 0,
+) -> Measurement:
+    """Reads a measurement of any format (docs/file-formats.md), or makes a synthetic one, "synth:NAME".
+
+    Args:
+        source: the file; its content tells the format.
+        noise: relative noise of a synthetic material, 0 to 1.
+        missing: the share of the samples that is left out at random.
+        seed: of whatever is random.
+        max_angle: theta_i and theta_o beyond it are left out [degrees].
+        min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
+            detector stood in its own light.
+        extrapolated: of an RGL file, takes what its authors extrapolated, too.
+        radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
+        threads: 0 for all cores.
+
+    Raises:
+        Error: with the program's line.
+    """
+    options = source_options(
+        noise=noise,
+        missing=missing,
+        seed=seed,
+        max_angle=max_angle,
+        min_theta_d=min_theta_d,
+        extrapolated=extrapolated,
+        radiometry=radiometry,
+        threads=threads,
+    )
+    return Measurement._of(fits().read(text_of_path(source), options))
+
+
+def measurement_of(value: Any) -> Measurement:
+    """A measurement, or what its file says."""
+    return value if isinstance(value, Measurement) else read(value)
+
+
+def convert(
+    what: Brdf | Measurement | str | os.PathLike[str],
+    path: str | os.PathLike[str],
+    *,
+    error: float = 0,
+    threads: int = 0,
+) -> None:
+    """Writes a model or a measurement in another format, which the ending of the path says.
+
+    ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples; of models alone, ".bsdf" is an RGL tensor file for
+    Mitsuba's `measured`, which is off the model by at most `error` in the median (0: 0.005, of an anisotropic
+    model 0.02), and ".glsl" a shader.
+    """
+    if not isinstance(what, (Brdf, Measurement)):
+        name = text_of_path(what)
+        what = load(name) if name.endswith(".json") or os.path.isdir(name) else read(name)
+    options = {"threads": threads}
+    if isinstance(what, Brdf):
+        if not isinstance(error, (int, float)):
+            raise Error("error must be a number")
+        fits().convert_model(what.to_json().encode(), text_of_path(path), float(error), options)
+    else:
+        fits().convert_measurement(what._data, text_of_path(path), options)
+
+
+def source_options(**given: Any) -> dict[str, Any]:
+    """All options of a source, those that are not given by default."""
+    return {
+        "noise": 0.0,
+        "missing": 0.0,
+        "seed": 1,
+        "max_angle": 90.0,
+        "min_theta_d": -1.0,
+        "extrapolated": False,
+        "radiometry": "brdf",
+        "threads": 0,
+        **given,
+    }
+
+
+def _name(source: Any) -> str:
+    if not isinstance(source, str):
+        raise Error("source must be a str")
+    return source.encode("utf-8", "replace").decode("utf-8")

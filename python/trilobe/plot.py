@@ -1,0 +1,190 @@
+"""Pictures of models and fits by matplotlib, which must be installed.
+
+Each function draws into `figure`, or a new one, and returns it; none of them shows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trilobe._brdf import CHANNELS, Brdf
+from trilobe._core import Error
+from trilobe._fitting import Result
+from trilobe._measurement import Measurement, fits, measurement_of
+
+_COLORS = ("#c03028", "#2a8a3a", "#2b55b8")
+
+
+def _figure(figure: Any, size: tuple[float, float]) -> Any:
+    try:
+        from matplotlib import figure as figures
+        from matplotlib import pyplot
+    except ImportError:
+        raise Error("pictures need matplotlib: pip install matplotlib") from None
+    if figure is None:
+        return pyplot.figure(figsize=size, layout="constrained")
+    if not isinstance(figure, figures.FigureBase):
+        raise Error("figure must be a figure of matplotlib")
+    return figure
+
+
+def _check_model(brdf: Any) -> None:
+    if not isinstance(brdf, Brdf):
+        raise Error("the model must be a trilobe.Brdf")
+
+
+def factors(brdf: Brdf, figure: Any = None) -> Any:
+    """D, F and G of a model over their angles; entries that no data touched are dotted.
+
+    Of an anisotropic model D and G are maps, the angle from the normal upwards and the azimuth to the right.
+    """
+    _check_model(brdf)
+    figure = _figure(figure, (11, 3.4) if not brdf.anisotropic else (11, 2.4 * max(brdf.lobes, 1)))
+    if brdf.anisotropic and brdf.lobes > 0:
+        return _polar_factors(brdf, figure)
+    for axes, name in zip(figure.subplots(1, 3), "DFG"):
+        table, unobserved = getattr(brdf, name), brdf.unobserved(name)
+        angles = np.degrees(table.coords[table.dims[-1]])
+        rows = np.asarray(table).reshape(-1, table.shape[-1])
+        hidden = unobserved.reshape(rows.shape)
+        for k, (row, without) in enumerate(zip(rows, hidden)):
+            lobe, channel = _of_row(table, k)
+            style = {"color": _COLORS[channel] if channel is not None else f"C{lobe}"}
+            of_lobe = "" if lobe is None else f"lobe {lobe + 1} "
+            label = of_lobe + ("" if channel is None else CHANNELS[channel])
+            axes.plot(angles, row, ":", lw=1, **style)
+            axes.plot(angles, np.where(without, np.nan, row), lw=1.6, label=label, **style)
+        axes.set_title(name)
+        axes.set_xlabel({"D": "θh [°]", "F": "θd [°]", "G": "θ [°]"}[name])
+        if name == "D" and brdf.lobes > 0:
+            axes.set_yscale("symlog", linthresh=1e-2)
+        if brdf.lobes > 0:
+            axes.legend(fontsize=7)
+    return figure
+
+
+def _of_row(table: Any, k: int) -> tuple[int | None, int | None]:
+    """The lobe and the channel of the k-th row of a table."""
+    channels = 3 if "channel" in table.dims else 1
+    lobe = k // channels if "lobe" in table.dims else None
+    return lobe, k % channels if channels == 3 else None
+
+
+def _polar_factors(brdf: Brdf, figure: Any) -> Any:
+    grid = figure.subplots(brdf.lobes, 3, squeeze=False)
+    for name, column in (("D", 0), ("G", 2)):
+        table = getattr(brdf, name)
+        maps = np.asarray(table).reshape(-1, *table.shape[-2:])
+        theta, phi = (np.degrees(table.coords[dim]) for dim in table.dims[-2:])
+        for lobe in range(brdf.lobes):
+            axes = grid[lobe, column]
+            picture = axes.pcolormesh(phi, theta, maps[lobe * len(maps) // brdf.lobes], shading="nearest")
+            axes.set_title(f"{name}, lobe {lobe + 1}", fontsize=9)
+            axes.set_xlabel("φ [°]")
+            axes.set_ylabel("θ [°]")
+            figure.colorbar(picture, ax=axes)
+    F = brdf.F
+    rows = np.asarray(F).reshape(-1, 3, F.shape[-1])
+    for lobe in range(brdf.lobes):
+        for row, color in zip(rows[lobe % len(rows)], _COLORS):
+            grid[lobe, 1].plot(np.degrees(F.coords["theta_d"]), row, color=color)
+        grid[lobe, 1].set_title("F" if len(rows) == 1 else f"F, lobe {lobe + 1}", fontsize=9)
+        grid[lobe, 1].set_xlabel("θd [°]")
+    return figure
+
+
+def slices(brdf: Brdf, measurement: Measurement | None = None, figure: Any = None) -> Any:
+    """The BRDF in the plane of incidence over theta_o, for several theta_i; the light's side is below 0.
+
+    Measured values are points: of a table those of the nearest bins, of scattered samples those within three
+    degrees.
+    """
+    _check_model(brdf)
+    figure = _figure(figure, (11, 3.4))
+    theta = np.radians(np.linspace(-89, 89, 357))
+    wo = np.stack([np.sin(theta), np.zeros_like(theta), np.cos(theta)], axis=-1)
+    grid = figure.subplots(1, 3, sharex=True)
+    for k, degrees in enumerate((0, 30, 60)):
+        at = np.radians(degrees)
+        wi = np.array([-np.sin(at), 0, np.cos(at)])
+        f = brdf.eval(wi, wo)
+        for c, axes in enumerate(grid):
+            axes.plot(np.degrees(theta), f[:, c], color=f"C{k}", label=f"θi = {degrees}°")
+            axes.set_title(CHANNELS[c])
+            axes.set_xlabel("θo [°]")
+            axes.set_yscale("log")
+        if measurement is not None:
+            angles, values = _in_plane(measurement_of(measurement), at)
+            for c, axes in enumerate(grid):
+                axes.plot(np.degrees(angles), values[:, c], ".", ms=3, color=f"C{k}", alpha=0.5)
+    grid[0].set_ylabel("f [1/sr]")
+    grid[0].legend(fontsize=7)
+    return figure
+
+
+def _in_plane(measurement: Measurement, theta_i: float) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Signed theta_o and values of what was measured within some degrees of the plane of incidence."""
+    valid = measurement.valid
+    wi, wo, rho = measurement.wi[valid], measurement.wo[valid], measurement.rho[valid]
+    width = np.radians(1.0 if measurement.grid else 3.0)
+    near = np.abs(np.arccos(np.clip(wi[:, 2], -1, 1)) - theta_i) < width
+    wi, wo, rho = wi[near], wo[near], rho[near]
+    theta_o = np.arccos(np.clip(wo[:, 2], -1, 1))
+    turn = np.arctan2(wo[:, 1], wo[:, 0]) - np.arctan2(wi[:, 1], wi[:, 0])
+    if theta_i < width:
+        turn = np.zeros_like(turn)  # where there is no plane
+    across = np.abs(np.sin(turn)) * np.sin(theta_o) < np.sin(width)
+    signed = np.where(np.cos(turn) > 0, -theta_o, theta_o)
+    if theta_i < width:
+        signed = theta_o
+    return signed[across], rho[across]
+
+
+def _srgb(linear: NDArray[Any]) -> NDArray[Any]:
+    x = np.clip(linear, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
+def spheres(
+    brdf: Brdf, measurement: Measurement | None = None, figure: Any = None, *, size: int = 192, threads: int = 0
+) -> Any:
+    """The model on a sphere under the program's sky, sun and lamps; beside its measurement where that is given.
+
+    Beside a measurement, directions that were not measured are left out of both.
+    """
+    _check_model(brdf)
+    module, text, options = fits(), brdf.to_json().encode(), {"size": size, "threads": threads}
+    if measurement is None:
+        image = module.render(text, options)
+        bright = np.quantile(image[image.sum(axis=-1) > 0], 0.98) if (image > 0).any() else 1
+        images = [("model", image / bright)]
+    else:
+        measured, fitted, exposure = module.render_pair(text, measurement_of(measurement)._data, options)
+        images = [("measured", measured * exposure), ("fitted", fitted * exposure)]
+    figure = _figure(figure, (3.2 * len(images), 3.4))
+    for axes, (title, image) in zip(figure.subplots(1, len(images), squeeze=False)[0], images):
+        axes.imshow(_srgb(image))
+        axes.set_title(title)
+        axes.set_axis_off()
+    return figure
+
+
+def trace(results: Result | Mapping[str, Result], figure: Any = None) -> Any:
+    """E over iterations and over seconds, of a fit, or of several by their names."""
+    if isinstance(results, Result):
+        results = {results.report["solver"]: results}
+    if not isinstance(results, Mapping) or not all(isinstance(result, Result) for result in results.values()):
+        raise Error("trace takes a trilobe.Result, or a dict of them by their names")
+    figure = _figure(figure, (9, 3.4))
+    for axes, column, label in zip(figure.subplots(1, 2, sharey=True), ("iteration", "seconds"), ("iteration", "s")):
+        for name, result in results.items():
+            axes.plot(result.trace[column], result.trace["objective"], ".-", label=name)
+        axes.set_xlabel(label)
+        axes.set_yscale("log")
+    figure.axes[0].set_ylabel("E")
+    figure.axes[0].legend(fontsize=7)
+    return figure

@@ -1,0 +1,260 @@
+"""Measurements and fits: the program's, to the bit."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import trilobe
+
+from models import anisotropic, directions, isotropic
+
+pytest.importorskip("trilobe._fit")
+
+PROGRAM = pathlib.Path(os.environ.get("TRILOBE_PROGRAM", "build/release/bin/trilobe")).resolve()
+needs_program = pytest.mark.skipif(not PROGRAM.exists(), reason=f"{PROGRAM} is not built")
+SMALL = "synth:plastic@24x24x48"
+
+
+@pytest.fixture(scope="module")
+def plastic():
+    return trilobe.read(SMALL, noise=0.02)
+
+
+@pytest.fixture(scope="module")
+def fitted(plastic):
+    return trilobe.fit(plastic, solver="awls", max_iterations=4, progress=False)
+
+
+def without_times(text):
+    return [line for line in text.splitlines()
+            if not any(f'"{key}"' in line for key in ("seconds", "date", "run"))]
+
+
+@needs_program
+@pytest.mark.parametrize(("source", "flags"), [
+    (SMALL, {}),
+    (SMALL, {"solver": "awls", "max_iterations": 3, "g_filter": 0.5, "model": "independent"}),
+    (SMALL, {"solver": "varpro", "max_iterations": 3, "stretch": (-0.2, 0.3), "lobes": 2}),
+    ("synth:shot_silk@5x8", {"solver": "lm", "max_iterations": 1, "f_bins": 5, "guide": 0.5}),
+])
+def test_is_the_programs_to_the_bit(source, flags, tmp_path):
+    result = trilobe.fit(trilobe.read(source, noise=0.02), **flags, progress=False)
+    result.save(tmp_path / "python")
+    told = [f"--{key}={','.join(map(str, value)) if isinstance(value, tuple) else value}"
+            for key, value in flags.items()]
+    subprocess.run([PROGRAM, "fit", source, "--noise=0.02", f"--out={tmp_path}/program", "--noplots", *told],
+                   check=True, stdout=subprocess.DEVNULL)
+    ours, theirs = (without_times((tmp_path / name / "model.json").read_text()) for name in ("python", "program"))
+    assert ours == theirs
+    report = json.loads((tmp_path / "program" / "report.json").read_text())
+    for key, value in report.items():
+        if key not in ("seconds", "phases", "peak_memory_bytes", "key", "run", "files", "date", "candidates",
+                       "nodes"):
+            assert result.report[key] == value, key
+    rows = np.genfromtxt(tmp_path / "program" / "trace.csv", delimiter=",", names=True)
+    np.testing.assert_array_equal(result.trace["objective"], rows["objective"])
+    np.testing.assert_array_equal(result.trace["step"], rows["step"])
+
+
+def test_says_how_it_went(plastic, fitted):
+    assert fitted.trace["iteration"].tolist() == [0, 1, 2, 3, 4]
+    assert (np.diff(fitted.trace["objective"]) < 0).all()
+    assert 0 < fitted.report["objective"] <= fitted.trace["objective"][-1]
+    assert fitted.report["solver"] == "awls"
+    assert fitted.model.fit["source"] == SMALL
+    assert fitted.verdict
+    assert not fitted.interrupted
+    scored = trilobe.score(fitted.model, plastic)
+    assert scored["objective"] == pytest.approx(fitted.report["objective"])
+    assert scored["verdict"]["words"] == fitted.verdict
+
+
+def test_goes_on_from_a_model(plastic, fitted):
+    more = trilobe.fit(plastic, solver="varpro", start=fitted.model, max_iterations=2, progress=False)
+    assert more.report["objective"] < fitted.report["objective"]
+
+
+def test_fits_arrays():
+    """A model's own values, at random directions, come back."""
+    brdf = isotropic()
+    wi, wo = directions(6000, 1), directions(6000, 2)
+    measurement = trilobe.Measurement(wi, wo, brdf.eval(wi, wo), anisotropic=False, min_theta_d=0)
+    assert measurement.counts["valid"] == 6000 and not measurement.anisotropic
+    result = trilobe.fit(measurement, progress=False)
+    wi, wo = directions(2000, 3), directions(2000, 4)
+    error = np.abs(np.log((1 + result.model.eval_cos(wi, wo)) / (1 + brdf.eval_cos(wi, wo))))
+    assert np.median(error) < 0.005
+
+
+def test_arrays_are_counted_like_a_file():
+    wi, wo = directions(100, 5), directions(100, 6)
+    rho = np.full((100, 3), 0.2)
+    rho[0] = -1
+    rho[1] = np.nan
+    wi[2] = [0, 0, -1]
+    wi[3] = np.nan
+    measurement = trilobe.Measurement(wi, wo, rho)
+    counts = measurement.counts
+    assert (counts["valid"], counts["negative"], counts["non_finite"], counts["below_surface"]) == (96, 1, 1, 2)
+    assert measurement.anisotropic
+    np.testing.assert_allclose(measurement.wi, wi[4:], atol=1e-12)
+    one_channel = trilobe.Measurement(wi, wo, rho[:, 0])
+    assert one_channel.rho.shape == (96, 3)
+
+
+def test_reads_a_table(plastic, tmp_path):
+    assert plastic.grid == (24, 24, 48)
+    assert plastic.wi.shape == plastic.wo.shape == plastic.rho.shape == (27648, 3)
+    counts = plastic.counts
+    assert plastic.valid.sum() == counts["valid"]
+    for k, name in enumerate(plastic.reasons):
+        if k > 0:
+            assert (plastic.reason == k).sum() == counts[name]
+    assert (plastic.rho[plastic.valid] >= 0).all()
+    np.testing.assert_allclose(np.linalg.norm(plastic.wi, axis=1), 1)
+    assert (np.minimum(plastic.wi, plastic.wo)[plastic.valid, 2] > 0).all()
+    nearer = trilobe.read(SMALL, max_angle=60)
+    assert nearer.counts["beyond_max_angle"] > 0 and nearer.max_angle == 60
+    with pytest.raises(ValueError, match="read-only"):
+        plastic.rho[0] = 1
+
+
+def test_converts(fitted, plastic, tmp_path):
+    for name in ("a.binary", "a.bsdf", "a.glsl"):
+        trilobe.convert(fitted.model, tmp_path / name, error=0.2)
+        assert (tmp_path / name).stat().st_size > 1000
+    again = trilobe.read(tmp_path / "a.binary")
+    wi, wo = again.wi[again.valid][::999], again.wo[again.valid][::999]
+    np.testing.assert_allclose(again.rho[again.valid][::999], fitted.model.eval(wi, wo), rtol=0.2, atol=1e-3)
+    trilobe.convert(plastic, tmp_path / "b.csv")
+    assert trilobe.read(tmp_path / "b.csv").counts["valid"] == plastic.counts["valid"]
+    trilobe.convert(anisotropic(), tmp_path / "c.bin")
+    assert trilobe.read(tmp_path / "c.bin").anisotropic
+
+
+def test_lists():
+    solvers = trilobe.solvers()
+    assert solvers[0].name == "auto"
+    assert solvers[0].options["max_iterations"][0] == 100
+    assert next(iter(trilobe.weightings())) == "appearance"
+    assert next(iter(trilobe.initial_models())) == "analytic"
+    assert "plastic" in trilobe.synthetic_materials()
+
+
+BAD = [
+    (lambda: trilobe.read("synth:nothing"), "nothing"),
+    (lambda: trilobe.read("/no/such.binary"), "/no/such.binary"),
+    (lambda: trilobe.read(3), "a path must be a str"),
+    (lambda: trilobe.read(SMALL, noise=-1), "noise"),
+    (lambda: trilobe.read(SMALL, noise="much"), "noise must be a number"),
+    (lambda: trilobe.read(SMALL, seed=-1), "seed must be an integer from 0"),
+    (lambda: trilobe.read(SMALL, threads=-1), "threads is negative"),
+    (lambda: trilobe.fit(SMALL, model="round"), "unknown model 'round'"),
+    (lambda: trilobe.fit(SMALL, model=None), "model must be a name"),
+    (lambda: trilobe.fit(SMALL, solver="best"), "best"),
+    (lambda: trilobe.fit(SMALL, solver="awls", memory=3), "solver awls does not take memory; it takes"),
+    (lambda: trilobe.fit(SMALL, max_iterations="9"), "max_iterations must be an integer"),
+    (lambda: trilobe.fit(SMALL, max_iterations=-9), "max_iterations"),
+    (lambda: trilobe.fit(SMALL, lobes=99), "lobes"),
+    (lambda: trilobe.fit(SMALL, stretch=(1, 2, 3)), "stretch must be"),
+    (lambda: trilobe.fit(SMALL, stretch=[(0, 1), (1, 0)]), "stretch has 2 pairs for 3 lobes"),
+    (lambda: trilobe.fit(SMALL, d_nodes="many"), "d_nodes='many' are no nodes"),
+    (lambda: trilobe.fit(SMALL, weighting="light"), "light"),
+    (lambda: trilobe.fit(SMALL, init="there"), "there"),
+    (lambda: trilobe.fit(SMALL, start=3), "start must be"),
+    (lambda: trilobe.fit(SMALL, guide=1), "guide"),
+    (lambda: trilobe.fit(None), "a path must be"),
+    (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]], [[1, 1]]), r"rho has the shape \(1, 2\)"),
+    (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]] * 2, [1.0]), "rows"),
+    (lambda: trilobe.fit(trilobe.Measurement(np.empty((0, 3)), np.empty((0, 3)), [])), "valid"),
+    (lambda: trilobe.Measurement("x", [[0, 0, 1]], [1.0]), "wi has the dtype"),
+    (lambda: trilobe.score(None, SMALL), "must be a trilobe.Brdf"),
+    (lambda: trilobe.convert(isotropic(), "x.png"), "end the name in"),
+    (lambda: trilobe.convert(SMALL, "x.zip"), "end the name in"),
+    (lambda: trilobe.convert(anisotropic(), "x.binary"), "anisotropic"),
+    (lambda: trilobe.fit_many([], "out"), "there is no source"),
+    (lambda: trilobe.fit_many(3, "out"), "a list of paths"),
+]
+
+
+@pytest.mark.parametrize(("ask", "told"), BAD)
+def test_says_in_a_line_what_is_wrong(ask, told):
+    with pytest.raises(trilobe.Error, match=told) as caught:
+        ask()
+    assert "\n" not in str(caught.value)
+
+
+LONG = """
+import trilobe
+result = trilobe.fit("synth:plastic", solver="awls", max_iterations=1000, tolerance=0, progress=True)
+assert result.interrupted and result.report["interrupted"], result.report["stop_reason"]
+assert result.model.lobes == 3
+print("kept", flush=True)
+"""
+
+
+def test_ctrl_c_keeps_the_best_so_far():
+    process = subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE, text=True,
+                               stderr=subprocess.PIPE)
+    time.sleep(2.5)
+    process.send_signal(signal.SIGINT)
+    out, told = process.communicate(timeout=60)
+    assert process.returncode == 0, told
+    assert "kept" in out
+
+
+def test_other_threads_run_meanwhile(plastic):
+    steps = []
+    done = threading.Event()
+
+    def count():
+        while not done.is_set():
+            steps.append(1)
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    trilobe.fit(plastic, solver="awls", max_iterations=5, progress=False)
+    done.set()
+    thread.join()
+    assert len(steps) > 20
+
+
+@needs_program
+def test_fits_many(tmp_path):
+    rows = trilobe.fit_many(["synth:felt@20x20x40", SMALL], tmp_path, program=PROGRAM, workers=2, solver="awls",
+                            max_iterations=1, noise=0.01)
+    assert [row["state"] for row in rows] == ["fitted", "fitted"]
+    assert all(row["psnr_db"] > 10 for row in rows)
+    assert trilobe.load(tmp_path / rows[0]["name"]).lobes == 3
+    fitted_at = (tmp_path / rows[0]["name"] / "model.json").stat().st_mtime_ns
+    again = trilobe.fit_many("synth:felt@20x20x40", tmp_path, program=PROGRAM, solver="awls", max_iterations=1,
+                             noise=0.01)
+    assert [row["name"] for row in again] == [row["name"] for row in rows]
+    assert (tmp_path / rows[0]["name"] / "model.json").stat().st_mtime_ns == fitted_at
+    with pytest.raises(trilobe.Error, match="noise"):
+        trilobe.fit_many([SMALL], tmp_path, program=PROGRAM, noise=-1)
+
+
+def test_draws(fitted, plastic, tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    from trilobe import plot
+    for name, figure in {
+        "factors": plot.factors(fitted.model), "polar": plot.factors(anisotropic()),
+        "slices": plot.slices(fitted.model, plastic), "spheres": plot.spheres(fitted.model, plastic, size=48),
+        "sphere": plot.spheres(anisotropic(), size=48), "trace": plot.trace({"awls": fitted}),
+    }.items():
+        figure.savefig(tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").stat().st_size > 5000
+        matplotlib.pyplot.close(figure)
+    with pytest.raises(trilobe.Error, match=r"must be a trilobe\.Brdf"):
+        plot.factors(3)
