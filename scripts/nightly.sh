@@ -53,6 +53,9 @@ scripts/check_anywhere.sh
 step "Breaking runs of the program"
 tests/faults/harness.py --trials="${1:-400}"
 
+step "Testing files for renderers in Mitsuba, which draws a picture of the pages"
+scripts/check_renderers.sh
+
 step "Making the pictures of the pages"
 scripts/check_pictures.py ${3:+--data="$3"}
 

@@ -56,6 +56,11 @@ Exported ExportMeasurement(const std::string& source, RglExportOptions options) 
   Stopwatch stopwatch;
   FitOptions fit_options;
   fit_options.compare = false;
+  // Further ones lower E by little, and the values of the file not at all.
+  fit_options.solver_options = [](const ModelSpec& /*spec*/) {
+    return SolverOptions{.max_iterations = 4};
+  };
+  fit_options.match_reflectance = false;
   fit_options.num_threads = source_options.num_threads;
   const FitResult fit = Fit(measurement, fit_options);
   PrintLine("fitted " + source + " by " + std::to_string(fit.stored_parameters) +
