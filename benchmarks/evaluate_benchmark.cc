@@ -69,6 +69,26 @@ template <typename Material>
 void Value(benchmark::State& state, const Material& material) {
   Run(state, [&](const Call& call) { return material.Value(call.pair.wi, call.pair.wo); });
 }
+// All pairs at once.
+template <typename Real>
+void Values(benchmark::State& state, const FactorModel& model) {
+  const Bsdf<Real> bsdf(model);
+  using Vector = typename Bsdf<Real>::Vector;
+  const auto rounded = [](const Direction& w) {
+    return Vector{static_cast<Real>(w[0]), static_cast<Real>(w[1]), static_cast<Real>(w[2])};
+  };
+  std::vector<Vector> wi, wo;
+  for (const Call& call : Calls()) {
+    wi.push_back(rounded(call.pair.wi));
+    wo.push_back(rounded(call.pair.wo));
+  }
+  std::vector<Vector> values(wi.size());
+  for (auto _ : state) {
+    bsdf.Values(wi, wo, values);
+    benchmark::DoNotOptimize(values.data());
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * wi.size()));
+}
 template <typename Material>
 void SampleAndPdf(benchmark::State& state, const Material& material) {
   Run(state, [&](const Call& call) {
@@ -92,6 +112,10 @@ void BM_ValueAnisotropic(benchmark::State& state) { Value(state, Bsdf<double>(An
 void BM_ValueReference(benchmark::State& state) {
   Run(state, [](const Call& call) { return Evaluate(Isotropic(), call.pair); });
 }
+void BM_ValuesIsotropic(benchmark::State& state) { Values<double>(state, Isotropic()); }
+void BM_ValuesAnisotropic(benchmark::State& state) { Values<double>(state, Anisotropic()); }
+void BM_ValuesIsotropicFloat(benchmark::State& state) { Values<float>(state, Isotropic()); }
+void BM_ValuesAnisotropicFloat(benchmark::State& state) { Values<float>(state, Anisotropic()); }
 void BM_SampleAndPdfGgx(benchmark::State& state) { SampleAndPdf(state, Ggx()); }
 void BM_SampleAndPdfIsotropic(benchmark::State& state) {
   SampleAndPdf(state, Bsdf<double>(Isotropic()));
@@ -110,6 +134,10 @@ BENCHMARK(BM_ValueGgx);
 BENCHMARK(BM_ValueIsotropic);
 BENCHMARK(BM_ValueAnisotropic);
 BENCHMARK(BM_ValueReference);
+BENCHMARK(BM_ValuesIsotropic);
+BENCHMARK(BM_ValuesAnisotropic);
+BENCHMARK(BM_ValuesIsotropicFloat);
+BENCHMARK(BM_ValuesAnisotropicFloat);
 BENCHMARK(BM_SampleAndPdfGgx);
 BENCHMARK(BM_SampleAndPdfIsotropic);
 BENCHMARK(BM_SampleAndPdfAnisotropic);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "trilobe/brdf/channels.h"
@@ -54,6 +55,11 @@ class Bsdf {
   bool anisotropic() const { return model_.anisotropic(); }
 
   Colour Value(const Vector& wi, const Vector& wo) const { return model_.Value(wi, wo); }
+
+  void Values(std::span<const Vector> wi, std::span<const Vector> wo,
+              std::span<Colour> values) const {
+    model_.Values(wi, wo, values);
+  }
 
   // The diffuse term, and each lobe's part of the value, of which that is the sum (or 0 where that
   // is negative). `values` has lobes() entries.

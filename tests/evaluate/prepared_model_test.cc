@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "tests/evaluate/materials.h"
@@ -54,6 +55,30 @@ TEST(PreparedModelTest, EqualsTheReferenceForEveryForm) {
         ASSERT_NEAR(in_float[c], expected[c], 2e-3 * expected[c]) << name;
       }
     }
+  }
+}
+
+TEST(PreparedModelTest, ValuesOfManyPairsAreThoseOfEach) {
+  for (const auto& [name, model] : TestMaterials()) {
+    const PreparedModel<double> prepared(model);
+    Random random(3);
+    std::vector<Direction> wi(33), wo(33);
+    for (size_t k = 0; k < wi.size(); ++k) {
+      const DirectionPair pair = RandomPair(&random);
+      wi[k] = pair.wi;
+      wo[k] = pair.wo;
+    }
+    wi[5][2] = -wi[5][2];
+    std::vector<Rgb> values(wi.size());
+    prepared.Values(wi, wo, values);
+    for (size_t k = 0; k < wi.size(); ++k) {
+      EXPECT_EQ(values[k], prepared.Value(wi[k], wo[k])) << name;
+    }
+    values.pop_back();
+    EXPECT_THROW(prepared.Values(wi, wo, values), Error);
+    EXPECT_THROW(
+        prepared.Values(std::span(wi).first(3), std::span(wo).first(2), std::span(values).first(3)),
+        Error);
   }
 }
 
