@@ -38,6 +38,7 @@ Command PlotCommand();
 Command ScoreCommand();
 Command SolversCommand();
 Command SynthCommand();
+Command ViewCommand();
 
 // All commands, in the order of `trilobe help`.
 const std::vector<Command>& Commands();

@@ -53,8 +53,8 @@ DEFINE_bool(
     "also write DIR/course.csv: errors of the models on the way, scored when the fit is over");
 DEFINE_bool(
     plots, true,
-    "draw the pictures of `trilobe plot` into DIR; without --out that is out/NAME. Of several "
-    "SOURCEs, only if asked for");
+    "write the page of `trilobe view` and the pictures of `trilobe plot` into DIR; without --out "
+    "that is out/NAME. Of several SOURCEs, only if asked for");
 
 namespace trilobe {
 namespace {
@@ -136,7 +136,7 @@ FitSettings SettingsFromFlags() {
   settings.source = SourceOptionsFromFlags();
   settings.course = FLAGS_course;
   settings.reconstruction = FLAGS_reconstruction;
-  settings.plots = FLAGS_plots && !IsDefault("plots");
+  settings.plots = settings.view = FLAGS_plots && !IsDefault("plots");
   settings.key = KeyOfFlags();
   if (!FLAGS_probe.empty()) settings.inputs.push_back(FLAGS_probe);
   if (init_is_file) {
@@ -151,7 +151,7 @@ FitSettings SettingsFromFlags() {
 
 int RunFitOfOne(const std::string& source) {
   FitSettings settings = SettingsFromFlags();
-  settings.plots = FLAGS_plots;
+  settings.plots = settings.view = FLAGS_plots;
   if (settings.plots && IsDefault("plots") && !HaveGnuplot()) {
     std::cerr
         << "trilobe: no pictures, as gnuplot is not installed; --noplots is silent about it\n";
@@ -255,7 +255,9 @@ Command FitCommand() {
           "all there is to\nsay. Writes DIR/model.json (the model, in canonical form), "
           "DIR/trace.csv (E, step and "
           "seconds of\neach iteration; row 0 is the starting point), DIR/report.json "
-          "(settings, errors, diagnosis,\ntimes) and the pictures of `trilobe plot`. Ctrl-C stops "
+          "(settings, errors, diagnosis,\ntimes), DIR/view.html (a page to look at, `trilobe "
+          "view`) "
+          "and the pictures of `trilobe plot`. Ctrl-C stops "
           "after the iteration and keeps "
           "the best model so far; go on from it, with the\nsame solver or another, with "
           "--init=DIR/model.json.\n\nSeveral sources, or a folder of measurements, are fitted "

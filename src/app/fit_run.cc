@@ -10,6 +10,7 @@
 #include "trilobe/app/interrupt.h"
 #include "trilobe/app/print.h"
 #include "trilobe/app/program.h"
+#include "trilobe/app/view_page.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/peak_memory.h"
 #include "trilobe/base/stopwatch.h"
@@ -41,6 +42,7 @@ constexpr const char* kCourseName = "course.csv";
 constexpr const char* kReconstructionName = "reconstruction.binary";
 constexpr const char* kAtNodesName = "reconstruction.bin";
 constexpr const char* kPairName = "pair.png";
+constexpr const char* kViewName = "view.html";
 
 // On a disk that has filled up meanwhile, a model is saved elsewhere rather than lost.
 void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
@@ -65,12 +67,21 @@ void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
   }
 }
 
+void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* folder) {
+  const FitReport& report = run.report;
+  std::optional<SeenError> seen = report.samples_seen;
+  if (report.appearance) seen = report.appearance->sphere;
+  const std::string page = ViewPage(run.file, run.file.fit.source, &run.measured, seen,
+                                    report.summary.trace, settings.fit.appearance);
+  folder->Write(kViewName, [&](std::ostream& out) { out << page; });
+}
+
 }  // namespace
 
 const std::vector<std::string>& FitFileNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = {kReportName,         kModelName,   kTraceName, kCourseName,
-                                    kReconstructionName, kAtNodesName, kPairName};
+                                    kReconstructionName, kAtNodesName, kPairName,  kViewName};
     all.insert(all.end(), std::begin(kPictureNames), std::end(kPictureNames));
     return all;
   }();
@@ -181,6 +192,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   // Who ends the program early does not wait for pictures.
   const bool draws = !report.interrupted;
   try {
+    if (draws && settings.view) WriteView(*run, settings, folder);
     if (draws && settings.pair && !pictured.empty()) {
       WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
     }

@@ -23,6 +23,7 @@ struct FitSettings {
   // What is written besides model.json, trace.csv and report.json: files of these names.
   bool course = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail
+  bool view = false;                // view.html, a page
   std::vector<std::string> inputs;  // files that all fits read
   std::string key;                  // all of this but the measurement, files by their content
 };

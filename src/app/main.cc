@@ -24,9 +24,9 @@
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {FitCommand(),     SolversCommand(), PlanCommand(),
-                                                CompareCommand(), ScoreCommand(),   PlotCommand(),
-                                                InfoCommand(),    ConvertCommand(), SynthCommand()};
+  static const std::vector<Command> commands = {
+      FitCommand(),  SolversCommand(), PlanCommand(),    CompareCommand(), ScoreCommand(),
+      PlotCommand(), InfoCommand(),    ConvertCommand(), SynthCommand(),   ViewCommand()};
   return commands;
 }
 

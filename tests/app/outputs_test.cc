@@ -53,9 +53,10 @@ TEST(FitFolder, HoldsTheFilesOfOneRun) {
                               "--course", "--out=" + out}))
                 .status,
             0);
-  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
-                                               "course.csv", "reconstruction.binary", "factors.png",
-                                               "slices.png", "spheres.png", "trace.png"));
+  EXPECT_THAT(Names(out),
+              UnorderedElementsAre("model.json", "trace.csv", "report.json", "course.csv",
+                                   "reconstruction.binary", "factors.png", "slices.png",
+                                   "spheres.png", "trace.png", "view.html"));
   // Of MERL's bins, though the fit had others.
   const BrdfTable table = ReadMerl(out + "/reconstruction.binary");
   const int bin = table.grid.Index(10, 20, 90);
@@ -63,7 +64,7 @@ TEST(FitFolder, HoldsTheFilesOfOneRun) {
       Evaluate(ReadModel(out + "/model.json").model, ToDirections(table.grid.Center(bin)))[1];
   EXPECT_NEAR(table.Value(1, bin), expected, 1e-9 * expected);
   const nlohmann::json first = Json(out + "/report.json");
-  EXPECT_EQ(first["files"].size(), 9U);
+  EXPECT_EQ(first["files"].size(), 10U);
   EXPECT_EQ(ReadModel(out + "/model.json").fit.run, first["run"]);
 
   std::ofstream(out + "/notes.txt") << "mine";
@@ -99,11 +100,12 @@ TEST(FitFolder, HasPicturesUnlessAskedForNone) {
   const ProgramResult without = RunProgram(command, {"PATH=/nowhere"});
   EXPECT_EQ(without.status, 0) << without.err;
   EXPECT_THAT(without.err, HasSubstr("no pictures, as gnuplot is not installed"));
-  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json"));
+  EXPECT_THAT(Names(out),
+              UnorderedElementsAre("model.json", "trace.csv", "report.json", "view.html"));
   ASSERT_EQ(RunProgram(command).status, 0);
   EXPECT_THAT(Names(out),
               UnorderedElementsAre("model.json", "trace.csv", "report.json", "factors.png",
-                                   "slices.png", "spheres.png", "trace.png"));
+                                   "slices.png", "spheres.png", "trace.png", "view.html"));
 }
 
 TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
@@ -113,7 +115,8 @@ TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
       Quick({"fit", "synth:felt@30x30x60", "--plots", "--out=" + out}), {"PATH=/nowhere"});
   ExpectRefusal(result, "gnuplot");
   EXPECT_THAT(result.err, HasSubstr("; the model is in '" + out + "/model.json'"));
-  EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json"));
+  EXPECT_THAT(Names(out),
+              UnorderedElementsAre("model.json", "trace.csv", "report.json", "view.html"));
   EXPECT_EQ(Json(out + "/report.json")["run"], ReadModel(out + "/model.json").fit.run);
 }
 
@@ -352,7 +355,7 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   EXPECT_THAT(fit.out, HasSubstr(" (Delta E of samples "));
   EXPECT_THAT(Names(out), UnorderedElementsAre("model.json", "trace.csv", "report.json",
                                                "reconstruction.binary", "factors.png", "slices.png",
-                                               "spheres.png", "trace.png"));
+                                               "spheres.png", "trace.png", "view.html"));
   const nlohmann::json report = Json(out + "/report.json");
   EXPECT_TRUE(report["appearance"].is_null());
   EXPECT_EQ(report["verdict"]["of"], "samples");

@@ -33,7 +33,7 @@ import tempfile
 import time
 
 FIT_FILES = {"model.json", "trace.csv", "report.json", "course.csv", "reconstruction.binary", "factors.png",
-             "slices.png", "spheres.png", "trace.png", "pair.png"}
+             "slices.png", "spheres.png", "trace.png", "pair.png", "view.html"}
 QUICK = ["--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=20"]
 # The pictures, and the score, take a tenth of the time under six lights instead of 600.
 ENVIRONMENT = {"TRILOBE_TEST_LIGHTS": "6"}

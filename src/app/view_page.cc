@@ -1,0 +1,57 @@
+#include "trilobe/app/view_page.h"
+
+#include "trilobe/app/fit_many.h"
+#include "trilobe/appearance/environment.h"
+#include "trilobe/appearance/material.h"
+#include "trilobe/appearance/verdict.h"
+#include "trilobe/io/picture_data.h"
+#include "trilobe/io/sample_table.h"
+#include "trilobe/view/page.h"
+
+namespace trilobe {
+namespace {
+
+void Compare(const SeenError& seen, PageContents* contents) {
+  const Verdict verdict = VerdictOf(seen);
+  contents->verdict = Words(verdict);
+  contents->visibility = NameOf(verdict.visibility);
+  contents->psnr_db = seen.psnr_db;
+  contents->mean_delta_e = seen.mean_delta_e;
+  contents->delta_e_95 = seen.delta_e_95;
+}
+
+}  // namespace
+
+std::string ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
+                     const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
+                     const AppearanceOptions& appearance) {
+  const ModelSpec& spec = model.model.spec();
+  PageContents contents;
+  const std::string& of = measured != nullptr ? measured->source : model.fit.source;
+  contents.name = FitNameOf(of.empty() ? path : of);
+  contents.parameters = model.layout ? model.layout->num_parameters(spec) : spec.num_parameters();
+  contents.trace.assign(trace.begin(), trace.end());
+  const Environment& environment = EnvironmentOf(appearance);
+  if (environment.name != StudioEnvironment().name) contents.probe = &environment;
+  if (measured != nullptr) {
+    contents.source = measured->source;
+    PictureData data = PictureDataOf(*measured);
+    std::optional<BrdfTable> sampled;
+    if (data.empty()) {
+      sampled = TableOfSamples(*measured);
+      if (sampled) data.table = &*sampled;
+    }
+    // A table says nothing of azimuths.
+    const Material fitted = MaterialOf(model.model);
+    const bool drawn = data.nodes || (data.table != nullptr && fitted.angular);
+    if (drawn) {
+      contents.measured = data.nodes ? EncodeMeasured(*data.nodes) : EncodeMeasured(*data.table);
+      Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, &contents);
+    } else if (seen) {
+      Compare(*seen, &contents);
+    }
+  }
+  return FormatPage(model, contents);
+}
+
+}  // namespace trilobe

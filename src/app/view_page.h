@@ -1,0 +1,25 @@
+#ifndef TRILOBE_APP_VIEW_PAGE_H_
+#define TRILOBE_APP_VIEW_PAGE_H_
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/seen_error.h"
+#include "trilobe/io/measurement.h"
+#include "trilobe/io/model_file.h"
+#include "trilobe/model/iteration_record.h"
+
+namespace trilobe {
+
+// The page of a model (view/page.h), beside `measured` where that is not null. `seen` is how the
+// two differ on the sphere; where it is not given it is found out. `path` is what names the
+// material where the model does not say of what it is a fit.
+std::string ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
+                     const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
+                     const AppearanceOptions& appearance);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_VIEW_PAGE_H_

@@ -1,0 +1,246 @@
+"""`trilobe view`: the page draws what the program draws, and does what its buttons say, in a real browser."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from PIL import Image
+
+from conftest import run
+
+Open = Callable[..., Any]
+
+
+@pytest.fixture(scope="session")
+def pages(fits: Path) -> dict[str, Path]:
+    """A page of each fit beside its measurement, and one of the model alone."""
+    made = {}
+    for name in ("plastic", "shot_silk"):
+        made[name] = fits / name / "page.html"
+        run("view", fits / name / "model.json", f"synth:{name}", f"--out={made[name]}",
+            f"--trace={fits / name / 'trace.csv'}")
+    made["alone"] = fits / "plastic/alone.html"
+    run("view", fits / "plastic/model.json", f"--out={made['alone']}")
+    return made
+
+
+@pytest.fixture
+def open_page(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
+    """Opens a page in a state, waits for its finished picture, and fails for any complaint on the console."""
+    complaints: list[str] = []
+    contexts = []
+
+    def opened(name: str, size: tuple[int, int] = (1200, 800), scheme: str = "light", **state: Any) -> Any:
+        import base64
+
+        context = browser.new_context(
+            viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, accept_downloads=True)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        text = base64.urlsafe_b64encode(json.dumps({"size": 64, **state}).encode()).decode().rstrip("=")
+        page.goto(f"file://{pages[name]}#{text}")
+        finished(page)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    # What drivers say of their own speed is not the page's.
+    own = [text for text in complaints if "GPU stall due to ReadPixels" not in text]
+    assert own == []
+
+
+def finished(page: Any) -> None:
+    page.wait_for_function("window.trilobe?.renderer?.shown && !trilobe.renderer.pending", timeout=60000)
+
+
+def picture(page: Any, side: int) -> npt.NDArray[np.float64]:
+    """The light of the fitted (0) or measured (1) object, row by row, with its exposure."""
+    numbers, size, exposure = page.evaluate(
+        f"(() => {{ const r = trilobe.renderer; return [Array.from(r.numbersOf(r.shown, {side})), r.shown.size,"
+        " r.exposure]; })()")
+    return np.array(numbers).reshape(size, size, 4)[..., :3] * exposure
+
+
+def encoded(linear: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    x = np.clip(linear, 0, 1)
+    return np.round(255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055))
+
+
+@pytest.mark.parametrize("name", ["plastic", "shot_silk"])
+def test_the_sphere_is_that_of_the_program(name: str, open_page: Open, fits: Path) -> None:
+    page = open_page(name, size=(1200, 800))
+    page.evaluate("trilobe.state.size = 96; trilobe.renderer.rate = 1e9; trilobe.renderer.exposure = 0;"
+                  " trilobe.renderer.setSize(96)")
+    finished(page)
+    pair = np.asarray(Image.open(fits / name / "pair.png").convert("RGB")).astype(float)
+    y, x = np.mgrid[:96, :96] + 0.5 - 48
+    inside = np.hypot(x, y) < 46.5
+    for side, left in ((1, 0), (0, pair.shape[1] // 2)):
+        wanted = pair[3:99, left + 3 : left + 99]
+        off = np.abs(encoded(picture(page, side)) - wanted).max(axis=-1)[inside]
+        assert (off <= 1).mean() >= 0.99, f"{['fitted', 'measured'][side]}: {(off > 1).sum()} pixels are off"
+
+
+def test_dragging_moves_the_lamp(open_page: Open) -> None:
+    page = open_page("plastic", light="lamp", view="fitted")
+    before, image = page.evaluate("trilobe.renderer.lamp"), picture(page, 0)
+    box = page.locator("#canvas").bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + 200
+    page.mouse.move(*middle)
+    page.mouse.down()
+    page.mouse.move(middle[0] + 60, middle[1] + 30, steps=3)
+    page.mouse.up()
+    finished(page)
+    assert page.evaluate("trilobe.renderer.lamp") != before
+    assert np.abs(picture(page, 0) - image).max() > 0.1
+    after = page.evaluate("trilobe.renderer.lamp")
+    page.focus("#canvas")
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate("trilobe.renderer.lamp")[0] < after[0]
+
+
+def test_the_pointer_reads_both_values(open_page: Open) -> None:
+    page = open_page("plastic", view="fitted")
+    box = page.locator("#canvas").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 200)
+    page.wait_for_timeout(100)
+    rows = {row.split("\t")[0]: row.split("\t")[1:] for row in page.inner_text("#numbers").split("\n")}
+    measured, fitted = (np.array([float(x) for x in rows[f"ρ {kind}"]]) for kind in ("measured", "fitted"))
+    assert np.abs(fitted / measured - 1).max() < 0.1
+    assert all(0 < float(x) < 1 for x in rows["albedo at θo"])
+
+
+def test_views_are_chosen_by_the_keyboard(open_page: Open) -> None:
+    page = open_page("plastic")
+    assert page.locator("#captions div").count() == 3
+    page.focus("#views input[value=side]")
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("trilobe.state.view") == "wipe"
+    page.focus("#wipe")
+    page.keyboard.press("Home")
+    assert page.evaluate("trilobe.state.wipe") == 0
+
+
+def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Path) -> None:
+    page = open_page("plastic", view="fitted")
+    whole = picture(page, 0)
+    page.locator("#lobes input[aria-label='lobe 1 on']").uncheck()
+    finished(page)
+    assert picture(page, 0).sum() < 0.95 * whole.sum()
+    page.click("#undo")
+    finished(page)
+    assert np.allclose(picture(page, 0), whole, rtol=1e-5)
+    page.focus("input[aria-label='Lobe 2: strength']")
+    for _ in range(10):
+        page.keyboard.press("ArrowRight")
+    page.focus("input[aria-label='Lobe 2: roughness']")
+    page.keyboard.press("ArrowRight")
+    page.locator("input[aria-label='Lobe 1: tint']").fill("#ff8800")
+    finished(page)
+    changed = picture(page, 0)
+    with page.expect_download() as download:
+        page.click("#save")
+    saved = tmp_path / "saved.json"
+    download.value.save_as(saved)
+    assert "822 parameters" in run("info", saved)
+    # What is saved is what was seen.
+    page.set_input_files("#file", saved)
+    page.wait_for_function("document.querySelector('#message').textContent.startsWith('Opened')")
+    finished(page)
+    again = picture(page, 0) / page.evaluate("trilobe.renderer.exposure")
+    assert np.abs(again / max(again.max(), 1e-9) - changed / changed.max()).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", "not JSON"),
+        ('{"format": "other"}', "key 'format'"),
+        ('{"format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes": 99}', "key 'lobes'"),
+        ('{"format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes": 1, "d": [1, 1, -1]}', "key 'd'"),
+        ("hello", "not a MERL file"),
+        ("theta_i,phi_i,theta_o,phi_o,r,g\n", "header"),
+        ("theta_i,phi_i,theta_o,phi_o,r,g,b\n1,2,3\n", "row 2"),
+    ],
+)
+def test_a_broken_file_gives_one_line(text: str, words: str, open_page: Open, tmp_path: Path) -> None:
+    page = open_page("alone")
+    (tmp_path / "broken").write_text(text)
+    page.set_input_files("#file", tmp_path / "broken")
+    page.wait_for_function("document.querySelector('#message').textContent !== ''")
+    message = page.inner_text("#message")
+    assert message.startswith("broken: ") and words in message and "\n" not in message
+    finished(page)
+
+
+def test_a_measurement_is_opened(open_page: Open, tmp_path: Path) -> None:
+    run("synth", "plastic", f"--out={tmp_path}/plastic.binary")
+    page = open_page("alone")
+    page.set_input_files("#file", tmp_path / "plastic.binary")
+    page.wait_for_function("document.querySelector('#message').textContent.startsWith('Opened')")
+    finished(page)
+    assert page.locator("#captions div").count() == 3
+    assert page.evaluate("trilobe.renderer.measured.shape") == [90, 90, 90]
+    rows = ["theta_i,phi_i,theta_o,phi_o,r,g,b"]
+    rows += [f"{i},0,{o},180,0.1,0.2,0.3" for i in range(0, 80, 5) for o in range(0, 80, 5)]
+    (tmp_path / "few.csv").write_text("\n".join(rows))
+    page.set_input_files("#file", tmp_path / "few.csv")
+    page.wait_for_function("document.querySelector('#message').textContent.startsWith('Opened few')")
+    finished(page)
+    assert page.evaluate("trilobe.renderer.measured.samples") == 256
+
+
+def test_a_link_holds_the_state(open_page: Open) -> None:
+    page = open_page("plastic", view="difference", object="knot", exposure=1.5,
+                     edit={"lobes": [{"gain": 2}, {}, {"on": False}]})
+    assert page.evaluate("[trilobe.state.view, trilobe.state.object, trilobe.state.exposure]") == ["difference", "knot", 1.5]
+    assert page.evaluate("trilobe.model.s[2]") == [0, 0, 0]
+    page.click("#link")
+    page.wait_for_function("document.querySelector('#message').textContent !== ''")
+    address = page.url
+    page.goto("about:blank")
+    page.goto(address)
+    finished(page)
+    assert page.evaluate("trilobe.state.edit.lobes[0].gain") == 2
+
+
+@pytest.mark.parametrize("thing", ["sphere", "knot", "cloth", "flat"])
+def test_objects_are_lit(thing: str, open_page: Open) -> None:
+    page = open_page("shot_silk", object=thing, view="side", turn=[0.4, -0.4])
+    for side in (0, 1):
+        lit = (picture(page, side) > 0).all(axis=-1).mean()
+        assert 0.2 < lit <= 1
+
+
+@pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1680, 1050)])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_pages_fit_their_window(size: tuple[int, int], scheme: str, open_page: Open) -> None:
+    page = open_page("plastic", size=size, scheme=scheme)
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    assert page.evaluate("document.documentElement.dataset.theme") == scheme
+
+
+def test_everything_has_a_name(open_page: Open) -> None:
+    page = open_page("plastic")
+    nameless = page.evaluate(
+        """Array.from(document.querySelectorAll('button, input:not([hidden]), select, canvas')).filter(e =>
+          !(e.getAttribute('aria-label') || e.ariaLabel || e.textContent.trim() || e.labels?.[0]?.textContent.trim() ||
+            e.getAttribute('aria-describedby'))).map(e => e.outerHTML)""")
+    assert nameless == []
+
+
+def test_pages_are_small(pages: dict[str, Path]) -> None:
+    assert pages["alone"].stat().st_size <= 300e3
+    assert pages["plastic"].stat().st_size <= 2e6 and pages["shot_silk"].stat().st_size <= 2e6
+    for page in pages.values():
+        text = page.read_text()
+        assert "http://" not in text.replace("http://www.w3.org/2000/svg", "") and "https://" not in text

@@ -1,0 +1,268 @@
+// Small charts on canvases, in the colours of the page.
+
+export const LOBE_COLORS = ['#3d7fc4', '#e5674a', '#2f9e6b', '#b98a0c', '#7a5cc0', '#c2437f', '#23939c', '#7d7d7d'];
+export const CHANNEL_COLORS = ['#d64545', '#2f9e52', '#3d6fe0'];
+
+function styleOf(canvas) {
+  const style = getComputedStyle(canvas);
+  return {text: style.getPropertyValue('--muted').trim() || '#666', line: style.getPropertyValue('--line').trim() || '#ccc',
+          strong: style.getPropertyValue('--text').trim() || '#111', surface: style.getPropertyValue('--surface').trim() || '#fff'};
+}
+
+function prepare(canvas) {
+  const scale = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  if (width === 0) return null;
+  const w = Math.round(width * scale), h = Math.round(height * scale);
+  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, {width: w, height: h});
+  const context = canvas.getContext('2d');
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  context.clearRect(0, 0, width, height);
+  context.font = '11px system-ui, sans-serif';
+  context.lineJoin = 'round';
+  return {context, width, height};
+}
+
+// series: [{points: [[x, y]...], color, width, dash, dots}]; x: {min, max, ticks: [[value, text]], map}; y: {log, min, max,
+// label}; marks: [{x, text, color}].
+export function drawLines(canvas, {series, x, y, marks = []}) {
+  const made = prepare(canvas);
+  if (!made) return;
+  const {context, width, height} = made, style = styleOf(canvas);
+  const left = 40, right = 8, top = 8, bottom = 20;
+  const values = series.flatMap(s => s.points.map(p => p[1])).filter(v => Number.isFinite(v) && (!y.log || v > 0));
+  if (values.length === 0) return;
+  let low = y.min ?? Math.min(...values), high = y.max ?? Math.max(...values);
+  if (y.log) {
+    low = Math.max(low, high * (y.decades ? 10 ** -y.decades : 1e-12));
+    [low, high] = [Math.log10(low), Math.log10(high)];
+  }
+  if (!(high > low)) [low, high] = [low - 0.5, high + 0.5];
+  const padding = 0.04 * (high - low);
+  if (y.min === undefined || y.log) low -= padding;
+  high += padding;
+  const map = x.map ?? (v => v);
+  const px = v => left + ((map(v) - map(x.min)) / (map(x.max) - map(x.min))) * (width - left - right);
+  const py = v => {
+    const t = ((y.log ? Math.log10(Math.max(v, 1e-300)) : v) - low) / (high - low);
+    return top + (1 - Math.min(Math.max(t, -0.02), 1.02)) * (height - top - bottom);
+  };
+  context.strokeStyle = style.line;
+  context.fillStyle = style.text;
+  context.lineWidth = 1;
+  const grid = y.log
+    ? Array.from({length: Math.floor(high) - Math.ceil(low) + 1}, (_, k) => Math.ceil(low) + k)
+        .filter((d, _, all) => all.length < 5 || d % Math.ceil(all.length / 4) === 0).map(d => [10 ** d, `10${superscript(d)}`])
+    : niceTicks(low, high).map(v => [v, String(+v.toPrecision(3))]);
+  context.textAlign = 'right';
+  context.textBaseline = 'middle';
+  for (const [v, text] of grid) {
+    context.beginPath();
+    context.moveTo(left, py(v));
+    context.lineTo(width - right, py(v));
+    context.stroke();
+    context.fillText(text, left - 5, py(v));
+  }
+  context.textAlign = 'center';
+  context.textBaseline = 'top';
+  for (const [v, text] of x.ticks) {
+    context.beginPath();
+    context.moveTo(px(v), top);
+    context.lineTo(px(v), height - bottom);
+    context.stroke();
+    context.textAlign = v === x.max ? 'right' : 'center';
+    context.fillText(text, v === x.max ? px(v) + 4 : px(v), height - bottom + 5);
+  }
+  context.save();
+  context.beginPath();
+  context.rect(left - 3, top - 3, width - left - right + 6, height - top - bottom + 6);
+  context.clip();
+  for (const {points, color, width: thick = 2, dash = [], dots = false} of series) {
+    context.strokeStyle = context.fillStyle = color;
+    context.lineWidth = thick;
+    context.setLineDash(dash);
+    context.beginPath();
+    let pen = false;
+    for (const [a, b] of points) {
+      if (!Number.isFinite(b) || (y.log && !(b > 0))) {
+        pen = false;
+        continue;
+      }
+      if (dots) {
+        context.moveTo(px(a) + 2, py(b));
+        context.arc(px(a), py(b), 2, 0, 7);
+      } else if (pen) context.lineTo(px(a), py(b));
+      else context.moveTo(px(a), py(b));
+      pen = true;
+    }
+    if (dots) context.fill();
+    else context.stroke();
+  }
+  context.setLineDash([]);
+  for (const {x: at, color} of marks) {
+    context.strokeStyle = color ?? style.strong;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(px(at), top);
+    context.lineTo(px(at), height - bottom);
+    context.stroke();
+  }
+  context.restore();
+  context.fillStyle = style.strong;
+  context.textBaseline = 'top';
+  for (const {x: at, text} of marks) {
+    if (!text) continue;
+    context.textAlign = px(at) > width - 60 ? 'right' : 'left';
+    context.fillText(text, px(at) + (context.textAlign === 'left' ? 4 : -4), top);
+  }
+}
+
+function superscript(n) {
+  return String(n).replace(/./g, c => ({'-': '⁻'})[c] ?? '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)]);
+}
+
+function niceTicks(low, high) {
+  const rough = (high - low) / 3, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map(m => m * power).find(s => s >= rough);
+  return Array.from({length: Math.floor(high / step) - Math.ceil(low / step) + 1}, (_, k) => (Math.ceil(low / step) + k) * step);
+}
+
+// Blue where the fit is too dark, over what cannot be seen, to red where it is too bright.
+export function logColor(ratio, dark) {
+  const x = Math.min(Math.max(ratio / Math.log(1.5), -1), 1), t = Math.abs(x) ** 0.7;
+  const end = x < 0 ? [33, 102, 190] : [203, 54, 44], middle = dark ? [44, 48, 54] : [246, 246, 243];
+  return middle.map((m, k) => Math.round(m + t * (end[k] - m)));
+}
+
+// The difference over (theta_h, theta_d), root of theta_h to the right, with a mark.
+export function drawHeat(canvas, {size, ratio}, mark, dark) {
+  const made = prepare(canvas);
+  if (!made) return;
+  const {context, width, height} = made, style = styleOf(canvas), left = 40, right = 8, top = 8, bottom = 20;
+  const image = new ImageData(size, size);
+  for (let d = 0; d < size; ++d) {
+    for (let h = 0; h < size; ++h) {
+      const value = ratio[h * size + d], at = 4 * ((size - 1 - d) * size + h);
+      if (Number.isNaN(value)) continue;
+      image.data.set([...logColor(value, dark), 255], at);
+    }
+  }
+  const small = new OffscreenCanvas(size, size);
+  small.getContext('2d').putImageData(image, 0, 0);
+  const w = width - left - right, h = height - top - bottom;
+  context.imageSmoothingEnabled = false;
+  context.drawImage(small, left, top, w, h);
+  context.strokeStyle = style.line;
+  context.strokeRect(left + 0.5, top + 0.5, w - 1, h - 1);
+  context.fillStyle = style.text;
+  context.textAlign = 'center';
+  context.textBaseline = 'top';
+  for (const degrees of [0, 2, 10, 30, 60, 90]) {
+    context.textAlign = degrees === 90 ? 'right' : 'center';
+    context.fillText(`${degrees}°`, left + Math.sqrt(degrees / 90) * w + (degrees === 90 ? 4 : 0), height - bottom + 5);
+  }
+  context.textAlign = 'right';
+  context.textBaseline = 'middle';
+  for (const degrees of [0, 30, 60, 90]) context.fillText(`${degrees}°`, left - 5, top + (1 - degrees / 90) * h);
+  if (mark) {
+    const x = left + Math.sqrt(Math.min(mark[0] / 90, 1)) * w, y = top + (1 - mark[1] / 90) * h;
+    context.lineWidth = 2;
+    for (const [color, radius] of [[style.surface, 6.5], [style.strong, 5]]) {
+      context.strokeStyle = color;
+      context.beginPath();
+      context.arc(x, y, radius, 0, 7);
+      context.stroke();
+    }
+  }
+}
+
+// What goes where, in the plane of incidence: [{values: [[theta_o, value]...], color, dots}], theta_o from -90 to 90 [deg],
+// light from the left. Radii are cube roots.
+export function drawPolar(canvas, curves, thetaI) {
+  const made = prepare(canvas);
+  if (!made) return;
+  const {context, width, height} = made, style = styleOf(canvas);
+  const radius = Math.min(width / 2 - 14, height - 26), cx = width / 2, cy = height - 14;
+  const most = Math.max(1e-12, ...curves.flatMap(c => c.values.map(v => v[1])));
+  const place = (theta, value) => {
+    const r = radius * Math.cbrt(Math.max(value, 0) / most), t = (theta * Math.PI) / 180;
+    return [cx + r * Math.sin(t), cy - r * Math.cos(t)];
+  };
+  context.strokeStyle = style.line;
+  context.lineWidth = 1;
+  for (const part of [1, 0.5, 0.1]) {
+    context.beginPath();
+    context.arc(cx, cy, radius * Math.cbrt(part), Math.PI, 2 * Math.PI);
+    context.stroke();
+  }
+  context.beginPath();
+  context.moveTo(cx - radius - 8, cy);
+  context.lineTo(cx + radius + 8, cy);
+  context.moveTo(cx, cy);
+  context.lineTo(cx, cy - radius);
+  context.stroke();
+  const t = (thetaI * Math.PI) / 180, [x0, y0] = [cx - radius * Math.sin(t), cy - radius * Math.cos(t)];
+  context.strokeStyle = context.fillStyle = '#d9a400';
+  context.lineWidth = 2;
+  context.beginPath();
+  context.moveTo(x0, y0);
+  context.lineTo(cx, cy);
+  context.stroke();
+  context.beginPath();
+  context.arc(x0, y0, 4, 0, 7);
+  context.fill();
+  for (const {values, color, dots = false, width: thick = 2, dash = []} of curves) {
+    context.strokeStyle = context.fillStyle = color;
+    context.lineWidth = thick;
+    context.setLineDash(dash);
+    context.beginPath();
+    values.forEach(([theta, value], k) => {
+      const [x, y] = place(theta, value);
+      if (dots) {
+        context.moveTo(x + 1.8, y);
+        context.arc(x, y, 1.8, 0, 7);
+      } else if (k === 0) context.moveTo(x, y);
+      else context.lineTo(x, y);
+    });
+    if (dots) context.fill();
+    else context.stroke();
+  }
+  context.setLineDash([]);
+}
+
+// A table over a hemisphere seen from above: theta outwards, phi around.
+export function drawDisc(canvas, table, axis, color, mark) {
+  const made = prepare(canvas);
+  if (!made) return;
+  const {context, width, height} = made, style = styleOf(canvas), size = 160;
+  const values = Array.from(table).filter(v => v > 0), high = Math.log(Math.max(...values, 1e-12));
+  const low = Math.max(Math.log(Math.min(...values, 1)), high - 9);
+  const rgb = [1, 3, 5].map(at => parseInt(color.slice(at, at + 2), 16));
+  const image = new ImageData(size, size);
+  for (let row = 0; row < size; ++row) {
+    for (let column = 0; column < size; ++column) {
+      const x = ((column + 0.5) / size) * 2 - 1, y = 1 - ((row + 0.5) / size) * 2, r = Math.hypot(x, y);
+      if (r > 1) continue;
+      const theta = r * 90, turns = Math.atan2(y, x) / (2 * Math.PI);
+      let a = axis.theta.findIndex(t => t > theta);
+      if (a < 0) a = axis.theta.length - 1;
+      const before = Math.max(a - 1, 0), span = axis.theta[a] - axis.theta[before];
+      const s = span > 0 ? Math.min(Math.max((theta - axis.theta[before]) / span, 0), 1) : 0;
+      const p = (turns - Math.floor(turns)) * axis.phis, b = Math.floor(p) % axis.phis, t = p - Math.floor(p), c = (b + 1) % axis.phis;
+      const at = (i, j) => table[i * axis.phis + j];
+      const value = (1 - s) * ((1 - t) * at(before, b) + t * at(before, c)) + s * ((1 - t) * at(a, b) + t * at(a, c));
+      const v = value > 0 ? Math.min(Math.max((Math.log(value) - low) / Math.max(high - low, 1e-9), 0), 1) : 0;
+      image.data.set([...rgb.map(k => Math.round(v < 0.7 ? (k * v) / 0.7 : k + ((255 - k) * (v - 0.7)) / 0.3)), 255], 4 * (row * size + column));
+    }
+  }
+  const small = new OffscreenCanvas(size, size);
+  small.getContext('2d').putImageData(image, 0, 0);
+  const side = Math.min(width, height) - 8, x0 = (width - side) / 2, y0 = (height - side) / 2;
+  context.drawImage(small, x0, y0, side, side);
+  if (!mark) return;
+  const r = (mark[0] / 90) * (side / 2);
+  context.strokeStyle = style.strong;
+  context.lineWidth = 2;
+  context.beginPath();
+  context.arc(x0 + side / 2 + r * Math.cos(mark[1]), y0 + side / 2 - r * Math.sin(mark[1]), 5, 0, 7);
+  context.stroke();
+}
