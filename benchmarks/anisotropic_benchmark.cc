@@ -14,11 +14,12 @@
 #include <ctime>
 #include <vector>
 
-#include "trilobe/io/measurement.h"
-#include "trilobe/io/source.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe {
 namespace {

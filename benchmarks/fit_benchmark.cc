@@ -19,12 +19,13 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/io/file.h"
-#include "trilobe/io/merl_file.h"
-#include "trilobe/io/source.h"
+#include "files/file.h"
+#include "trilobe/formats/merl_file.h"
+#include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 #include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "trilobe/brdf/channels.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/geometry/channels.h"
+#include "trilobe/geometry/directions.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe {

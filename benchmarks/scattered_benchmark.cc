@@ -18,16 +18,16 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/brdf/directions.h"
-#include "trilobe/io/source.h"
+#include "objective/sample_reader.h"
+#include "solvers/awls/make_sweep.h"
+#include "solvers/awls/sample_sweep.h"
+#include "sums/sample_equations.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/geometry/directions.h"
 #include "trilobe/objective/folded_samples.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/objective/sample_reader.h"
-#include "trilobe/solvers/awls/sample_sweep.h"
-#include "trilobe/solvers/awls/sweep.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/start/initial_model.h"
 #include "trilobe/sums/normal_equations.h"
-#include "trilobe/sums/sample_equations.h"
 
 namespace trilobe {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "trilobe/io/anisotropy.h"
-#include "trilobe/io/measurement.h"
+#include "trilobe/brdf/anisotropy.h"
+#include "trilobe/brdf/measurement.h"
 
 namespace trilobe {
 

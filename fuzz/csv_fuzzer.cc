@@ -6,7 +6,7 @@
 
 #include "check_measurement.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/csv_file.h"
+#include "trilobe/formats/csv_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/merl_file.h"
+#include "trilobe/formats/merl_file.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/model_file.h"
+#include "trilobe/results/model_file.h"
 
 namespace {
 

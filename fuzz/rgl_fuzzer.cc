@@ -10,7 +10,7 @@
 
 #include "check_measurement.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/rgl_file.h"
+#include "trilobe/formats/rgl_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

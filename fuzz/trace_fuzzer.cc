@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/trace_file.h"
+#include "trilobe/results/trace_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

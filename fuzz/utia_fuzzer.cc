@@ -9,8 +9,8 @@
 
 #include "check_measurement.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/content.h"
-#include "trilobe/io/utia_file.h"
+#include "trilobe/files/content.h"
+#include "trilobe/formats/utia_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size < 2) return 0;

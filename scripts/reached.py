@@ -114,7 +114,7 @@ def included_by(file):
     """The files of this repository that a file includes."""
     for name in INCLUDE.findall(file.read_bytes()):
         name = name.decode()
-        for folder in (file.parent, ROOT / "include", ROOT):
+        for folder in (file.parent, ROOT / "include", ROOT / "src", ROOT):
             if (folder / name).is_file():
                 yield (folder / name).resolve()
                 break
@@ -142,6 +142,7 @@ def to_check(sources, changed, commit):
             # Its own source, or the one that the build makes for it: that includes it first, which
             # shows that the header includes what it needs.
             name = header.relative_to(ROOT).with_suffix("").parts[1:]
+            name = name[1:] if name[0] == "trilobe" else name
             own = [user for user in users if user.with_suffix("").parts[-len(name):] == name]
             if own or not checked.intersection(users):
                 checked.add((own or users)[0])

@@ -17,8 +17,8 @@
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/model/weighting.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/objective/weighting.h"
 
 namespace trilobe {
 

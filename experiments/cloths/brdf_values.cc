@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "experiments/program.h"
+#include "files/file.h"
+#include "files/little_endian.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/brdf/directions.h"
 #include "trilobe/brdf/node_brdf.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/little_endian.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/system/parallel.h"
 
 DEFINE_bool(interpolated, false,
             "of a synthetic material its measurement, linear between nodes, not its formula");

@@ -10,12 +10,13 @@
 #include "experiments/program.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/io/measurement.h"
-#include "trilobe/io/source.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 DEFINE_string(solver, "awls", "a solver that moves single elements, or blocks of them");
 DEFINE_int32(

@@ -13,9 +13,9 @@
 
 #include "experiments/program.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/results/model_file.h"
 #include "trilobe/sums/normal_equations.h"
 
 DEFINE_string(weighting, "compressive", "weights of the objective");

@@ -9,9 +9,9 @@
 #include "experiments/stiff/agreement.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -14,9 +14,10 @@
 #include "experiments/stiff/answers.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/reference_problem.h"
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 DEFINE_string(case, "all", "name of a case, or all");

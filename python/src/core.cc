@@ -23,7 +23,7 @@
 #include "owned_array.h"
 #include "trilobe/base/error.h"
 #include "trilobe/evaluate/bsdf.h"
-#include "trilobe/io/read_model.h"
+#include "trilobe/evaluate/read_model.h"
 
 namespace nb = nanobind;
 

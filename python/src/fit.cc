@@ -21,14 +21,14 @@
 #include <variant>
 #include <vector>
 
+#include "algebra/openblas.h"
+#include "app/fit_report.h"
 #include "fit_module.h"
 #include "owned_array.h"
-#include "trilobe/app/fit_report.h"
-#include "trilobe/base/peak_memory.h"
-#include "trilobe/base/utc_time.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/trace_file.h"
-#include "trilobe/math/openblas.h"
+#include "system/peak_memory.h"
+#include "system/utc_time.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/results/trace_file.h"
 #include "trilobe/solvers/solver_options.h"
 
 namespace nb = nanobind;

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/measurement.h"
-#include "trilobe/io/measurement_format.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/formats/measurement_format.h"
 
 namespace trilobe::python {
 

@@ -14,20 +14,20 @@
 #include <utility>
 #include <vector>
 
+#include "app/bin_counts.h"
+#include "files/file.h"
 #include "fit_module.h"
+#include "formats/write_measurement.h"
 #include "owned_array.h"
-#include "trilobe/app/bin_counts.h"
-#include "trilobe/app/write_measurement.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/node_reconstruction.h"
-#include "trilobe/io/read_model.h"
-#include "trilobe/io/rgl_export.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/synth.h"
-#include "trilobe/io/utia_file.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/view/glsl_file.h"
+#include "system/stopwatch.h"
+#include "trilobe/appearance/node_reconstruction.h"
+#include "trilobe/evaluate/read_model.h"
+#include "trilobe/formats/rgl_export.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/formats/utia_file.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/synth/synth.h"
+#include "view/glsl_file.h"
 
 namespace nb = nanobind;
 

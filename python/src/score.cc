@@ -12,16 +12,16 @@
 #include <utility>
 #include <vector>
 
+#include "app/score_report.h"
+#include "appearance/seen_samples.h"
 #include "fit_module.h"
 #include "owned_array.h"
-#include "trilobe/app/score_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/seen_samples.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/read_model.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/model/weighting.h"
+#include "trilobe/appearance/picture_data.h"
+#include "trilobe/evaluate/read_model.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/objective/weighting.h"
 
 namespace nb = nanobind;
 

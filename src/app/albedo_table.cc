@@ -1,9 +1,9 @@
-#include "trilobe/app/albedo_table.h"
+#include "app/albedo_table.h"
 
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "trilobe/app/print.h"
+#include "app/print.h"
 
 namespace trilobe {
 

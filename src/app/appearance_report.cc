@@ -1,14 +1,14 @@
-#include "trilobe/app/appearance_report.h"
+#include "app/appearance_report.h"
 
 #include <gflags/gflags.h>
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trilobe/app/flags.h"
-#include "trilobe/app/print.h"
+#include "app/flags.h"
+#include "app/print.h"
 #include "trilobe/base/printable.h"
-#include "trilobe/io/image_file.h"
+#include "trilobe/pictures/image_file.h"
 
 DEFINE_string(
     probe, "",

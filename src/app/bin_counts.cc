@@ -1,4 +1,4 @@
-#include "trilobe/app/bin_counts.h"
+#include "app/bin_counts.h"
 
 #include <nlohmann/json.hpp>
 

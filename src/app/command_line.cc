@@ -1,4 +1,4 @@
-#include "trilobe/app/command_line.h"
+#include "app/command_line.h"
 
 #include <gflags/gflags.h>
 

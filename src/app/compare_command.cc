@@ -6,19 +6,20 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "trilobe/app/command.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/interrupt.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/app/scene_report.h"
-#include "trilobe/app/scene_run.h"
-#include "trilobe/app/solver_flags.h"
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/interrupt.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "app/scene_flags.h"
+#include "app/scene_report.h"
+#include "app/scene_run.h"
+#include "app/solver_flags.h"
+#include "files/json_value.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/printable.h"
-#include "trilobe/io/json_value.h"
-#include "trilobe/io/plots.h"
+#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

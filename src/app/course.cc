@@ -1,12 +1,12 @@
-#include "trilobe/app/course.h"
+#include "app/course.h"
 
 #include <algorithm>
 #include <iomanip>
 #include <limits>
 #include <ostream>
 
-#include "trilobe/io/file.h"
-#include "trilobe/model/with_axes.h"
+#include "files/file.h"
+#include "trilobe/lobes/with_axes.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/iteration_record.h"
+#include "trilobe/objective/iteration_record.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe {

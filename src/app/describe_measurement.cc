@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/app/albedo_table.h"
-#include "trilobe/app/bin_counts.h"
-#include "trilobe/app/describe.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
+#include "app/albedo_table.h"
+#include "app/bin_counts.h"
+#include "app/describe.h"
+#include "app/flags.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "files/file.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/anisotropy.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/io/anisotropy.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/plots.h"
-#include "trilobe/io/rgl_file.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/utia_file.h"
+#include "trilobe/formats/rgl_file.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/formats/utia_file.h"
+#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {
@@ -35,19 +35,19 @@ using Json = nlohmann::ordered_json;
 class MeasuredBrdf {
  public:
   explicit MeasuredBrdf(const Measurement& measurement) : measurement_(measurement) {
-    if (!measurement.rgl) tabulated_.emplace(*measurement.table);
+    if (!measurement.look_up) tabulated_.emplace(*measurement.table);
   }
 
   Rgb operator()(const DirectionPair& pair) const {
     if (!WithinAngles(pair)) return {0, 0, 0};
     if (tabulated_) return (*tabulated_)(pair);
-    const RglBrdf::Value value = measurement_.rgl->LookUp(pair);
+    const MeasuredValue value = measurement_.look_up(pair);
     return value.measured || FLAGS_extrapolated ? value.rho : Rgb{0, 0, 0};
   }
 
   bool Measured(const DirectionPair& pair) const {
     return WithinAngles(pair) &&
-           (tabulated_ || FLAGS_extrapolated || measurement_.rgl->LookUp(pair).measured);
+           (tabulated_ || FLAGS_extrapolated || measurement_.look_up(pair).measured);
   }
 
  private:
@@ -90,7 +90,7 @@ void DescribeTable(const Measurement& measurement) {
   if (bins.valid > 0) {
     const MeasuredBrdf brdf(measurement);
     albedo = TabulateAlbedo(std::cref(brdf), num_threads, table.max_theta);
-    if (measurement.rgl) {
+    if (measurement.look_up) {
       // A coarser grid: each value costs two inversions of a warp.
       reciprocity = ReciprocityError(
           std::cref(brdf), {.theta_h = 30, .theta_d = 30, .phi_d = 60}, num_threads,
@@ -180,7 +180,7 @@ ValueRange RangeOf(const std::vector<Rgb>& values) {
 
 // An RGL file's own directions differ from phi_i to phi_i; on a grid they do not.
 Measurement OnGrid(const Measurement& measurement) {
-  return measurement.rgl ? AtNodes(measurement, kUtiaGrid, ThreadsFromFlags()) : measurement;
+  return measurement.look_up ? AtNodes(measurement, kUtiaGrid, ThreadsFromFlags()) : measurement;
 }
 
 Json ToJson(const Anisotropy& anisotropy) {

@@ -2,17 +2,17 @@
 #include <optional>
 #include <span>
 
-#include "trilobe/app/albedo_table.h"
-#include "trilobe/app/describe.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/light_report.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/stretch_report.h"
+#include "app/albedo_table.h"
+#include "app/describe.h"
+#include "app/flags.h"
+#include "app/light_report.h"
+#include "app/print.h"
+#include "app/stretch_report.h"
+#include "results/stretch_json.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/stretch_json.h"
-#include "trilobe/model/continuous_model.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/app/fit_many.h"
+#include "app/fit_many.h"
 
 #include <gflags/gflags.h>
 
@@ -13,21 +13,22 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/app/command.h"
-#include "trilobe/app/fit_page.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/interrupt.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/progress.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/appearance/verdict.h"
+#include "app/command.h"
+#include "app/fit_details.h"
+#include "app/fit_page.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/interrupt.h"
+#include "app/print.h"
+#include "app/progress.h"
+#include "app/result_folder.h"
+#include "appearance/verdict.h"
+#include "files/file.h"
+#include "files/json_value.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
 #include "trilobe/base/printable.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/json_value.h"
-#include "trilobe/io/model_file.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/system/parallel.h"
 
 DEFINE_string(shard, "",
               "i/n: of many SOURCEs fit only every n-th, from the i-th on, and leave the page to "

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "trilobe/app/fit_run.h"
+#include "app/fit_run.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/app/fit_page.h"
+#include "app/fit_page.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "trilobe/app/print.h"
+#include "app/print.h"
 
 namespace trilobe {
 namespace {

@@ -2,22 +2,22 @@
 #define TRILOBE_APP_FIT_REPORT_H_
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/verdict_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/seen_error.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/model/lobe_light.h"
+#include "trilobe/lobes/lobe_light.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/objective/score.h"
+#include "trilobe/prior/node_choice.h"
+#include "trilobe/prior/reach.h"
 #include "trilobe/prune/model_choice.h"
-#include "trilobe/solvers/node_choice.h"
-#include "trilobe/solvers/reach.h"
+#include "trilobe/results/model_file.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
@@ -69,11 +69,7 @@ std::string ParametersText(const FitReport& report);
 // would expect.
 std::string ReachText(const Reach& reach);
 
-// All there is to say but the verdict and the times, on standard output.
-void PrintDetails(const FitReport& report);
-
-// report.json (docs/file-formats.md).
-nlohmann::ordered_json ToJson(const FitReport& report);
+ReportedVerdict VerdictOn(const FitReport& report);
 
 }  // namespace trilobe
 

@@ -1,4 +1,4 @@
-#include "trilobe/app/fit_run.h"
+#include "app/fit_run.h"
 
 #include <exception>
 #include <filesystem>
@@ -7,30 +7,31 @@
 #include <ostream>
 #include <utility>
 
-#include "trilobe/app/interrupt.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/program.h"
-#include "trilobe/app/view_page.h"
+#include "app/fit_details.h"
+#include "app/interrupt.h"
+#include "app/print.h"
+#include "app/program.h"
+#include "app/view_page.h"
+#include "files/file.h"
+#include "system/peak_memory.h"
+#include "system/stopwatch.h"
+#include "system/utc_time.h"
+#include "trilobe/appearance/node_reconstruction.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/peak_memory.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/base/utc_time.h"
+#include "trilobe/brdf/anisotropy.h"
 #include "trilobe/brdf/measurement_stats.h"
-#include "trilobe/io/anisotropy.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/merl_file.h"
-#include "trilobe/io/node_reconstruction.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/plots.h"
-#include "trilobe/io/trace_file.h"
-#include "trilobe/io/utia_file.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/model/with_axes.h"
+#include "trilobe/formats/merl_file.h"
+#include "trilobe/formats/utia_file.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/lobes/with_axes.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
+#include "trilobe/pictures/plots.h"
+#include "trilobe/prior/guide.h"
+#include "trilobe/results/trace_file.h"
 #include "trilobe/scene/fit_cache.h"
-#include "trilobe/solvers/guide.h"
 
 namespace trilobe {
 namespace {

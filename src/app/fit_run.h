@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/app/course.h"
-#include "trilobe/app/fit_report.h"
-#include "trilobe/app/result_folder.h"
+#include "app/course.h"
+#include "app/fit_report.h"
+#include "app/result_folder.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe {
 

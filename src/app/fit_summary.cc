@@ -1,4 +1,4 @@
-#include "trilobe/app/fit_summary.h"
+#include "app/fit_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/app/print.h"
-#include "trilobe/solvers/initial_model.h"
+#include "app/appearance_report.h"
+#include "app/print.h"
 
 namespace trilobe {
 namespace {
@@ -34,15 +33,6 @@ std::string EndText(StopReason reason) {
   return "";
 }
 
-// Where --model=auto would have chosen among forms.
-bool MayChooseForm(const FitReport& report) {
-  const bool of_table = report.appearance && !report.appearance->at_nodes;
-  const bool named_start = std::ranges::find(InitialModels(), report.fit.init,
-                                             &InitialModel::name) != InitialModels().end();
-  return of_table && named_start && report.finished.candidates.empty() &&
-         ModelName(report.spec) == "shared" && report.spec.lobes >= ModelSpec().lobes;
-}
-
 std::string FormText(const FitReport& report) {
   std::string text = std::to_string(report.spec.lobes) + " lobes of " + ParametersText(report);
   const FitReport::Finished& finished = report.finished;
@@ -58,20 +48,6 @@ std::string Hundredths(double seconds) {
 }
 
 }  // namespace
-
-ReportedVerdict VerdictOn(const FitReport& report) {
-  const StopReason reason = report.summary.stop_reason;
-  return MakeVerdict(
-      report.appearance, report.samples_seen,
-      {.interrupted = report.interrupted,
-       .ended = reason != StopReason::kMaxIterations && reason != StopReason::kMaxSeconds &&
-                reason != StopReason::kInterrupted,
-       .may_choose_form = MayChooseForm(report),
-       .default_solver = report.summary.solver == Solvers().front().name,
-       .irreducible = IrreducibleShare(report.score),
-       .left_out = report.left_out,
-       .reach_beyond = report.reach ? report.reach->beyond : 0});
-}
 
 void PrintSummary(const FitReport& report) {
   const FitInfo& fit = report.fit;

@@ -1,12 +1,9 @@
 #ifndef TRILOBE_APP_FIT_SUMMARY_H_
 #define TRILOBE_APP_FIT_SUMMARY_H_
 
-#include "trilobe/app/fit_report.h"
-#include "trilobe/app/verdict_report.h"
+#include "app/fit_report.h"
 
 namespace trilobe {
-
-ReportedVerdict VerdictOn(const FitReport& report);
 
 // The verdict, then a few lines that need no knowledge of the method, on standard output.
 void PrintSummary(const FitReport& report);

@@ -1,4 +1,4 @@
-#include "trilobe/app/flags.h"
+#include "app/flags.h"
 
 #include <gflags/gflags.h>
 
@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/utia_file.h"
-#include "trilobe/model/weighting.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/formats/utia_file.h"
+#include "trilobe/objective/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
 DEFINE_int64(

@@ -1,7 +1,7 @@
-#include "trilobe/app/command.h"
-#include "trilobe/app/describe.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
+#include "app/command.h"
+#include "app/describe.h"
+#include "app/flags.h"
+#include "app/inputs.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {

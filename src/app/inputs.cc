@@ -1,13 +1,13 @@
-#include "trilobe/app/inputs.h"
+#include "app/inputs.h"
 
 #include <algorithm>
 #include <iterator>
 #include <string_view>
 
-#include "trilobe/app/flags.h"
+#include "app/flags.h"
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/content.h"
-#include "trilobe/io/file.h"
+#include "trilobe/files/content.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/app/interrupt.h"
+#include "app/interrupt.h"
 
 #include <unistd.h>
 

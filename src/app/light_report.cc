@@ -1,8 +1,8 @@
-#include "trilobe/app/light_report.h"
+#include "app/light_report.h"
 
 #include <nlohmann/json.hpp>
 
-#include "trilobe/app/print.h"
+#include "app/print.h"
 
 namespace trilobe {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "trilobe/model/lobe_light.h"
+#include "trilobe/lobes/lobe_light.h"
 
 namespace trilobe {
 

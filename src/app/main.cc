@@ -13,12 +13,12 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/app/command.h"
-#include "trilobe/app/command_line.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/solver_flags.h"
+#include "app/command.h"
+#include "app/command_line.h"
+#include "app/flags.h"
+#include "app/solver_flags.h"
+#include "base/nearest_name.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/nearest_name.h"
 #include "trilobe/base/printable.h"
 
 namespace trilobe {

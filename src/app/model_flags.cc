@@ -1,4 +1,4 @@
-#include "trilobe/app/model_flags.h"
+#include "app/model_flags.h"
 
 #include <gflags/gflags.h>
 
@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/app/flags.h"
+#include "app/flags.h"
+#include "files/text_lines.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/text_lines.h"
 
 DEFINE_string(
     model, "shared",

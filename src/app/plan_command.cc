@@ -1,12 +1,13 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "trilobe/app/command.h"
-#include "trilobe/app/interrupt.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/scene_report.h"
-#include "trilobe/app/scene_run.h"
-#include "trilobe/app/solver_flags.h"
+#include "app/command.h"
+#include "app/interrupt.h"
+#include "app/print.h"
+#include "app/scene_flags.h"
+#include "app/scene_report.h"
+#include "app/scene_run.h"
+#include "app/solver_flags.h"
 
 namespace trilobe {
 namespace {

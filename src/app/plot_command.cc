@@ -4,17 +4,17 @@
 #include <optional>
 #include <vector>
 
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/app/command.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/plots.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/trace_file.h"
+#include "app/appearance_report.h"
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "files/file.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/pictures/plots.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/results/trace_file.h"
 
 DEFINE_string(trace, "", "trace.csv of a fit, to draw its convergence");
 

@@ -1,4 +1,4 @@
-#include "trilobe/app/print.h"
+#include "app/print.h"
 
 #include <gflags/gflags.h>
 

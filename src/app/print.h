@@ -6,8 +6,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "trilobe/brdf/channels.h"
-#include "trilobe/io/measurement.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/geometry/channels.h"
 
 // What `score` and `info` print: a table for people, or one JSON object.
 DECLARE_bool(json);

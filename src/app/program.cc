@@ -1,10 +1,10 @@
-#include "trilobe/app/program.h"
+#include "app/program.h"
 
 #include <dlfcn.h>
 #include <gflags/gflags.h>
 
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
 #include "trilobe/scene/fit_cache.h"
 
 namespace trilobe {

@@ -1,4 +1,4 @@
-#include "trilobe/app/progress.h"
+#include "app/progress.h"
 
 #include <unistd.h>
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <string>
 
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/model/iteration_record.h"
+#include "system/stopwatch.h"
+#include "trilobe/objective/iteration_record.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

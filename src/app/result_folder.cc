@@ -1,4 +1,4 @@
-#include "trilobe/app/result_folder.h"
+#include "app/result_folder.h"
 
 #include <sys/stat.h>
 
@@ -7,9 +7,9 @@
 #include <iterator>
 #include <utility>
 
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
 
 namespace trilobe {
 Inputs::Inputs(const std::vector<std::string>& paths) {

@@ -1,12 +1,13 @@
-#include "trilobe/app/scene_report.h"
+#include "app/scene_report.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "trilobe/app/flags.h"
-#include "trilobe/app/print.h"
+#include "app/flags.h"
+#include "app/print.h"
+#include "app/scene_flags.h"
 #include "trilobe/base/printable.h"
 
 namespace trilobe {

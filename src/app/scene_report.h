@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
 
-#include "trilobe/app/scene_run.h"
+#include "app/scene_result.h"
 
 namespace trilobe {
 

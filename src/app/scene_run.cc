@@ -1,4 +1,4 @@
-#include "trilobe/app/scene_run.h"
+#include "app/scene_run.h"
 
 #include <gflags/gflags.h>
 
@@ -9,25 +9,26 @@
 #include <sstream>
 #include <utility>
 
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/app/command.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/interrupt.h"
-#include "trilobe/app/program.h"
-#include "trilobe/app/progress.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/app/scene_report.h"
-#include "trilobe/app/solver_flags.h"
+#include "app/appearance_report.h"
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/interrupt.h"
+#include "app/program.h"
+#include "app/progress.h"
+#include "app/result_folder.h"
+#include "app/scene_flags.h"
+#include "app/scene_report.h"
+#include "app/solver_flags.h"
+#include "files/file.h"
+#include "files/json_value.h"
+#include "system/stopwatch.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/printable.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/json_value.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/source.h"
-#include "trilobe/model/weighting.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/objective/weighting.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/start/initial_model.h"
 
 DEFINE_string(cache, "",
               "folder where fits are kept for the next time; $XDG_CACHE_HOME/trilobe if "
@@ -83,31 +84,6 @@ std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& f
 }
 
 }  // namespace
-
-std::vector<std::string> SceneFlags() {
-  return {"solver",
-          "weighting",
-          "lobes",
-          "max_iterations",
-          "max_seconds",
-          "tolerance",
-          "optimality_tolerance",
-          "threads",
-          "noise",
-          "seed",
-          "max_angle",
-          "min_theta_d",
-          "extrapolated",
-          "cache",
-          "nocache"};
-}
-
-std::vector<std::string> SceneModelFlags() {
-  std::vector<std::string> flags = SceneFlags();
-  for (const char* const flag : {"threads", "cache", "nocache"}) std::erase(flags, flag);
-  for (const std::string& flag : ParticularSolverFlags()) flags.push_back(flag);
-  return flags;
-}
 
 SceneFitSettings SceneSettingsFromFlags() {
   const SolverEntry& solver = SolverFromFlags();

@@ -3,22 +3,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/app/command.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/app/score_report.h"
-#include "trilobe/app/verdict_report.h"
-#include "trilobe/appearance/seen_samples.h"
+#include "app/appearance_report.h"
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "app/score_report.h"
+#include "app/verdict_report.h"
+#include "appearance/seen_samples.h"
 #include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/plots.h"
-#include "trilobe/io/source.h"
-#include "trilobe/model/continuous_model.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/lobes/reconstruct.h"
 #include "trilobe/objective/score.h"
+#include "trilobe/pictures/plots.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe {
 namespace {

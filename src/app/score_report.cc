@@ -1,10 +1,10 @@
-#include "trilobe/app/score_report.h"
+#include "app/score_report.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/brdf/merl_grid.h"
+#include "app/appearance_report.h"
+#include "trilobe/geometry/merl_grid.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe {

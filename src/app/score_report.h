@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "trilobe/app/verdict_report.h"
+#include "app/verdict_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/objective/score.h"

@@ -1,4 +1,4 @@
-#include "trilobe/app/solver_flags.h"
+#include "app/solver_flags.h"
 
 #include <gflags/gflags.h>
 
@@ -6,8 +6,9 @@
 #include <map>
 #include <variant>
 
-#include "trilobe/app/flags.h"
+#include "app/flags.h"
 #include "trilobe/base/error.h"
+#include "trilobe/registry/solvers.h"
 
 DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above");
 

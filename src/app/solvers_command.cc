@@ -1,7 +1,8 @@
 #include <iostream>
 
-#include "trilobe/app/command.h"
-#include "trilobe/app/solver_flags.h"
+#include "app/command.h"
+#include "app/solver_flags.h"
+#include "trilobe/registry/solvers.h"
 
 namespace trilobe {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "trilobe/app/print.h"
+#include "app/print.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {

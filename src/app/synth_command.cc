@@ -2,14 +2,14 @@
 #include <iostream>
 #include <string>
 
-#include "trilobe/app/command.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/app/write_measurement.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/synth.h"
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "formats/write_measurement.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe {
 namespace {

@@ -1,10 +1,10 @@
-#include "trilobe/app/verdict_report.h"
+#include "app/verdict_report.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trilobe/app/print.h"
+#include "app/print.h"
 
 namespace trilobe {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "appearance/verdict.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/seen_error.h"
-#include "trilobe/appearance/verdict.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe {

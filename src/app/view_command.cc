@@ -5,18 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/app/appearance_report.h"
-#include "trilobe/app/command.h"
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
-#include "trilobe/app/view_page.h"
+#include "app/appearance_report.h"
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "app/view_page.h"
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/source.h"
-#include "trilobe/io/trace_file.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/results/trace_file.h"
 
 DECLARE_string(trace);
 DECLARE_string(probe);

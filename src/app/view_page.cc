@@ -1,12 +1,12 @@
-#include "trilobe/app/view_page.h"
+#include "app/view_page.h"
 
-#include "trilobe/app/fit_many.h"
+#include "app/fit_many.h"
+#include "appearance/sample_table.h"
+#include "appearance/verdict.h"
 #include "trilobe/appearance/environment.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/verdict.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/sample_table.h"
-#include "trilobe/view/page.h"
+#include "trilobe/appearance/picture_data.h"
+#include "view/page.h"
 
 namespace trilobe {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/seen_error.h"
-#include "trilobe/io/measurement.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/model/iteration_record.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/objective/iteration_record.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe {
 

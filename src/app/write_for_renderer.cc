@@ -1,4 +1,4 @@
-#include "trilobe/app/write_for_renderer.h"
+#include "app/write_for_renderer.h"
 
 #include <gflags/gflags.h>
 
@@ -6,19 +6,19 @@
 #include <ostream>
 #include <system_error>
 
-#include "trilobe/app/flags.h"
-#include "trilobe/app/inputs.h"
-#include "trilobe/app/print.h"
-#include "trilobe/app/result_folder.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/print.h"
+#include "app/result_folder.h"
+#include "files/file.h"
+#include "system/stopwatch.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/stopwatch.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/io/completed_measurement.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/rgl_export.h"
-#include "trilobe/io/source.h"
-#include "trilobe/view/glsl_file.h"
+#include "trilobe/formats/completed_measurement.h"
+#include "trilobe/formats/rgl_export.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/results/model_file.h"
+#include "view/glsl_file.h"
 
 DEFINE_double(error, 0,
               "of a .bsdf file: how far it may be off the model or the measurement, relative, in "

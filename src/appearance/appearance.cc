@@ -7,16 +7,16 @@
 #include <functional>
 #include <utility>
 
-#include "trilobe/appearance/color.h"
+#include "appearance/color.h"
+#include "appearance/render_environment.h"
 #include "trilobe/appearance/render.h"
-#include "trilobe/appearance/render_environment.h"
 #include "trilobe/appearance/sphere.h"
 #include "trilobe/appearance/view.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
 #include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/tabulated_brdf.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

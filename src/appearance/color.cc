@@ -1,4 +1,4 @@
-#include "trilobe/appearance/color.h"
+#include "appearance/color.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "trilobe/brdf/channels.h"
+#include "trilobe/geometry/channels.h"
 
 namespace trilobe {
 

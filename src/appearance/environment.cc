@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "trilobe/appearance/color.h"
+#include "appearance/color.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "trilobe/base/check.h"
-#include "trilobe/model/continuous_model.h"
+#include "trilobe/lobes/continuous_model.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/appearance/mirrored_environment.h"
+#include "appearance/mirrored_environment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "trilobe/appearance/environment.h"
-#include "trilobe/brdf/channels.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/geometry/channels.h"
+#include "trilobe/geometry/directions.h"
 
 namespace trilobe {
 

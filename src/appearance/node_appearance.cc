@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "appearance/render_environment.h"
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/render_environment.h"
 #include "trilobe/appearance/view.h"
 #include "trilobe/base/check.h"
-#include "trilobe/base/parallel.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

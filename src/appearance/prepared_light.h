@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "trilobe/appearance/environment.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/geometry/directions.h"
 
 namespace trilobe {
 

@@ -1,11 +1,11 @@
-#include "trilobe/appearance/render_environment.h"
+#include "appearance/render_environment.h"
 
 #include <cmath>
 #include <vector>
 
-#include "trilobe/appearance/color.h"
-#include "trilobe/appearance/mirrored_environment.h"
-#include "trilobe/appearance/prepared_light.h"
+#include "appearance/color.h"
+#include "appearance/mirrored_environment.h"
+#include "appearance/prepared_light.h"
 
 namespace trilobe {
 namespace {

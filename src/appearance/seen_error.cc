@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "trilobe/appearance/color.h"
+#include "appearance/color.h"
 
 namespace trilobe {
 namespace {

@@ -1,10 +1,10 @@
-#include "trilobe/appearance/seen_samples.h"
+#include "appearance/seen_samples.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "trilobe/appearance/color.h"
-#include "trilobe/brdf/directions.h"
+#include "appearance/color.h"
+#include "trilobe/geometry/directions.h"
 
 namespace trilobe {
 namespace {

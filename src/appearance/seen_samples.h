@@ -5,7 +5,7 @@
 
 #include "trilobe/appearance/seen_error.h"
 #include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/brdf/channels.h"
+#include "trilobe/geometry/channels.h"
 
 namespace trilobe {
 

@@ -1,6 +1,6 @@
 #include "trilobe/appearance/sphere.h"
 
-#include "trilobe/appearance/prepared_light.h"
+#include "appearance/prepared_light.h"
 #include "trilobe/base/check.h"
 
 namespace trilobe {

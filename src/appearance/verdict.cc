@@ -1,4 +1,4 @@
-#include "trilobe/appearance/verdict.h"
+#include "appearance/verdict.h"
 
 #include <algorithm>
 #include <cmath>

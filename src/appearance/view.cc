@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trilobe/appearance/color.h"
+#include "appearance/color.h"
 #include "trilobe/base/check.h"
 
 namespace trilobe {

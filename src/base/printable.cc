@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "trilobe/base/utf8.h"
+#include "base/utf8.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/base/utf8.h"
+#include "base/utf8.h"
 
 namespace trilobe {
 

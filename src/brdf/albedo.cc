@@ -6,8 +6,8 @@
 
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/brdf/merl_grid.h"
+#include "trilobe/geometry/merl_grid.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

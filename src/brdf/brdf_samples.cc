@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "geometry/grid_cosines.h"
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/grid_cosines.h"
 
 namespace trilobe {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/grid_cosines.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/grid_cosines.h"
 
 namespace trilobe {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/grid_cosines.h"
 #include "trilobe/base/check.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/brdf/grid_cosines.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
+#include "math/linear_density.h"
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
-#include "trilobe/math/linear_density.h"
 
 namespace trilobe {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/multiversion.h"
+#include "math/arc_functions.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/multiversion.h"
 #include "trilobe/math/angles.h"
-#include "trilobe/math/arc_functions.h"
 #include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {

@@ -4,13 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/model/continuous_model.h"
+#include "prune/unmeasured_guide.h"
+#include "solvers/joint/data_edge.h"
+#include "solvers/joint/reflectance.h"
+#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/robust.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/prune/unmeasured_guide.h"
-#include "trilobe/solvers/joint/data_edge.h"
-#include "trilobe/solvers/joint/reflectance.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

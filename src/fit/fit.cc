@@ -3,16 +3,17 @@
 #include <cmath>
 #include <utility>
 
+#include "appearance/seen_samples.h"
+#include "system/stopwatch.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/seen_samples.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/io/anisotropy.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/brdf/anisotropy.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/reconstruct.h"
 #include "trilobe/objective/canonical_form.h"
+#include "trilobe/registry/solvers.h"
 
 namespace trilobe {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/picture_data.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "math/lanes.h"
 #include "trilobe/math/angles.h"
-#include "trilobe/math/lanes.h"
 
 // Arc functions of four numbers at once, by polynomials through Chebyshev points of what is
 // analytic up to an interval's length from it: the error falls by 5.8 a degree.

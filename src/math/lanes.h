@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "trilobe/base/multiversion.h"
+#include "base/multiversion.h"
 
 // How vectors are returned depends on the registers that there are; but all of these functions
 // become part of their callers.

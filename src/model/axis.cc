@@ -8,8 +8,8 @@
 
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/directions.h"
-#include "trilobe/brdf/merl_grid.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/geometry/merl_grid.h"
 #include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/geometry/directions.h"
 
 namespace trilobe {
 

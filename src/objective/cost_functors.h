@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "trilobe/brdf/channels.h"
+#include "objective/parameter_blocks.h"
+#include "trilobe/geometry/channels.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/objective/parameter_blocks.h"
 
 namespace trilobe {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "trilobe/base/parallel.h"
-#include "trilobe/brdf/directions.h"
-#include "trilobe/brdf/grid_cosines.h"
-#include "trilobe/model/shadowing_pieces.h"
+#include "geometry/grid_cosines.h"
+#include "lobes/shadowing_pieces.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

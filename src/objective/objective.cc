@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "objective/sample_reader.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/objective/sample_reader.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

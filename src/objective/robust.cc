@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/objective/sample_derivatives.h"
+#include "objective/sample_derivatives.h"
 
 namespace trilobe {
 

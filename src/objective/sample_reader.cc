@@ -1,11 +1,11 @@
-#include "trilobe/objective/sample_reader.h"
+#include "objective/sample_reader.h"
 
 #include <algorithm>
 #include <numeric>
 #include <span>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
+#include "base/multiversion.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

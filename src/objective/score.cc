@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

@@ -1,12 +1,12 @@
-#include "trilobe/prune/lobe_search.h"
+#include "prune/lobe_search.h"
 
 #include <optional>
 #include <utility>
 
+#include "solvers/joint/joint_step.h"
+#include "solvers/race/start_race.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/model/lobes.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/race/start_race.h"
+#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

@@ -9,20 +9,21 @@
 #include <utility>
 #include <vector>
 
+#include "prune/model_forms.h"
+#include "prune/unmeasured_guide.h"
+#include "solvers/joint/data_edge.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
+#include "solvers/joint/stretch_search.h"
+#include "system/stopwatch.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/prune/model_forms.h"
 #include "trilobe/prune/prune.h"
-#include "trilobe/prune/unmeasured_guide.h"
-#include "trilobe/solvers/joint/data_edge.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/reduction.h"
-#include "trilobe/solvers/joint/stretch_search.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -1,10 +1,10 @@
-#include "trilobe/prune/model_forms.h"
+#include "prune/model_forms.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "trilobe/model/lobes.h"
-#include "trilobe/solvers/joint/reduction.h"
+#include "solvers/joint/reduction.h"
+#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/weighting.h"
+#include "trilobe/objective/weighting.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/prune/needed_layout.h"
+#include "prune/needed_layout.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "trilobe/prune/node_elimination.h"
+#include "prune/node_elimination.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/prune/reduced_quadratic.h"
-#include "trilobe/prune/tableau.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/reduction.h"
+#include "prune/reduced_quadratic.h"
+#include "prune/tableau.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
 
 namespace trilobe {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <vector>
 
+#include "prune/needed_layout.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/quadratic_model.h"
-#include "trilobe/prune/needed_layout.h"
 
 namespace trilobe {
 

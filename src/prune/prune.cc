@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/lobes.h"
-#include "trilobe/prune/lobe_search.h"
-#include "trilobe/prune/needed_layout.h"
-#include "trilobe/prune/prune_tables.h"
-#include "trilobe/prune/pruning.h"
-#include "trilobe/prune/shapes.h"
-#include "trilobe/solvers/joint/reduction.h"
+#include "prune/lobe_search.h"
+#include "prune/needed_layout.h"
+#include "prune/prune_tables.h"
+#include "prune/pruning.h"
+#include "prune/shapes.h"
+#include "solvers/joint/reduction.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

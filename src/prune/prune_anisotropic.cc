@@ -1,4 +1,4 @@
-#include "trilobe/prune/prune_anisotropic.h"
+#include "prune/prune_anisotropic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/model/with_axes.h"
-#include "trilobe/prune/lobe_search.h"
-#include "trilobe/prune/pruning.h"
-#include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/joint/reduction.h"
+#include "prune/lobe_search.h"
+#include "prune/pruning.h"
+#include "solvers/joint/reduction.h"
+#include "trilobe/lobes/with_axes.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/prune/prune.h"
+#include "trilobe/prune/prune_options.h"
 
 namespace trilobe {
 

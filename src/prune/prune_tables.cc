@@ -1,4 +1,4 @@
-#include "trilobe/prune/prune_tables.h"
+#include "prune/prune_tables.h"
 
 #include <algorithm>
 #include <optional>
@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/parallel.h"
-#include "trilobe/prune/needed_layout.h"
-#include "trilobe/prune/node_elimination.h"
-#include "trilobe/prune/reduced_quadratic.h"
-#include "trilobe/prune/shapes.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/reduction.h"
+#include "prune/needed_layout.h"
+#include "prune/node_elimination.h"
+#include "prune/reduced_quadratic.h"
+#include "prune/shapes.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
 #include "trilobe/solvers/run.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

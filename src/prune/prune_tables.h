@@ -1,7 +1,7 @@
 #ifndef TRILOBE_PRUNE_PRUNE_TABLES_H_
 #define TRILOBE_PRUNE_PRUNE_TABLES_H_
 
-#include "trilobe/prune/pruning.h"
+#include "prune/pruning.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/prune/pruning.h"
+#include "prune/pruning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "trilobe/base/error.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/lobes/gauge.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"

@@ -1,10 +1,10 @@
-#include "trilobe/prune/reduced_quadratic.h"
+#include "prune/reduced_quadratic.h"
 
 #include <cstddef>
 #include <utility>
 
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/nonnegative_step.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/nonnegative_step.h"
 
 namespace trilobe {
 

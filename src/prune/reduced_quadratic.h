@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "solvers/joint/reduction.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/quadratic_model.h"
-#include "trilobe/solvers/joint/reduction.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/prune/shapes.h"
+#include "prune/shapes.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,11 +1,11 @@
-#include "trilobe/prune/tableau.h"
+#include "prune/tableau.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/math/cholesky.h"
+#include "algebra/cholesky.h"
+#include "base/multiversion.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/prune/unmeasured_guide.h"
+#include "prune/unmeasured_guide.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "trilobe/brdf/brdf_table.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe {
 namespace {

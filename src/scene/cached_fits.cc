@@ -1,12 +1,12 @@
-#include "trilobe/scene/cached_fits.h"
+#include "scene/cached_fits.h"
 
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/read_model.h"
+#include "trilobe/evaluate/read_model.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe {
 namespace {

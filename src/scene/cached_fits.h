@@ -5,7 +5,7 @@
 #include <string>
 
 #include "trilobe/scene/fit_cache.h"
-#include "trilobe/scene/scene_fit.h"
+#include "trilobe/scene/material_fit.h"
 
 // Fits as entries of the cache, in JSON.
 namespace trilobe {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "files/little_endian.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/little_endian.h"
 #include "trilobe/math/stencil.h"
 
 namespace trilobe {

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <ostream>
 
+#include "files/file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/file.h"
 
 namespace trilobe {
 namespace {

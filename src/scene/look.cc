@@ -1,13 +1,13 @@
-#include "trilobe/scene/look.h"
+#include "scene/look.h"
 
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "scene/luminance.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/base/error.h"
 #include "trilobe/scene/directions.h"
-#include "trilobe/scene/luminance.h"
 
 namespace trilobe {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/io/measurement.h"
-#include "trilobe/io/picture_data.h"
+#include "trilobe/appearance/picture_data.h"
+#include "trilobe/brdf/measurement.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/scene/scene_file.h"
 

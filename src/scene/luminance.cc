@@ -1,4 +1,4 @@
-#include "trilobe/scene/luminance.h"
+#include "scene/luminance.h"
 
 #include <algorithm>
 

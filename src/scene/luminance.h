@@ -2,7 +2,7 @@
 #define TRILOBE_SCENE_LUMINANCE_H_
 
 #include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/brdf/channels.h"
+#include "trilobe/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

@@ -10,11 +10,11 @@
 #include <sstream>
 #include <utility>
 
+#include "base/nearest_name.h"
+#include "files/file.h"
+#include "files/json_value.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/nearest_name.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/json_value.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
 
 namespace trilobe {
 namespace {

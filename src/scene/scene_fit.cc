@@ -9,22 +9,23 @@
 #include <utility>
 #include <variant>
 
-#include "trilobe/appearance/seen_samples.h"
-#include "trilobe/appearance/verdict.h"
+#include "appearance/seen_samples.h"
+#include "appearance/verdict.h"
+#include "files/file.h"
+#include "prune/prune_anisotropic.h"
+#include "scene/cached_fits.h"
+#include "scene/look.h"
+#include "scene/luminance.h"
+#include "system/stopwatch.h"
+#include "system/utc_time.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/base/stopwatch.h"
-#include "trilobe/base/utc_time.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/io/file.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/source.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/prune/prune_anisotropic.h"
-#include "trilobe/scene/cached_fits.h"
-#include "trilobe/scene/look.h"
-#include "trilobe/scene/luminance.h"
+#include "trilobe/formats/source.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/registry/solvers.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include "algebra/eigenvalues.h"
 #include "trilobe/base/check.h"
-#include "trilobe/math/eigenvalues.h"
 #include "trilobe/sums/normal_equations.h"
 
 namespace trilobe {

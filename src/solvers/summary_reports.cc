@@ -9,18 +9,10 @@
 namespace trilobe {
 namespace {
 
-// The options that a solver has of its own; none where it is not in the list.
-std::vector<std::string> ParticularOptions(const std::string& solver) {
-  for (const SolverEntry& entry : Solvers()) {
-    if (entry.name == solver) return entry.options;
-  }
-  return {};
-}
-
 // "memory 3 (given 5), seed 1"
 std::string OptionsText(const SolverSummary& summary) {
   std::string text;
-  for (const SolverOption* option : OptionsReadBy(ParticularOptions(summary.solver))) {
+  for (const SolverOption* option : OptionsReadBy(summary.own_options)) {
     const OptionValue given = option->get(summary.given), used = option->get(summary.used);
     text += (text.empty() ? "" : ", ") + option->name + " " + ToText(used);
     if (used != given) text += " (given " + ToText(given) + ")";

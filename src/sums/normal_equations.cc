@@ -5,13 +5,13 @@
 #include <span>
 #include <utility>
 
+#include "algebra/triangle.h"
+#include "objective/sample_derivatives.h"
+#include "sums/grid/joint_rows.h"
+#include "sums/grid/joint_shadowing.h"
+#include "sums/sample_equations.h"
 #include "trilobe/base/check.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/triangle.h"
-#include "trilobe/objective/sample_derivatives.h"
-#include "trilobe/sums/grid/joint_rows.h"
-#include "trilobe/sums/grid/joint_shadowing.h"
-#include "trilobe/sums/sample_equations.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

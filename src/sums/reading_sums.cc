@@ -1,13 +1,13 @@
-#include "trilobe/sums/reading_sums.h"
+#include "sums/reading_sums.h"
 
 #include <algorithm>
 #include <array>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/nonnegative_least_squares.h"
+#include "algebra/nonnegative_least_squares.h"
+#include "base/multiversion.h"
+#include "objective/sample_reader.h"
 #include "trilobe/objective/quadratic_model.h"
-#include "trilobe/objective/sample_reader.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

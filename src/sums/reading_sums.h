@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "sums/kind.h"
+#include "sums/sample_readings.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/sums/kind.h"
-#include "trilobe/sums/sample_readings.h"
 
 namespace trilobe {
 

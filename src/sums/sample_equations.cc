@@ -1,12 +1,12 @@
-#include "trilobe/sums/sample_equations.h"
+#include "sums/sample_equations.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/triangle.h"
-#include "trilobe/sums/sample_sums.h"
+#include "algebra/triangle.h"
+#include "sums/sample_sums.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <vector>
 
+#include "objective/sample_reader.h"
+#include "sums/sample_sums.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/folded_samples.h"
-#include "trilobe/objective/sample_reader.h"
-#include "trilobe/sums/normal_equations.h"
-#include "trilobe/sums/sample_sums.h"
+#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 

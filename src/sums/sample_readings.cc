@@ -1,12 +1,12 @@
-#include "trilobe/sums/sample_readings.h"
+#include "sums/sample_readings.h"
 
 #include <algorithm>
 #include <array>
 #include <span>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/objective/sample_reader.h"
+#include "base/multiversion.h"
+#include "objective/sample_reader.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

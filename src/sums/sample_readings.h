@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
+#include "sums/kind.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/folded_samples.h"
-#include "trilobe/sums/kind.h"
 
 namespace trilobe {
 

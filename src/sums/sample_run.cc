@@ -1,9 +1,9 @@
-#include "trilobe/sums/sample_run.h"
+#include "sums/sample_run.h"
 
 #include <cstddef>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/objective/sample_reader.h"
+#include "base/multiversion.h"
+#include "objective/sample_reader.h"
 
 namespace trilobe {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "sums/sample_layout.h"
 #include "trilobe/math/stencil.h"
 #include "trilobe/objective/folded_samples.h"
-#include "trilobe/sums/sample_sums.h"
 
 namespace trilobe {
 

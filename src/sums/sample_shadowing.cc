@@ -1,12 +1,12 @@
-#include "trilobe/sums/sample_shadowing.h"
+#include "sums/sample_shadowing.h"
 
 #include <algorithm>
 #include <array>
 #include <functional>
 #include <span>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/math/element_step.h"
+#include "algebra/element_step.h"
+#include "base/multiversion.h"
 
 namespace trilobe {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "sums/sample_readings.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/sums/sample_readings.h"
 
 namespace trilobe {
 

@@ -1,11 +1,11 @@
-#include "trilobe/sums/sample_sums.h"
+#include "sums/sample_sums.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/sums/sample_run.h"
+#include "base/multiversion.h"
+#include "sums/sample_run.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/view/base64.h"
+#include "view/base64.h"
 
 #include <cstdint>
 

@@ -1,11 +1,11 @@
-#include "trilobe/view/document.h"
+#include "view/document.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/view/web_files.h"
+#include "view/web_files.h"
 
 namespace trilobe {
 namespace {

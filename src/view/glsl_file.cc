@@ -1,13 +1,13 @@
-#include "trilobe/view/glsl_file.h"
+#include "view/glsl_file.h"
 
 #include <bit>
 #include <cstdint>
 #include <sstream>
 
 #include "trilobe/base/printable.h"
-#include "trilobe/view/base64.h"
-#include "trilobe/view/shader_tables.h"
-#include "trilobe/view/web_files.h"
+#include "view/base64.h"
+#include "view/shader_tables.h"
+#include "view/web_files.h"
 
 namespace trilobe {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "trilobe/io/read_model.h"
+#include "trilobe/evaluate/read_model.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/view/measured_data.h"
+#include "view/measured_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "trilobe/brdf/channels.h"
+#include "trilobe/geometry/channels.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/view/page.h"
+#include "view/page.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "trilobe/base/printable.h"
-#include "trilobe/brdf/channels.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/view/base64.h"
-#include "trilobe/view/document.h"
+#include "trilobe/geometry/channels.h"
+#include "trilobe/results/model_file.h"
+#include "view/base64.h"
+#include "view/document.h"
 
 namespace trilobe {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "trilobe/appearance/environment.h"
-#include "trilobe/io/read_model.h"
-#include "trilobe/model/iteration_record.h"
-#include "trilobe/view/measured_data.h"
+#include "trilobe/evaluate/read_model.h"
+#include "trilobe/objective/iteration_record.h"
+#include "view/measured_data.h"
 
 namespace trilobe {
 

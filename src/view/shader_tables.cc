@@ -1,4 +1,4 @@
-#include "trilobe/view/shader_tables.h"
+#include "view/shader_tables.h"
 
 #include <array>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/channels.h"
 #include "trilobe/evaluate/bsdf.h"
+#include "trilobe/geometry/channels.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/model_spec.h"

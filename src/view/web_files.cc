@@ -1,4 +1,4 @@
-#include "trilobe/view/web_files.h"
+#include "view/web_files.h"
 
 #include <string>
 

@@ -11,7 +11,7 @@
 
 #include "tests/app/run_program.h"
 #include "tests/test_util.h"
-#include "trilobe/io/read_model.h"
+#include "trilobe/evaluate/read_model.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -10,7 +10,8 @@
 #include <sstream>
 
 #include "tests/app/run_program.h"
-#include "tests/io/tensor_bytes.h"
+#include "tests/formats/tensor_bytes.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "tests/app/run_program.h"
-#include "trilobe/brdf/directions.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/io/trace_file.h"
-#include "trilobe/model/continuous_model.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/results/trace_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

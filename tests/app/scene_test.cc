@@ -13,8 +13,8 @@
 
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
-#include "trilobe/io/merl_file.h"
-#include "trilobe/io/model_file.h"
+#include "trilobe/formats/merl_file.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

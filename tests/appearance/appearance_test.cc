@@ -8,11 +8,11 @@
 #include <limits>
 #include <string>
 
+#include "appearance/color.h"
 #include "tests/test_util.h"
-#include "trilobe/appearance/color.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/io/synth.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

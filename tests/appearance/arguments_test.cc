@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/render.h"

@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "appearance/color.h"
 #include "tests/test_util.h"
-#include "trilobe/appearance/color.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

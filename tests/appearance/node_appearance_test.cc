@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/picture_data.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

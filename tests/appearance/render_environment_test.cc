@@ -1,4 +1,4 @@
-#include "trilobe/appearance/render_environment.h"
+#include "appearance/render_environment.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "trilobe/appearance/color.h"
-#include "trilobe/appearance/mirrored_environment.h"
+#include "appearance/color.h"
+#include "appearance/mirrored_environment.h"
 #include "trilobe/appearance/sphere.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -10,7 +10,7 @@
 #include "tests/test_util.h"
 #include "trilobe/appearance/sphere.h"
 #include "trilobe/brdf/albedo.h"
-#include "trilobe/io/synth.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "appearance/color.h"
+#include "appearance/seen_samples.h"
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/color.h"
-#include "trilobe/appearance/seen_samples.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

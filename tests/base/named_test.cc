@@ -1,4 +1,4 @@
-#include "trilobe/base/named.h"
+#include "base/named.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 

@@ -1,6 +1,7 @@
-#include <trilobe/io/source.h>
-#include <trilobe/solvers/initial_model.h>
+#include <trilobe/formats/source.h>
+#include <trilobe/registry/solvers.h>
 #include <trilobe/solvers/solver.h>
+#include <trilobe/start/initial_model.h>
 
 #include <iostream>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/geometry/directions.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

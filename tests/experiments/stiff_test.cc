@@ -15,7 +15,7 @@
 #include "experiments/stiff/reference_problem.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/lobes/gauge.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

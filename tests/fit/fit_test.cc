@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "trilobe/base/error.h"
-#include "trilobe/io/source.h"
+#include "trilobe/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

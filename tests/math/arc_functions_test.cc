@@ -1,4 +1,4 @@
-#include "trilobe/math/arc_functions.h"
+#include "math/arc_functions.h"
 
 #include <gtest/gtest.h>
 

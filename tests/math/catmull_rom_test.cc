@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tests/test_util.h"
-#include "trilobe/brdf/directions.h"
+#include "trilobe/geometry/directions.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

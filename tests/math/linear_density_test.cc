@@ -1,4 +1,4 @@
-#include "trilobe/math/linear_density.h"
+#include "math/linear_density.h"
 
 #include <gtest/gtest.h>
 

@@ -10,10 +10,10 @@
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/lobe_light.h"
+#include "trilobe/lobes/lobes.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/lobe_light.h"
-#include "trilobe/model/lobes.h"
 #include "trilobe/objective/objective.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

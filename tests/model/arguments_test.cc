@@ -8,20 +8,20 @@
 #include <utility>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "objective/parameter_blocks.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/brdf/albedo.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/brdf/node_brdf.h"
 #include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/model/continuation.h"
-#include "trilobe/model/continuous_model.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/lobe_light.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/continuation.h"
+#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/lobe_light.h"
+#include "trilobe/lobes/reconstruct.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/canonical_form.h"
-#include "trilobe/objective/parameter_blocks.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -11,10 +11,10 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/directions.h"
-#include "trilobe/model/continuous_model.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/lobes/lobes.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/lobes.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -1,4 +1,4 @@
-#include "trilobe/objective/cost_functors.h"
+#include "objective/cost_functors.h"
 
 #include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/dynamic_numeric_diff_cost_function.h>

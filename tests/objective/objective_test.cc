@@ -11,7 +11,7 @@
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/objective/parameter_blocks.h"
+#include "objective/parameter_blocks.h"
 
 #include <gtest/gtest.h>
 

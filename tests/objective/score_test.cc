@@ -8,7 +8,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

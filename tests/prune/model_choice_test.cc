@@ -9,15 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/model_file.h"
-#include "trilobe/model/continuous_model.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/registry/solvers.h"
+#include "trilobe/results/model_file.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

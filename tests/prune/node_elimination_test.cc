@@ -1,16 +1,17 @@
-#include "trilobe/prune/node_elimination.h"
+#include "prune/node_elimination.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "prune/reduced_quadratic.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
 #include "tests/test_util.h"
-#include "trilobe/prune/reduced_quadratic.h"
-#include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/reduction.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 #include "trilobe/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -1,4 +1,4 @@
-#include "trilobe/prune/prune_anisotropic.h"
+#include "prune/prune_anisotropic.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,9 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/node_brdf.h"
-#include "trilobe/model/reconstruct.h"
-#include "trilobe/model/with_axes.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/lobes/with_axes.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

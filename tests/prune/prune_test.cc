@@ -9,10 +9,11 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/lobes/gauge.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

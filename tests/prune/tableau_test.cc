@@ -1,4 +1,4 @@
-#include "trilobe/prune/tableau.h"
+#include "prune/tableau.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "trilobe/prune/unmeasured_guide.h"
+#include "prune/unmeasured_guide.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/brdf/brdf_table.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -7,13 +7,14 @@
 #include <thread>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "solvers/joint/data_edge.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/objective/score.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/scene/scene_fit.h"
-#include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/joint/data_edge.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

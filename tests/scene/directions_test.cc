@@ -9,7 +9,7 @@
 #include <limits>
 #include <set>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

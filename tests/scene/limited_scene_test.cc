@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/test_util.h"
-#include "trilobe/io/synth.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/scene/directions.h"
-#include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

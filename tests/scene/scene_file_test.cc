@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "tests/io/test_directory.h"
-#include "trilobe/io/json_value.h"
+#include "files/json_value.h"
+#include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <ostream>
 
-#include "tests/io/test_directory.h"
-#include "trilobe/io/file.h"
+#include "files/file.h"
+#include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

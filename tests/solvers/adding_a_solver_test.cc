@@ -9,6 +9,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -10,9 +10,10 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/diagnosis.h"
-#include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 #include "trilobe/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

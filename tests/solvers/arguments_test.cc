@@ -8,15 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "solvers/joint/data_edge.h"
+#include "solvers/joint/reflectance.h"
 #include "tests/solvers/solver_kinds.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
+#include "trilobe/prior/guide.h"
+#include "trilobe/prior/node_choice.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/gaussian_filter.h"
-#include "trilobe/solvers/guide.h"
-#include "trilobe/solvers/joint/data_edge.h"
-#include "trilobe/solvers/joint/reflectance.h"
-#include "trilobe/solvers/node_choice.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"

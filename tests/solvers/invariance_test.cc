@@ -11,10 +11,10 @@
 #include "tests/base/no_threads.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/io/synth.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/lobes/gauge.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

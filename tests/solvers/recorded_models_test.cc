@@ -15,10 +15,10 @@
 #include "tests/paths.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/io/synth.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/initial_model.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

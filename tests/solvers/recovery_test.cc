@@ -6,7 +6,8 @@
 #include <string>
 
 #include "tests/test_util.h"
-#include "trilobe/model/gauge.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

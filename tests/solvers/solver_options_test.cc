@@ -11,8 +11,9 @@
 #include <variant>
 #include <vector>
 
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "trilobe/base/error.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -6,6 +6,7 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/registry/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -57,6 +58,7 @@ TEST(Solver, ReportsInOneLine) {
 TEST(Solver, ReportsInFull) {
   SolverSummary summary;
   summary.solver = "awls";
+  summary.own_options = FindSolver("awls").options;
   summary.stop_reason = StopReason::kNoDecrease;
   summary.initial_objective = 34.5;
   summary.final_objective = 6.25;

@@ -13,10 +13,11 @@
 #include <span>
 #include <vector>
 
+#include "algebra/cholesky.h"
+#include "objective/cost_functors.h"
+#include "objective/parameter_blocks.h"
 #include "tests/test_util.h"
-#include "trilobe/math/cholesky.h"
-#include "trilobe/objective/cost_functors.h"
-#include "trilobe/objective/parameter_blocks.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"
 

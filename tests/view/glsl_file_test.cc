@@ -1,4 +1,4 @@
-#include "trilobe/view/glsl_file.h"
+#include "view/glsl_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/view/base64.h"
-#include "trilobe/view/shader_tables.h"
+#include "view/base64.h"
+#include "view/shader_tables.h"
 
 namespace trilobe {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "trilobe/base/error.h"
 #include "trilobe/evaluate/bsdf.h"
-#include "trilobe/io/read_model.h"
+#include "trilobe/evaluate/read_model.h"
 #include "trilobe/math/angles.h"
 
 namespace {

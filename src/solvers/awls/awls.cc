@@ -1,6 +1,8 @@
+#include "solvers/awls/awls.h"
+
 #include <memory>
 
-#include "trilobe/solvers/awls/sweep.h"
+#include "solvers/awls/make_sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 
-#include "trilobe/math/element_step.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/solvers/awls/sweep.h"
+#include "algebra/element_step.h"
+#include "solvers/awls/make_sweep.h"
+#include "trilobe/lobes/gauge.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "trilobe/solvers/awls/sweep.h"
+#include "solvers/awls/make_sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

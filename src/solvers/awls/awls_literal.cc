@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "trilobe/math/element_step.h"
+#include "algebra/element_step.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

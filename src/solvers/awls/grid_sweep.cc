@@ -1,4 +1,4 @@
-#include "trilobe/solvers/awls/grid_sweep.h"
+#include "solvers/awls/grid_sweep.h"
 
 #include <glog/logging.h>
 

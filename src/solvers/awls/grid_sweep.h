@@ -3,12 +3,12 @@
 
 #include <optional>
 
+#include "solvers/awls/sweep.h"
+#include "sums/grid/cell_sums.h"
+#include "sums/grid/shadowing_sums.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/awls/sweep.h"
 #include "trilobe/solvers/run.h"
-#include "trilobe/sums/grid/cell_sums.h"
-#include "trilobe/sums/grid/shadowing_sums.h"
 
 namespace trilobe {
 

@@ -1,10 +1,10 @@
-#include "trilobe/solvers/awls/sample_sweep.h"
+#include "solvers/awls/sample_sweep.h"
 
 #include <array>
 #include <cstddef>
 #include <span>
 
-#include "trilobe/math/nonnegative_least_squares.h"
+#include "algebra/nonnegative_least_squares.h"
 
 namespace trilobe {
 

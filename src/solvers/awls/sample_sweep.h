@@ -4,13 +4,13 @@
 #include <functional>
 #include <vector>
 
+#include "solvers/awls/sweep.h"
+#include "sums/reading_sums.h"
+#include "sums/sample_readings.h"
+#include "sums/sample_shadowing.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/folded_samples.h"
-#include "trilobe/solvers/awls/sweep.h"
 #include "trilobe/solvers/run.h"
-#include "trilobe/sums/reading_sums.h"
-#include "trilobe/sums/sample_readings.h"
-#include "trilobe/sums/sample_shadowing.h"
 
 namespace trilobe {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/iteration_record.h"
+#include "trilobe/objective/iteration_record.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/solvers/run.h"
 
@@ -42,10 +42,6 @@ class Sweep {
  private:
   const int rounds_;
 };
-
-// From exact sums where samples are on a grid (GridSweep), else from the samples (SampleSweep).
-// Times go to *phases.
-std::unique_ptr<Sweep> MakeSweep(const Objective& objective, PhaseSeconds* phases);
 
 }  // namespace trilobe
 

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/ceres/ceres_run.h"
+#include "solvers/ceres/ceres_run.h"
 
 #include <ceres/iteration_callback.h>
 #include <ceres/problem.h>
@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
-#include "trilobe/math/element_step.h"
-#include "trilobe/math/openblas.h"
-#include "trilobe/model/gauge.h"
+#include "algebra/element_step.h"
+#include "algebra/openblas.h"
+#include "trilobe/lobes/gauge.h"
 
 namespace trilobe {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/math/cholesky.h"
-#include "trilobe/solvers/ceres/ceres_run.h"
+#include "algebra/cholesky.h"
+#include "solvers/ceres/ceres_run.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/objective/cost_functors.h"
-#include "trilobe/objective/parameter_blocks.h"
-#include "trilobe/solvers/ceres/ceres_run.h"
+#include "objective/cost_functors.h"
+#include "objective/parameter_blocks.h"
+#include "solvers/ceres/ceres_run.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/data_edge.h"
+#include "solvers/joint/data_edge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/reduction.h"
 
 namespace trilobe {
 namespace {

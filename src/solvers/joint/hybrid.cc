@@ -1,7 +1,7 @@
 #include <memory>
 
-#include "trilobe/solvers/awls/sweep.h"
-#include "trilobe/solvers/joint/joint_step.h"
+#include "solvers/awls/make_sweep.h"
+#include "solvers/joint/joint_step.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -1,7 +1,7 @@
 #include <string>
 #include <utility>
 
-#include "trilobe/solvers/joint/joint_step.h"
+#include "solvers/joint/joint_step.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

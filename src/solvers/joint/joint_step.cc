@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/joint_step.h"
+#include "solvers/joint/joint_step.h"
 
 #include <glog/logging.h>
 
@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "solvers/awls/make_sweep.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/run.h"

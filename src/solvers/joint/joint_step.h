@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "solvers/awls/sweep.h"
+#include "solvers/joint/nonnegative_step.h"
+#include "solvers/joint/reduction.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/solvers/awls/sweep.h"
-#include "trilobe/solvers/joint/nonnegative_step.h"
-#include "trilobe/solvers/joint/reduction.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"

@@ -1,12 +1,12 @@
-#include "trilobe/solvers/joint/nonnegative_step.h"
+#include "solvers/joint/nonnegative_step.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/cholesky.h"
-#include "trilobe/math/element_step.h"
+#include "algebra/cholesky.h"
+#include "algebra/element_step.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

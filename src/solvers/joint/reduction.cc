@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/reduction.h"
+#include "solvers/joint/reduction.h"
 
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/reflectance.h"
+#include "solvers/joint/reflectance.h"
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/parallel.h"
+#include "objective/sample_derivatives.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/nonnegative_step.h"
+#include "solvers/joint/reduction.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/objective/quadratic_model.h"
-#include "trilobe/objective/sample_derivatives.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/joint/nonnegative_step.h"
-#include "trilobe/solvers/joint/reduction.h"
 #include "trilobe/sums/normal_equations.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

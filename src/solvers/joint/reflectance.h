@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "trilobe/base/stop_check.h"
-#include "trilobe/brdf/channels.h"
+#include "trilobe/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"

@@ -1,11 +1,11 @@
-#include "trilobe/solvers/joint/stretch_search.h"
+#include "solvers/joint/stretch_search.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "solvers/joint/stretch_step.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/solvers/joint/stretch_step.h"
 
 namespace trilobe {
 

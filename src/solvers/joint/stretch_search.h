@@ -1,10 +1,10 @@
 #ifndef TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
 #define TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
 
+#include "solvers/joint/joint_step.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/solvers/joint/joint_step.h"
 
 namespace trilobe {
 

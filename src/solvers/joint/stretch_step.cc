@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/stretch_step.h"
+#include "solvers/joint/stretch_step.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <numeric>
 #include <utility>
 
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/cholesky.h"
-#include "trilobe/model/lobes.h"
-#include "trilobe/objective/sample_derivatives.h"
+#include "algebra/cholesky.h"
+#include "objective/sample_derivatives.h"
+#include "trilobe/lobes/lobes.h"
 #include "trilobe/sums/normal_equations.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/joint/joint_step.h"
+#include "solvers/race/start_race.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/lobes.h"
-#include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/joint/joint_step.h"
-#include "trilobe/solvers/race/start_race.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/lobes.h"
 #include "trilobe/solvers/run.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe {
 namespace {

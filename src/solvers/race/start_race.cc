@@ -1,13 +1,13 @@
-#include "trilobe/solvers/race/start_race.h"
+#include "solvers/race/start_race.h"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
-#include "trilobe/base/parallel.h"
+#include "solvers/awls/make_sweep.h"
+#include "solvers/joint/joint_step.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/solvers/awls/sweep.h"
-#include "trilobe/solvers/joint/joint_step.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

@@ -1,15 +1,15 @@
-#include "trilobe/sums/grid/cell_sums.h"
+#include "sums/grid/cell_sums.h"
 
 #include <array>
 #include <cstring>
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/element_step.h"
-#include "trilobe/math/nonnegative_least_squares.h"
-#include "trilobe/model/shadowing_pieces.h"
+#include "algebra/element_step.h"
+#include "algebra/nonnegative_least_squares.h"
+#include "base/multiversion.h"
+#include "lobes/shadowing_pieces.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

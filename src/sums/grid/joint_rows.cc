@@ -1,17 +1,17 @@
-#include "trilobe/sums/grid/joint_rows.h"
+#include "sums/grid/joint_rows.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
 
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/add_to.h"
+#include "algebra/add_to.h"
+#include "lobes/shadowing_pieces.h"
+#include "sums/grid/row_accumulator.h"
+#include "sums/grid/row_kernels.h"
+#include "sums/grid/row_layout.h"
 #include "trilobe/math/catmull_rom.h"
-#include "trilobe/model/shadowing_pieces.h"
-#include "trilobe/sums/grid/row_accumulator.h"
-#include "trilobe/sums/grid/row_kernels.h"
-#include "trilobe/sums/grid/row_layout.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

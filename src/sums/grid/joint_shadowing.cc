@@ -1,14 +1,14 @@
-#include "trilobe/sums/grid/joint_shadowing.h"
+#include "sums/grid/joint_shadowing.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/math/add_to.h"
-#include "trilobe/model/shadowing_pieces.h"
-#include "trilobe/sums/grid/node_lanes.h"
-#include "trilobe/sums/grid/spline_moments.h"
+#include "algebra/add_to.h"
+#include "base/multiversion.h"
+#include "lobes/shadowing_pieces.h"
+#include "sums/grid/node_lanes.h"
+#include "sums/grid/spline_moments.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

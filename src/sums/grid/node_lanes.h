@@ -1,7 +1,7 @@
 #ifndef TRILOBE_SUMS_GRID_NODE_LANES_H_
 #define TRILOBE_SUMS_GRID_NODE_LANES_H_
 
-#include "trilobe/base/multiversion.h"
+#include "base/multiversion.h"
 #include "trilobe/math/catmull_rom.h"
 
 namespace trilobe {

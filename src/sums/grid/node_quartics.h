@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/math/element_step.h"
-#include "trilobe/sums/grid/spline_moments.h"
+#include "algebra/element_step.h"
+#include "sums/grid/spline_moments.h"
 
 namespace trilobe {
 

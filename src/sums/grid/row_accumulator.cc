@@ -1,4 +1,4 @@
-#include "trilobe/sums/grid/row_accumulator.h"
+#include "sums/grid/row_accumulator.h"
 
 #include <algorithm>
 

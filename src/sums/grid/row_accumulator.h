@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "sums/grid/row_kernels.h"
+#include "sums/grid/row_layout.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/sums/grid/row_kernels.h"
-#include "trilobe/sums/grid/row_layout.h"
 
 namespace trilobe {
 

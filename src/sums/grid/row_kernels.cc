@@ -1,9 +1,9 @@
-#include "trilobe/sums/grid/row_kernels.h"
+#include "sums/grid/row_kernels.h"
 
 #include <cstddef>
 #include <cstring>
 
-#include "trilobe/base/multiversion.h"
+#include "base/multiversion.h"
 
 namespace trilobe {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
+#include "sums/grid/node_lanes.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/sums/grid/node_lanes.h"
 
 // What JointRows does with the samples of one row, in loops over whole vectors.
 namespace trilobe {

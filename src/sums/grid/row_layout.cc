@@ -1,9 +1,9 @@
-#include "trilobe/sums/grid/row_layout.h"
+#include "sums/grid/row_layout.h"
 
 #include <algorithm>
 
+#include "sums/grid/row_kernels.h"
 #include "trilobe/math/catmull_rom.h"
-#include "trilobe/sums/grid/row_kernels.h"
 
 namespace trilobe {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "sums/grid/node_lanes.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/sums/grid/node_lanes.h"
 
 namespace trilobe {
 

@@ -1,10 +1,10 @@
-#include "trilobe/sums/grid/shadowing_sums.h"
+#include "sums/grid/shadowing_sums.h"
 
 #include <algorithm>
 
-#include "trilobe/base/multiversion.h"
-#include "trilobe/base/parallel.h"
-#include "trilobe/model/shadowing_pieces.h"
+#include "base/multiversion.h"
+#include "lobes/shadowing_pieces.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {

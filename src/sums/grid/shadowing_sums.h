@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
+#include "sums/grid/node_quartics.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/spline_cells.h"
-#include "trilobe/sums/grid/node_quartics.h"
 
 namespace trilobe {
 

@@ -1,10 +1,10 @@
-#include "trilobe/sums/grid/spline_moments.h"
+#include "sums/grid/spline_moments.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 
-#include "trilobe/base/multiversion.h"
+#include "base/multiversion.h"
 
 namespace trilobe {
 namespace {

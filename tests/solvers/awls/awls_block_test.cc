@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "sums/grid/cell_sums.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/io/synth.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/grid/cell_sums.h"
+#include "trilobe/start/initial_model.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,9 +8,10 @@
 #include <string>
 
 #include "tests/test_util.h"
-#include "trilobe/io/synth.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
+#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

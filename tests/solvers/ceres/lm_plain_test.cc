@@ -5,8 +5,9 @@
 #include <string>
 
 #include "tests/test_util.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/data_edge.h"
+#include "solvers/joint/data_edge.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,9 @@
 
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

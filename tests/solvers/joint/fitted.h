@@ -6,6 +6,7 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

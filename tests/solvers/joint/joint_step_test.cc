@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/joint_step.h"
+#include "solvers/joint/joint_step.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/nonnegative_step.h"
+#include "solvers/joint/nonnegative_step.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/joint/reflectance.h"
+#include "solvers/joint/reflectance.h"
 
 #include <gtest/gtest.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 #include <vector>
 
+#include "prune/unmeasured_guide.h"
+#include "solvers/joint/data_edge.h"
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/model/reconstruct.h"
+#include "trilobe/lobes/reconstruct.h"
 #include "trilobe/objective/canonical_form.h"
-#include "trilobe/prune/unmeasured_guide.h"
-#include "trilobe/solvers/joint/data_edge.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

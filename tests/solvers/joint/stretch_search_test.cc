@@ -1,16 +1,17 @@
-#include "trilobe/solvers/joint/stretch_search.h"
+#include "solvers/joint/stretch_search.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/joint/stretch_step.h"
 #include "tests/test_util.h"
+#include "trilobe/lobes/lobes.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/model/lobes.h"
-#include "trilobe/solvers/initial_model.h"
-#include "trilobe/solvers/joint/stretch_step.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

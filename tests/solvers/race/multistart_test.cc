@@ -10,9 +10,10 @@
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/model/gauge.h"
-#include "trilobe/solvers/initial_model.h"
+#include "trilobe/lobes/gauge.h"
+#include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

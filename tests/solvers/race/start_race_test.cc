@@ -1,12 +1,12 @@
-#include "trilobe/solvers/race/start_race.h"
+#include "solvers/race/start_race.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "solvers/awls/grid_sweep.h"
 #include "tests/test_util.h"
-#include "trilobe/solvers/awls/grid_sweep.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/sums/grid/node_quartics.h"
+#include "sums/grid/node_quartics.h"
 
 #include <gtest/gtest.h>
 

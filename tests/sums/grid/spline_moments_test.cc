@@ -1,4 +1,4 @@
-#include "trilobe/sums/grid/spline_moments.h"
+#include "sums/grid/spline_moments.h"
 
 #include <gtest/gtest.h>
 

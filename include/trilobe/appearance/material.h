@@ -1,0 +1,33 @@
+#ifndef TRILOBE_APPEARANCE_MATERIAL_H_
+#define TRILOBE_APPEARANCE_MATERIAL_H_
+
+#include <functional>
+
+#include "trilobe/brdf/tabulated_brdf.h"
+#include "trilobe/geometry/channels.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// BRDF [1/sr] of an isotropic material for two directions above the surface, by their angles.
+using AngularBrdf = std::function<Rgb(const HalfDiffAngles&, const Cosines&)>;
+
+// The same of any material, phi being from its x towards its y.
+using SphericalBrdf = std::function<Rgb(const SphericalAngles&)>;
+
+// A measurement, linear between bin centres. Keeps a reference to `table`.
+AngularBrdf Interpolated(const TabulatedBrdf& table);
+
+// A material to be rendered. Anisotropic ones have no `angular`, which is faster.
+struct Material {
+  AngularBrdf angular;
+  SphericalBrdf spherical;
+};
+Material Isotropic(const AngularBrdf& brdf);
+// Keeps a reference to `model`.
+Material MaterialOf(const FactorModel& model);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APPEARANCE_MATERIAL_H_

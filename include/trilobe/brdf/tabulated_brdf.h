@@ -1,0 +1,38 @@
+#ifndef TRILOBE_BRDF_TABULATED_BRDF_H_
+#define TRILOBE_BRDF_TABULATED_BRDF_H_
+
+#include <vector>
+
+#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/geometry/channels.h"
+#include "trilobe/geometry/directions.h"
+
+namespace trilobe {
+
+// A measured table as a function of directions. An invalid bin takes the value of the nearest valid
+// one: in its own (theta_h, theta_d) row over phi_d, which wraps around; else at the nearest
+// theta_d, then the nearest theta_h. (Such bins must have a value: the bin that contains two
+// directions above the surface may have its centre below it.)
+class TabulatedBrdf {
+ public:
+  // Keeps a reference to `table`, which must outlive it. Throws Error when no bin is valid.
+  explicit TabulatedBrdf(const BrdfTable& table);
+
+  // BRDF [1/sr] of the bin that contains these directions; 0 where either is below the surface.
+  Rgb operator()(const DirectionPair& directions) const;
+
+  // The same, linear between bin centres in sqrt(theta_h), theta_d and phi_d.
+  Rgb Interpolate(const DirectionPair& directions) const;
+  // Of two directions above the surface. Throws Error as CheckAngles does.
+  Rgb Interpolate(const HalfDiffAngles& angles) const;
+
+ private:
+  double Value(int channel, int bin) const { return table_.Value(channel, nearest_valid_[bin]); }
+
+  const BrdfTable& table_;
+  std::vector<int> nearest_valid_;  // [grid.size()]
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_BRDF_TABULATED_BRDF_H_

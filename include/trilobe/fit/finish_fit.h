@@ -1,0 +1,57 @@
+#ifndef TRILOBE_FIT_FINISH_FIT_H_
+#define TRILOBE_FIT_FINISH_FIT_H_
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "trilobe/appearance/appearance.h"
+#include "trilobe/base/stop_check.h"
+#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/table_layout.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/prior/guide.h"
+#include "trilobe/prune/model_choice.h"
+
+namespace trilobe {
+
+// What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
+// no budget of parameters unless it has begun to choose.
+struct FinishOptions {
+  double robust = 0;              // above 0: passes of reweighting with this delta (Reweighted)
+  int max_parameters = 0;         // above 0: the form that looks best within so many (ChooseModel)
+  const Guide* guide = nullptr;   // that the objective has (TameBetweenSamples)
+  bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
+  AppearanceOptions appearance;
+  StopCheck stop = {};
+};
+
+struct FinishedFit {
+  Objective objective;  // for models of the spec that was chosen
+  FactorModel model;    // in canonical form
+  std::optional<TableLayout> layout = std::nullopt;
+  // Nothing where the fit did not run wild between the samples (TameBetweenSamples).
+  std::optional<TamedFit> tamed = std::nullopt;
+  // By how much tying entries at the edge of the data raised E, as a fraction; nothing if it was
+  // not done (TieEntriesAtDataEdge). After a robust fit E, here and of candidates, is that of the
+  // reweighted samples.
+  std::optional<double> tied = std::nullopt;
+  std::vector<ModelCandidate> candidates = {};  // empty if none was asked for
+  int chosen = -1;                              // which of them
+  // Nothing if it was not done (MatchReflectance).
+  struct Matched {
+    double error_before = 0, error_after = 0;  // Reflectance::Error
+    double rise = 0;                           // of E, as a fraction
+  };
+  std::optional<Matched> matched = std::nullopt;
+};
+
+// `measured`: what pictures are made of, which max_parameters and match_reflectance need; null
+// where there is none.
+FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
+                      const FinishOptions& options);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_FINISH_FIT_H_

@@ -1,0 +1,135 @@
+#ifndef TRILOBE_FIT_FIT_H_
+#define TRILOBE_FIT_FIT_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/appearance/appearance.h"
+#include "trilobe/appearance/seen_error.h"
+#include "trilobe/base/stop_check.h"
+#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/fit/finish_fit.h"
+#include "trilobe/fit/form.h"
+#include "trilobe/lobes/lobe_light.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/iteration_record.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/objective/score.h"
+#include "trilobe/objective/weighting.h"
+#include "trilobe/prior/guide.h"
+#include "trilobe/prior/node_choice.h"
+#include "trilobe/prior/reach.h"
+#include "trilobe/registry/solvers.h"
+#include "trilobe/results/model_file.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
+
+namespace trilobe {
+
+struct FitResult;
+
+// How a measurement is fitted; the defaults are those of `trilobe fit`.
+struct FitOptions {
+  FormOptions form = {};
+  std::string init = InitialModels().front().name;
+  // In their place: a model to start from, whose form the fit then has.
+  std::optional<FactorModel> start_model = {};
+  // Which of the measured samples count, and how; all as they are without it. What is left is no
+  // picture any more, so that no reflectance is matched and no appearance compared.
+  std::function<BrdfSamples(BrdfSamples)> select = nullptr;
+  std::string solver = Solvers().front().name;
+  // Of the solver, for the form that it is to fit; on_iteration and stop are replaced. Asked when
+  // it begins.
+  std::function<SolverOptions(const ModelSpec&)> solver_options = [](const ModelSpec& /*spec*/) {
+    return SolverOptions();
+  };
+  Weighting weighting = Weightings().front();
+  // Of scattered samples, GuideOptions::weight, or 0; 1 without it, and with kAnisotropic 0.
+  std::optional<double> guide = {};
+  double robust = 0;       // FinishOptions, as the next two
+  int max_parameters = 0;  // above 0: --model=auto, of a table
+  bool match_reflectance = true;
+  bool compare = true;  // makes `appearance`, `left_out`, `reach` and `light` of the result, too
+  AppearanceOptions appearance = {};  // num_threads is replaced
+  uint64_t seed = 1;
+  int num_threads = 1;
+
+  // All of what follows but `stop` is called from the thread that fits.
+  // When the input has proved right, and before the first step.
+  std::function<void()> on_begin = [] {};
+  // After each iteration: of whatever is fitted on the way, and of the solver's own.
+  std::function<void(const IterationRecord&)> on_progress = [](const IterationRecord&) {};
+  std::function<void(const IterationRecord&, const FactorModel&)> on_iteration =
+      [](const IterationRecord&, const FactorModel&) {};
+  // There is a model: as the solver left it, when nobody has asked to stop, and once more when it
+  // is finished. Of the result the file is made, and `summary`.
+  std::function<void(const FitResult&)> on_model = [](const FitResult&) {};
+  // Asked after each step, from several threads: true to end with the best so far.
+  StopCheck stop = {};
+};
+
+// A measurement, as it is fitted.
+struct FitProblem {
+  Objective data;  // by which models are judged
+  // What the solver lowers: with scattered samples, those of a guide besides (WithGuide).
+  std::optional<Objective> guided = {};
+
+  const Objective& solved() const { return guided ? *guided : data; }
+};
+
+struct FitResult {
+  Objective objective;  // of the data, for models of the file's spec
+  // The model in canonical form, its layout, and how it came about; program, date and run are left
+  // to whoever writes it.
+  ModelFile file = {};
+  SolverSummary summary = {};
+  std::optional<NodeChoice> nodes = {};  // of those of D and G, where it was asked for
+  // Samples that joined the data for the solver.
+  struct Guide {
+    double weight = 0;
+    int samples = 0;
+  };
+  std::optional<Guide> guide = {};
+  // What came after the solver (FinishedFit).
+  struct Finished {
+    std::optional<TamedFit> tamed = {};
+    std::optional<double> tied = {};
+    std::vector<ModelCandidate> candidates = {};
+    int chosen = -1;
+    std::optional<FinishedFit::Matched> matched = {};
+  } finished = {};
+  int stored_parameters = 0;
+  ScoreReport score = {};                           // E of the stored model, on the data alone
+  std::optional<AppearanceReport> appearance = {};  // none of samples on no grid
+  std::optional<SeenError> samples_seen = {};       // of these
+  // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
+  // of the sample leaves out (AnisotropyOf).
+  std::optional<double> left_out = {};
+  std::optional<Reach> reach = {};  // of scattered samples
+  LobeLight light = {};
+  struct Seconds {
+    double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
+  } seconds = {};
+  bool interrupted = false;  // by `stop`, at any time
+
+  const FactorModel& model() const { return file.model; }
+};
+
+// From a measurement to the model that `trilobe fit` writes, and all that it reports: the form, the
+// start, the choice of nodes, the guide, the solver, what comes after it, and the score. The same
+// bits for the same options; functions that are empty are as those by default. Stopped before
+// on_begin it returns no model. Throws Error.
+FitResult Fit(const Measurement& measurement, const FitOptions& options = {});
+
+// What Fit fits, where no nodes are to be chosen; for whoever goes on from its model, whose spec
+// this is. The guide is fitted here, which takes time.
+FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
+                      const ModelSpec& spec);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_FIT_H_

@@ -1,0 +1,61 @@
+#ifndef TRILOBE_FORMATS_MEASUREMENT_FORMAT_H_
+#define TRILOBE_FORMATS_MEASUREMENT_FORMAT_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/files/content.h"
+
+namespace trilobe {
+
+// How a source is read, and what of it counts as measured. Noise matters to `synth:` only,
+// `extrapolated` to RGL files, the radiometry to UTIA files; where they are given for others, a
+// note of the measurement says so.
+struct SourceOptions {
+  double noise = 0.0;    // relative standard deviation of the multiplicative noise, 0 to 1
+  double missing = 0.0;  // share of the bins or samples that is left out at random, 0 up to 1
+  uint64_t seed = 1;
+  int num_threads = 1;
+  double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured; above 0
+  // theta_d below it does not; -1: as far as a detector stood in its own light, by scattered
+  // samples.
+  double min_theta_d_deg = -1;
+  bool extrapolated = false;        // what the authors of a file made up counts as measured
+  std::string radiometry = "brdf";  // of UtiaRadiometries()
+};
+
+// Throws Error, with the option's flag and value, where one is out of its range, whether it matters
+// or not.
+void CheckSourceOptions(const SourceOptions& options);
+
+// A format of files that hold a measurement. Each is described in the file of its reader, by a
+// function `MeasurementFormat NAMEFormat()`, exactly that, which source.cc declares and lists.
+struct MeasurementFormat {
+  std::string name;         // "merl"
+  std::string description;  // "a MERL .binary file"
+  std::string ending;       // ".binary": of such files' names
+  bool is_text = false;
+  bool (*recognise)(std::string_view bytes) = nullptr;
+  // Throws Error for bytes that are no such file; `source` is its name.
+  Measurement (*read)(std::string_view bytes, const std::string& source,
+                      const SourceOptions& options) = nullptr;
+};
+
+// For `recognise`: bytes of this kind.
+template <Content::Kind kKind>
+bool IsContent(std::string_view bytes) {
+  return RecogniseContent(bytes).kind == kKind;
+}
+
+// For `read`: a parser that has no use for options.
+template <Measurement (*kParse)(std::string_view, const std::string&)>
+Measurement ReadBy(std::string_view bytes, const std::string& source,
+                   const SourceOptions& /*options*/) {
+  return kParse(bytes, source);
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FORMATS_MEASUREMENT_FORMAT_H_

@@ -1,0 +1,53 @@
+#ifndef TRILOBE_FORMATS_SOURCE_H_
+#define TRILOBE_FORMATS_SOURCE_H_
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/brdf/hemisphere_grid.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/formats/measurement_format.h"
+#include "trilobe/geometry/merl_grid.h"
+#include "trilobe/synth/synth.h"
+
+namespace trilobe {
+
+// A measurement by the name that a user types: a path to a file of one of MeasurementFormats(), or
+// `synth:NAME`, or `synth:NAME@18x72`, at the directions of that HemisphereGrid, or
+// `synth:NAME@30x30x60`, a table of that MerlGrid. Throws Error.
+Measurement LoadMeasurement(const std::string& source, const SourceOptions& options = {});
+
+// The same where a table is needed. Throws Error for scattered data, too.
+BrdfTable LoadSource(const std::string& source, const SourceOptions& options = {});
+
+// Whether the source is synth:NAME, and if it is, what it names: the material, and the grid of
+// directions or of bins; anisotropic materials have the former. Throws Error for an unknown NAME,
+// and for grids of more than ten million samples.
+bool IsSynthetic(std::string_view source);
+struct SynthSource {
+  const SynthMaterial& material;
+  std::variant<MerlGrid, HemisphereGrid> grid;
+};
+SynthSource SynthSourceOf(std::string_view source);
+
+// The measurement in the bytes of a file, whose name `source` is. Its content tells the format; the
+// ending of the name decides only where the content could be anything. Throws Error.
+Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
+                             const SourceOptions& options = {});
+BrdfTable ParseSource(std::string_view bytes, const std::string& source,
+                      const SourceOptions& options = {});
+
+// What these do last: decides, by the options, which bins or samples that were read count as
+// measured.
+void DecideMeasured(const SourceOptions& options, BrdfTable* table);
+void DecideMeasured(const SourceOptions& options, Measurement* measurement);
+
+// Those of the library; the first that recognises a file reads it.
+const std::vector<MeasurementFormat>& MeasurementFormats();
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FORMATS_SOURCE_H_

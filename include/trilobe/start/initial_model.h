@@ -1,0 +1,31 @@
+#ifndef TRILOBE_START_INITIAL_MODEL_H_
+#define TRILOBE_START_INITIAL_MODEL_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+
+namespace trilobe {
+
+// A named, deterministic starting point.
+struct InitialModel {
+  std::string name;
+  std::string description;
+  // A model with the objective's spec, finite and > 0 where a lobe reflects anything. `seed`
+  // matters to the random starts only.
+  FactorModel (*make)(const Objective& objective, uint64_t seed) = nullptr;
+};
+
+// All of them, the default one first.
+const std::vector<InitialModel>& InitialModels();
+
+// Throws Error that lists the known names.
+const InitialModel& FindInitialModel(std::string_view name);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_START_INITIAL_MODEL_H_

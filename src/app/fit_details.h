@@ -1,0 +1,18 @@
+#ifndef TRILOBE_APP_FIT_DETAILS_H_
+#define TRILOBE_APP_FIT_DETAILS_H_
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/fit_report.h"
+
+namespace trilobe {
+
+// All there is to say but the verdict and the times, on standard output.
+void PrintDetails(const FitReport& report);
+
+// report.json (docs/file-formats.md).
+nlohmann::ordered_json ToJson(const FitReport& report);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_FIT_DETAILS_H_

@@ -1,0 +1,66 @@
+#include "trilobe/lobes/continuous_model.h"
+
+#include <array>
+#include <cmath>
+
+#include "lobes/shadowing_pieces.h"
+
+namespace trilobe {
+
+ContinuousModel::ContinuousModel(const FactorModel& model)
+    : model_(model),
+      grid_{.theta_h = model.spec().d_axis.size, .theta_d = model.spec().f_axis.size},
+      spline_(model.spec().g_axis.size),
+      cosine_(CosinePieces(spline_)),
+      g_(ShadowingPieces(model)) {
+  CheckIsotropic(model.spec(), "a function of half and difference angles");
+}
+
+Rgb ContinuousModel::Unclamped(std::span<const Stencil> D, const Stencil& F,
+                               const Cosines& cosines) const {
+  const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));
+  const CatmullRom::Location o = spline_.Locate(std::acos(cosines.o));
+  const auto product = [&](const std::vector<CatmullRom::Piece>& spline) {
+    return spline[i.interval](i.t - 0.5) * spline[o.interval](o.t - 0.5);
+  };
+  const double inverse_cosines = 1 / product(cosine_);
+  const ModelSpec& spec = model_.spec();
+  double g_products[kMaxLobes * kChannels];  // [G table]
+  for (size_t t = 0; t < g_.size(); ++t) g_products[t] = product(g_[t]) * inverse_cosines;
+  Rgb rho;
+  for (int c = 0; c < kChannels; ++c) {
+    rho[c] = model_.d()[c];
+    for (int m = 0; m < spec.lobes; ++m) {
+      rho[c] += model_.s(m)[c] * D[spec.stretches.index(m)](model_.D(m, c)) * F(model_.F(m, c)) *
+                g_products[spec.table(Factor::kG, m, c)];
+    }
+  }
+  return rho;
+}
+
+Rgb ContinuousModel::Unclamped(const HalfDiffAngles& angles, const Cosines& cosines) const {
+  std::array<Stencil, kMaxLobes> D;
+  const Stretches& stretches = model_.spec().stretches;
+  stretches.ForEachThetaH(angles, [&](size_t k, double theta_h) {
+    D[k] = LinearStencil(grid_.ThetaHCoordinate(theta_h), grid_.theta_h);
+  });
+  return Unclamped(std::span(D.data(), stretches.distinct().size()),
+                   LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
+}
+
+Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
+                                const Cosines& cosines) const {
+  return AtLeastZero(Unclamped(D, F, cosines));
+}
+
+Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
+  return AtLeastZero(Unclamped(angles, cosines));
+}
+
+Rgb ContinuousModel::operator()(const DirectionPair& directions) const {
+  if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
+  const HalfDiffAngles angles = ToHalfDiff(directions);
+  return (*this)(angles, ToCosines(angles));
+}
+
+}  // namespace trilobe

@@ -1,0 +1,204 @@
+#include "trilobe/prior/guide.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "trilobe/base/error.h"
+#include "trilobe/base/stop_check.h"
+#include "trilobe/geometry/directions.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/prior/reach.h"
+#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
+
+namespace trilobe {
+namespace {
+
+constexpr int kDataPerSample = 6;  // samples of the data for one of the guide
+// Where these are fewer than kFew for each of the model's parameters, there are kEnough for each,
+// which then count less: few data leave many parameters to the guide.
+constexpr int kFew = 3, kEnough = 6;
+// Of few data, too, it says no more than so many times the largest value.
+constexpr double kMaxOfLargest = 2;
+// A fit that says more than so many times the largest value, where the guide may say half of it at
+// most, has run wild.
+constexpr double kWild = 2 * kMaxOfLargest;
+// With fewer samples than so many for each parameter of a guide it needs one itself, on fewer
+// nodes.
+constexpr int kSamplesPerParameter = 5;
+
+// What a guide is where azimuths were measured, and where not.
+struct GuideKind {
+  std::vector<ModelSpec> specs;  // of one lobe, from fine to coarse
+  const char* start;
+  double weight;  // what it counts
+};
+GuideKind KindFor(const GuideOptions& options, int lobes) {
+  lobes = std::min(lobes, 1);  // none for models without
+  GuideKind kind;
+  if (options.isotropic) {
+    kind = {.specs = {}, .start = "analytic", .weight = 0.003 * options.weight};
+    for (const auto& [d, f, g] : {std::array{24, 6, 9}, {12, 4, 6}, {8, 4, 4}}) {
+      ModelSpec& spec = kind.specs.emplace_back(ModelSpec::SharedFactors(lobes));
+      spec.d_axis.size = d;
+      spec.f_axis.size = f;
+      spec.g_axis.size = g;
+    }
+    return kind;
+  }
+  kind = {.specs = {}, .start = "moments", .weight = options.weight};
+  for (const auto& [d_theta, d_phi, f, g_theta, g_phi] :
+       {std::array{12, 24, 6, 6, 8}, {8, 12, 4, 4, 4}, {6, 6, 4, 3, 2}, {6, 2, 4, 3, 2}}) {
+    ModelSpec& spec = kind.specs.emplace_back(ModelSpec::Anisotropic(lobes));
+    spec.d_axis = Axis::EvenPolar(d_theta, Axis::Steps::kOfRoot, d_phi);
+    spec.f_axis.size = f;
+    spec.g_axis = Axis::EvenPolar(g_theta, Axis::Steps::kOfTheta, g_phi);
+  }
+  return kind;
+}
+
+// In each channel, to so many times the largest of the data.
+void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) {
+  for (int c = 0; c < 3; ++c) {
+    double largest = 0;
+    for (const Rgb& value : data) largest = std::max(largest, value[c]);
+    for (Rgb& value : *rho) value[c] = std::min(value[c], times * largest);
+  }
+}
+
+// What `guide` says at these directions.
+BrdfSamples SamplesOf(const FactorModel& guide, std::vector<SphericalAngles> directions,
+                      const BrdfSamples& measured, int num_threads) {
+  BrdfSamples said;
+  said.source = measured.source;
+  said.grid = measured.grid;
+  said.directions = std::move(directions);
+  for (const SphericalAngles& at : said.directions) {
+    said.angles.push_back(ToHalfDiff(ToDirections(at)));
+  }
+  said.rho.assign(said.directions.size(), {});
+  said.rho = EvaluateSamples(guide, said, num_threads);
+  return said;
+}
+
+// Both, the latter of this weight each.
+BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said, double weight) {
+  samples.multiplicity.resize(samples.rho.size(), 1);
+  samples.multiplicity.resize(samples.rho.size() + said.rho.size(), weight);
+  const auto append = [](const auto& from, auto* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(said.angles, &samples.angles);
+  append(said.directions, &samples.directions);
+  append(said.rho, &samples.rho);
+  return samples;
+}
+
+// Directions between the samples where a fit is above so many times their largest value.
+std::vector<SphericalAngles> Above(double times, const Objective& guided, const FactorModel& fit) {
+  const BrdfSamples& measured = guided.data().samples();
+  return DirectionsAbove(times * LargestValue(measured), LargestTheta(measured), fit,
+                         guided.num_threads());
+}
+
+// The data and what `guide` says between them, enough for a model of so many parameters.
+BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int num_parameters,
+                          double weight) {
+  const BrdfSamples& measured = data.samples();
+  const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
+  const bool few = share < kFew * num_parameters;
+  const auto count = static_cast<size_t>(few ? kEnough * num_parameters : share);
+  BrdfSamples said =
+      SamplesOf(guide,
+                DirectionsBetween(LargestTheta(measured), count,
+                                  few ? Spread::kRetroreflectionToo : Spread::kByHighlights),
+                measured, data.num_threads());
+  if (said.directions.empty()) return measured;
+  if (few) {
+    LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+    weight *= share / static_cast<double>(count);
+  }
+  return Joined(measured, said, weight);
+}
+
+// The guide of this number, from 0 (the finest), itself guided by the next where data are few.
+FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data,
+                     const StopCheck& stop) {
+  const ModelSpec& spec = kind.specs[number];
+  const int n = spec.num_parameters();
+  const bool guided =
+      data.samples().size() < kSamplesPerParameter * n && number + 1 < kind.specs.size();
+  const Objective objective =
+      guided ? Objective(WithSamplesOf(FitGuide(kind, number + 1, data, stop), data, n,
+                                       /*weight=*/1),
+                         spec, data.weighting(), data.num_threads())
+             : Objective(data, spec);
+  FactorModel model = FindInitialModel(kind.start).make(objective, 0);
+  SolverOptions options;
+  options.diagnose = false;
+  options.stop = stop;
+  MakeSolver("varpro")->Solve(objective, options, &model);
+  return model;
+}
+
+}  // namespace
+
+Guide::Guide(const Objective& data, const GuideOptions& options) {
+  const BrdfSamples& measured = data.samples();
+  if (!(options.weight > 0 && std::isfinite(options.weight))) {
+    throw Error(measured.source + ": the weight of a guide must be finite and above 0");
+  }
+  if (measured.directions.empty()) {
+    throw Error(measured.source + ": a guide needs samples with their directions");
+  }
+  const GuideKind kind = KindFor(options, data.spec().lobes);
+  weight_ = kind.weight;
+  model_ = FitGuide(kind, 0, data, options.stop);
+}
+
+BrdfSamples Guide::With(const Objective& data) const {
+  return WithSamplesOf(model_, data, data.spec().num_parameters(), weight_);
+}
+
+std::optional<Objective> Guide::WhereLarge(const Objective& guided, const FactorModel& fit,
+                                           double times) const {
+  const BrdfSamples& measured = guided.data().samples();
+  const std::vector<SphericalAngles> large = Above(kMaxOfLargest, guided, fit);
+  if (large.empty()) return std::nullopt;
+  BrdfSamples said = SamplesOf(model_, large, measured, guided.num_threads());
+  LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+  return Objective(guided.data(), Joined(guided.samples(), said, times * weight_));
+}
+
+BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
+  return Guide(data, options).With(data);
+}
+
+std::optional<TamedFit> TameBetweenSamples(const Guide& guide, const StopCheck& stop,
+                                           Objective* guided, FactorModel* model) {
+  constexpr int kRounds = 4, kSteps = 20;
+  constexpr double kMore = 10;  // of what each of the guide's samples there counts, each round
+  if (Above(kWild, *guided, *model).empty()) return std::nullopt;
+  const double before = guided->data().Value(*model);
+  SolverOptions options;
+  options.max_iterations = kSteps;
+  options.diagnose = false;
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  double times = 1;
+  for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
+    std::optional<Objective> further = guide.WhereLarge(*guided, *model, times);
+    if (!further) break;
+    MakeSolver("varpro")->Solve(*further, options, model);
+    *guided = *std::move(further);
+  }
+  return TamedFit{before, guided->data().Value(*model)};
+}
+
+}  // namespace trilobe
