@@ -231,9 +231,7 @@ MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
   if (!(divisor > 0)) return {};
   const SquarePoint x = tables_->vndf.Invert(blend, u_m);
   const double factor = tables_->ndf.At(0, u_m) / divisor;
-  const double min_cosine = std::cos(max_theta()) - 1e-12;
-  MeasuredValue looked_up{.measured = std::min(directions.wi[2], directions.wo[2]) >= min_cosine &&
-                                      tables_->mask.Measured(blend, x)};
+  MeasuredValue looked_up{.measured = tables_->mask.Measured(blend, x)};
   for (int channel = 0; channel < kChannels; ++channel) {
     double value = 0;
     for (int k = 0; k < blend.count; ++k) {
@@ -336,8 +334,14 @@ BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const Merl
 
 namespace {
 
+// Beyond its last measured angles nothing counts as measured.
 std::function<MeasuredValue(const DirectionPair&)> LookUpIn(std::shared_ptr<const RglBrdf> rgl) {
-  return [rgl = std::move(rgl)](const DirectionPair& pair) { return rgl->LookUp(pair); };
+  const double min_cosine = std::cos(rgl->max_theta()) - 1e-12;
+  return [rgl = std::move(rgl), min_cosine](const DirectionPair& pair) {
+    MeasuredValue value = rgl->LookUp(pair);
+    value.measured = value.measured && std::min(pair.wi[2], pair.wo[2]) >= min_cosine;
+    return value;
+  };
 }
 
 }  // namespace

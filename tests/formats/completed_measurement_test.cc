@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/evaluate/materials.h"
-#include "tests/io/test_directory.h"
+#include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/formats/csv_file.h"
 #include "trilobe/formats/source.h"

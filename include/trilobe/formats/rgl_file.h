@@ -38,8 +38,7 @@ class RglBrdf {
   // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
 
-  // The same, and whether all nodes of `rgb` that it takes with weight were measured,
-  // which nothing beyond max_theta() is.
+  // The same, and whether all nodes of `rgb` that it takes with weight were measured.
   MeasuredValue LookUp(const DirectionPair& directions) const;
 
  private:
