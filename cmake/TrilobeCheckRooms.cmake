@@ -8,8 +8,8 @@
 # - In a room no NAME, a header and its source together, depends on itself through others.
 # - NAME.cc includes its own NAME.h first, so that a build without precompiled headers proves NAME.h
 #   to compile by itself.
-# - Headers of the library include no other project's, which its users would have to have; public ones,
-#   which are installed, include public ones alone.
+# - Public headers, which are installed, include public ones alone, and no other project's, which their
+#   users would have to have.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/TrilobeRooms.cmake)
 set(source_dir ${root}/src)
@@ -89,9 +89,9 @@ foreach(room IN LISTS rooms)
         endif()
       elseif(include MATCHES "^#include \"")
         string(APPEND errors "${name}: write ${include} as \"trilobe/ROOM/NAME.h\" or \"ROOM/NAME.h\"\n")
-      elseif(name MATCHES "\\.h$" AND NOT room STREQUAL "app" AND include MATCHES "<.*[/.].*>")
-        string(APPEND errors "${name}: ${include} in a header of the library, whose users would need "
-                             "it; include it in a .cc file\n")
+      elseif(name IN_LIST public AND include MATCHES "<.*[/.].*>")
+        string(APPEND errors "${name}: ${include} in a public header, whose users would need it; "
+                             "include it in a .cc file\n")
       endif()
     endforeach()
     string(REGEX REPLACE "\\.cc$" ".h" own ${name})

@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "algebra/openblas.h"
-#include "app/fit_report.h"
 #include "fit_module.h"
 #include "owned_array.h"
+#include "reports/fit_report.h"
 #include "system/peak_memory.h"
 #include "system/utc_time.h"
 #include "trilobe/results/model_file.h"

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "app/bin_counts.h"
 #include "files/file.h"
 #include "fit_module.h"
 #include "formats/write_measurement.h"
 #include "owned_array.h"
+#include "reports/bin_counts.h"
 #include "system/stopwatch.h"
 #include "trilobe/appearance/node_reconstruction.h"
 #include "trilobe/evaluate/read_model.h"

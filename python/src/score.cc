@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/score_report.h"
 #include "appearance/seen_samples.h"
 #include "fit_module.h"
 #include "owned_array.h"
+#include "reports/score_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/appearance/picture_data.h"

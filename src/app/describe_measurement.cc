@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "app/albedo_table.h"
-#include "app/bin_counts.h"
 #include "app/describe.h"
 #include "app/flags.h"
-#include "app/print.h"
 #include "app/result_folder.h"
 #include "files/file.h"
+#include "reports/albedo_table.h"
+#include "reports/bin_counts.h"
+#include "reports/print.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/anisotropy.h"
 #include "trilobe/brdf/measurement_stats.h"

@@ -2,12 +2,12 @@
 #include <optional>
 #include <span>
 
-#include "app/albedo_table.h"
 #include "app/describe.h"
 #include "app/flags.h"
-#include "app/light_report.h"
-#include "app/print.h"
-#include "app/stretch_report.h"
+#include "reports/albedo_table.h"
+#include "reports/light_report.h"
+#include "reports/print.h"
+#include "reports/stretch_report.h"
 #include "results/stretch_json.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/lobes/continuous_model.h"

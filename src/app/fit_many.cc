@@ -14,17 +14,18 @@
 #include <vector>
 
 #include "app/command.h"
-#include "app/fit_details.h"
+#include "app/fit_name.h"
 #include "app/fit_page.h"
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/interrupt.h"
-#include "app/print.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
 #include "appearance/verdict.h"
 #include "files/file.h"
 #include "files/json_value.h"
+#include "reports/fit_details.h"
+#include "reports/print.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/printable.h"
 #include "trilobe/results/model_file.h"
@@ -201,15 +202,6 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 }
 
 }  // namespace
-
-std::string FitNameOf(const std::string& source) {
-  if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
-  const fs::path file = fs::path(source).filename();
-  const std::string name = file.stem().string();
-  // As "." is of "..csv": then the whole name will do.
-  const bool taken = name == "." || name == ".." || name == kTableName || name == kPageName;
-  return taken ? file.string() : name;
-}
 
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");

@@ -8,10 +8,6 @@
 
 namespace trilobe {
 
-// What a measurement's folder is called: synth:NAME's or a file's name, without its ending unless
-// only with it that can be a folder beside the others.
-std::string FitNameOf(const std::string& source);
-
 // `trilobe fit SOURCE... --out=DIR`, where a SOURCE may be a folder of measurements: fits each, on
 // a thread of its own, into the folder DIR/NAME, leaves out those of which that folder already has
 // what would come out, and gathers all in DIR/fits.csv and DIR/index.html. Returns the exit status:

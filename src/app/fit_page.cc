@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "app/print.h"
+#include "reports/print.h"
 
 namespace trilobe {
 namespace {

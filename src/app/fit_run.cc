@@ -7,12 +7,12 @@
 #include <ostream>
 #include <utility>
 
-#include "app/fit_details.h"
 #include "app/interrupt.h"
-#include "app/print.h"
 #include "app/program.h"
 #include "app/view_page.h"
 #include "files/file.h"
+#include "reports/fit_details.h"
+#include "reports/print.h"
 #include "system/peak_memory.h"
 #include "system/stopwatch.h"
 #include "system/utc_time.h"

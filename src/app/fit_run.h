@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/course.h"
-#include "app/fit_report.h"
 #include "app/result_folder.h"
+#include "reports/fit_report.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"

@@ -20,6 +20,11 @@ DECLARE_bool(extrapolated);
 DECLARE_string(weighting);
 DECLARE_string(out);
 
+// What `score` and `info` print: a table for people, or one JSON object.
+DECLARE_bool(json);
+// What `fit` and `score` print: a verdict and a few lines, or all there is to say.
+DECLARE_bool(verbose);
+
 namespace trilobe {
 
 struct SourceOptions;

@@ -2,12 +2,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
+#include "app/flags.h"
 #include "app/interrupt.h"
-#include "app/print.h"
 #include "app/scene_flags.h"
 #include "app/scene_report.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
+#include "reports/print.h"
 
 namespace trilobe {
 namespace {

@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "app/appearance_report.h"
+#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/print.h"
 #include "app/result_folder.h"
 #include "files/file.h"
+#include "reports/print.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/pictures/plots.h"
 #include "trilobe/results/model_file.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "app/flags.h"
-#include "app/print.h"
 #include "app/scene_flags.h"
+#include "reports/print.h"
 #include "trilobe/base/printable.h"
 
 namespace trilobe {

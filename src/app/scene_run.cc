@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "app/appearance_report.h"
+#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
@@ -22,6 +22,7 @@
 #include "app/solver_flags.h"
 #include "files/file.h"
 #include "files/json_value.h"
+#include "reports/appearance_report.h"
 #include "system/stopwatch.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/printable.h"

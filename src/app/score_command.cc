@@ -3,15 +3,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/appearance_report.h"
+#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/print.h"
 #include "app/result_folder.h"
-#include "app/score_report.h"
-#include "app/verdict_report.h"
 #include "appearance/seen_samples.h"
+#include "reports/appearance_report.h"
+#include "reports/print.h"
+#include "reports/score_report.h"
+#include "reports/verdict_report.h"
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/lobes/continuous_model.h"

@@ -5,9 +5,9 @@
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/print.h"
 #include "app/result_folder.h"
 #include "formats/write_measurement.h"
+#include "reports/print.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/synth/synth.h"
 

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "app/appearance_report.h"
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/print.h"
 #include "app/result_folder.h"
 #include "app/view_page.h"
 #include "files/file.h"
+#include "reports/appearance_report.h"
+#include "reports/print.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/results/model_file.h"

@@ -1,6 +1,6 @@
 #include "app/view_page.h"
 
-#include "app/fit_many.h"
+#include "app/fit_name.h"
 #include "appearance/sample_table.h"
 #include "appearance/verdict.h"
 #include "trilobe/appearance/environment.h"

@@ -8,9 +8,9 @@
 
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/print.h"
 #include "app/result_folder.h"
 #include "files/file.h"
+#include "reports/print.h"
 #include "system/stopwatch.h"
 #include "trilobe/base/error.h"
 #include "trilobe/fit/fit.h"

@@ -37,7 +37,7 @@ expect_failure(solvers/solver.cc "#include \"../files/file.h\""
 expect_failure(solvers/solver.cc "#include \"solvers/solver.h\""
                "solvers/solver.cc: there is no header for #include \"solvers/solver.h\"")
 expect_failure(lobes/gauge.h "#include <Eigen/Core>"
-               "lobes/gauge.h: #include <Eigen/Core> in a header of the library")
+               "lobes/gauge.h: #include <Eigen/Core> in a public header")
 expect_failure(math/stencil.cc "#include <cmath>"
                "math/stencil.cc: include trilobe/math/stencil.h first")
 expect_failure(rooms.txt "extra: model" "rooms.txt: extra sees model, which is not listed above it")

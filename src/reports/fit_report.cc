@@ -1,10 +1,10 @@
-#include "app/fit_report.h"
+#include "reports/fit_report.h"
 
 #include <algorithm>
 #include <string>
 #include <tuple>
 
-#include "app/print.h"
+#include "reports/print.h"
 #include "trilobe/geometry/directions.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/start/initial_model.h"

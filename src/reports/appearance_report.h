@@ -1,20 +1,12 @@
-#ifndef TRILOBE_APP_APPEARANCE_REPORT_H_
-#define TRILOBE_APP_APPEARANCE_REPORT_H_
-
-#include <gflags/gflags_declare.h>
+#ifndef TRILOBE_REPORTS_APPEARANCE_REPORT_H_
+#define TRILOBE_REPORTS_APPEARANCE_REPORT_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "trilobe/appearance/appearance.h"
 
-// What lights the spheres of fit, score and plot.
-DECLARE_string(probe);
-
 namespace trilobe {
-
-// The light of --probe, or the built-in one, and --threads. Reads the probe at the first call.
-AppearanceOptions AppearanceOptionsFromFlags();
 
 // Some lines of a table, each with its newline: all, or what needs no knowledge of the method.
 std::string Describe(const AppearanceReport& report);
@@ -25,4 +17,4 @@ nlohmann::ordered_json ToJson(const AppearanceReport& report);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_APPEARANCE_REPORT_H_
+#endif  // TRILOBE_REPORTS_APPEARANCE_REPORT_H_

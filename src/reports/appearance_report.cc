@@ -1,19 +1,10 @@
-#include "app/appearance_report.h"
-
-#include <gflags/gflags.h>
+#include "reports/appearance_report.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "app/flags.h"
-#include "app/print.h"
+#include "reports/print.h"
 #include "trilobe/base/printable.h"
-#include "trilobe/pictures/image_file.h"
-
-DEFINE_string(
-    probe, "",
-    "light probe for the spheres, a lat-long Radiance .hdr file; without it a built-in sky "
-    "with a sun and area lights");
 
 namespace trilobe {
 namespace {
@@ -31,14 +22,6 @@ Json ToJson(const PointErrors& errors) {
 }
 
 }  // namespace
-
-AppearanceOptions AppearanceOptionsFromFlags() {
-  static const Environment probe =
-      FLAGS_probe.empty() ? StudioEnvironment() : ReadProbe(FLAGS_probe);
-  // For tests, which would spend most of their time under its lights.
-  const int lights = google::Int32FromEnv("TRILOBE_TEST_LIGHTS", AppearanceOptions().lights);
-  return {.environment = &probe, .lights = lights, .num_threads = ThreadsFromFlags()};
-}
 
 std::string Describe(const AppearanceReport& report) {
   const SphereError& sphere = report.sphere;

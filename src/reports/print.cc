@@ -1,6 +1,4 @@
-#include "app/print.h"
-
-#include <gflags/gflags.h>
+#include "reports/print.h"
 
 #include <array>
 #include <cmath>
@@ -9,10 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "trilobe/base/printable.h"
-
-DEFINE_bool(json, false, "print one JSON object instead of a table");
-DEFINE_bool(verbose, false,
-            "print all there is to say, and not only the verdict and what it rests on");
 
 namespace trilobe {
 

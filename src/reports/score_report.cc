@@ -1,9 +1,9 @@
-#include "app/score_report.h"
+#include "reports/score_report.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "app/appearance_report.h"
+#include "reports/appearance_report.h"
 #include "trilobe/geometry/merl_grid.h"
 #include "trilobe/math/angles.h"
 

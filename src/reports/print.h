@@ -1,18 +1,11 @@
-#ifndef TRILOBE_APP_PRINT_H_
-#define TRILOBE_APP_PRINT_H_
-
-#include <gflags/gflags_declare.h>
+#ifndef TRILOBE_REPORTS_PRINT_H_
+#define TRILOBE_REPORTS_PRINT_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "trilobe/brdf/measurement.h"
 #include "trilobe/geometry/channels.h"
-
-// What `score` and `info` print: a table for people, or one JSON object.
-DECLARE_bool(json);
-// What `fit` and `score` print: a verdict and a few lines, or all there is to say.
-DECLARE_bool(verbose);
 
 namespace trilobe {
 
@@ -43,4 +36,4 @@ void PrintJson(const nlohmann::ordered_json& json);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_PRINT_H_
+#endif  // TRILOBE_REPORTS_PRINT_H_

@@ -1,9 +1,9 @@
-#ifndef TRILOBE_APP_STRETCH_REPORT_H_
-#define TRILOBE_APP_STRETCH_REPORT_H_
+#ifndef TRILOBE_REPORTS_STRETCH_REPORT_H_
+#define TRILOBE_REPORTS_STRETCH_REPORT_H_
 
 #include <string>
 
-#include "app/print.h"
+#include "reports/print.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {
@@ -24,4 +24,4 @@ inline std::string DescribeStretches(const ModelSpec& spec) {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_STRETCH_REPORT_H_
+#endif  // TRILOBE_REPORTS_STRETCH_REPORT_H_

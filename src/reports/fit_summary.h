@@ -1,7 +1,7 @@
-#ifndef TRILOBE_APP_FIT_SUMMARY_H_
-#define TRILOBE_APP_FIT_SUMMARY_H_
+#ifndef TRILOBE_REPORTS_FIT_SUMMARY_H_
+#define TRILOBE_REPORTS_FIT_SUMMARY_H_
 
-#include "app/fit_report.h"
+#include "reports/fit_report.h"
 
 namespace trilobe {
 
@@ -13,4 +13,4 @@ void PrintSeconds(const FitReport& report);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_FIT_SUMMARY_H_
+#endif  // TRILOBE_REPORTS_FIT_SUMMARY_H_

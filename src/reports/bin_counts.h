@@ -1,5 +1,5 @@
-#ifndef TRILOBE_APP_BIN_COUNTS_H_
-#define TRILOBE_APP_BIN_COUNTS_H_
+#ifndef TRILOBE_REPORTS_BIN_COUNTS_H_
+#define TRILOBE_REPORTS_BIN_COUNTS_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -25,4 +25,4 @@ nlohmann::ordered_json ToJson(const BinCounts& counts);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_BIN_COUNTS_H_
+#endif  // TRILOBE_REPORTS_BIN_COUNTS_H_

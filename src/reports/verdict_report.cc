@@ -1,10 +1,10 @@
-#include "app/verdict_report.h"
+#include "reports/verdict_report.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "app/print.h"
+#include "reports/print.h"
 
 namespace trilobe {
 namespace {

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_APP_VERDICT_REPORT_H_
-#define TRILOBE_APP_VERDICT_REPORT_H_
+#ifndef TRILOBE_REPORTS_VERDICT_REPORT_H_
+#define TRILOBE_REPORTS_VERDICT_REPORT_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -40,4 +40,4 @@ nlohmann::ordered_json ToJson(const ReportedVerdict& reported);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_VERDICT_REPORT_H_
+#endif  // TRILOBE_REPORTS_VERDICT_REPORT_H_

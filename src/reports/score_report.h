@@ -1,11 +1,11 @@
-#ifndef TRILOBE_APP_SCORE_REPORT_H_
-#define TRILOBE_APP_SCORE_REPORT_H_
+#ifndef TRILOBE_REPORTS_SCORE_REPORT_H_
+#define TRILOBE_REPORTS_SCORE_REPORT_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
-#include "app/verdict_report.h"
+#include "reports/verdict_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/objective/score.h"
@@ -25,4 +25,4 @@ nlohmann::ordered_json ToJson(const Scored& scored, const Objective& objective);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_SCORE_REPORT_H_
+#endif  // TRILOBE_REPORTS_SCORE_REPORT_H_

@@ -1,4 +1,4 @@
-#include "app/bin_counts.h"
+#include "reports/bin_counts.h"
 
 #include <nlohmann/json.hpp>
 

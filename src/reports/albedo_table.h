@@ -1,5 +1,5 @@
-#ifndef TRILOBE_APP_ALBEDO_TABLE_H_
-#define TRILOBE_APP_ALBEDO_TABLE_H_
+#ifndef TRILOBE_REPORTS_ALBEDO_TABLE_H_
+#define TRILOBE_REPORTS_ALBEDO_TABLE_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -26,4 +26,4 @@ nlohmann::ordered_json ToJson(const AlbedoTable& table);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_ALBEDO_TABLE_H_
+#endif  // TRILOBE_REPORTS_ALBEDO_TABLE_H_

@@ -1,9 +1,9 @@
-#ifndef TRILOBE_APP_FIT_DETAILS_H_
-#define TRILOBE_APP_FIT_DETAILS_H_
+#ifndef TRILOBE_REPORTS_FIT_DETAILS_H_
+#define TRILOBE_REPORTS_FIT_DETAILS_H_
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "app/fit_report.h"
+#include "reports/fit_report.h"
 
 namespace trilobe {
 
@@ -15,4 +15,4 @@ nlohmann::ordered_json ToJson(const FitReport& report);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_FIT_DETAILS_H_
+#endif  // TRILOBE_REPORTS_FIT_DETAILS_H_

@@ -1,12 +1,12 @@
-#ifndef TRILOBE_APP_FIT_REPORT_H_
-#define TRILOBE_APP_FIT_REPORT_H_
+#ifndef TRILOBE_REPORTS_FIT_REPORT_H_
+#define TRILOBE_REPORTS_FIT_REPORT_H_
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/verdict_report.h"
+#include "reports/verdict_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/seen_error.h"
 #include "trilobe/brdf/measurement_stats.h"
@@ -73,4 +73,4 @@ ReportedVerdict VerdictOn(const FitReport& report);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_FIT_REPORT_H_
+#endif  // TRILOBE_REPORTS_FIT_REPORT_H_

@@ -1,9 +1,9 @@
-#include "app/albedo_table.h"
+#include "reports/albedo_table.h"
 
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "app/print.h"
+#include "reports/print.h"
 
 namespace trilobe {
 

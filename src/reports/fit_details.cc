@@ -1,4 +1,4 @@
-#include "app/fit_details.h"
+#include "reports/fit_details.h"
 
 #include <cmath>
 #include <iostream>
@@ -7,12 +7,12 @@
 #include <tuple>
 #include <variant>
 
-#include "app/appearance_report.h"
-#include "app/bin_counts.h"
-#include "app/light_report.h"
-#include "app/print.h"
-#include "app/stretch_report.h"
-#include "app/verdict_report.h"
+#include "reports/appearance_report.h"
+#include "reports/bin_counts.h"
+#include "reports/light_report.h"
+#include "reports/print.h"
+#include "reports/stretch_report.h"
+#include "reports/verdict_report.h"
 #include "results/stretch_json.h"
 #include "trilobe/base/printable.h"
 #include "trilobe/registry/solvers.h"

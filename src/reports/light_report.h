@@ -1,5 +1,5 @@
-#ifndef TRILOBE_APP_LIGHT_REPORT_H_
-#define TRILOBE_APP_LIGHT_REPORT_H_
+#ifndef TRILOBE_REPORTS_LIGHT_REPORT_H_
+#define TRILOBE_REPORTS_LIGHT_REPORT_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -17,4 +17,4 @@ nlohmann::ordered_json ToJson(const LobeLight& light);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_LIGHT_REPORT_H_
+#endif  // TRILOBE_REPORTS_LIGHT_REPORT_H_

@@ -1,8 +1,8 @@
-#include "app/light_report.h"
+#include "reports/light_report.h"
 
 #include <nlohmann/json.hpp>
 
-#include "app/print.h"
+#include "reports/print.h"
 
 namespace trilobe {
 

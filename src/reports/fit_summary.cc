@@ -1,4 +1,4 @@
-#include "app/fit_summary.h"
+#include "reports/fit_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "app/appearance_report.h"
-#include "app/print.h"
+#include "reports/appearance_report.h"
+#include "reports/print.h"
 
 namespace trilobe {
 namespace {

@@ -1,0 +1,19 @@
+#include "app/fit_name.h"
+
+#include <filesystem>
+
+#include "files/file.h"
+#include "trilobe/formats/source.h"
+
+namespace trilobe {
+
+std::string FitNameOf(const std::string& source) {
+  if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
+  const fs::path file = fs::path(source).filename();
+  const std::string name = file.stem().string();
+  // As "." is of "..csv": then the whole name will do.
+  const bool taken = name == "." || name == ".." || name == kTableName || name == kPageName;
+  return taken ? file.string() : name;
+}
+
+}  // namespace trilobe
