@@ -41,8 +41,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr const char* kTableName = "fits.csv";
-constexpr const char* kPageName = "index.html";
 
 // The measurements in a folder, by name.
 std::vector<std::string> MeasurementsIn(const std::string& folder) {

@@ -9,7 +9,7 @@ namespace trilobe {
 
 std::string FitNameOf(const std::string& source) {
   if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
-  const fs::path file = fs::path(source).filename();
+  const std::filesystem::path file = std::filesystem::path(source).filename();
   const std::string name = file.stem().string();
   // As "." is of "..csv": then the whole name will do.
   const bool taken = name == "." || name == ".." || name == kTableName || name == kPageName;
