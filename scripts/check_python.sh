@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the Python package beside the release preset's program, whose library it takes, and tests it:
 #   scripts/check_python.sh [PYTEST_ARGUMENT...]
-# What it needs from PyPI goes into build/python-venv. Needs the release preset to have been built.
+# What it needs from PyPI goes into build/python-venv; its BSDF for Mitsuba is tested where build/renderer has that
+# (scripts/check_renderers.sh). Needs the release preset to have been built.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -21,4 +22,10 @@ fi
 trap 'configure release -DTRILOBE_BUILD_PYTHON=OFF' EXIT
 configure release -DTRILOBE_BUILD_PYTHON=ON -DPython_EXECUTABLE="$PWD/$venv/bin/python"
 build release trilobe_python
-PYTHONPATH=build/release/python "$venv/bin/python" -m pytest -q "$@"
+export PYTHONPATH=$PWD/build/release/python
+if build/renderer/bin/python -c 'import mitsuba, pytest' 2>/dev/null; then
+  llvm=(/usr/lib/x86_64-linux-gnu/libLLVM.so.19*)
+  [[ ! -e ${llvm[0]} ]] || export DRJIT_LIBLLVM_PATH=${DRJIT_LIBLLVM_PATH-${llvm[0]}}
+  build/renderer/bin/python -m pytest -q tests/python/test_mitsuba.py
+fi
+"$venv/bin/python" -m pytest -q --ignore=tests/python/test_mitsuba.py "$@"

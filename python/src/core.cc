@@ -132,11 +132,20 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
   Real* to = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
-  for (size_t k = 0; k < count; ++k, to += kChannels) {
-    const auto o = away[k];
-    const auto f = bsdf.Value(in[k], o);
-    const Real scale = cosine ? std::max(o[2], Real{0}) : Real{1};
-    for (int c = 0; c < kChannels; ++c) to[c] = f[c] * scale;
+  constexpr size_t kBlock = 256;
+  std::array<std::array<Real, 3>, kBlock> incident, outgoing;
+  std::array<typename Bsdf<Real>::Colour, kBlock> values;
+  for (size_t begin = 0; begin < count; begin += kBlock) {
+    const size_t size = std::min(kBlock, count - begin);
+    for (size_t k = 0; k < size; ++k) {
+      incident[k] = in[begin + k];
+      outgoing[k] = away[begin + k];
+    }
+    bsdf.Values({incident.data(), size}, {outgoing.data(), size}, {values.data(), size});
+    for (size_t k = 0; k < size; ++k) {
+      const Real scale = cosine ? std::max(outgoing[k][2], Real{0}) : Real{1};
+      for (const Real f : values[k]) *to++ = f * scale;
+    }
   }
 }
 

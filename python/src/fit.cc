@@ -24,6 +24,7 @@
 #include "algebra/openblas.h"
 #include "fit_module.h"
 #include "owned_array.h"
+#include "reports/fit_details.h"
 #include "reports/fit_report.h"
 #include "system/peak_memory.h"
 #include "system/utc_time.h"

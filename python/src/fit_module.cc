@@ -39,15 +39,14 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
   nb::set_leak_warnings(false);
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres Solver would log is in the reports
   gflags::SetVersionString(TRILOBE_VERSION);
-  // The module's own translation comes before that of std::runtime_error.
-  static PyObject* const error_type = nb::module_::import_("trilobe._core").attr("Error").ptr();
-  Py_INCREF(error_type);
   nb::register_exception_translator(
       [](const std::exception_ptr& exception, void* /*payload*/) {
         try {
           std::rethrow_exception(exception);
         } catch (const Error& error) {
-          PyErr_SetString(error_type, error.what());
+          // Not before it is needed, so that the module can be loaded without the package.
+          const nb::object type = nb::module_::import_("trilobe._core").attr("Error");
+          PyErr_SetString(type.ptr(), error.what());
         }
       },
       nullptr);

@@ -1,0 +1,254 @@
+"""The BSDF for Mitsuba, where that is installed: in scalar variants, and in compiled ones where LLVM is there."""
+
+import math
+import os
+
+import numpy as np
+import pytest
+
+import trilobe
+
+from models import anisotropic, directions, independent, isotropic, lambertian, stretched
+
+mi = pytest.importorskip("mitsuba")
+import drjit as dr  # noqa: E402
+
+import trilobe.mitsuba as plugin  # noqa: E402
+
+
+def has_llvm():
+    try:
+        mi.set_variant("llvm_ad_rgb")
+        dr.eval(mi.Float([1, 2]) + 1)
+    except Exception:
+        return False
+    return True
+
+
+LLVM = has_llvm()
+needs_llvm = pytest.mark.skipif(not LLVM, reason="no LLVM; install libllvm19, set DRJIT_LIBLLVM_PATH")
+ALL = [isotropic, anisotropic, independent, stretched, lambertian]
+SIZE = 64 if os.environ.get("TRILOBE_LARGE_PICTURES") else 32
+
+
+def scene(material, size=16, spp=16, light=None, **integrator):
+    look = mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0])
+    return mi.load_dict({
+        "type": "scene", "integrator": integrator or {"type": "path", "max_depth": 2},
+        "sensor": {"type": "perspective", "fov": 24, "to_world": look,
+                   "film": {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}},
+                   "sampler": {"type": "independent", "sample_count": spp}},
+        "light": light or {"type": "constant"}, "ball": {"type": "sphere", "bsdf": material},
+    })
+
+
+def at(wi):
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
+    si.wi = mi.Vector3f(np.ascontiguousarray(wi.T, np.float32))
+    return si
+
+
+def vectors(array):
+    return mi.Vector3f(np.ascontiguousarray(array.T, np.float32))
+
+
+@needs_llvm
+@pytest.mark.parametrize("make", ALL)
+def test_compiled_is_the_same_function(make):
+    mi.set_variant("llvm_ad_rgb")
+    brdf = make()
+    bsdf = mi.load_dict(plugin.bsdf(brdf))
+    wi, wo = directions(5000, 1), directions(5000, 2)
+    value = np.array(bsdf.eval(mi.BSDFContext(), at(wi), vectors(wo))).T
+    np.testing.assert_allclose(value, brdf.eval_cos(wi, wo), rtol=1e-4, atol=1e-5)
+    wo[::2, 2] *= -1
+    assert (np.array(bsdf.eval(mi.BSDFContext(), at(wi), vectors(wo))).T[::2] == 0).all()
+
+
+@needs_llvm
+@pytest.mark.parametrize("make", ALL)
+def test_samples_have_the_density_that_it_says(make):
+    mi.set_variant("llvm_ad_rgb")
+    brdf = make()
+    bsdf, context = mi.load_dict(plugin.bsdf(brdf)), mi.BSDFContext()
+    wi = directions(20000, 3)
+    random = np.random.default_rng(4).random((3, len(wi))).astype(np.float32)
+    drawn, weight = bsdf.sample(context, at(wi), mi.Float(random[0]), mi.Point2f(random[1:]))
+    pdf, weight = np.array(drawn.pdf), np.array(weight).T
+    assert (pdf > 0).mean() > 0.999
+    np.testing.assert_allclose(np.array(bsdf.pdf(context, at(wi), drawn.wo)), pdf, rtol=1e-4)
+    value = np.array(bsdf.eval(context, at(wi), drawn.wo)).T
+    np.testing.assert_allclose(value, weight * pdf[:, None], rtol=1e-3, atol=1e-5)
+    np.testing.assert_allclose(weight.mean(axis=0), brdf.sample(wi, random[1:].T).weight.mean(axis=0), rtol=0.02)
+    assert weight.max() < 4
+
+
+def half_vector_chi2(bsdf, theta_i, samples=200000, rows=24, columns=16, fine=16):
+    """The p value of a chi-squared test over half vectors, where the sphere of wo would miss narrow peaks."""
+    context = mi.BSDFContext()
+    wi = np.array([math.sin(theta_i), 0, math.cos(theta_i)])
+    random = np.random.default_rng(5).random((3, samples)).astype(np.float32)
+    drawn, _ = bsdf.sample(context, at(np.tile(wi, (samples, 1))), mi.Float(random[0]), mi.Point2f(random[1:]))
+    wo = np.array(drawn.wo).T[np.array(drawn.pdf) > 0]
+    h = wi + wo
+    h /= np.linalg.norm(h, axis=1, keepdims=True)
+    v = np.sqrt(np.arctan2(np.hypot(h[:, 0], h[:, 1]), h[:, 2]) / (np.pi / 2))
+    phi = np.arctan2(h[:, 1], h[:, 0])
+    counted, _, _ = np.histogram2d(v, phi, [rows, columns], [[0, 1], [-np.pi, np.pi]])
+    # dω_o = 4 (wi . h) sin theta_h dtheta_h dphi, theta_h = v^2 90 degrees.
+    v = (np.arange(rows * fine) + 0.5) / (rows * fine)
+    phi = -np.pi + 2 * np.pi * (np.arange(columns * fine) + 0.5) / (columns * fine)
+    v, phi = np.meshgrid(v, phi, indexing="ij")
+    theta = v**2 * np.pi / 2
+    h = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1).reshape(-1, 3)
+    wi_h = h @ wi
+    wo = 2 * wi_h[:, None] * h - wi
+    density = np.array(bsdf.pdf(context, at(np.tile(wi, (len(wo), 1))), vectors(wo)))
+    density *= np.maximum(4 * wi_h, 0) * np.sin(theta).ravel() * np.pi * v.ravel()
+    cell = (1 / (rows * fine)) * (2 * np.pi / (columns * fine))
+    wanted = density.reshape(rows, fine, columns, fine).sum(axis=(1, 3)) * cell * samples
+    assert wanted.sum() == pytest.approx(samples, rel=0.01)
+    many = wanted > 20
+    chi2 = ((counted - wanted)[many] ** 2 / wanted[many]).sum() + (
+        (counted[~many].sum() - wanted[~many].sum()) ** 2 / max(wanted[~many].sum(), 1))
+    freedom = many.sum()
+    # Wilson and Hilferty 1931: the cube root is nearly normal.
+    z = ((chi2 / freedom) ** (1 / 3) - (1 - 2 / (9 * freedom))) / math.sqrt(2 / (9 * freedom))
+    return 0.5 * math.erfc(z / math.sqrt(2))
+
+
+@needs_llvm
+@pytest.mark.parametrize("make", [isotropic, anisotropic, independent, stretched])
+def test_chi2_over_half_vectors(make):
+    mi.set_variant("llvm_ad_rgb")
+    bsdf = mi.load_dict(plugin.bsdf(make()))
+    tests = [0, 30, 60, 75, 85]
+    p = [half_vector_chi2(bsdf, math.radians(degrees)) for degrees in tests]
+    assert min(p) > 0.01 / len(tests), dict(zip(tests, p))
+
+
+def wrong_density_is_found(bsdf):
+    """A test that can fail: a density that is off by 5 % where half vectors lean."""
+    pdf = type(bsdf).pdf
+    try:
+        type(bsdf).pdf = lambda self, c, si, wo, active=True: pdf(self, c, si, wo, active) * (
+            1 + 0.05 * dr.sign(wo.y))
+        return half_vector_chi2(bsdf, 0.5) < 1e-4
+    finally:
+        type(bsdf).pdf = pdf
+
+
+@needs_llvm
+def test_chi2_can_fail():
+    mi.set_variant("llvm_ad_rgb")
+    assert wrong_density_is_found(mi.load_dict(plugin.bsdf(isotropic())))
+
+
+@pytest.mark.parametrize("variant", ["scalar_rgb", "scalar_spectral"]
+                         + ["llvm_ad_rgb", "llvm_ad_spectral", "llvm_mono"] * LLVM)
+def test_a_furnace_shows_the_albedo(variant):
+    """Of a white surface under even light, a picture is what all variants agree on: its albedo."""
+    if variant not in mi.variants():
+        pytest.skip("not in this Mitsuba")
+    mi.set_variant(variant)
+    brdf = isotropic()
+    picture = np.array(mi.render(scene(plugin.bsdf(brdf), size=8, spp=64), spp=64))
+    middle = picture[3:5, 3:5].reshape(4, -1).mean(axis=0)
+    # What four pixels see of a sphere from (0, 0, 5): about 6 degrees off the normal.
+    albedo = brdf.albedo([math.sin(0.1), 0, math.cos(0.1)])
+    if variant == "llvm_mono":
+        albedo = albedo @ [0.212671, 0.715160, 0.072169]
+    np.testing.assert_allclose(middle, albedo, rtol=0.06)
+
+
+def test_scalar_draws_as_it_evaluates():
+    mi.set_variant("scalar_rgb")
+    brdf = anisotropic()
+    bsdf, context = mi.load_dict(plugin.bsdf(brdf)), mi.BSDFContext()
+    si = mi.SurfaceInteraction3f()
+    for k, wi in enumerate(directions(20, 6)):
+        si.wi = mi.Vector3f(*map(float, wi))
+        drawn, weight = bsdf.sample(context, si, 0.5, mi.Point2f(0.1 + 0.04 * k, 0.3))
+        value, pdf = bsdf.eval_pdf(context, si, drawn.wo)
+        np.testing.assert_allclose(np.array(value), np.array(weight) * drawn.pdf, rtol=1e-3)
+        assert bsdf.pdf(context, si, drawn.wo) == pytest.approx(pdf)
+
+
+@needs_llvm
+def test_time_and_memory_do_not_grow():
+    mi.set_variant("llvm_ad_rgb")
+    ball = scene(plugin.bsdf(isotropic()), size=SIZE)
+    dr.set_flag(dr.JitFlag.KernelHistory, True)
+    try:
+        kernels = []
+        for seed in range(6):
+            dr.kernel_history_clear()
+            dr.eval(mi.render(ball, seed=seed))
+            history = [entry for entry in dr.kernel_history() if entry.get("hash") is not None]
+            kernels.append([entry["hash"] for entry in history])
+            if seed > 0:
+                assert all(entry["cache_hit"] for entry in history)
+        assert kernels[1] == kernels[5]
+    finally:
+        dr.set_flag(dr.JitFlag.KernelHistory, False)
+
+
+@needs_llvm
+@pytest.mark.parametrize("make", [isotropic, anisotropic])
+def test_gradients_are_finite_differences(make):
+    mi.set_variant("llvm_ad_rgb")
+    ball = scene(plugin.bsdf(make(), update_sampling=False), size=8, spp=256)
+    parameters = mi.traverse(ball)
+    for name in ("d", "s", "D", "F", "G"):
+        key = f"ball.bsdf.{name}"
+        start = np.array(parameters[key])
+        # Along one direction of all entries, each in proportion to itself.
+        along = (start * np.random.default_rng(7).random(start.shape)).astype(np.float32)
+
+        def brightness(t, seed, key=key, start=start, along=along):
+            parameters[key] = mi.TensorXf(start) + t * mi.TensorXf(along)
+            parameters.update()
+            return dr.mean(mi.render(ball, parameters, spp=256, seed=seed, seed_grad=3 if seed == 4 else 0).array)
+
+        t = mi.Float(0)
+        dr.enable_grad(t)
+        dr.backward(brightness(t, seed=4))
+        step = 0.02
+        numbers = [np.float64(np.array(brightness(mi.Float(x), seed=3))[0]) for x in (step, -step)]
+        wanted = (numbers[0] - numbers[1]) / (2 * step)
+        assert np.array(t.grad)[0] == pytest.approx(wanted, rel=1e-3), name
+        parameters[key] = mi.TensorXf(start)
+        parameters.update()
+
+
+@needs_llvm
+def test_follows_what_is_changed():
+    mi.set_variant("llvm_ad_rgb")
+    brdf = isotropic()
+    bsdf = mi.load_dict(plugin.bsdf(brdf))
+    parameters = mi.traverse(bsdf)
+    parameters["s"] = mi.TensorXf(np.asarray(brdf.s, np.float32) * 2)
+    parameters.update()
+    wi, wo = directions(100, 8), directions(100, 9)
+    value = np.array(bsdf.eval(mi.BSDFContext(), at(wi), vectors(wo))).T
+    np.testing.assert_allclose(value, brdf.replace(s=brdf.s * 2).eval_cos(wi, wo), rtol=1e-3, atol=1e-5)
+
+
+@pytest.mark.parametrize(("material", "told"), [
+    ({"type": "trilobe"}, "needs either filename"),
+    ({"type": "trilobe", "filename": "/no/such.json"}, "cannot read"),
+    ({"type": "trilobe", "json": "{}"}, "the BSDF's json"),
+])
+def test_says_in_a_line_what_is_wrong(material, told):
+    mi.set_variant("scalar_rgb")
+    with pytest.raises(Exception, match=told):
+        mi.load_dict(material)
+    with pytest.raises(trilobe.Error, match=r"must be a trilobe\.Brdf"):
+        plugin.bsdf("model.json")
+
+
+def test_takes_a_file(tmp_path):
+    mi.set_variant("scalar_rgb")
+    isotropic().save(tmp_path / "model.json")
+    bsdf = mi.load_dict({"type": "trilobe", "filename": str(tmp_path / "model.json")})
+    assert "3 lobes" in str(bsdf)
