@@ -8,26 +8,17 @@ const float TB_PI = 3.14159265358979;
 vec4 tb_fetch(int i) { return texelFetch(trilobe_tables, ivec2(i & 255, i >> 8), 0); }
 float tb_number(int base, int i) { return tb_fetch(base + (i >> 2))[i & 3]; }
 
-// The arc cosines of 1 - y, y in [0, 1]: sqrt(y) times a polynomial, exact near 0 where a cosine says
-// little.
+// The arc cosines of 1 - y, y in [0, 1]: sqrt(y) times a polynomial (within 3e-9, by Chebyshev points), exact
+// near 0 where a cosine says little.
 vec4 tb_acos_one_minus(vec4 y) {
-  vec4 p = vec4(1.2131445971917302e-05);
-  p = p * y - 7.712465385584419e-05;
-  p = p * y + 0.00023452832501033832;
-  p = p * y - 0.0004327733803150136;
-  p = p * y + 0.0005465152188945226;
-  p = p * y - 0.000480840434500696;
-  p = p * y + 0.0003279876506396007;
-  p = p * y - 0.00012489385707342216;
-  p = p * y + 0.00011751441832351232;
-  p = p * y + 0.0001404397437549898;
-  p = p * y + 0.00038599939353290005;
-  p = p * y + 0.0009883935397206505;
-  p = p * y + 0.0026854371061009403;
-  p = p * y + 0.007891815377212338;
-  p = p * y + 0.02651650433100689;
-  p = p * y + 0.11785113019737603;
-  p = p * y + 1.4142135623730958;
+  vec4 p = vec4(0.0006993963) * y - 0.0015605804;
+  p = p * y + 0.0024679272;
+  p = p * y - 0.0003894174;
+  p = p * y + 0.0032021336;
+  p = p * y + 0.0077852172;
+  p = p * y + 0.0265273741;
+  p = p * y + 0.1178507074;
+  p = p * y + 1.4142135651;
   return sqrt(y) * p;
 }
 float tb_acos(float x) {
@@ -103,13 +94,38 @@ vec4 tb_polar(int base, int groups, int group, int phis, TbPlace a, TbPlace b) {
 }
 
 #define TB_TABLE(PER_LOBE, PER_CHANNEL, m, c) ((PER_LOBE) * (m) * (2 * (PER_CHANNEL) + 1) + (PER_CHANNEL) * (c))
-#define TB_AT(X, t) X[(t) / 4][(t) % 4]
-#define TB_OF(X, PER_LOBE, PER_CHANNEL, m) \
-  vec3(TB_AT(X, TB_TABLE(PER_LOBE, PER_CHANNEL, m, 0)), TB_AT(X, TB_TABLE(PER_LOBE, PER_CHANNEL, m, 1)), \
-       TB_AT(X, TB_TABLE(PER_LOBE, PER_CHANNEL, m, 2)))
+// Up to four tables are one vector; arrays, even of one, are several times as slow without a graphics card.
+#if TB_D_GROUPS == 1
+#define TB_D_GROUP(g) D
+#define TB_D_AT(t) D[(t) % 4]
+#else
+#define TB_D_GROUP(g) D[g]
+#define TB_D_AT(t) D[(t) / 4][(t) % 4]
+#endif
+#if TB_F_GROUPS == 1
+#define TB_F_GROUP(g) F
+#define TB_F_AT(t) F[(t) % 4]
+#else
+#define TB_F_GROUP(g) F[g]
+#define TB_F_AT(t) F[(t) / 4][(t) % 4]
+#endif
+#if TB_G_GROUPS == 1
+#define TB_G_GROUP(g) G
+#define TB_G_AT(t) G[(t) % 4]
+#else
+#define TB_G_GROUP(g) G[g]
+#define TB_G_AT(t) G[(t) / 4][(t) % 4]
+#endif
 #define TB_LOBE(m) \
-  lobes += trilobe_specular[m] * TB_OF(D, TB_D_PER_LOBE, TB_D_PER_CHANNEL, m) * \
-           TB_OF(F, TB_F_PER_LOBE, TB_F_PER_CHANNEL, m) * TB_OF(G, TB_G_PER_LOBE, TB_G_PER_CHANNEL, m);
+  lobes += trilobe_specular[m] * vec3(TB_D_AT(TB_TABLE(TB_D_PER_LOBE, TB_D_PER_CHANNEL, m, 0)), \
+                                      TB_D_AT(TB_TABLE(TB_D_PER_LOBE, TB_D_PER_CHANNEL, m, 1)), \
+                                      TB_D_AT(TB_TABLE(TB_D_PER_LOBE, TB_D_PER_CHANNEL, m, 2))) * \
+           vec3(TB_F_AT(TB_TABLE(TB_F_PER_LOBE, TB_F_PER_CHANNEL, m, 0)), \
+                TB_F_AT(TB_TABLE(TB_F_PER_LOBE, TB_F_PER_CHANNEL, m, 1)), \
+                TB_F_AT(TB_TABLE(TB_F_PER_LOBE, TB_F_PER_CHANNEL, m, 2))) * \
+           vec3(TB_G_AT(TB_TABLE(TB_G_PER_LOBE, TB_G_PER_CHANNEL, m, 0)), \
+                TB_G_AT(TB_TABLE(TB_G_PER_LOBE, TB_G_PER_CHANNEL, m, 1)), \
+                TB_G_AT(TB_TABLE(TB_G_PER_LOBE, TB_G_PER_CHANNEL, m, 2)));
 
 TbPlace tb_place_d(float theta) {
 #if TB_D_ROOT == 1
@@ -132,15 +148,29 @@ vec3 tb_lobes(vec3 wi, vec3 wo) {
                                              dot(between, between) / (4.0 * (1.0 + cos_d)),
                                              dot(wi.xy, wi.xy) / (1.0 + wi.z),
                                              dot(wo.xy, wo.xy) / (1.0 + wo.z)), 0.0, 1.0));
-  vec4 D[TB_D_GROUPS], F[TB_F_GROUPS], G[TB_G_GROUPS];
+#if TB_D_GROUPS == 1
+  vec4 D;
+#else
+  vec4 D[TB_D_GROUPS];
+#endif
+#if TB_F_GROUPS == 1
+  vec4 F;
+#else
+  vec4 F[TB_F_GROUPS];
+#endif
+#if TB_G_GROUPS == 1
+  vec4 G;
+#else
+  vec4 G[TB_G_GROUPS];
+#endif
 #if TB_D_PHIS > 0
   TbPlace ring_h = tb_ring(angles.x, TB_D_RINGS_BASE, TB_D_RINGS), turn_h = tb_turn(h, sqrt(sin2_h), TB_D_PHIS);
   for (int g = 0; g < TB_D_GROUPS; ++g) {
-    D[g] = tb_polar(TB_D_BASE, TB_D_GROUPS, g, TB_D_PHIS, ring_h, turn_h);
+    TB_D_GROUP(g) = tb_polar(TB_D_BASE, TB_D_GROUPS, g, TB_D_PHIS, ring_h, turn_h);
   }
 #elif TB_STRETCHES == 0
   TbPlace at_h = tb_place_d(angles.x);
-  for (int g = 0; g < TB_D_GROUPS; ++g) D[g] = tb_between(TB_D_BASE, TB_D_GROUPS, g, at_h);
+  for (int g = 0; g < TB_D_GROUPS; ++g) TB_D_GROUP(g) = tb_between(TB_D_BASE, TB_D_GROUPS, g, at_h);
 #else
   // cos theta_o - cos theta_i = 2 sin theta_h sin theta_d cos phi_d.
   float sines = 2.0 * sqrt(sin2_h) * sqrt(max(1.0 - cos_d * cos_d, 0.0));
@@ -152,26 +182,26 @@ vec3 tb_lobes(vec3 wi, vec3 wo) {
                         (1.0 - cos2_phi) * exp2(2.0 * e.y * log_cosine));
     TbPlace at_h = tb_place_d(min(angles.x * factor, TB_PI / 2.0));
 #if TB_STRETCHES == 1
-    for (int g = 0; g < TB_D_GROUPS; ++g) D[g] = tb_between(TB_D_BASE, TB_D_GROUPS, g, at_h);
+    for (int g = 0; g < TB_D_GROUPS; ++g) TB_D_GROUP(g) = tb_between(TB_D_BASE, TB_D_GROUPS, g, at_h);
 #else
     for (int g = 0; g < TB_D_GROUPS; ++g) {
       vec4 read = tb_between(TB_D_BASE, TB_D_GROUPS, g, at_h), mine;
       for (int t = 0; t < 4; ++t) {
         mine[t] = trilobe_stretch_of[min(4 * g + t, TB_D_TABLES - 1)] == k ? 1.0 : 0.0;
       }
-      D[g] = k == 0 ? read * mine : D[g] + read * mine;
+      TB_D_GROUP(g) = k == 0 ? read * mine : TB_D_GROUP(g) + read * mine;
     }
 #endif
   }
 #endif
   TbPlace at_d = tb_linear(float(TB_F_SIZE) * (angles.y * (2.0 / TB_PI)), TB_F_SIZE);
-  for (int g = 0; g < TB_F_GROUPS; ++g) F[g] = tb_between(TB_F_BASE, TB_F_GROUPS, g, at_d);
+  for (int g = 0; g < TB_F_GROUPS; ++g) TB_F_GROUP(g) = tb_between(TB_F_BASE, TB_F_GROUPS, g, at_d);
 #if TB_G_PHIS > 0
   TbPlace ring_i = tb_ring(angles.z, TB_G_RINGS_BASE, TB_G_RINGS), turn_i = tb_turn(wi, length(wi.xy), TB_G_PHIS);
   TbPlace ring_o = tb_ring(angles.w, TB_G_RINGS_BASE, TB_G_RINGS), turn_o = tb_turn(wo, length(wo.xy), TB_G_PHIS);
   float scale = 1.0 / max(wi.z * wo.z, 1e-37);
   for (int g = 0; g < TB_G_GROUPS; ++g) {
-    G[g] = tb_polar(TB_G_BASE, TB_G_GROUPS, g, TB_G_PHIS, ring_i, turn_i) *
+    TB_G_GROUP(g) = tb_polar(TB_G_BASE, TB_G_GROUPS, g, TB_G_PHIS, ring_i, turn_i) *
            (tb_polar(TB_G_BASE, TB_G_GROUPS, g, TB_G_PHIS, ring_o, turn_o) * scale);
   }
 #else
@@ -182,13 +212,13 @@ vec3 tb_lobes(vec3 wi, vec3 wo) {
   for (int g = 0; g < TB_G_GROUPS; ++g) {
     int at_i = TB_G_BASE + (i.lower * TB_G_GROUPS + g) * 2, at_o = TB_G_BASE + (o.lower * TB_G_GROUPS + g) * 2;
     const int next = 2 * TB_G_GROUPS;
-    G[g] = (ui * tb_fetch(at_i) + i.t * tb_fetch(at_i + next) +
+    TB_G_GROUP(g) = (ui * tb_fetch(at_i) + i.t * tb_fetch(at_i + next) +
             i.t * ui * (ui * tb_fetch(at_i + 1) + i.t * tb_fetch(at_i + next + 1))) *
            (uo * tb_fetch(at_o) + o.t * tb_fetch(at_o + next) +
             o.t * uo * (uo * tb_fetch(at_o + 1) + o.t * tb_fetch(at_o + next + 1)));
   }
-  float scale = 1.0 / TB_AT(G, TB_G_TABLES);
-  for (int g = 0; g < TB_G_GROUPS; ++g) G[g] *= scale;
+  float scale = 1.0 / TB_G_AT(TB_G_TABLES);
+  for (int g = 0; g < TB_G_GROUPS; ++g) TB_G_GROUP(g) *= scale;
 #endif
   vec3 lobes = vec3(0.0);
   TB_LOBE(0)

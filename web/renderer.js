@@ -265,7 +265,9 @@ export class Renderer {
   // Adds the cells from..to to the sum of one material.
   addLight(level, number, from, to, lamp, countedOnly = false) {
     const {gl} = this, side = level.sides[number];
-    const made = number === 0 ? this.program('fitted', this.fittedText) : this.program('measured', this.measuredText);
+    const define = `#define LAMP ${lamp ? 1 : 0}\n`, kind = lamp ? 'by a lamp' : 'all around';
+    const made = number === 0 ? this.program(`fitted ${kind}`, define + this.fittedText)
+                              : this.program(`measured ${kind}`, define + this.measuredText);
     const into = side.last === 0 ? 1 : 0;
     const mirrored = this.mirrored();
     this.use(made, {
@@ -283,7 +285,6 @@ export class Renderer {
     }
     gl.uniform1i(made.place('from'), from);
     gl.uniform1i(made.place('to'), to);
-    gl.uniform1i(made.place('lamp'), lamp ? 1 : 0);
     gl.uniform1i(made.place('counted_only'), countedOnly ? 1 : 0);
     gl.uniform3fv(made.place('lamp_direction'), lamp ?? [0, 0, 1]);
     gl.uniform3fv(made.place('lamp_irradiance'), [3, 3, 3]);
@@ -402,25 +403,24 @@ export class Renderer {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
     if (!shown) return;
-    const made = this.program('show', this.text('show.glsl'));
     const compared = Boolean(this.measured);
-    this.use(made, {
-      normals: [gl.TEXTURE_2D, shown.normals],
-      fitted: [gl.TEXTURE_2D, shown.sides[0].textures[2]],
-      measured: [gl.TEXTURE_2D, shown.sides[compared ? 1 : 0].textures[2]],
-    });
-    gl.uniform1i(made.place('compared'), compared ? 1 : 0);
-    gl.uniform1i(made.place('round_'), this.object === 'sphere' ? 1 : 0);
-    gl.uniform1f(made.place('exposure'), this.exposure * 2 ** stops);
-    gl.uniform1f(made.place('size'), shown.size);
-    gl.uniform1f(made.place('wipe'), wipe);
-    gl.uniform3f(made.place('mark'), mark ? mark[0] : 0, mark ? mark[1] : 0, mark ? 1 : 0);
     gl.enable(gl.SCISSOR_TEST);
     for (const {mode, x, y, size} of panels) {
+      const defines = `#define SHOWN ${MODES[mode]}\n#define EXACT ${Number(size === shown.size)}\n`;
+      const made = this.program(`show ${mode} ${size === shown.size}`, defines + this.text('show.glsl'));
+      this.use(made, {
+        normals: [gl.TEXTURE_2D, shown.normals],
+        fitted: [gl.TEXTURE_2D, shown.sides[0].textures[2]],
+        measured: [gl.TEXTURE_2D, shown.sides[compared ? 1 : 0].textures[2]],
+      });
+      gl.uniform1i(made.place('round_'), this.object === 'sphere' ? 1 : 0);
+      gl.uniform1f(made.place('exposure'), this.exposure * 2 ** stops);
+      gl.uniform1f(made.place('size'), shown.size);
+      gl.uniform1f(made.place('wipe'), wipe);
+      gl.uniform3f(made.place('mark'), mark ? mark[0] : 0, mark ? mark[1] : 0, mark ? 1 : 0);
       const bottom = canvas.height - y - size;
       gl.viewport(x, bottom, size, size);
       gl.scissor(x, bottom, size, size);
-      gl.uniform1i(made.place('mode'), MODES[mode]);
       gl.uniform4f(made.place('panel'), x, bottom, size, size);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }

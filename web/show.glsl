@@ -1,8 +1,8 @@
-// A panel of the picture: the measured or the fitted material, both with a line between, or how far apart they are to
-// the eye (CIELAB, 1976).
+// A panel of the picture, SHOWN: 0 the fitted material, 1 the measured one, 2 both with a line between, 3 how far apart
+// they are to the eye (CIELAB, 1976). EXACT: a pixel of the object is one of the panel. These are macros, since without a
+// graphics card what a shader leaves out takes its time, too.
 uniform highp sampler2D normals, fitted, measured;
-uniform int mode;  // 0 fitted, 1 measured, 2 wipe, 3 difference
-uniform bool compared, round_;
+uniform bool round_;
 uniform float exposure, size, wipe;
 uniform vec4 panel;  // x, y, width, height [pixels]
 uniform vec3 mark;   // x, y from -1 to 1, and whether to draw it
@@ -12,6 +12,7 @@ vec3 encoded(vec3 linear) {
   vec3 c = clamp(linear, 0.0, 1.0);
   return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, step(c, vec3(0.0031308)));
 }
+#if SHOWN == 3
 float lab_of(float t) { return t > 0.00885645 ? pow(t, 1.0 / 3.0) : t * 7.787037 + 0.13793103; }
 vec3 lab(vec3 c) {
   float x = lab_of(dot(c, vec3(0.4124, 0.3576, 0.1805)) / 0.9505), y = lab_of(dot(c, vec3(0.2126, 0.7152, 0.0722)));
@@ -25,15 +26,24 @@ vec3 color_of(float delta) {
     if (delta <= at[k + 1] || k == 3) return mix(stops[k], stops[k + 1], clamp((delta - at[k]) / (at[k + 1] - at[k]), 0.0, 1.0)) / 255.0;
   }
 }
+#endif
 
 void main() {
   vec2 p = (gl_FragCoord.xy - panel.xy) / panel.zw;
   p.y = 1.0 - p.y;
+  vec4 a = vec4(0.0), b = vec4(0.0);
+  float weights = 0.0;
+#if EXACT
+  ivec2 pixel = ivec2(p * size);
+  if (texelFetch(normals, pixel, 0).w != 0.0) {
+    weights = 1.0;
+    a = texelFetch(fitted, pixel, 0);
+    b = texelFetch(measured, pixel, 0);
+  }
+#else
   vec2 at = p * size - 0.5;
   ivec2 low = ivec2(floor(at));
   vec2 f = at - vec2(low);
-  vec4 a = vec4(0.0), b = vec4(0.0);
-  float weights = 0.0, cover = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 pixel = low + ivec2(k % 2, k / 2);
     float weight = (k % 2 == 0 ? 1.0 - f.x : f.x) * (k / 2 == 0 ? 1.0 - f.y : f.y);
@@ -41,9 +51,10 @@ void main() {
     if (texelFetch(normals, pixel, 0).w == 0.0) continue;
     weights += weight;
     a += weight * texelFetch(fitted, pixel, 0);
-    if (compared) b += weight * texelFetch(measured, pixel, 0);
+    b += weight * texelFetch(measured, pixel, 0);
   }
-  cover = weights;
+#endif
+  float cover = weights;
   if (round_) cover = weights > 0.0 ? clamp((1.0 - length(2.0 * p - 1.0)) * panel.z / 2.0 + 0.5, 0.0, 1.0) : 0.0;
   if (cover <= 0.0) {
     color = vec4(0.0);
@@ -51,16 +62,24 @@ void main() {
   }
   a /= weights;
   b /= weights;
-  bool known = !compared || b.a >= 0.5 * a.a;
-  vec3 ca = clamp(exposure * a.rgb, 0.0, 1.0), cb = clamp(exposure * b.rgb, 0.0, 1.0), shown;
-  bool left = mode == 1 || (mode == 2 && p.x < wipe);
-  if (mode == 3) {
-    shown = known ? color_of(distance(lab(ca), lab(cb))) : vec3(0.6);
-  } else {
-    shown = encoded(left ? cb : ca);
+  vec3 shown;
+#if SHOWN == 0
+  shown = encoded(exposure * a.rgb);
+#elif SHOWN == 1
+  shown = encoded(exposure * b.rgb);
+#elif SHOWN == 2
+  shown = encoded(exposure * (p.x < wipe ? b.rgb : a.rgb));
+  if (abs(p.x - wipe) * panel.z < 1.0) shown = vec3(1.0);
+#else
+  bool known = b.a >= 0.5 * a.a;
+  vec3 ca = clamp(exposure * a.rgb, 0.0, 1.0), cb = clamp(exposure * b.rgb, 0.0, 1.0);
+  shown = known ? color_of(distance(lab(ca), lab(cb))) : vec3(0.6);
+#endif
+  if (mark.z == 0.0) {
+    color = vec4(shown * cover, cover);
+    return;
   }
-  if (mode == 2 && abs(p.x - wipe) * panel.z < 1.0) shown = vec3(1.0);
   float ring = abs(length((2.0 * p - 1.0) - vec2(mark.x, -mark.y)) * panel.z / 2.0 - 7.0);
-  if (mark.z > 0.0) shown = mix(shown, mix(vec3(1.0), vec3(0.0), smoothstep(0.8, 1.3, ring)), 1.0 - smoothstep(1.8, 2.4, ring));
+  shown = mix(shown, mix(vec3(1.0), vec3(0.0), smoothstep(0.8, 1.3, ring)), 1.0 - smoothstep(1.8, 2.4, ring));
   color = vec4(shown * cover, cover);
 }

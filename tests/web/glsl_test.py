@@ -100,7 +100,7 @@ def test_the_shader_says_what_the_library_says(form: str, browser: Any, fits: Pa
     model = models(tmp_path, fits)[form]
     run("convert", model, f"--out={tmp_path}/x.glsl")
     subprocess.run([BUILD / "tests/web_reference", model, str(COUNT), tmp_path / "x.bin"], check=True)
-    rows = np.fromfile(tmp_path / "x.bin", "<f4").reshape(COUNT, 21)
+    rows = np.fromfile(tmp_path / "x.bin", "<f4").reshape(COUNT, 19)
     pairs = np.concatenate([rows[:, :6], rows[:, 10:12]], axis=1).astype("<f4")
     page = browser.new_page()
     text = (tmp_path / "x.glsl").read_text()
