@@ -41,7 +41,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-
 // The measurements in a folder, by name.
 std::vector<std::string> MeasurementsIn(const std::string& folder) {
   std::vector<std::string> found;
@@ -120,6 +119,9 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
   outcome->visibility = report.at("verdict").at("visibility");
   outcome->objective = report.at("objective");
   outcome->num_parameters = report.at("stored_numbers");
+  outcome->anisotropic = report.at("model") == "anisotropic";
+  const Json& files = report.at("files");
+  if (std::ranges::find(files, Json("view.html")) != files.end()) outcome->page = "view.html";
   outcome->seconds = 0;
   for (const auto& [phase, seconds] : report.at("seconds").items()) {
     outcome->seconds += seconds.get<double>();
@@ -201,6 +203,40 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 
 }  // namespace
 
+std::vector<FitOutcome> FitsIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (fs::exists(entry.path() / "report.json") && fs::exists(entry.path() / "model.json")) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  if (names.empty()) {
+    throw Error("'" + folder + "' has no folder of a fit, with model.json and report.json in it");
+  }
+  std::ranges::sort(names);
+  std::vector<FitOutcome> outcomes;
+  for (const std::string& name : names) {
+    const fs::path place = fs::path(folder) / name;
+    FitOutcome& outcome = outcomes.emplace_back(FitOutcome{.name = name, .source = ""});
+    const std::string path = (place / "report.json").string();
+    try {
+      const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
+      outcome.state = FitOutcome::State::kFitted;
+      outcome.source = report.at("source");
+      TakeReport(report, &outcome);
+      if (!fs::exists(place / outcome.picture)) outcome.picture = "spheres.png";
+      outcome.has_picture = outcome.has_picture && fs::exists(place / outcome.picture);
+    } catch (const Error& error) {
+      outcome.state = FitOutcome::State::kFailed;
+      outcome.error = error.what();
+    } catch (const Json::exception&) {
+      outcome.state = FitOutcome::State::kFailed;
+      outcome.error = path + ": not a report of this version";
+    }
+  }
+  return outcomes;
+}
+
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   const std::string out = RequiredOut("fit SOURCE...", "DIR");
   if (FLAGS_verbose) throw Error("--verbose is for the fit of one SOURCE; leave it out");
@@ -240,7 +276,8 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   std::string written = "a folder each";
   if (FLAGS_shard.empty()) {
     WriteFile(summary.PathOf(kTableName), [&](std::ostream& to) { to << FitsCsv(outcomes); });
-    WriteFile(summary.PathOf(kPageName), [&](std::ostream& to) { to << FitsPage(outcomes); });
+    WriteFile(summary.PathOf(kPageName),
+              [&](std::ostream& to) { to << FitsPage(outcomes, kTableName); });
     written += std::string(", ") + kTableName + ", " + kPageName;
   }
   const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);

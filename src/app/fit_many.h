@@ -3,10 +3,16 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
+#include "app/fit_page.h"
 #include "app/fit_run.h"
 
 namespace trilobe {
+
+// What the folders of fits in a folder say of them, by their names. Throws Error where there is
+// none.
+std::vector<FitOutcome> FitsIn(const std::string& folder);
 
 // `trilobe fit SOURCE... --out=DIR`, where a SOURCE may be a folder of measurements: fits each, on
 // a thread of its own, into the folder DIR/NAME, leaves out those of which that folder already has

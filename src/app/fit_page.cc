@@ -4,43 +4,18 @@
 #include <iomanip>
 #include <limits>
 #include <locale>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
 #include "reports/print.h"
+#include "trilobe/base/printable.h"
+#include "view/document.h"
 
 namespace trilobe {
 namespace {
 
-constexpr const char* kStyle =
-    "body{font:15px/1.4 'DejaVu Sans',Arial,sans-serif;color:#222;background:#fff;margin:2em}\n"
-    "main{display:grid;grid-template-columns:repeat(auto-fill,minmax(260px,1fr));gap:1.2em}\n"
-    "figure{margin:0}img{width:100%;border-radius:4px}\n"
-    "figcaption b{display:block}.failed{color:#a00}a{color:inherit}";
-
-// So that any name is text, and no markup.
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
+using Json = nlohmann::ordered_json;
 
 // A name as part of an address: what is not a letter, a digit or one of -._~ as %XX (RFC 3986).
 std::string Address(const std::string& name) {
@@ -69,12 +44,13 @@ std::string CsvField(const std::string& text) {
 std::string Figure(const FitOutcome& outcome) {
   const std::string folder = Address(outcome.name);
   std::ostringstream figure;
-  figure << R"(<figure><a href=")" << folder << R"(/report.json"><img src=")" << folder
-         << R"(/pair.png" loading="lazy" alt=")" << Escaped(outcome.name)
-         << ": measured and fitted\"></a>\n<figcaption><b>" << Escaped(outcome.name) << "</b>"
-         << Escaped(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
+  figure << R"(<figure><a href=")" << folder << '/' << outcome.page << R"("><img src=")" << folder
+         << '/' << outcome.picture << R"(" loading="lazy" alt=")" << EscapedHtml(outcome.name)
+         << ": measured and fitted\"></a>\n<figcaption><b>" << EscapedHtml(outcome.name) << "</b>"
+         << EscapedHtml(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
          << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
-         << Text(100 * outcome.mean_color_error, 2) << " %</figcaption></figure>\n";
+         << Text(100 * outcome.mean_color_error, 2) << " %, " << outcome.num_parameters
+         << " numbers</figcaption></figure>\n";
   return figure.str();
 }
 
@@ -121,26 +97,36 @@ std::string FitsCsv(std::span<const FitOutcome> outcomes) {
   return csv.str();
 }
 
-std::string FitsPage(std::span<const FitOutcome> outcomes) {
+std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& table) {
   std::vector<FitOutcome> fits;
   std::ranges::copy_if(outcomes, std::back_inserter(fits), &FitOutcome::has_picture);
   std::ranges::stable_sort(fits, {}, &FitOutcome::psnr_db);
-  std::ostringstream page;
-  page << "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Fits</title>\n<style>"
-       << kStyle << "</style>\n<h1>" << fits.size() << " of " << outcomes.size()
-       << " measurements in pictures</h1>\n<p>Measured (left) and fitted (right) on a sphere, the "
-          "largest difference first. Numbers: <a href=\"fits.csv\">fits.csv</a>.</p>\n";
+  Json json = Json::array();
+  for (const FitOutcome& outcome : fits) {
+    json.push_back({{"name", Printable(outcome.name)},
+                    {"psnr_db", std::min(outcome.psnr_db, 1e3)},
+                    {"delta_e", outcome.mean_delta_e},
+                    {"numbers", outcome.num_parameters},
+                    {"seconds", outcome.seconds},
+                    {"anisotropic", outcome.anisotropic ? 1 : 0}});
+  }
+  std::ostringstream body;
+  body << "<h1>" << fits.size() << " of " << outcomes.size()
+       << " measurements in pictures</h1>\n<p>Measured (left) and fitted (right) on a sphere.";
+  if (!table.empty()) body << " Numbers: <a href=\"" << table << "\">" << table << "</a>.";
+  body << "</p>\n";
   for (const FitOutcome& outcome : outcomes) {
     if (outcome.has_picture) continue;
-    page << "<p" << (outcome.has_model() ? "" : " class=\"failed\"") << "><b>"
-         << Escaped(outcome.name) << "</b> " << StateName(outcome.state)
-         << (outcome.verdict.empty() ? "" : ", " + Escaped(outcome.verdict))
-         << (outcome.error.empty() ? "" : ": ") << Escaped(outcome.error) << "</p>\n";
+    body << "<p" << (outcome.has_model() ? "" : " class=\"failed\"") << "><b>"
+         << EscapedHtml(outcome.name) << "</b> " << StateName(outcome.state)
+         << (outcome.verdict.empty() ? "" : ", " + EscapedHtml(outcome.verdict))
+         << (outcome.error.empty() ? "" : ": ") << EscapedHtml(outcome.error) << "</p>\n";
   }
-  page << "<main>\n";
-  for (const FitOutcome& outcome : fits) page << Figure(outcome);
-  page << "</main></html>\n";
-  return page.str();
+  body << "<main>\n";
+  for (const FitOutcome& outcome : fits) body << Figure(outcome);
+  body << "</main>";
+  return FormatDocument("catalogue.html", "Fits",
+                        json.dump(-1, ' ', false, Json::error_handler_t::replace), body.str());
 }
 
 }  // namespace trilobe

@@ -18,7 +18,10 @@ struct FitOutcome {
   // Of the sphere (AppearanceReport) and of the fit; 0 where there is none.
   double psnr_db = 0, mean_delta_e = 0, mean_color_error = 0, objective = 0, seconds = 0;
   int num_parameters = 0;  // that the model stores
+  bool anisotropic = false;
   bool has_picture = false;
+  // In its folder: what the page of all shows of it, and leads to.
+  std::string picture = "pair.png", page = "report.json";
 
   bool has_model() const { return state == State::kFitted || state == State::kKept; }
 };
@@ -28,9 +31,10 @@ std::string StateName(FitOutcome::State state);
 // A table, a row a measurement.
 std::string FitsCsv(std::span<const FitOutcome> outcomes);
 
-// A page with what failed, and the picture NAME/pair.png of each that did not, the least PSNR
-// first.
-std::string FitsPage(std::span<const FitOutcome> outcomes);
+// A page with what failed, and the picture of each that did not, the least PSNR first; it can be
+// sorted and filtered, and shows up to four of them side by side. `table`: the address of
+// FitsCsv's, if there is one.
+std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& table);
 
 }  // namespace trilobe
 

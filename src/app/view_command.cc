@@ -1,11 +1,14 @@
 #include <gflags/gflags.h>
 
+#include <filesystem>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "app/command.h"
+#include "app/fit_many.h"
+#include "app/fit_page.h"
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/result_folder.h"
@@ -24,7 +27,39 @@ DECLARE_string(probe);
 namespace trilobe {
 namespace {
 
+void Write(const std::string& path, const std::string& page, const std::string& what) {
+  WriteFile(path, [&](std::ostream& out) { out << page; });
+  PrintLine("wrote " + path + ": " + what + " of " +
+            Text(static_cast<double>(page.size()) / 1e6, 2) + " MB; open it in a browser");
+}
+
+// A page of all fits in a folder, in that folder, since it shows pictures that lie there.
+int ViewFolder(const std::string& folder) {
+  for (const std::string& flag : WithSourceFlags({"trace", "probe"})) {
+    if (!IsDefault(flag))
+      throw Error("--" + flag + " is for the page of one model, not of a folder");
+  }
+  const std::string path = FLAGS_out.empty() ? folder + "/index.html" : FLAGS_out;
+  std::error_code ignored;
+  const std::filesystem::path parent = std::filesystem::absolute(path).parent_path();
+  if (!path.ends_with(".html") || !std::filesystem::equivalent(parent, folder, ignored)) {
+    throw Error("--out=" + path +
+                ": the page of a folder is a .html file in it, as it shows the "
+                "pictures that lie there");
+  }
+  const std::vector<FitOutcome> fits = FitsIn(folder);
+  Inputs().CheckOutput(path);
+  const bool table = std::filesystem::exists(folder + "/fits.csv", ignored);
+  Write(path, FitsPage(fits, table ? "fits.csv" : ""),
+        "a page of " + std::to_string(fits.size()) + (fits.size() == 1 ? " fit," : " fits,"));
+  return 0;
+}
+
 int RunView(std::span<const std::string> arguments) {
+  std::error_code ignored;
+  if (arguments.size() == 1 && std::filesystem::is_directory(arguments[0], ignored)) {
+    return ViewFolder(arguments[0]);
+  }
   const std::string path = RequiredOut("view", "FILE.html");
   if (!path.ends_with(".html")) throw Error("--out=" + path + ": end the name in .html");
   std::vector<std::string> read(arguments.begin(), arguments.end());
@@ -42,9 +77,7 @@ int RunView(std::span<const std::string> arguments) {
   const AppearanceOptions appearance = AppearanceOptionsFromFlags();
   const std::string page = ViewPage(model, arguments[0], measured ? &*measured : nullptr,
                                     std::nullopt, trace, appearance);
-  WriteFile(path, [&](std::ostream& out) { out << page; });
-  PrintLine("wrote " + path + ": a page of " + Text(static_cast<double>(page.size()) / 1e6, 2) +
-            " MB; open it in a browser");
+  Write(path, page, "a page");
   return 0;
 }
 
@@ -53,7 +86,7 @@ int RunView(std::span<const std::string> arguments) {
 Command ViewCommand() {
   return {.name = "view",
           .summary = "write a page that shows a model beside its measurement",
-          .arguments = "MODEL [SOURCE]",
+          .arguments = "MODEL [SOURCE] | FOLDER",
           .min_arguments = 1,
           .max_arguments = 2,
           .details =
@@ -61,7 +94,8 @@ Command ViewCommand() {
               "network: the material on\na sphere, a knot, a cloth or a flat sample, under an "
               "environment or a lamp; with SOURCE the measurement\nbeside it, and where the two "
               "differ; its factors, to be looked at and edited; with --trace the\ncourse of the "
-              "fit. --probe lights it by your own light probe.",
+              "fit. --probe lights it by your own light probe.\n\nOf a FOLDER of fits it writes "
+              "FOLDER/index.html, a page of their pictures to sort, filter and compare.",
           .flags = WithSourceFlags({"out", "trace", "probe"}),
           .run = RunView};
 }

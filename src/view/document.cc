@@ -94,7 +94,8 @@ std::string EscapedHtml(std::string_view text) {
   return escaped;
 }
 
-std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json) {
+std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json,
+                           std::string_view body) {
   constexpr std::string_view kBegin = "<!-- ", kEnd = " -->";
   std::string_view rest = WebText(name);
   std::string page;
@@ -107,6 +108,8 @@ std::string FormatDocument(std::string_view name, std::string_view title, std::s
     const std::string_view file = what.substr(std::min(what.find(": ") + 2, what.size()));
     if (what == "title") {
       page += EscapedHtml(title);
+    } else if (what == "body") {
+      page += body;
     } else if (what == "data") {
       page += DataElement("data", json);
     } else if (what == "shaders") {

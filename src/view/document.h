@@ -13,13 +13,15 @@ std::string EscapedHtml(std::string_view text);
 // scripts:
 //   <!-- title -->         the title
 //   <!-- style: a.css -->  a style sheet
+//   <!-- body -->          the markup
 //   <!-- data -->          the JSON, as a script element of the id "data"
 //   <!-- shaders -->       all of web/*.glsl, as JSON, of the id "shaders"
 //   <!-- module: a.js -->  a module and, before it, all that it imports, as one script: each name
 //   that
 //                          stands outside of functions is there once in all of them
 // Throws Error where a file is missing.
-std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json);
+std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json,
+                           std::string_view body = "");
 
 }  // namespace trilobe
 

@@ -54,6 +54,16 @@ TEST_F(View, SaysInOneLineWhatIsWrong) {
   refusal({"view", model(), "--out=" + (folder_ / "none/x.html")}, "x.html");
 }
 
+TEST_F(View, OfAFolderShowsAllFitsInIt) {
+  const std::string all = folder_ / "";
+  const ProgramResult result = RunProgram({"view", all});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("a page of 1 fit,"));
+  EXPECT_THAT(Contents(folder_ / "index.html"), HasSubstr("<b>out</b> fitted, "));
+  EXPECT_EQ(RunProgram({"view", all, "--out=" + (folder_ / "out/x.html")}).status, 1);
+  EXPECT_EQ(RunProgram({"view", folder_ / "out"}).status, 1);  // no fits in it
+}
+
 TEST_F(View, TakesNamesAsText) {
   const std::string odd = folder_ / "<script>alert(1)<!--.json", page = folder_ / "x.html";
   std::string text = Contents(model());

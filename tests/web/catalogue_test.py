@@ -1,0 +1,55 @@
+"""The page of many fits: sorted, filtered, compared, and quick with two hundred of them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import run
+
+
+@pytest.fixture
+def folder(fits: Path, tmp_path: Path) -> Path:
+    """Two hundred fits: copies of two, with other figures."""
+    for k in range(200):
+        name = ("plastic", "shot_silk")[k % 2]
+        place = tmp_path / f"{name}_{k:03}"
+        place.mkdir()
+        for file in ("model.json", "pair.png"):
+            shutil.copy(fits / name / file, place / file)
+        report = json.loads((fits / name / "report.json").read_text())
+        report["appearance"]["psnr_db"] = 20 + (37 * k) % 200 / 10
+        (place / "report.json").write_text(json.dumps(report))
+    return tmp_path
+
+
+def test_two_hundred_fits_are_sorted_filtered_and_compared(folder: Path, browser: Any) -> None:
+    assert "200 fits" in run("view", folder)
+    page = browser.new_page()
+    complaints: list[str] = []
+    page.on("console", lambda m: complaints.append(m.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(f"file://{folder}/index.html")
+    names = "Array.from(document.querySelectorAll('main figure:not([hidden]) figcaption b'), b => b.textContent)"
+    assert page.evaluate(names)[0] == "plastic_000"
+    page.select_option("select", label="PSNR, best first")
+    best = max(range(200), key=lambda k: (37 * k) % 200)
+    assert page.evaluate(names)[0].endswith(f"_{best:03}")
+    page.select_option("select", label="anisotropic first")
+    assert page.evaluate(names)[0].startswith("shot_silk")
+    page.fill("input[type=search]", "silk 11")
+    assert page.evaluate(names) == [f"shot_silk_{k:03}" for k in (11, *range(111, 120, 2))]
+    page.fill("input[type=search]", "")
+    milliseconds = page.evaluate("(() => { const t = performance.now(); catalogue.order.value = 6; catalogue.arrange();"
+                                 " document.body.offsetHeight; return performance.now() - t; })()")
+    assert milliseconds < 1000
+    for k in range(4):
+        page.locator("main figure input").nth(k).check()
+    assert page.locator("#compared figure").count() == 4
+    assert page.locator("main figure input").nth(5).is_disabled()
+    page.close()
+    assert complaints == []
