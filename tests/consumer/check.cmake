@@ -16,9 +16,19 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${build_dir} -G ${generator
   -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
 run(${CMAKE_COMMAND} --build ${build_dir})
-run(${build_dir}/consumer)
+run(${build_dir}/consumer WORKING_DIRECTORY ${scratch_dir})
 
+# It has made the program's own model.
 find_program(trilobe_program trilobe PATHS ${prefix}/bin NO_DEFAULT_PATH)
 if(trilobe_program)
-  run(${trilobe_program} help)
+  run(${trilobe_program} fit synth:plastic --noise=0.02 --noplots --out=${scratch_dir}/fit)
+  file(READ ${scratch_dir}/plastic.json ours)
+  file(READ ${scratch_dir}/fit/model.json theirs)
+  foreach(key d s D F G)
+    string(JSON our_table GET "${ours}" ${key})
+    string(JSON their_table GET "${theirs}" ${key})
+    if(NOT our_table STREQUAL their_table)
+      message(FATAL_ERROR "${key} of the consumer's model is not that of `trilobe fit`")
+    endif()
+  endforeach()
 endif()

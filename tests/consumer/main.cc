@@ -1,17 +1,13 @@
+#include <trilobe/fit/fit.h>
 #include <trilobe/formats/source.h>
-#include <trilobe/registry/solvers.h>
-#include <trilobe/solvers/solver.h>
-#include <trilobe/start/initial_model.h>
+#include <trilobe/results/model_file.h>
 
 #include <iostream>
 
 int main() {
   using namespace trilobe;
-  const BrdfTable measured = LoadSource("synth:plastic", {.noise = 0.02});
-  const Objective objective(ValidSamples(measured), ModelSpec::SharedFactors(/*lobes=*/3),
-                            FindWeighting("appearance"));
-  FactorModel model = InitialModels().front().make(objective, /*seed=*/1);
-  const SolverSummary summary = MakeSolver("awls")->Solve(objective, {.max_iterations = 5}, &model);
-  std::cout << summary.BriefReport() << "\n";
-  return summary.final_objective < summary.initial_objective ? 0 : 1;
+  const Measurement measured = LoadMeasurement("synth:plastic", {.noise = 0.02});
+  const FitResult fit = Fit(measured);
+  WriteModel(fit.file, "plastic.json");
+  std::cout << "CIELAB difference " << fit.appearance->sphere.mean_delta_e << "\n";
 }
