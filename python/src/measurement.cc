@@ -16,7 +16,6 @@
 
 #include "files/file.h"
 #include "fit_module.h"
-#include "formats/write_measurement.h"
 #include "owned_array.h"
 #include "reports/bin_counts.h"
 #include "system/stopwatch.h"

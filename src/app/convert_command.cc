@@ -10,7 +10,6 @@
 #include "app/result_folder.h"
 #include "app/write_for_renderer.h"
 #include "files/file.h"
-#include "formats/write_measurement.h"
 #include "reports/print.h"
 #include "trilobe/appearance/node_reconstruction.h"
 #include "trilobe/base/error.h"
@@ -33,8 +32,7 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
   const FactorModel model = ReadModel(source).model;
   Measurement measurement;
   if (model.spec().anisotropic()) {
-    const std::string ending = EndingOf(out);
-    if (ending != ".bin" && ending != ".csv") {
+    if (!WritableFormat(out).holds_anisotropic) {
       throw Error("--out=" + out + ": " + source +
                   " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "
                   "for UTIA's directions, or in .csv");

@@ -8,6 +8,7 @@
 #include "files/file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/files/content.h"
+#include "trilobe/formats/source.h"
 
 namespace trilobe {
 
@@ -29,15 +30,12 @@ void CheckPictureOut() {
 }
 
 std::string RequiredMeasurementOut(const std::string& command) {
-  // A name without an ending is one of a MERL file, too.
-  constexpr std::string_view kKnown[] = {"", ".binary", ".bin", ".csv"};
   std::string out = RequiredOut(command, "FILE");
-  const std::string ending = EndingOf(out);
-  if (std::ranges::find(kKnown, ending) == std::end(kKnown)) {
-    throw Error("--out=" + out + ": trilobe " + command + " writes no '" + ending +
-                "'; end the name in .binary for MERL layout, in .bin for UTIA's directions, in "
-                ".csv" +
-                (command == "convert" ? ", or of a model in .bsdf for renderers" : ""));
+  try {
+    WritableFormat(out);
+  } catch (const Error& error) {
+    throw Error("--out=" + std::string(error.what()) +
+                (command == "convert" ? ", or in .bsdf for renderers" : ""));
   }
   return out;
 }

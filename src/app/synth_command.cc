@@ -6,7 +6,6 @@
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/result_folder.h"
-#include "formats/write_measurement.h"
 #include "reports/print.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/synth/synth.h"

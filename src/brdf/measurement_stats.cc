@@ -46,6 +46,10 @@ PairError ErrorOfPairs(std::span<const std::pair<Rgb, Rgb>> pairs) {
   return Summarize(std::move(differences));
 }
 
+std::string ValidText(const BinCounts& counts, const std::string& of) {
+  return std::to_string(counts.valid) + " of " + std::to_string(counts.total) + " " + of + " valid";
+}
+
 BinCounts CountBins(const BrdfTable& table) {
   CheckTable(table);
   BinCounts counts{.total = table.grid.size()};

@@ -103,7 +103,12 @@ MeasurementFormat CsvFormat() {
           .ending = ".csv",
           .is_text = true,
           .recognise = IsContent<Content::Kind::kCsv>,
-          .read = ReadBy<ParseCsv>};
+          .read = ReadBy<ParseCsv>,
+          .written_as = "CSV",
+          .holds_anisotropic = true,
+          .write = [](const Measurement& measurement, const std::string& path, int) {
+            return std::to_string(WriteCsv(measurement, path)) + " samples";
+          }};
 }
 
 }  // namespace trilobe

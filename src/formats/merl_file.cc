@@ -8,6 +8,7 @@
 #include "files/file.h"
 #include "files/little_endian.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/files/content.h"
 #include "trilobe/formats/measurement_format.h"
 
@@ -97,10 +98,19 @@ MeasurementFormat MerlFormat() {
           .ending = ".binary",
           .is_text = false,
           .recognise = IsContent<Content::Kind::kMerl>,
-          .read = [](std::string_view bytes, const std::string& source, const SourceOptions&) {
-            return Measurement{
-                .source = source, .kind = "MERL measurement", .table = ParseMerl(bytes, source)};
-          }};
+          .read =
+              [](std::string_view bytes, const std::string& source, const SourceOptions&) {
+                return Measurement{.source = source,
+                                   .kind = "MERL measurement",
+                                   .table = ParseMerl(bytes, source)};
+              },
+          .written_as = "MERL layout",
+          .write =
+              [](const Measurement& measurement, const std::string& path, int) {
+                const BrdfTable& table = TableOf(measurement);
+                WriteMerl(table, path);
+                return ValidText(CountBins(table), "bins");
+              }};
 }
 
 }  // namespace trilobe

@@ -121,6 +121,23 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
   return formats;
 }
 
+const MeasurementFormat& WritableFormat(const std::string& path) {
+  const std::string ending = EndingOf(path);
+  std::string known;
+  for (const MeasurementFormat& format : MeasurementFormats()) {
+    if (format.write == nullptr) continue;
+    if (ending.empty() || ending == format.ending) return format;
+    known += (known.empty() ? "" : ", ") + format.ending + " for " + format.written_as;
+  }
+  throw Error(path + ": trilobe writes no '" + ending + "'; end the name in " + known);
+}
+
+std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
+                             int num_threads) {
+  const MeasurementFormat& format = WritableFormat(path);
+  return format.written_as + ", " + format.write(measurement, path, num_threads);
+}
+
 bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
 
 SynthSource SynthSourceOf(std::string_view source) {

@@ -9,6 +9,7 @@
 #include "files/file.h"
 #include "files/little_endian.h"
 #include "trilobe/base/error.h"
+#include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/files/content.h"
 #include "trilobe/formats/measurement_format.h"
 
@@ -179,15 +180,23 @@ void WriteUtia(const Measurement& scattered, const std::string& path) {
 }
 
 MeasurementFormat UtiaFormat() {
-  return {
-      .name = "utia",
-      .description = "a UTIA .bin file",
-      .ending = ".bin",
-      .is_text = false,
-      .recognise = IsContent<Content::Kind::kUtia>,
-      .read = [](std::string_view bytes, const std::string& source, const SourceOptions& options) {
-        return ParseUtia(bytes, source, options.radiometry);
-      }};
+  return {.name = "utia",
+          .description = "a UTIA .bin file",
+          .ending = ".bin",
+          .is_text = false,
+          .recognise = IsContent<Content::Kind::kUtia>,
+          .read =
+              [](std::string_view bytes, const std::string& source, const SourceOptions& options) {
+                return ParseUtia(bytes, source, options.radiometry);
+              },
+          .written_as = "UTIA layout",
+          .holds_anisotropic = true,
+          .write =
+              [](const Measurement& measurement, const std::string& path, int num_threads) {
+                const Measurement at_nodes = AtNodes(measurement, kUtiaGrid, num_threads);
+                WriteUtia(at_nodes, path);
+                return ValidText(at_nodes.counts, "pairs of directions");
+              }};
 }
 
 }  // namespace trilobe

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct BinCounts {
   int below_min_theta_d = 0;
 };
 BinCounts CountBins(const BrdfTable& table);
+
+// "12 of 20 bins valid".
+std::string ValidText(const BinCounts& counts, const std::string& of);
 
 // What part of the bins above the surface is valid, for each cell of 1 degree x 1 degree of
 // (theta_i, theta_o), [90][90], theta_o fastest; NaN where a cell holds no such bin's centre.

@@ -30,8 +30,9 @@ struct SourceOptions {
 // or not.
 void CheckSourceOptions(const SourceOptions& options);
 
-// A format of files that hold a measurement. Each is described in the file of its reader, by a
-// function `MeasurementFormat NAMEFormat()`, exactly that, which source.cc declares and lists.
+// A format of files that hold a measurement. Each is described in the file of its reader and
+// writer, by a function `MeasurementFormat NAMEFormat()`, exactly that, which source.cc declares
+// and lists.
 struct MeasurementFormat {
   std::string name;         // "merl"
   std::string description;  // "a MERL .binary file"
@@ -41,6 +42,15 @@ struct MeasurementFormat {
   // Throws Error for bytes that are no such file; `source` is its name.
   Measurement (*read)(std::string_view bytes, const std::string& source,
                       const SourceOptions& options) = nullptr;
+
+  // Of a format that is written, too: what the file then is, "MERL layout", and whether samples at
+  // any directions, not only at bins, have a place in it.
+  std::string written_as = {};
+  bool holds_anisotropic = false;
+  // Returns what was written, for a message: "12 samples". Throws Error where the format has no
+  // place for the data, and leaves no file then.
+  std::string (*write)(const Measurement& measurement, const std::string& path,
+                       int num_threads) = nullptr;
 };
 
 // For `recognise`: bytes of this kind.

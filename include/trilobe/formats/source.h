@@ -48,6 +48,15 @@ void DecideMeasured(const SourceOptions& options, Measurement* measurement);
 // Those of the library; the first that recognises a file reads it.
 const std::vector<MeasurementFormat>& MeasurementFormats();
 
+// The one in which a file of this name is written, by its ending; without one, the first. Throws
+// Error, which names the endings that there are, for others.
+const MeasurementFormat& WritableFormat(const std::string& path);
+
+// Writes a measurement so. Returns what was written, for a message: "CSV, 12 samples". Throws Error
+// where the format has no place for the data.
+std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
+                             int num_threads = 1);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_FORMATS_SOURCE_H_
