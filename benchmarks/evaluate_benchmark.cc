@@ -89,6 +89,38 @@ void Values(benchmark::State& state, const FactorModel& model) {
   }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * wi.size()));
 }
+// A sample of all wi, and densities of all pairs.
+template <typename Real>
+void Samples(benchmark::State& state, const FactorModel& model) {
+  const Bsdf<Real> bsdf(model);
+  std::vector<typename Bsdf<Real>::Vector> wi;
+  std::vector<std::array<Real, 2>> u;
+  for (const Call& call : Calls()) {
+    wi.push_back({static_cast<Real>(call.pair.wi[0]), static_cast<Real>(call.pair.wi[1]),
+                  static_cast<Real>(call.pair.wi[2])});
+    u.push_back({static_cast<Real>(call.u[0]), static_cast<Real>(call.u[1])});
+  }
+  std::vector<typename Bsdf<Real>::Sample> samples(wi.size());
+  for (auto _ : state) {
+    bsdf.SamplesOfWo(wi, u, samples);
+    benchmark::DoNotOptimize(samples.data());
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * wi.size()));
+}
+void Pdfs(benchmark::State& state, const FactorModel& model) {
+  const Bsdf<double> bsdf(model);
+  std::vector<Direction> wi, wo;
+  for (const Call& call : Calls()) {
+    wi.push_back(call.pair.wi);
+    wo.push_back(call.pair.wo);
+  }
+  std::vector<double> pdfs(wi.size());
+  for (auto _ : state) {
+    bsdf.Pdfs(wi, wo, pdfs);
+    benchmark::DoNotOptimize(pdfs.data());
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * wi.size()));
+}
 template <typename Material>
 void SampleAndPdf(benchmark::State& state, const Material& material) {
   Run(state, [&](const Call& call) {
@@ -123,6 +155,10 @@ void BM_SampleAndPdfIsotropic(benchmark::State& state) {
 void BM_SampleAndPdfAnisotropic(benchmark::State& state) {
   SampleAndPdf(state, Bsdf<double>(Anisotropic()));
 }
+void BM_SamplesIsotropic(benchmark::State& state) { Samples<double>(state, Isotropic()); }
+void BM_SamplesIsotropicFloat(benchmark::State& state) { Samples<float>(state, Isotropic()); }
+void BM_SamplesAnisotropic(benchmark::State& state) { Samples<double>(state, Anisotropic()); }
+void BM_PdfsIsotropic(benchmark::State& state) { Pdfs(state, Isotropic()); }
 void BM_MakeIsotropic(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(Bsdf<double>(Isotropic()));
 }
@@ -141,6 +177,10 @@ BENCHMARK(BM_ValuesAnisotropicFloat);
 BENCHMARK(BM_SampleAndPdfGgx);
 BENCHMARK(BM_SampleAndPdfIsotropic);
 BENCHMARK(BM_SampleAndPdfAnisotropic);
+BENCHMARK(BM_SamplesIsotropic);
+BENCHMARK(BM_SamplesIsotropicFloat);
+BENCHMARK(BM_SamplesAnisotropic);
+BENCHMARK(BM_PdfsIsotropic);
 BENCHMARK(BM_MakeIsotropic)->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_MakeAnisotropic)->Unit(benchmark::kMillisecond);
 

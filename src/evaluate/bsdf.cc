@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
+#include "trilobe/math/arc_functions.h"
 
 namespace trilobe {
 namespace {
@@ -14,6 +16,13 @@ namespace {
 // has no node at is never drawn: of what the lobes reflect.
 constexpr double kCosineShare = 0.01;
 
+// From 0 to 180 degrees [rad]: cos x = 1 - 2 sin^2 (x / 2). What is beyond [-1, 1] by rounding is
+// at its end.
+template <typename Real>
+Real AngleOfCosine(Real cosine) {
+  return 2 * AngleOfSine2((1 - cosine) / 2);
+}
+
 // The azimuth between the half vector and wi up to which wo is above the surface, for
 //   0 < cos theta_o = 2 (wi . h) cos theta_h - cos theta_i. [rad]
 template <typename Real>
@@ -21,11 +30,22 @@ Real MaxPhi(Real cos_i, Real sin_i, Real cos_h, Real sin_h) {
   const Real denominator = 2 * sin_h * cos_h * sin_i;
   const Real numerator = -cos_i * (2 * cos_h * cos_h - 1);
   if (numerator <= -denominator) return static_cast<Real>(kPi);
-  return numerator >= denominator ? Real{0} : std::acos(numerator / denominator);
+  return numerator >= denominator ? Real{0} : AngleOfCosine(numerator / denominator);
 }
 
 [[noreturn]] void Overflow() {
   throw Error("the model's values overflow; its factors are too large");
+}
+
+// Of many samples, so many go from step to step together: a processor does the same step of some at
+// once, where it waits from step to step of one.
+constexpr size_t kBlock = 32;
+
+void CheckAsMany(size_t wi, size_t others, size_t results) {
+  if (wi == results && others == results) return;
+  throw Error("there are " + std::to_string(wi) + " wi, " + std::to_string(others) +
+              " of what goes with them, and room for " + std::to_string(results) +
+              " results; give as many of each");
 }
 
 // Above the surface, and a number.
@@ -161,8 +181,9 @@ typename Bsdf<Real>::Incident Bsdf<Real>::Prepare(const Vector& wi) const {
   incident.cos_phi = at_normal ? Real{1} : wi[0] / incident.sin;
   incident.sin_phi = at_normal ? Real{0} : wi[1] / incident.sin;
   // No half vector further than half of theta_i + 90 degrees has a wo above the surface.
-  incident.at = half_vectors_.At(std::atan2(incident.sin, wi[2]),
-                                 anisotropic() && !at_normal ? std::atan2(wi[1], wi[0]) : Real{0},
+  const Real phi_i =
+      anisotropic() ? std::copysign(AngleOfCosine(incident.cos_phi), incident.sin_phi) : Real{0};
+  incident.at = half_vectors_.At(AngleOfSine2(incident.sin * incident.sin), phi_i,
                                  std::min((1 + incident.sin) / 2, Real{1}));
   const Real lobes = incident.at.total;
   const Real diffuse = diffuse_albedo_ + static_cast<Real>(kCosineShare) * lobes;
@@ -194,16 +215,20 @@ Real Bsdf<Real>::LobesPdf(const Vector& wi, const Incident& incident, const Vect
   const Real phi_max = MaxPhi(wi[2], incident.sin, h[2], sin_h);
   const Real wi_h = length / 2;  // |wo + wi| = 2 (wi . h)
   if (!(at.total > 0 && phi_max > 0 && wi_h > 0)) return 0;
-  const Real phi = std::atan2(h[1] * incident.cos_phi - h[0] * incident.sin_phi,
-                              h[0] * incident.cos_phi + h[1] * incident.sin_phi);
-  const Real s = anisotropic() ? (phi / phi_max + 1) / 2 : std::abs(phi) / phi_max;
+  const Real along = h[0] * incident.cos_phi + h[1] * incident.sin_phi;
+  const Real across = h[1] * incident.cos_phi - h[0] * incident.sin_phi;
+  const Real phi = sin_h > 0 ? AngleOfCosine(along / sin_h) : Real{0};
+  const Real s = anisotropic() ? (std::copysign(phi, across) / phi_max + 1) / 2 : phi / phi_max;
   return half_vectors_.Value(at, y, s) / at.total * h[2] / (4 * wi_h * phi_max);
 }
 
 template <typename Real>
 Real Bsdf<Real>::Pdf(const Vector& wi, const Vector& wo) const {
-  if (!(IsAbove(wi) && IsAbove(wo))) return 0;
-  const Incident incident = Prepare(wi);
+  return IsAbove(wi) && IsAbove(wo) ? PdfOf(wi, Prepare(wi), wo) : Real{0};
+}
+
+template <typename Real>
+Real Bsdf<Real>::PdfOf(const Vector& wi, const Incident& incident, const Vector& wo) const {
   const Real cosine = wo[2] * static_cast<Real>(1 / kPi);
   return incident.cosine_part * cosine + (1 - incident.cosine_part) * LobesPdf(wi, incident, wo);
 }
@@ -213,7 +238,16 @@ typename Bsdf<Real>::Sample Bsdf<Real>::SampleWo(const Vector& wi,
                                                  const std::array<Real, 2>& u) const {
   Sample sample;
   if (!IsAbove(wi)) return sample;
-  const Incident incident = Prepare(wi);
+  Propose(wi, Prepare(wi), u, &sample);
+  if (sample.pdf > 0) Weigh(Value(wi, sample.wo), &sample);
+  return sample;
+}
+
+// The direction and its density.
+template <typename Real>
+void Bsdf<Real>::Propose(const Vector& wi, const Incident& incident, const std::array<Real, 2>& u,
+                         Sample* proposed) const {
+  Sample& sample = *proposed;
   const Real below_one = 1 - std::numeric_limits<Real>::epsilon();
   const Real part = incident.cosine_part;
   const auto inside = [&](Real x) { return x > 0 ? std::min(x, below_one) : Real{0}; };
@@ -240,12 +274,58 @@ typename Bsdf<Real>::Sample Bsdf<Real>::SampleWo(const Vector& wi,
                     ? drawn.value / incident.at.total * cos_h / (2 * twice * phi_max)
                     : Real{0};
   }
-  if (!(sample.wo[2] > 0)) return sample;  // by rounding, at the horizon
+  if (!(sample.wo[2] > 0)) return;  // by rounding, at the horizon
   sample.pdf = part * sample.wo[2] * static_cast<Real>(1 / kPi) + (1 - part) * lobes_pdf;
-  if (!(sample.pdf > 0)) return sample;
-  sample.weight = Value(wi, sample.wo);
-  for (Real& w : sample.weight) w *= sample.wo[2] / sample.pdf;
-  return sample;
+}
+
+template <typename Real>
+void Bsdf<Real>::Weigh(const Colour& value, Sample* sample) {
+  for (int c = 0; c < kChannels; ++c) {
+    sample->weight[c] = value[c] * (sample->wo[2] / sample->pdf);
+  }
+}
+
+template <typename Real>
+void Bsdf<Real>::SamplesOfWo(std::span<const Vector> wi, std::span<const std::array<Real, 2>> u,
+                             std::span<Sample> samples) const {
+  CheckAsMany(wi.size(), u.size(), samples.size());
+  std::array<Incident, kBlock> incident;
+  std::array<Vector, kBlock> wo;
+  std::array<Colour, kBlock> values;
+  for (size_t begin = 0; begin < samples.size(); begin += kBlock) {
+    const size_t size = std::min(samples.size() - begin, kBlock);
+    const std::span<Sample> block = samples.subspan(begin, size);
+    const auto in = wi.subspan(begin, size);
+    for (size_t k = 0; k < size; ++k) {
+      block[k] = {};
+      if (IsAbove(in[k])) incident[k] = Prepare(in[k]);
+    }
+    for (size_t k = 0; k < size; ++k) {
+      if (IsAbove(in[k])) Propose(in[k], incident[k], u[begin + k], &block[k]);
+      wo[k] = block[k].wo;
+    }
+    Values(in, std::span(wo).first(size), std::span(values).first(size));
+    for (size_t k = 0; k < size; ++k) {
+      if (block[k].pdf > 0) Weigh(values[k], &block[k]);
+    }
+  }
+}
+
+template <typename Real>
+void Bsdf<Real>::Pdfs(std::span<const Vector> wi, std::span<const Vector> wo,
+                      std::span<Real> pdfs) const {
+  CheckAsMany(wi.size(), wo.size(), pdfs.size());
+  std::array<Incident, kBlock> incident;
+  for (size_t begin = 0; begin < pdfs.size(); begin += kBlock) {
+    const size_t size = std::min(pdfs.size() - begin, kBlock);
+    const auto above = [&](size_t k) { return IsAbove(wi[begin + k]) && IsAbove(wo[begin + k]); };
+    for (size_t k = 0; k < size; ++k) {
+      if (above(k)) incident[k] = Prepare(wi[begin + k]);
+    }
+    for (size_t k = 0; k < size; ++k) {
+      pdfs[begin + k] = above(k) ? PdfOf(wi[begin + k], incident[k], wo[begin + k]) : Real{0};
+    }
+  }
 }
 
 template class Bsdf<double>;

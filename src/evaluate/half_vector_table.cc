@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 
+#include "math/lanes.h"
 #include "math/linear_density.h"
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
@@ -14,19 +16,19 @@ namespace {
 // Nodes of s that there may be.
 constexpr int kMaxS = 33;
 
-// Bins that y is looked up by: of its fourth root, which is about that of theta_h's square root.
-constexpr int kFirsts = 512;
+// Bins of theta_i, and of the parts of an integral, by which a search begins.
+constexpr int kThetaBins = 1024, kPartBins = 64;
+constexpr double kThetaBin = kPi / 2 / kThetaBins;
 
-template <typename Real>
-Real FourthRoot(Real y) {
-  return std::sqrt(std::sqrt(std::clamp(y, Real{0}, Real{1})));
+// Bins of y of equal width in its logarithm, nearly: of the leading digits of a float, 64 for each
+// factor of 2 below 1.
+constexpr int kYOctaves = 44, kYBins = 64 * kYOctaves;
+int BinOfY(float y) {
+  constexpr auto kFirst = static_cast<int32_t>((127 - kYOctaves) << 6);
+  return std::clamp((std::bit_cast<int32_t>(y) >> 17) - kFirst, 0, kYBins - 1);
 }
-
-// Which of the intervals between ascending nodes a number is in.
-template <typename Real>
-int IntervalOf(const std::vector<Real>& nodes, Real x) {
-  const auto upper = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
-  return static_cast<int>(upper - nodes.begin()) - 1;
+float BeginOfYBin(int bin) {
+  return std::bit_cast<float>(static_cast<int32_t>(bin + ((127 - kYOctaves) << 6)) << 17);
 }
 
 }  // namespace
@@ -38,17 +40,21 @@ HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<flo
       num_s_(nodes.s),
       num_phi_i_(nodes.phi_i),
       values_(values) {
-  const int rows = static_cast<int>(y_.size());
-  const int count = static_cast<int>(theta_i_.size()) * num_phi_i_;
-  if (num_s_ < 2 || num_s_ > kMaxS) throw Error("a table needs 2 to 33 nodes of s");
-  largest_step_ = static_cast<int>(std::bit_floor(static_cast<unsigned>(rows)));
-  for (int k = 0; k < kFirsts; ++k) {
-    const double root = static_cast<double>(k) / (kFirsts - 1);
-    first_.push_back(IntervalOf(y_, static_cast<Real>(root * root * root * root)));
-    // The bin below begins a little earlier by rounding.
-    first_.back() = std::max(first_.back() - 1, 0);
+  const int rows = static_cast<int>(y_.size()), rings = static_cast<int>(theta_i_.size());
+  if (num_s_ < 5 || num_s_ > kMaxS || num_s_ % 4 != 1) {
+    throw Error("a table needs 5 to 33 nodes of s, one more than a multiple of 4");
   }
-  for (int node = 0; node < count; ++node) {
+  int begin = 0;
+  for (int bin = 0; bin <= kThetaBins; ++bin) {
+    while (begin + 2 < rings && nodes.theta_i[begin + 1] <= kThetaBin * (bin - 0.5)) ++begin;
+    theta_guide_.push_back(begin);
+  }
+  begin = 0;
+  for (int bin = 0; bin < kYBins; ++bin) {
+    while (begin + 2 < rows && y_[begin + 1] <= static_cast<Real>(BeginOfYBin(bin))) ++begin;
+    y_guide_.push_back(begin);
+  }
+  for (int node = 0; node < rings * num_phi_i_; ++node) {
     double sum = 0, before = 0;
     for (int row = 0; row < rows; ++row) {
       const float* const at = Row(node, row);
@@ -60,6 +66,13 @@ HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<flo
       cumulated_.push_back(static_cast<Real>(sum));
       before = of_row;
     }
+    const Real* const cumulated = &cumulated_[static_cast<size_t>(node) * rows];
+    begin = 0;
+    for (int bin = 0; bin <= kPartBins; ++bin) {
+      const Real part = cumulated[rows - 1] * static_cast<Real>(bin) / kPartBins;
+      while (begin + 2 < rows && cumulated[begin + 1] <= part) ++begin;
+      row_guide_.push_back(begin);
+    }
   }
 }
 
@@ -67,26 +80,25 @@ template <typename Real>
 typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_i, Real phi_i,
                                                                     Real end) const {
   Condition at;
-  const auto add = [&](int node, Real weight) {
-    if (weight == 0) return;
-    at.node[at.count] = node;
-    at.weight[at.count++] = weight;
-  };
-  const int ring = IntervalOf(theta_i_, theta_i);
+  int ring = theta_guide_[std::clamp(static_cast<int>(theta_i * static_cast<Real>(1 / kThetaBin)),
+                                     0, kThetaBins)];
+  while (ring + 2 < static_cast<int>(theta_i_.size()) && theta_i_[ring + 1] <= theta_i) ++ring;
   const Real t = std::clamp((theta_i - theta_i_[ring]) / (theta_i_[ring + 1] - theta_i_[ring]),
                             Real{0}, Real{1});
   if (num_phi_i_ == 1) {
-    add(ring, 1 - t);
-    add(ring + 1, t);
+    at.count = 2;
+    at.node = {ring, ring + 1};
+    at.weight = {1 - t, t};
   } else {
     const Real turns = phi_i * static_cast<Real>(0.5 / kPi);
     const Real x = (turns - std::floor(turns)) * static_cast<Real>(num_phi_i_);
-    const int low = std::min(static_cast<int>(x), num_phi_i_ - 1), high = (low + 1) % num_phi_i_;
+    const int low = std::min(static_cast<int>(x), num_phi_i_ - 1);
+    const int high = low + 1 < num_phi_i_ ? low + 1 : 0;
     const Real f = x - static_cast<Real>(low);
-    add(ring * num_phi_i_ + low, (1 - t) * (1 - f));
-    add(ring * num_phi_i_ + high, (1 - t) * f);
-    add((ring + 1) * num_phi_i_ + low, t * (1 - f));
-    add((ring + 1) * num_phi_i_ + high, t * f);
+    const int first = ring * num_phi_i_, second = first + num_phi_i_;
+    at.count = 4;
+    at.node = {first + low, first + high, second + low, second + high};
+    at.weight = {(1 - t) * (1 - f), (1 - t) * f, t * (1 - f), t * f};
   }
   at.end = end;
   const int row = IntervalOfY(end);
@@ -98,7 +110,9 @@ typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_i
 
 template <typename Real>
 int HalfVectorTable<Real>::IntervalOfY(Real y) const {
-  int row = first_[static_cast<int>(FourthRoot(y) * (kFirsts - 1))];
+  // A bin may begin a little later than a number that is rounded into it.
+  int row = y_guide_[BinOfY(static_cast<float>(y))];
+  row -= row > 0 && y_[row] > y;
   while (row + 2 < static_cast<int>(y_.size()) && y_[row + 1] <= y) ++row;
   return row;
 }
@@ -138,45 +152,83 @@ Real HalfVectorTable<Real>::Value(const Condition& at, Real y, Real s) const {
   return sum;
 }
 
+// The interval of y that has a part of the integral: between those of the nodes themselves, by
+// steps that no branch waits for.
+template <typename Real>
+int HalfVectorTable<Real>::RowWith(const Condition& at, Real wanted) const {
+  const int last = static_cast<int>(y_.size()) - 2;
+  const Real all = Cumulated(at, last + 1);
+  const Real part = all > 0 ? wanted / all : Real{0};
+  const int bin = std::clamp(static_cast<int>(part * kPartBins), 0, kPartBins - 1);
+  int low = last, high = 0;
+  for (int n = 0; n < at.count; ++n) {
+    const int* const guide = &row_guide_[static_cast<size_t>(at.node[n]) * (kPartBins + 1) + bin];
+    low = std::min(low, guide[0]);
+    high = std::max(high, guide[1]);
+  }
+  // A node without light has the part at its end, and the rounded bin may begin a little later.
+  while (low > 0 && Cumulated(at, low) > wanted) --low;
+  for (int step = static_cast<int>(std::bit_floor(static_cast<unsigned>(high - low + 1))); step > 0;
+       step /= 2) {
+    const int next = std::min(low + step, last);
+    low = Cumulated(at, next) <= wanted ? next : low;
+  }
+  return low;
+}
+
 template <typename Real>
 typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Condition& at, Real u_y,
                                                                    Real u_s) const {
-  // The interval of y that has the part u_y of the integral, by steps that no branch waits for.
   const Real wanted = u_y * at.total;
-  const int last = static_cast<int>(y_.size()) - 1;
-  int low = 0;
-  for (int step = largest_step_; step > 0; step /= 2) {
-    const int next = std::min(low + step, last - 1);
-    low = Cumulated(at, next) <= wanted ? next : low;
-  }
-  const Real before = Cumulated(at, low), after = Cumulated(at, low + 1);
-  // The two rows of values around it, and then the one between them.
-  std::array<Real, kMaxS> first{}, second{};
-  for (int n = 0; n < at.count; ++n) {
-    const float *row = Row(at.node[n], low), *next = row + num_s_;
-    for (int k = 0; k < num_s_; ++k) {
-      first[k] += at.weight[n] * static_cast<Real>(row[k]);
-      second[k] += at.weight[n] * static_cast<Real>(next[k]);
-    }
-  }
-  const Real mass = after - before;
-  const Real part = mass > 0 ? std::clamp((wanted - before) / mass, Real{0}, Real{1}) : Real{0.5};
-  const Real from = OfRow(at, low), to = OfRow(at, low + 1);
+  const int row = RowWith(at, wanted);
+  const Real before = Cumulated(at, row), mass = Cumulated(at, row + 1) - before;
+  const Real part = mass > 0 ? std::clamp((wanted - before) / mass, Real{0}, Real{1}) : Real{0};
+  const Real from = OfRow(at, row), to = OfRow(at, row + 1);
   const Real t = InvertLinearIntegral(part * (from + to) / 2, from, to);
-  for (int k = 0; k < num_s_; ++k) first[k] += t * (second[k] - first[k]);
-  Real left = (first[0] + first[num_s_ - 1]) / -2;
-  for (int k = 0; k < num_s_; ++k) left += first[k];
-  left *= u_s;
-  int k = 0;
-  for (; k < num_s_ - 2; ++k) {
-    const Real cell = (first[k] + first[k + 1]) / 2;
-    if (left < cell) break;
-    left -= cell;
+  // The row of values there, as floats: less exact than the numbers are, but as good as a draw.
+  constexpr int kMost = (kMaxS - 1) / 4;
+  Four<float> fours[kMost];
+  float at_s[kMaxS];
+  const int groups = (num_s_ - 1) / 4, end_s = num_s_ - 1;
+  for (int g = 0; g < groups; ++g) fours[g] = Four<float>{};
+  at_s[end_s] = 0;
+  for (int n = 0; n < at.count; ++n) {
+    const float *low = Row(at.node[n], row), *high = low + num_s_;
+    const auto below = static_cast<float>(at.weight[n] * (1 - t));
+    const auto above = static_cast<float>(at.weight[n] * t);
+    for (int g = 0; g < groups; ++g) {
+      fours[g] += below * Load(low + 4 * g) + above * Load(high + 4 * g);
+    }
+    at_s[end_s] += below * low[end_s] + above * high[end_s];
   }
-  const Real f = InvertLinearIntegral(std::max(left, Real{0}), first[k], first[k + 1]);
-  return {std::min(y_[low] + t * (y_[low + 1] - y_[low]), at.end),
-          (static_cast<Real>(k) + f) / static_cast<Real>(num_s_ - 1),
-          first[k] + f * (first[k + 1] - first[k])};
+  for (int g = 0; g < groups; ++g) Store<float>(fours[g], at_s + 4 * g);
+  // Twice what there is up to each fourth node, and that up to each in the four cells there.
+  float sums[kMost + 1];
+  sums[0] = 0;
+  for (int g = 0; g < groups; ++g) {
+    const float* const a = at_s + 4 * g;
+    sums[g + 1] = sums[g] + (a[0] + 2 * (a[1] + a[2] + a[3]) + a[4]);
+  }
+  auto left = static_cast<float>(u_s) * sums[groups];
+  int group = 0;
+  for (int g = 1; g < groups; ++g) group += left >= sums[g];
+  left -= sums[group];
+  const float* const a = at_s + 4 * group;
+  const float one = a[0] + a[1], two = one + (a[1] + a[2]), three = two + (a[2] + a[3]);
+  const int cell = (left >= one) + (left >= two) + (left >= three);
+  left -= cell == 0 ? 0 : cell == 1 ? one : cell == 2 ? two : three;
+  const int k = 4 * group + cell;
+  const float f = InvertLinearIntegral(std::max(left / 2, 0.0F), at_s[k], at_s[k + 1]);
+  // Its value, as exactly as Value has it.
+  const Real g = static_cast<Real>(f);
+  Real value = 0;
+  for (int n = 0; n < at.count; ++n) {
+    const float *low = Row(at.node[n], row) + k, *high = low + num_s_;
+    value += at.weight[n] *
+             ((1 - t) * ((1 - g) * low[0] + g * low[1]) + t * ((1 - g) * high[0] + g * high[1]));
+  }
+  return {std::min(y_[row] + t * (y_[row + 1] - y_[row]), at.end),
+          (static_cast<Real>(k) + g) / static_cast<Real>(num_s_ - 1), value};
 }
 
 template class HalfVectorTable<double>;

@@ -268,7 +268,7 @@ class PairEvaluation {
     const auto term = [&](size_t k) __attribute__((always_inline)) {
       return Load(model_.terms_[k].lane);
     };
-    Four<Real> angles = SqrtOf(m) * Polynomial<Model::kTerms, Real>(term, m);
+    Four<Real> angles = SqrtOf(m) * Polynomial<Model::kTerms, Four<Real>>(term, m);
     angles = sines2 > Broadcast<Real>(0.5) ? Load(model_.right_angle_.lane) - angles : angles;
     const Parts<Real> at(angles);  // an entry later, as tables begin an entry before
     Four<Real> turn = Broadcast<Real>(-0.5);

@@ -48,19 +48,19 @@ struct ArcTangent<float> {
       0.042137623589193041, -0.015731249122183653, 0.002766283501762026};
 };
 
-// Of 8, 9, 16 or 17 terms, term(k) four numbers, in steps few of which wait for each other
+// Of 8, 9, 16 or 17 terms, in steps few of which wait for each other
 // (Estrin's scheme).
-template <size_t kSize, typename Real, typename Term>
-TRILOBE_ALWAYS_INLINE Four<Real> Polynomial(const Term& term, const Four<Real>& x) {
+template <size_t kSize, typename Number, typename Term>
+TRILOBE_ALWAYS_INLINE Number Polynomial(const Term& term, const Number& x) {
   static_assert(kSize == 8 || kSize == 9 || kSize == 16 || kSize == 17);
-  const Four<Real> x2 = x * x, x4 = x2 * x2;
+  const Number x2 = x * x, x4 = x2 * x2;
   const auto eight = [&](size_t k) __attribute__((always_inline)) {
-    const Four<Real> a = term(k) + term(k + 1) * x, b = term(k + 2) + term(k + 3) * x;
-    const Four<Real> c = term(k + 4) + term(k + 5) * x, d = term(k + 6) + term(k + 7) * x;
+    const Number a = term(k) + term(k + 1) * x, b = term(k + 2) + term(k + 3) * x;
+    const Number c = term(k + 4) + term(k + 5) * x, d = term(k + 6) + term(k + 7) * x;
     return (a + b * x2) + (c + d * x2) * x4;
   };
   if constexpr (kSize == 8) return eight(0);
-  const Four<Real> x8 = x4 * x4;
+  const Number x8 = x4 * x4;
   if constexpr (kSize == 9) return eight(0) + term(8) * x8;
   if constexpr (kSize == 16) return eight(0) + eight(8) * x8;
   return eight(0) + (eight(8) + term(16) * x8) * x8;
@@ -75,8 +75,20 @@ TRILOBE_ALWAYS_INLINE Four<Real> AnglesOfSines2(const Four<Real>& sines2) {
     return Broadcast(static_cast<Real>(kTerms[k]));
   };
   const Four<Real> m = MinOf(sines2, Four<Real>{1 - sines2});
-  const Four<Real> angles = SqrtOf(m) * Polynomial<kTerms.size(), Real>(term, m);
+  const Four<Real> angles = SqrtOf(m) * Polynomial<kTerms.size(), Four<Real>>(term, m);
   return sines2 > Broadcast<Real>(0.5) ? static_cast<Real>(kPi / 2) - angles : angles;
+}
+
+// One of these.
+template <typename Real>
+TRILOBE_ALWAYS_INLINE Real AngleOfSine2(Real sine2) {
+  constexpr auto kTerms = ArcSine<Real>::kTerms;
+  const auto term = [&](size_t k) __attribute__((always_inline)) {
+    return static_cast<Real>(kTerms[k]);
+  };
+  const Real m = std::max(std::min(sine2, 1 - sine2), Real{0});
+  const Real angle = std::sqrt(m) * Polynomial<kTerms.size(), Real>(term, m);
+  return sine2 > Real{0.5} ? static_cast<Real>(kPi / 2) - angle : angle;
 }
 
 // The azimuths of points (x, y) in turns, from 0 to 1; 0 where both are 0. Within 2e-15, of floats
@@ -90,7 +102,7 @@ TRILOBE_ALWAYS_INLINE Four<Real> Turns(const Four<Real>& x, const Four<Real>& y)
   const auto term = [&](size_t k) __attribute__((always_inline)) {
     return Broadcast(static_cast<Real>(kTerms[k] * (0.5 / kPi)));
   };
-  Four<Real> turns = a * Polynomial<kTerms.size(), Real>(term, Four<Real>{a * a});
+  Four<Real> turns = a * Polynomial<kTerms.size(), Four<Real>>(term, Four<Real>{a * a});
   turns = length_y > length_x ? Real{0.25} - turns : turns;
   turns = x < zero ? Real{0.5} - turns : turns;
   return y < zero ? 1 - turns : turns;

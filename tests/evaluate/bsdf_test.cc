@@ -176,6 +176,33 @@ TEST(BsdfSampling, MovesContinuouslyWithItsNumbers) {
   }
 }
 
+TEST(BsdfSampling, ManyAtOnceAreThoseOfEach) {
+  for (const auto& [name, model] : TestMaterials()) {
+    const Bsdf<double> bsdf(model);
+    Random random(8);
+    std::vector<Direction> wi(20), wo(20);
+    std::vector<std::array<double, 2>> u(20);
+    for (size_t k = 0; k < wi.size(); ++k) {
+      wi[k] = DirectionAt(random.Uniform(0, 1.6), random.Uniform(-kPi, kPi));
+      wo[k] = DirectionAt(random.Uniform(0, 1.6), random.Uniform(-kPi, kPi));
+      u[k] = {random.Uniform(), random.Uniform()};
+    }
+    std::vector<Bsdf<double>::Sample> samples(20);
+    std::vector<double> pdfs(20);
+    bsdf.SamplesOfWo(wi, u, samples);
+    bsdf.Pdfs(wi, wo, pdfs);
+    for (size_t k = 0; k < wi.size(); ++k) {
+      EXPECT_EQ(samples[k].wo, bsdf.SampleWo(wi[k], u[k]).wo) << name;
+      EXPECT_EQ(samples[k].weight, bsdf.SampleWo(wi[k], u[k]).weight) << name;
+      EXPECT_EQ(pdfs[k], bsdf.Pdf(wi[k], wo[k])) << name;
+    }
+    pdfs.pop_back();
+    EXPECT_THROW(bsdf.Pdfs(wi, wo, pdfs), Error);
+    u.pop_back();
+    EXPECT_THROW(bsdf.SamplesOfWo(wi, u, samples), Error);
+  }
+}
+
 TEST(BsdfSampling, HasAnAnswerForAnyNumbersAndDirections) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -56,11 +56,6 @@ class Bsdf {
 
   Colour Value(const Vector& wi, const Vector& wo) const { return model_.Value(wi, wo); }
 
-  void Values(std::span<const Vector> wi, std::span<const Vector> wo,
-              std::span<Colour> values) const {
-    model_.Values(wi, wo, values);
-  }
-
   // The diffuse term, and each lobe's part of the value, of which that is the sum (or 0 where that
   // is negative). `values` has lobes() entries.
   const Colour& diffuse() const { return model_.diffuse(); }
@@ -89,6 +84,16 @@ class Bsdf {
   // What half vectors are drawn by.
   const HalfVectorTable<Real>& half_vectors() const { return half_vectors_; }
 
+  // The same for many pairs or directions at once, the same numbers. Throw Error unless there are
+  // as many of each.
+  void Values(std::span<const Vector> wi, std::span<const Vector> wo,
+              std::span<Colour> values) const {
+    model_.Values(wi, wo, values);
+  }
+  void SamplesOfWo(std::span<const Vector> wi, std::span<const std::array<Real, 2>> u,
+                   std::span<Sample> samples) const;
+  void Pdfs(std::span<const Vector> wi, std::span<const Vector> wo, std::span<Real> pdfs) const;
+
  private:
   // A direction wi, what is drawn for it, and how often the cosine is.
   struct Incident {
@@ -101,6 +106,10 @@ class Bsdf {
   void MakeTables(const Nodes& nodes);
   Incident Prepare(const Vector& wi) const;
   Real LobesPdf(const Vector& wi, const Incident& incident, const Vector& wo) const;
+  Real PdfOf(const Vector& wi, const Incident& incident, const Vector& wo) const;
+  void Propose(const Vector& wi, const Incident& incident, const std::array<Real, 2>& u,
+               Sample* proposed) const;
+  static void Weigh(const Colour& value, Sample* sample);
 
   PreparedModel<Real> model_;
   HalfVectorTable<Real> half_vectors_;

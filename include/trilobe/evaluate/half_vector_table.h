@@ -13,11 +13,12 @@ namespace trilobe {
 template <typename Real>
 class HalfVectorTable {
  public:
-  // Nodes of y, ascending from 0 to 1; how many nodes of s there are from 0 to 1, 2 to 33; nodes of
+  // Nodes of y, ascending from 0 to 1; how many nodes of s there are from 0 to 1, 5 to 33, one more
+  // than a multiple of 4; nodes of
   // theta_i, ascending from 0 [rad], and how many even steps of phi_i there are around the circle.
   struct Nodes {
     std::vector<double> y;
-    int s = 2;
+    int s = 5;
     std::vector<double> theta_i;
     int phi_i = 1;
   };
@@ -58,6 +59,7 @@ class HalfVectorTable {
 
  private:
   int IntervalOfY(Real y) const;
+  int RowWith(const Condition& at, Real wanted) const;
   Real Cumulated(const Condition& at, int row) const;
   Real OfRow(const Condition& at, int row) const;
   const float* Row(int node, int row) const {
@@ -65,12 +67,13 @@ class HalfVectorTable {
   }
 
   std::vector<Real> y_, theta_i_;
-  std::vector<int> first_;  // an interval of y that is not above the one of y = (k / 511)^4
-  int largest_step_ = 0;    // by which intervals are searched
   int num_s_ = 0, num_phi_i_ = 1;
   std::vector<float> values_;    // [node of wi][y][s]
   std::vector<Real> of_row_;     // [node of wi][y]: integral over all s
   std::vector<Real> cumulated_;  // [node of wi][y]: that over y up to this one
+  // Where searches begin, by bins: of theta_i, of y, and, for each node of wi, of parts of its
+  // integral.
+  std::vector<int> theta_guide_, y_guide_, row_guide_;
 };
 
 extern template class HalfVectorTable<double>;
