@@ -10,7 +10,6 @@
 #include "reports/stretch_report.h"
 #include "results/stretch_json.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/lobes/gauge.h"
 #include "trilobe/results/model_file.h"
 
@@ -58,7 +57,6 @@ int CountUnobserved(const ModelFile& file, Factor factor) {
 
 // For light along `phi_i` [rad].
 BrdfFunction BrdfOf(const FactorModel& model, double phi_i) {
-  if (!model.spec().anisotropic()) return ContinuousModel(model);
   return [brdf = MaterialOf(model).spherical, phi_i](const DirectionPair& pair) {
     SphericalAngles at = ToSphericalAngles(pair);
     at.phi_i += phi_i;

@@ -15,7 +15,6 @@
 #include "reports/verdict_report.h"
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/pictures/plots.h"

@@ -5,9 +5,9 @@
 #include <limits>
 #include <string>
 
+#include "math/arc_functions.h"
 #include "trilobe/base/error.h"
 #include "trilobe/math/angles.h"
-#include "trilobe/math/arc_functions.h"
 
 namespace trilobe {
 namespace {

@@ -7,7 +7,7 @@
 #include "prune/unmeasured_guide.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/reflectance.h"
-#include "trilobe/lobes/continuous_model.h"
+#include "trilobe/appearance/material.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/robust.h"
 #include "trilobe/objective/score.h"
@@ -45,11 +45,11 @@ class Looks {
 
   double Measured(const FactorModel& model) {
     if (!measured_) measured_.emplace(table_, options_);
-    return (*measured_)(ContinuousModel(model)).psnr_db;
+    return (*measured_)(MaterialOf(model).angular).psnr_db;
   }
   double Beyond(const FactorModel& model) {
     if (!beyond_) beyond_.emplace(SphereJudge::OfAllDirections(table_, options_));
-    return (*beyond_)(ContinuousModel(model)).psnr_db;
+    return (*beyond_)(MaterialOf(model).angular).psnr_db;
   }
 
  private:

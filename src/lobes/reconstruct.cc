@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "geometry/grid_cosines.h"
+#include "lobes/unclamped_model.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/system/parallel.h"
 
 namespace trilobe {
@@ -43,19 +43,18 @@ std::vector<Rgb> UnclampedSamples(const FactorModel& model, const BrdfSamples& s
   }
   const bool own_bins = samples.on_grid() && samples.grid.theta_h == spec.d_axis.size &&
                         samples.grid.theta_d == spec.f_axis.size && !spec.stretches.any();
-  const ContinuousModel continuous(model);
+  const UnclampedModel unclamped(model);
   if (own_bins) {
     const GridCosines cosines(samples.grid);
     return ForEach(samples.size(), num_threads, [&](int j) {
       const int row = samples.bins[j] / samples.grid.phi_d;
       const Stencil D = PointStencil(row / samples.grid.theta_d);
-      return continuous.Unclamped({&D, 1}, PointStencil(row % samples.grid.theta_d),
-                                  cosines(samples.bins[j]));
+      return unclamped({&D, 1}, PointStencil(row % samples.grid.theta_d), cosines(samples.bins[j]));
     });
   }
   return ForEach(samples.size(), num_threads, [&](int j) {
     const HalfDiffAngles angles = samples.Angles(j);
-    return continuous.Unclamped(angles, ToCosines(angles));
+    return unclamped(angles, ToCosines(angles));
   });
 }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tests/app/run_program.h"
+#include "trilobe/evaluate/prepared_model.h"
 #include "trilobe/geometry/directions.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/results/model_file.h"
 #include "trilobe/results/trace_file.h"
 
@@ -60,13 +60,13 @@ TEST_F(Scattered, StoresTheModelThatWasSolved) {
   EXPECT_NEAR(score["objective"], finished, 1e-9 * finished);
 
   // What evaluates models takes its few nodes.
-  const ContinuousModel prepared(file.model);
+  const PreparedModel<double> prepared(file.model);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> theta(0, 1.5), phi(0, 6);
   for (int k = 0; k < 100; ++k) {
     const DirectionPair at =
         ToDirections(SphericalAngles{theta(random), phi(random), theta(random), phi(random)});
-    const Rgb expected = Evaluate(file.model, at), value = prepared(at);
+    const Rgb expected = Evaluate(file.model, at), value = prepared.Value(at.wi, at.wo);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], 1e-9 * (1 + expected[c]));
   }
   // And it can be held against the whole table that the samples are of.

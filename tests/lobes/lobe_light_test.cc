@@ -7,7 +7,6 @@
 
 #include "tests/test_util.h"
 #include "trilobe/brdf/albedo.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/lobes/gauge.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -47,7 +46,7 @@ FactorModel SmoothModel() {
 // parts.
 Rgb BihemisphericalAlbedo(const FactorModel& model) {
   constexpr int kSteps = 24;
-  const ContinuousModel brdf(model);
+  const auto brdf = [&](const DirectionPair& pair) { return Evaluate(model, pair); };
   Rgb sum{};
   for (int k = 0; k < kSteps; ++k) {
     const double sin2 = (k + 0.5) / kSteps;  // equal shares of the projected hemisphere

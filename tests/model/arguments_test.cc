@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/unclamped_model.h"
 #include "objective/parameter_blocks.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
@@ -16,11 +17,11 @@
 #include "trilobe/brdf/node_brdf.h"
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/lobes/continuation.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/lobe_light.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/model/table_layout.h"
+#include "trilobe/model/unclamped_model.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 
@@ -158,30 +159,30 @@ TEST(Arguments, NumbersOfSamples) {
 
 TEST(Arguments, AnglesThatAreNone) {
   const FactorModel model = RandomModel(ModelSpec::SharedFactors(1, kGrid), 1);
-  const ContinuousModel continuous(model);
+  const UnclampedModel unclamped(model);
   const BrdfTable table = RandomTable(kGrid, 1);
   const TabulatedBrdf tabulated(table);
   for (const DirectionPair& bad :
        {DirectionPair{{kNaN, 0, 1}, {0, 0, 1}}, DirectionPair{{0, 0, 1}, {0, kNaN, 1}},
         DirectionPair{{kInfinity, 0, 1}, {0, 0, 1}}}) {
     EXPECT_NE(ErrorOf([&] { Evaluate(model, bad); }), "");
-    EXPECT_NE(ErrorOf([&] { continuous(bad); }), "");
     EXPECT_NE(ErrorOf([&] { tabulated(bad); }), "");
     EXPECT_NE(ErrorOf([&] { tabulated.Interpolate(bad); }), "");
   }
   for (const HalfDiffAngles& bad :
        {HalfDiffAngles{kNaN, 0, 0}, HalfDiffAngles{0, kNaN, 0}, HalfDiffAngles{-1, 0, 0}}) {
     EXPECT_NE(ErrorOf([&] { ScatteredStencils(model.spec(), bad); }), "");
-    EXPECT_NE(ErrorOf([&] { continuous(bad, {1, 1}); }), "");
+    EXPECT_NE(ErrorOf([&] { unclamped(bad, {1, 1}); }), "");
     EXPECT_NE(ErrorOf([&] { kGrid.Bin(bad); }), "");
   }
   for (const HalfDiffAngles& bad : {HalfDiffAngles{0, 0, kNaN}, HalfDiffAngles{0, 0, 100}}) {
     EXPECT_NE(ErrorOf([&] { kGrid.Bin(bad); }), "");
     EXPECT_NE(ErrorOf([&] { tabulated.Interpolate(bad); }), "");
   }
-  EXPECT_NE(ErrorOf([&] { continuous({0.1, 0.1, 0}, {kNaN, 1}); }), "");
+  EXPECT_NE(ErrorOf([&] { unclamped(HalfDiffAngles{0.1, 0.1, 0}, {kNaN, 1}); }), "");
+  const auto evaluate = [&](const DirectionPair& pair) { return Evaluate(model, pair); };
   for (const double theta : {kNaN, -0.1, kPi / 2, kInfinity}) {
-    EXPECT_THAT(ErrorOf([&] { DirectionalAlbedo(continuous, theta); }), HasSubstr("theta_i"));
+    EXPECT_THAT(ErrorOf([&] { DirectionalAlbedo(evaluate, theta); }), HasSubstr("theta_i"));
   }
 }
 

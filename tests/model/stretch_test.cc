@@ -12,7 +12,6 @@
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/geometry/directions.h"
-#include "trilobe/lobes/continuous_model.h"
 #include "trilobe/lobes/lobes.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
@@ -81,10 +80,8 @@ TEST(Stretch, ExchangedDirectionsReadTheSame) {
     };
     const DirectionPair pair{direction(), direction()};
     const Rgb rho = Evaluate(model, pair), exchanged = Evaluate(model, {pair.wo, pair.wi});
-    const Rgb continuous = ContinuousModel(model)(pair);
     for (int c = 0; c < kChannels; ++c) {
       EXPECT_NEAR(exchanged[c], rho[c], 1e-9 * rho[c]);
-      EXPECT_NEAR(continuous[c], rho[c], 1e-9 * rho[c]);
     }
   }
 }

@@ -25,7 +25,7 @@ struct Material {
   SphericalBrdf spherical;
 };
 Material Isotropic(const AngularBrdf& brdf);
-// Keeps a reference to `model`.
+// A model as it is now. Throws Error for parameters that are not finite and 0 or more.
 Material MaterialOf(const FactorModel& model);
 
 }  // namespace trilobe

@@ -1,4 +1,4 @@
-#include "trilobe/lobes/continuous_model.h"
+#include "lobes/unclamped_model.h"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-ContinuousModel::ContinuousModel(const FactorModel& model)
+UnclampedModel::UnclampedModel(const FactorModel& model)
     : model_(model),
       grid_{.theta_h = model.spec().d_axis.size, .theta_d = model.spec().f_axis.size},
       spline_(model.spec().g_axis.size),
@@ -16,7 +16,7 @@ ContinuousModel::ContinuousModel(const FactorModel& model)
   CheckIsotropic(model.spec(), "a function of half and difference angles");
 }
 
-Rgb ContinuousModel::Unclamped(std::span<const Stencil> D, const Stencil& F,
+Rgb UnclampedModel::operator()(std::span<const Stencil> D, const Stencil& F,
                                const Cosines& cosines) const {
   const CatmullRom::Location i = spline_.Locate(std::acos(cosines.i));
   const CatmullRom::Location o = spline_.Locate(std::acos(cosines.o));
@@ -38,29 +38,14 @@ Rgb ContinuousModel::Unclamped(std::span<const Stencil> D, const Stencil& F,
   return rho;
 }
 
-Rgb ContinuousModel::Unclamped(const HalfDiffAngles& angles, const Cosines& cosines) const {
+Rgb UnclampedModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
   std::array<Stencil, kMaxLobes> D;
   const Stretches& stretches = model_.spec().stretches;
   stretches.ForEachThetaH(angles, [&](size_t k, double theta_h) {
     D[k] = LinearStencil(grid_.ThetaHCoordinate(theta_h), grid_.theta_h);
   });
-  return Unclamped(std::span(D.data(), stretches.distinct().size()),
-                   LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
-}
-
-Rgb ContinuousModel::operator()(std::span<const Stencil> D, const Stencil& F,
-                                const Cosines& cosines) const {
-  return AtLeastZero(Unclamped(D, F, cosines));
-}
-
-Rgb ContinuousModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
-  return AtLeastZero(Unclamped(angles, cosines));
-}
-
-Rgb ContinuousModel::operator()(const DirectionPair& directions) const {
-  if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
-  const HalfDiffAngles angles = ToHalfDiff(directions);
-  return (*this)(angles, ToCosines(angles));
+  return (*this)(std::span(D.data(), stretches.distinct().size()),
+                 LinearStencil(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d), cosines);
 }
 
 }  // namespace trilobe

@@ -1,4 +1,4 @@
-#include "trilobe/lobes/continuous_model.h"
+#include "lobes/unclamped_model.h"
 
 #include <gtest/gtest.h>
 
@@ -35,67 +35,53 @@ std::vector<Stencil> ReadingsOfD(const ModelSpec& spec, const SampleStencils& at
 void ExpectNear(const Rgb& rho, const FactorModel& model, const SampleStencils& stencils,
                 const std::string& what) {
   for (int c = 0; c < kChannels; ++c) {
-    const double expected = std::max(UnclampedValue(model, stencils, c), 0.0);
+    const double expected = UnclampedValue(model, stencils, c);
     ASSERT_NEAR(rho[c], expected, 1e-13 * std::abs(expected)) << what << ", channel " << c;
   }
 }
 
-TEST(ContinuousModelTest, EqualsTheStencilsInAnyDirections) {
+TEST(UnclampedModelTest, EqualsTheStencilsInAnyDirections) {
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     const FactorModel model = RandomModel(spec, 5, 0.3);
-    const ContinuousModel continuous(model);
+    const UnclampedModel unclamped(model);
     Random random(1);
     for (int k = 0; k < 2000; ++k) {
       const HalfDiffAngles angles = RandomAngles(&random);
       const Cosines cosines = ToCosines(angles);
       const SampleStencils stencils = ScatteredStencils(spec, angles);
-      ExpectNear(continuous(angles, cosines), model, stencils, name);
-      ExpectNear(continuous(ReadingsOfD(spec, stencils), stencils.F, cosines), model, stencils,
+      ExpectNear(unclamped(angles, cosines), model, stencils, name);
+      ExpectNear(unclamped(ReadingsOfD(spec, stencils), stencils.F, cosines), model, stencils,
                  name);
     }
   }
 }
 
-TEST(ContinuousModelTest, EqualsTheStencilsAtBinCentres) {
+TEST(UnclampedModelTest, EqualsTheStencilsAtBinCentres) {
   const std::vector<bool> above = BinsAboveSurface(kGrid);
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
     const FactorModel model = RandomModel(spec, 6, 0.3);
-    const ContinuousModel continuous(model);
+    const UnclampedModel unclamped(model);
     for (int bin = 0; bin < kGrid.size(); ++bin) {
       if (!above[bin]) continue;
       const SampleStencils at = GridStencils(spec, kGrid, bin);
       const Cosines cosines = ToCosines(kGrid.Center(bin));
-      ExpectNear(continuous(ReadingsOfD(spec, at), at.F, cosines), model, at, name);
+      ExpectNear(unclamped(ReadingsOfD(spec, at), at.F, cosines), model, at, name);
       if (spec.stretches.any()) continue;
       const int row = bin / kGrid.phi_d;
       const Stencil D = PointStencil(row / kGrid.theta_d);
-      ExpectNear(continuous({&D, 1}, PointStencil(row % kGrid.theta_d), cosines), model, at, name);
+      ExpectNear(unclamped({&D, 1}, PointStencil(row % kGrid.theta_d), cosines), model, at, name);
     }
   }
 }
 
-TEST(ContinuousModelTest, TakesDirections) {
-  const FactorModel model = RandomModel(ModelSpec::SharedFactors(2, kGrid), 7);
-  const ContinuousModel continuous(model);
-  Random random(2);
-  for (int k = 0; k < 100; ++k) {
-    const DirectionPair pair = ToDirections(RandomAngles(&random));
-    const Rgb expected = Evaluate(model, pair), rho = continuous(pair);
-    for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(rho[c], expected[c], 1e-13 * expected[c]);
-  }
-  EXPECT_EQ(continuous({.wi = {0.6, 0, 0.8}, .wo = {0.8, 0, -0.6}}), Rgb{});
-  EXPECT_EQ(continuous({.wi = {0.6, 0, -0.8}, .wo = {0, 0, 1}}), Rgb{});
-}
-
-// A negative weight of the spline, where G may undershoot: no light comes from there. What E sees
-// is not bounded.
-TEST(ContinuousModelTest, IsNeverNegative) {
+// A negative weight of the spline, where G may undershoot. What E sees is not bounded.
+TEST(UnclampedModelTest, MayBeNegative) {
   FactorModel model(ModelSpec::SharedFactors(1, kGrid));
   for (double& x : model.parameters()) x = 1;
   for (double& d : model.d()) d = 0;
   for (double& g : model.table(Factor::kG, 0)) g = 0;
   model.table(Factor::kG, 0)[5] = 1;
-  const ContinuousModel continuous(model);
+  const UnclampedModel unclamped(model);
   const double step = kPi / 2 / model.spec().g_axis.size, node = 5.5 * step;
   double lowest = 0;
   for (double beside = -2.5; beside <= 2.5; beside += 0.1) {
@@ -103,13 +89,11 @@ TEST(ContinuousModelTest, IsNeverNegative) {
     const DirectionPair pair = {{std::sin(node), 0, std::cos(node)},
                                 {0, std::sin(theta_o), std::cos(theta_o)}};
     const HalfDiffAngles angles = ToHalfDiff(pair);
-    const double unclamped =
+    const double expected =
         UnclampedValue(model, ScatteredStencils(model.spec(), angles), /*channel=*/0);
-    lowest = std::min(lowest, unclamped);
-    ASSERT_NEAR(continuous.Unclamped(angles, ToCosines(angles))[0], unclamped, 1e-12);
-    ASSERT_NEAR(continuous(pair)[0], std::max(unclamped, 0.0), 1e-12);
-    ASSERT_GE(continuous(pair)[0], 0);
-    ASSERT_NEAR(Evaluate(model, pair)[0], std::max(unclamped, 0.0), 1e-12);
+    lowest = std::min(lowest, expected);
+    ASSERT_NEAR(unclamped(angles, ToCosines(angles))[0], expected, 1e-12);
+    ASSERT_NEAR(Evaluate(model, pair)[0], std::max(expected, 0.0), 1e-12);
     ASSERT_GE(Evaluate(model, pair)[0], 0);
   }
   EXPECT_LT(lowest, -1e-3);
