@@ -104,7 +104,7 @@ function layout() {
   const modes = state.view === 'side' ? ['measured', 'fitted', 'difference'] : [state.view];
   const columns = modes.length === 1 ? 1 : width < 620 ? 2 : 3;
   const size = Math.floor(Math.min((width - gap * (columns + 1)) / columns, modes.length === 1 ? 560 : 620,
-                                   Math.max(window.innerHeight * 0.66, 220)));
+                                   Math.max(window.innerHeight * 0.58, 220)));
   const rows = Math.ceil(modes.length / columns), height = rows * (size + caption + gap) + gap / 2;
   canvas.style.height = `${height}px`;
   const [w, h] = [Math.round(width * scale), Math.round(height * scale)];
@@ -329,8 +329,7 @@ function showNumbers() {
     rows.at(-1).lastChild.colSpan = 3;
   };
   const at = point?.angles, angle = x => `${(x * DEGREES).toFixed(1)}°`;
-  wide('θh, θd', at ? `${angle(at.theta_h)}, ${angle(at.theta_d)}` : '–');
-  wide('θi, θo', at ? `${angle(at.theta_i)}, ${angle(at.theta_o)}` : '–');
+  wide('angles', at ? `θh ${angle(at.theta_h)}, θd ${angle(at.theta_d)}, θi ${angle(at.theta_i)}, θo ${angle(at.theta_o)}` : '–');
   row('1/sr', 'R', 'G', 'B');
   const fitted = at ? evaluate(point.wi, point.wo).rho : null, known = at && hasMeasured() ? measured.rho(point.wi, point.wo) : null;
   if (hasMeasured()) row('ρ measured', ...(known ?? [NaN, NaN, NaN]).map(short));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/fit_many.h"
 #include "app/fit_page.h"
@@ -14,7 +15,6 @@
 #include "app/result_folder.h"
 #include "app/view_page.h"
 #include "files/file.h"
-#include "reports/appearance_report.h"
 #include "reports/print.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
@@ -22,7 +22,6 @@
 #include "trilobe/results/trace_file.h"
 
 DECLARE_string(trace);
-DECLARE_string(probe);
 
 namespace trilobe {
 namespace {
@@ -36,8 +35,9 @@ void Write(const std::string& path, const std::string& page, const std::string& 
 // A page of all fits in a folder, in that folder, since it shows pictures that lie there.
 int ViewFolder(const std::string& folder) {
   for (const std::string& flag : WithSourceFlags({"trace", "probe"})) {
-    if (!IsDefault(flag))
+    if (!IsDefault(flag)) {
       throw Error("--" + flag + " is for the page of one model, not of a folder");
+    }
   }
   const std::string path = FLAGS_out.empty() ? folder + "/index.html" : FLAGS_out;
   std::error_code ignored;

@@ -25,7 +25,7 @@ std::string InScript(std::string_view json) {
 }
 
 std::string DataElement(std::string_view id, std::string_view json) {
-  return "<script type=\"application/json\" id=\"" + std::string(id) + "\">" + InScript(json) +
+  return R"(<script type="application/json" id=")" + std::string(id) + R"(">)" + InScript(json) +
          "</script>";
 }
 
