@@ -1,9 +1,9 @@
-# cmake -Dout=FILE.cc -Dfiles=A;B;... -P TrilobeEmbed.cmake: writes a C++ file with the text of some files, as
-# view/web_files.h declares it. Raw strings need no escapes, but compilers take no longer ones than
+# cmake -Dout=FILE.cc -Dfiles=A;B;... -Dheader=H -Dfunction=F -P TrilobeEmbed.cmake: writes a C++ file with the text of
+# some files, as the function F that the header H declares gives it (view/web_files.h). Raw strings need no escapes, but compilers take no longer ones than
 # 64 KB everywhere: longer texts are cut into several, which stand side by side as one.
 cmake_minimum_required(VERSION 3.25)
-set(code "// Made by cmake/TrilobeEmbed.cmake from the files of web/.\n#include \"${header}\"\n\n")
-string(APPEND code "namespace trilobe {\n\nstd::span<const WebFile> WebFiles() {\n")
+set(code "// Made by cmake/TrilobeEmbed.cmake from files of the repository.\n#include \"${header}\"\n\n")
+string(APPEND code "namespace trilobe {\n\nstd::span<const WebFile> ${function}() {\n")
 string(APPEND code "  static constexpr WebFile kFiles[] = {\n")
 foreach(file IN LISTS files)
   get_filename_component(name ${file} NAME)
@@ -21,5 +21,8 @@ foreach(file IN LISTS files)
   math(EXPR bytes "${size} / 2")
   string(APPEND code "      {\"${name}\", std::string_view(${literal}, ${bytes})},\n")
 endforeach()
+if(NOT files)
+  string(APPEND code "      {\"\", \"\"},\n")
+endif()
 string(APPEND code "  };\n  return kFiles;\n}\n\n}  // namespace trilobe\n")
 file(WRITE ${out} "${code}")

@@ -33,6 +33,7 @@ Command CompareCommand();
 Command ConvertCommand();
 Command FitCommand();
 Command InfoCommand();
+Command MaterialsCommand();
 Command PlanCommand();
 Command PlotCommand();
 Command ScoreCommand();

@@ -7,6 +7,7 @@
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
+#include "app/materials.h"
 #include "app/result_folder.h"
 #include "app/write_for_renderer.h"
 #include "files/file.h"
@@ -29,7 +30,7 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
   RefuseForModel(source, {"noise", "extrapolated", "radiometry"});
-  const FactorModel model = ReadModel(source).model;
+  const FactorModel model = LoadModel(source).model;
   Measurement measurement;
   if (model.spec().anisotropic()) {
     if (!WritableFormat(out).holds_anisotropic) {

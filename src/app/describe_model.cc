@@ -4,6 +4,7 @@
 
 #include "app/describe.h"
 #include "app/flags.h"
+#include "app/materials.h"
 #include "reports/albedo_table.h"
 #include "reports/light_report.h"
 #include "reports/print.h"
@@ -70,7 +71,7 @@ Rgb ToRgb(std::span<const double> values) { return {values[0], values[1], values
 }  // namespace
 
 void DescribeModel(const std::string& path) {
-  const ModelFile file = ReadModel(path);
+  const ModelFile file = LoadModel(path);
   const FactorModel& model = file.model;
   const ModelSpec& spec = model.spec();
   const FitInfo& fit = file.fit;

@@ -16,6 +16,7 @@
 #include "app/fit_run.h"
 #include "app/flags.h"
 #include "app/interrupt.h"
+#include "app/materials.h"
 #include "app/model_flags.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
@@ -67,6 +68,7 @@ bool InitIsFile() {
   for (const InitialModel& init : InitialModels()) {
     if (init.name == FLAGS_init) return false;
   }
+  if (IsMaterial(FLAGS_init)) return true;
   std::error_code ignored;
   return FLAGS_init.find('/') != std::string::npos || FLAGS_init.ends_with(".json") ||
          std::filesystem::exists(FLAGS_init, ignored);
@@ -79,7 +81,7 @@ std::string Joined(const std::vector<std::string>& words) {
 }
 
 FactorModel StartFromFile() {
-  FactorModel model = ReadModel(FLAGS_init).model;
+  FactorModel model = LoadModel(FLAGS_init).model;
   if (ModelIsGiven()) {
     throw Error(FLAGS_init +
                 " brings its own lobes and tables; leave out --model, --lobes, --stretch, "
@@ -144,7 +146,7 @@ FitSettings SettingsFromFlags() {
   if (!FLAGS_probe.empty()) settings.inputs.push_back(FLAGS_probe);
   if (init_is_file) {
     fit.start_model = StartFromFile();
-    settings.inputs.push_back(FLAGS_init);
+    if (!IsMaterial(FLAGS_init)) settings.inputs.push_back(FLAGS_init);
   }
   for (const std::string& input : settings.inputs) {
     settings.key += ContentHash(ReadFile(input)) + "\n";

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "app/flags.h"
+#include "app/materials.h"
 #include "files/file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/files/content.h"
@@ -13,6 +14,7 @@
 namespace trilobe {
 
 bool IsModelFile(const std::string& path) {
+  if (IsMaterial(path)) return true;
   return RecogniseFile(path).kind == Content::Kind::kJson;
 }
 

@@ -5,7 +5,7 @@
 
 namespace trilobe {
 
-// True if the file can be read and begins like a JSON object, as model files do and no measurement
+// True of material:NAME, and if the file can be read and begins like a JSON object, as model files do and no measurement
 // does.
 bool IsModelFile(const std::string& path);
 

@@ -24,9 +24,10 @@
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {
-      FitCommand(),  SolversCommand(), PlanCommand(),    CompareCommand(), ScoreCommand(),
-      PlotCommand(), InfoCommand(),    ConvertCommand(), SynthCommand(),   ViewCommand()};
+  static const std::vector<Command> commands = {FitCommand(),     SolversCommand(),  PlanCommand(),
+                                                CompareCommand(), ScoreCommand(),    PlotCommand(),
+                                                InfoCommand(),    ConvertCommand(),  SynthCommand(),
+                                                ViewCommand(),    MaterialsCommand()};
   return commands;
 }
 

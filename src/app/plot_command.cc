@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
+#include "app/materials.h"
 #include "app/result_folder.h"
 #include "files/file.h"
 #include "reports/print.h"
@@ -30,7 +31,7 @@ int RunPlot(std::span<const std::string> arguments) {
     inputs.CheckOutput(folder + "/" + name);
   }
   if (arguments.size() == 1) RefuseForModel(arguments[0], MeasurementFlags());
-  const ModelFile file = ReadModel(arguments[0]);
+  const ModelFile file = LoadModel(arguments[0]);
   std::optional<Measurement> measured;
   PictureData data;
   if (arguments.size() > 1) {

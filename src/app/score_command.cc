@@ -7,6 +7,7 @@
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
+#include "app/materials.h"
 #include "app/result_folder.h"
 #include "appearance/seen_samples.h"
 #include "reports/appearance_report.h"
@@ -88,7 +89,7 @@ int RunScore(std::span<const std::string> arguments) {
   FactorModel model;
   std::optional<BrdfTable> other;
   if (IsModelFile(arguments[0])) {
-    model = ReadModel(arguments[0]).model;
+    model = LoadModel(arguments[0]).model;
   } else {
     other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }

@@ -12,6 +12,7 @@
 #include "app/fit_page.h"
 #include "app/flags.h"
 #include "app/inputs.h"
+#include "app/materials.h"
 #include "app/result_folder.h"
 #include "app/view_page.h"
 #include "files/file.h"
@@ -66,7 +67,7 @@ int RunView(std::span<const std::string> arguments) {
   for (const std::string& file : {FLAGS_trace, FLAGS_probe}) read.push_back(file);
   Inputs(read).CheckOutput(path);
   if (arguments.size() == 1) RefuseForModel(arguments[0], MeasurementFlags());
-  const ModelFile model = ReadModel(arguments[0]);
+  const ModelFile model = LoadModel(arguments[0]);
   std::vector<IterationRecord> trace;
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
   std::optional<Measurement> measured;

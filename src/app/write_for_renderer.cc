@@ -8,6 +8,7 @@
 
 #include "app/flags.h"
 #include "app/inputs.h"
+#include "app/materials.h"
 #include "app/result_folder.h"
 #include "files/file.h"
 #include "reports/print.h"
@@ -42,7 +43,7 @@ struct Exported {
 
 Exported ExportModel(const std::string& path, RglExportOptions options) {
   RefuseForModel(path, MeasurementFlags());
-  const ModelFile model = ReadModel(path);
+  const ModelFile model = LoadModel(path);
   const double measured = model.fit.max_angle > 0 ? model.fit.max_angle : 90;  // [degrees]
   options.max_theta = DegreesToRadians(measured);
   return {ExportRgl(model.model, options), "the model", measured};
@@ -124,7 +125,7 @@ ModelFile ModelFor(const std::string& source, const std::string& ending) {
   }
   RefuseForModel(source, MeasurementFlags());
   CheckOut(source);
-  return ReadModel(source);
+  return LoadModel(source);
 }
 
 void WriteShader(const std::string& source) {

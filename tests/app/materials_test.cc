@@ -1,0 +1,58 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/app/run_program.h"
+#include "tests/paths.h"
+
+namespace trilobe {
+namespace {
+
+using testing::HasSubstr;
+
+nlohmann::json Listed() {
+  return nlohmann::json::parse(Contents(InRepository("materials/materials.json")));
+}
+
+TEST(Materials, AreListedWithWhereTheyComeFrom) {
+  const ProgramResult result = RunProgram({"materials"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json listed = Listed();
+  EXPECT_EQ(std::ranges::count(result.out, '\n'), static_cast<int>(listed.size()));
+  for (const nlohmann::json& material : listed) {
+    EXPECT_THAT(result.out, HasSubstr("  " + material["name"].get<std::string>() + " "));
+    EXPECT_EQ(material["licence"], "CC0 1.0");
+    EXPECT_LE(material["numbers"], 822);
+  }
+}
+
+TEST(Materials, StandWhereverAModelIsTaken) {
+  const TemporaryFolder folder;
+  const std::string material = "material:" + Listed()[0]["name"].get<std::string>();
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"info", material},
+           {"view", material, "--out=" + (folder / "x.html")},
+           {"convert", material, "--out=" + (folder / "x.glsl")},
+           {"convert", material, "--out=" + (folder / "x.csv"), "--max_angle=10"},
+           {"score", material, "synth:felt@30x30x60"},
+           {"fit", "synth:felt@30x30x60", "--init=" + material, "--solver=awls",
+            "--max_iterations=1"}}) {
+    const ProgramResult result = RunProgram(command);
+    EXPECT_EQ(result.status, 0) << command[0] << ": " << result.err;
+  }
+}
+
+TEST(Materials, OfAnotherNameAreToldInOneLine) {
+  for (const std::string name : {"none", "", "materials", "../x"}) {
+    const ProgramResult result = RunProgram({"info", "material:" + name});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("there is no material of this name; did you mean"));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1);
+  }
+}
+
+}  // namespace
+}  // namespace trilobe
