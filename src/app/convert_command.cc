@@ -54,9 +54,7 @@ int RunConvert(std::span<const std::string> arguments) {
     WriteForRenderer(source);
     return 0;
   }
-  for (const std::string& flag : RendererFlags()) {
-    if (!IsDefault(flag)) throw Error("--" + flag + " goes with an --out that ends in .bsdf");
-  }
+  CheckRendererFlags(FLAGS_out);
   const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
   const SourceOptions options = SourceOptionsFromFlags();
@@ -92,8 +90,11 @@ Command ConvertCommand() {
           "Mitsuba 3 renders (`measured`), and with\n--spectral pbrt-v4: of a model, or of a "
           "measurement, to which a model is fitted for that, which takes\nseconds; its values are "
           "those measured, and the model's where nothing was. Of a model, to a FILE that ends in "
-          ".glsl it writes\nfunctions for shaders. A FILE with another ending is an error.",
-      .flags = WithSourceFlags({"out", "error", "spectral"}),
+          ".glsl it writes\nfunctions for shaders; to one that ends in .mtlx the nearest OpenPBR "
+          "of "
+          "MaterialX, and in .principled.json\nthat of Blender's Principled BSDF, with how near it "
+          "is. A FILE with another ending is an error.",
+      .flags = WithSourceFlags({"out", "error", "spectral", "picture", "probe"}),
       .run = RunConvert};
 }
 

@@ -2,22 +2,35 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <ostream>
 #include <system_error>
 
+#include "app/appearance_flags.h"
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/materials.h"
+#include "app/program.h"
 #include "app/result_folder.h"
+#include "appearance/verdict.h"
 #include "files/file.h"
 #include "reports/print.h"
+#include "standard/material_files.h"
+#include "standard/nearest_open_pbr.h"
+#include "standard/open_pbr.h"
 #include "system/stopwatch.h"
+#include "trilobe/appearance/node_reconstruction.h"
+#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/formats/completed_measurement.h"
 #include "trilobe/formats/rgl_export.h"
 #include "trilobe/formats/source.h"
+#include "trilobe/formats/utia_file.h"
+#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/pictures/plots.h"
 #include "trilobe/results/model_file.h"
 #include "view/glsl_file.h"
 
@@ -29,11 +42,27 @@ DEFINE_bool(spectral, false,
             "of a .bsdf file: spectra in place of RGB, for spectral renderers (Mitsuba's spectral "
             "variants, pbrt-v4); the others cannot read it");
 
+DEFINE_bool(picture, false,
+            "of a .mtlx or .principled.json file: draws the model and what the file has, side by "
+            "side, beside it, as .png");
+
 namespace trilobe {
 namespace {
 
 constexpr const char* kTensorEnding = ".bsdf";
 constexpr const char* kShaderEnding = ".glsl";
+constexpr const char* kMaterialXEnding = ".mtlx";
+constexpr const char* kPrincipledEnding = ".principled.json";
+
+bool EndsIn(const std::string& path, const std::string& ending) {
+  if (path.size() <= ending.size()) return false;
+  std::string last = path.substr(path.size() - ending.size());
+  std::ranges::transform(last, last.begin(), [](unsigned char c) { return std::tolower(c); });
+  return last == ending;
+}
+bool IsStandard(const std::string& path) {
+  return EndsIn(path, kMaterialXEnding) || EndsIn(path, kPrincipledEnding);
+}
 
 struct Exported {
   RglExport file;
@@ -114,11 +143,8 @@ void WriteTensorFile(const std::string& source) {
   PrintLine(line);
 }
 
-// A file that is made of a model alone, without the flags of others: its errors before any work.
+// A file that is made of a model alone: its errors before any work.
 ModelFile ModelFor(const std::string& source, const std::string& ending) {
-  for (const std::string& flag : RendererFlags()) {
-    if (!IsDefault(flag)) throw Error("--" + flag + " goes with an --out that ends in .bsdf");
-  }
   if (!IsModelFile(source)) {
     throw Error("--out=" + FLAGS_out + ": " + source + " is a measurement, and trilobe writes " +
                 ending + " files of models; fit it first");
@@ -136,17 +162,98 @@ void WriteShader(const std::string& source) {
             Text(static_cast<double>(file.text.size()) / 1e6, 2) + " MB");
 }
 
+// The two, side by side.
+void DrawStandard(const FactorModel& model, const std::string& source, double max_angle,
+                  const OpenPbrBrdf& brdf, const std::string& path,
+                  const AppearanceOptions& options) {
+  Measurement shown;
+  if (model.spec().anisotropic()) {
+    shown = ReconstructAtNodes(model, source, kUtiaGrid);
+  } else {
+    shown = {.source = source,
+             .kind = "model",
+             .table = Reconstruct(model, source, {}, options.num_threads)};
+  }
+  LimitAngles(DegreesToRadians(max_angle), &shown);
+  const Material material = {[&](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
+                               return brdf(ToDirections(angles));
+                             },
+                             [&](const SphericalAngles& at) { return brdf(ToDirections(at)); }};
+  WriteSpherePair(PictureDataOf(shown), material, path, options);
+}
+
+std::string WithoutEnding(const std::string& path) {
+  return path.substr(
+      0, path.size() -
+             std::string(EndsIn(path, kMaterialXEnding) ? kMaterialXEnding : kPrincipledEnding)
+                 .size());
+}
+
+// The nearest material of renderers that have no other, and how near that is.
+void WriteStandard(const std::string& source) {
+  const bool materialx = EndsIn(FLAGS_out, kMaterialXEnding);
+  const ModelFile file = ModelFor(source, materialx ? kMaterialXEnding : kPrincipledEnding);
+  const std::string picture = WithoutEnding(FLAGS_out) + ".png";
+  if (FLAGS_picture) Inputs({source, FLAGS_probe}).CheckOutput(picture);
+  const double max_angle = file.fit.max_angle > 0 ? file.fit.max_angle : 90;  // [degrees]
+  AppearanceOptions options = AppearanceOptionsFromFlags();
+  Stopwatch stopwatch;
+  const NearestOpenPbr nearest =
+      FindNearestOpenPbr(file.model, DegreesToRadians(max_angle), options);
+  const SphereError& error = nearest.error;
+  const MaterialNotes notes = {
+      .name = std::filesystem::path(WithoutEnding(FLAGS_out)).filename().string(),
+      .made = "the nearest OpenPBR to " + source + ", found by " + ProgramName(),
+      .error = "beside it on a sphere Delta E is " + Text(error.mean_delta_e, 2) +
+               " in the mean, below " + Text(error.delta_e_95, 2) + " for 95 %, PSNR " +
+               Text(error.psnr_db, 3) + " dB",
+      .lost = VerdictOf(error).visibility == Visibility::kNone
+                  ? "lost against the model: nothing to be seen"
+                  : "lost against the model, " + Words(VerdictOf(error))};
+  const std::string text = materialx ? FormatMaterialX(nearest.material, notes)
+                                     : FormatPrincipled(nearest.material, notes);
+  WriteFile(FLAGS_out, [&](std::ostream& out) { out << text; });
+  PrintLine("wrote " + FLAGS_out + ": " +
+            (materialx ? "open_pbr_surface" : "inputs of Blender's Principled BSDF") + ", " +
+            notes.error + "; " + notes.lost + " (" + Text(stopwatch.Lap(), 2) + " s)");
+  if (!FLAGS_picture) return;
+  constexpr int kPixels = 160;  // of each sphere
+  options.size = kPixels;
+  DrawStandard(file.model, source, max_angle, OpenPbrBrdf(nearest.material), picture, options);
+  PrintLine("wrote " + picture + ": the model, and what the file has");
+}
+
 }  // namespace
 
 bool IsForRenderer(const std::string& path) {
   const std::string ending = EndingOf(path);
-  return ending == kTensorEnding || ending == kShaderEnding;
+  return ending == kTensorEnding || ending == kShaderEnding || IsStandard(path);
 }
 
-std::vector<std::string> RendererFlags() { return {"error", "spectral"}; }
+std::vector<std::string> RendererFlags() { return {"error", "spectral", "picture", "probe"}; }
+
+void CheckRendererFlags(const std::string& path) {
+  const bool tensor = EndingOf(path) == kTensorEnding;
+  for (const char* const flag : {"error", "spectral"}) {
+    if (tensor || IsDefault(flag)) continue;
+    throw Error("--" + std::string(flag) + " goes with an --out that ends in .bsdf");
+  }
+  for (const char* const flag : {"picture", "probe"}) {
+    if (IsStandard(path) || IsDefault(flag)) continue;
+    throw Error("--" + std::string(flag) +
+                " goes with an --out that ends in .mtlx or .principled.json");
+  }
+}
 
 void WriteForRenderer(const std::string& source) {
-  EndingOf(FLAGS_out) == kShaderEnding ? WriteShader(source) : WriteTensorFile(source);
+  CheckRendererFlags(FLAGS_out);
+  if (IsStandard(FLAGS_out)) {
+    WriteStandard(source);
+  } else if (EndingOf(FLAGS_out) == kShaderEnding) {
+    WriteShader(source);
+  } else {
+    WriteTensorFile(source);
+  }
 }
 
 }  // namespace trilobe

@@ -340,6 +340,37 @@ TEST(ConvertTest, WritesModelsForRenderers) {
   }
 }
 
+TEST(ConvertTest, WritesStandardMaterials) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  const ProgramResult mtlx =
+      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "x.mtlx"), "--picture"});
+  EXPECT_EQ(mtlx.status, 0) << mtlx.err;
+  EXPECT_THAT(mtlx.out, ContainsRegex("open_pbr_surface, beside it on a sphere Delta E is .*; lost "
+                                      "against the model: nothing to be seen"));
+  EXPECT_THAT(Contents(folder / "x.mtlx"), HasSubstr("<surfacematerial name=\"x\""));
+  EXPECT_THAT(Contents(folder / "x.mtlx"), HasSubstr("lost against the model: nothing to be seen"));
+  EXPECT_THAT(Contents(folder / "x.png"), testing::StartsWith("\x89PNG"));
+  const ProgramResult blender =
+      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "x.principled.json")});
+  EXPECT_EQ(blender.status, 0) << blender.err;
+  const json principled = json::parse(Contents(folder / "x.principled.json"));
+  EXPECT_LT(principled["inputs"]["Metallic"], 0.2);
+
+  ExpectError(RunProgram({"convert", "synth:felt", "--out=" + (folder / "y.mtlx")}),
+              "is a measurement, and trilobe writes .mtlx files of models; fit it first");
+  ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.json")}),
+              "y.json: trilobe convert writes no '");
+  ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "no/y.mtlx")}),
+              "there is no folder '");
+  ExpectError(
+      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.bsdf"), "--picture"}),
+      "--picture goes with an --out that ends in .mtlx or .principled.json");
+  ExpectError(
+      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.mtlx"), "--error=0.1"}),
+      "--error goes with an --out that ends in .bsdf");
+}
+
 // What info prints of scattered samples, and convert makes of them, is the same for each format.
 const char kCsv[] =
     "theta_i,phi_i,theta_o,phi_o,r,g,b\n# a comment\n"
