@@ -15,6 +15,8 @@
 
 #include "benchmarks/ggx.h"
 #include "trilobe/evaluate/bsdf.h"
+#include "trilobe/evaluate/ndf_sampler.h"
+#include "trilobe/math/angles.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
@@ -159,6 +161,20 @@ void BM_SamplesIsotropic(benchmark::State& state) { Samples<double>(state, Isotr
 void BM_SamplesIsotropicFloat(benchmark::State& state) { Samples<float>(state, Isotropic()); }
 void BM_SamplesAnisotropic(benchmark::State& state) { Samples<double>(state, Anisotropic()); }
 void BM_PdfsIsotropic(benchmark::State& state) { Pdfs(state, Isotropic()); }
+// How many of 100 directions that are drawn lie below the horizon, at some theta_i.
+template <typename Sampler>
+void Lost(benchmark::State& state, const Sampler& sampler) {
+  const double theta = DegreesToRadians(static_cast<double>(state.range(0)));
+  const Direction wi = ToDirection({theta, 0});
+  int64_t lost = 0;
+  for (auto _ : state) {
+    for (const Call& call : Calls()) lost += !(sampler.SampleWo(wi, call.u).pdf > 0);
+  }
+  const auto drawn = static_cast<double>(state.iterations()) * static_cast<double>(Calls().size());
+  state.counters["lost_percent"] = 100 * static_cast<double>(lost) / drawn;
+}
+void BM_LostByTheNdf(benchmark::State& state) { Lost(state, NdfSampler(Isotropic())); }
+void BM_LostByBsdf(benchmark::State& state) { Lost(state, Bsdf<double>(Isotropic())); }
 void BM_MakeIsotropic(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(Bsdf<double>(Isotropic()));
 }
@@ -181,6 +197,8 @@ BENCHMARK(BM_SamplesIsotropic);
 BENCHMARK(BM_SamplesIsotropicFloat);
 BENCHMARK(BM_SamplesAnisotropic);
 BENCHMARK(BM_PdfsIsotropic);
+BENCHMARK(BM_LostByTheNdf)->Arg(0)->Arg(30)->Arg(60)->Arg(75)->Arg(85)->Iterations(1);
+BENCHMARK(BM_LostByBsdf)->Arg(0)->Arg(30)->Arg(60)->Arg(75)->Arg(85)->Iterations(1);
 BENCHMARK(BM_MakeIsotropic)->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_MakeAnisotropic)->Unit(benchmark::kMillisecond);
 
