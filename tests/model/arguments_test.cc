@@ -21,7 +21,6 @@
 #include "trilobe/lobes/lobe_light.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/model/unclamped_model.h"
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 
