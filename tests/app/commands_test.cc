@@ -343,14 +343,18 @@ TEST(ConvertTest, WritesModelsForRenderers) {
 TEST(ConvertTest, WritesStandardMaterials) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);
-  const ProgramResult mtlx =
-      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "x.mtlx"), "--picture"});
+  std::vector<std::string> words = {"convert", folder / "model.json",
+                                    "--out=" + (folder / "x.mtlx")};
+  if (!kSanitized) words.push_back("--picture");
+  const ProgramResult mtlx = RunProgram(words);
   EXPECT_EQ(mtlx.status, 0) << mtlx.err;
   EXPECT_THAT(mtlx.out, ContainsRegex("open_pbr_surface, beside it on a sphere Delta E is .*; lost "
                                       "against the model: nothing to be seen"));
   EXPECT_THAT(Contents(folder / "x.mtlx"), HasSubstr("<surfacematerial name=\"x\""));
   EXPECT_THAT(Contents(folder / "x.mtlx"), HasSubstr("lost against the model: nothing to be seen"));
-  EXPECT_THAT(Contents(folder / "x.png"), testing::StartsWith("\x89PNG"));
+  if (!kSanitized) {
+    EXPECT_THAT(Contents(folder / "x.png"), testing::StartsWith("\x89PNG"));
+  }
   const ProgramResult blender =
       RunProgram({"convert", folder / "model.json", "--out=" + (folder / "x.principled.json")});
   EXPECT_EQ(blender.status, 0) << blender.err;
@@ -360,7 +364,7 @@ TEST(ConvertTest, WritesStandardMaterials) {
   ExpectError(RunProgram({"convert", "synth:felt", "--out=" + (folder / "y.mtlx")}),
               "is a measurement, and trilobe writes .mtlx files of models; fit it first");
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.json")}),
-              "y.json: trilobe convert writes no '");
+              "y.json: trilobe writes no '.json'");
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "no/y.mtlx")}),
               "there is no folder '");
   ExpectError(
