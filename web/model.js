@@ -153,7 +153,7 @@ export function formatModel(model, note) {
     const ofLobe = m => (per_channel ? tables.slice(m * CHANNELS, (m + 1) * CHANNELS) : tables[m]);
     file[factor] = model.lobes === 0 ? [] : per_lobe ? Array.from({length: model.lobes}, (_, m) => ofLobe(m)) : ofLobe(0);
   }
-  if (json.dead) file.dead = json.dead;
+  if (json.unobserved ?? json.dead) file.unobserved = json.unobserved ?? json.dead;
   file.fit = {...json.fit, ...(note ? {edited: note} : {})};
   return JSON.stringify(file, null, 1).replace(/\[\s+([-\d.e+,\s]+?)\s+\]/g, (_, list) => `[${list.replace(/\s+/g, '')}]`) + '\n';
 }

@@ -82,9 +82,10 @@ def _roughness(fit):
     """Root mean square second difference of the G tables, each over its mean; of whole ones."""
     model = json.loads((fit.folder / "model.json").read_text())
     values = []
-    for table, dead in zip(model["G"], model.get("dead", {}).get("G", [[]] * len(model["G"]))):
+    for table, unobserved in zip(model["G"], model.get("unobserved", model.get("dead", {}))
+                                 .get("G", [[]] * len(model["G"]))):
         table = numpy.asarray(table, dtype=float)
-        if dead or table.mean() == 0:
+        if unobserved or table.mean() == 0:
             continue
         values.append(numpy.diff(table / table.mean(), 2) ** 2)
     return math.sqrt(numpy.mean(values)) if values else math.nan

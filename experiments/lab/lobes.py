@@ -52,7 +52,8 @@ class Model:
             if table.ndim != 2 or len(table) != (CHANNELS if factor == "F" else self.lobes):
                 raise ValueError(f"{factor}: D and G must have a table a lobe, F one a channel")
             observed = numpy.ones(table.shape, dtype=bool)
-            for of, unobserved in zip(observed, content.get("dead", {}).get(factor, [])):
+            lists = content.get("unobserved", content.get("dead", {}))  # as it was called first
+            for of, unobserved in zip(observed, lists.get(factor, [])):
                 of[unobserved] = False
             setattr(self, factor, table)
             self.observed[factor] = observed

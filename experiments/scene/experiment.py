@@ -64,7 +64,7 @@ def _material_rows(budget, compared, side):
 
 def _scene_row(budget, compared, side, rows):
     of = compared["all"]
-    return {"budget": budget, "materials": len(rows), "numbers": of["numbers"][side],
+    return {"budget": budget, "materials": len(rows), "numbers": of["parameters"][side],
             "bytes": of["bytes"][side], "threads": compared["threads"],
             "seconds": of["seconds"][side],
             "mean_relative_rise": 0.0 if side == FULL else of["mean_relative_rise"],

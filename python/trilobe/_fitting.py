@@ -94,7 +94,7 @@ def fit(
     guide: float | None = None,
     robust: float = 0,
     match_reflectance: bool = True,
-    max_numbers: int = 822,
+    max_parameters: int = 822,
     seed: int = 1,
     threads: int = 0,
     progress: bool = True,
@@ -120,7 +120,7 @@ def fit(
         guide: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
         match_reflectance: whether the light that is reflected is mended after the fit.
-        max_numbers: of model="auto", how many the model may store.
+        max_parameters: of model="auto", how many the model may store.
         seed: of whatever is random.
         threads: 0 for all cores. The result does not depend on it.
         progress: shows a bar, where tqdm is installed.
@@ -157,7 +157,7 @@ def fit(
         "guide": guide,
         "robust": robust,
         "match_reflectance": match_reflectance,
-        "max_numbers": max_numbers,
+        "max_parameters": max_parameters,
         "seed": seed,
         "threads": threads,
     }

@@ -25,6 +25,11 @@ bool IsKnown(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
 }
 
+// What a flag is called today that has had another name.
+std::string CurrentName(const std::string& name) {
+  return name == "max_numbers" ? "max_parameters" : name;
+}
+
 template <typename Integer>
 std::string WholeNumber() {
   return "a whole number from " + std::to_string(std::numeric_limits<Integer>::min()) + " to " +
@@ -58,7 +63,7 @@ CommandLine ReadCommandLine(int argc, const char* const* argv) {
     }
     const size_t begin = word[1] == '-' ? 2 : 1;
     const size_t equals = word.find('=');
-    std::string name = word.substr(begin, equals - begin);
+    std::string name = CurrentName(word.substr(begin, equals - begin));
     if (!IsKnown(name)) {
       const bool is_no =
           equals == std::string::npos && name.starts_with("no") && IsBool(name.substr(2));

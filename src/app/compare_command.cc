@@ -123,7 +123,8 @@ PrunedScene FromFolder(const std::string& folder) {
                     "' is missing; make the folder again with `trilobe fit --scene`");
       }
       pruned.files.push_back(ReadModel(folder + "/" + material.name + ".json"));
-      pruned.num_parameters.push_back(found->at("numbers").at("pruned"));
+      pruned.num_parameters.push_back(
+          found->at(found->contains("parameters") ? "parameters" : "numbers").at("pruned"));
       pruned.material_seconds.push_back(found->at("seconds").at("fit").get<double>() +
                                         found->at("seconds").at("prune").get<double>());
     }
@@ -164,7 +165,7 @@ auto Total(const Comparison& comparison, const Value& value) {
 }
 
 Json SideToJson(const Side& side) {
-  return {{"numbers", side.num_parameters},    {"bytes", BytesOf(side.num_parameters)},
+  return {{"parameters", side.num_parameters}, {"bytes", BytesOf(side.num_parameters)},
           {"threads", side.threads},           {"seconds", side.seconds},
           {"objective", side.score.objective}, {"psnr_db", side.score.psnr_db}};
 }
@@ -183,7 +184,7 @@ Json ToJson(const Comparison& comparison) {
   return {{"threads", comparison.threads},
           {"materials", materials},
           {"all",
-           {{"numbers", {{"full", full}, {"pruned", pruned}}},
+           {{"parameters", {{"full", full}, {"pruned", pruned}}},
             {"bytes", {{"full", BytesOf(full)}, {"pruned", BytesOf(pruned)}}},
             {"seconds",
              {{"full", comparison.full_seconds},

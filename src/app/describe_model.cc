@@ -96,10 +96,10 @@ void DescribeModel(const std::string& path) {
                                             {"size", spec.table_size(factor)},
                                             {"per_lobe", sharing.per_lobe},
                                             {"per_channel", sharing.per_channel},
-                                            {"dead", CountUnobserved(file, factor)}};
+                                            {"unobserved", CountUnobserved(file, factor)}};
       if (file.layout) json["tables"][FactorName(factor)]["stored"] = CountStored(file, factor);
     }
-    json["stored_numbers"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
+    json["stored_parameters"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
     json["stretch"] = StretchesToJson<Json>(spec);
     json["fit"] = {{"source", fit.source},
                    {"solver", fit.solver},

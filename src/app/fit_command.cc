@@ -39,7 +39,7 @@ DEFINE_string(
     init, "analytic",
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
-DEFINE_int32(max_numbers, 822, "with --model=auto: how many parameters the model may store");
+DEFINE_int32(max_parameters, 822, "with --model=auto: how many parameters the model may store");
 DEFINE_double(
     robust, 0,
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
@@ -96,7 +96,7 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags = WithSourceFlags(
-      {"solver", "init", "weighting", "guide", "robust", "match_reflectance", "max_numbers"});
+      {"solver", "init", "weighting", "guide", "robust", "match_reflectance", "max_parameters"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "verbose", "probe",
@@ -126,12 +126,12 @@ FitSettings SettingsFromFlags() {
   const bool init_is_file = InitIsFile();
   if (!init_is_file) FindInitialModel(FLAGS_init);  // its error
   if (!(FLAGS_robust >= 0 && FLAGS_robust <= 1e6)) throw Error("--robust must be from 0 to 1e6");
-  if (FLAGS_max_numbers < 1) throw Error("--max_numbers must be at least 1");
-  if (!ChoosesModel() && !IsDefault("max_numbers")) {
-    throw Error("--max_numbers goes with --model=auto");
+  if (FLAGS_max_parameters < 1) throw Error("--max_parameters must be at least 1");
+  if (!ChoosesModel() && !IsDefault("max_parameters")) {
+    throw Error("--max_parameters goes with --model=auto");
   }
   fit.robust = FLAGS_robust;
-  fit.max_parameters = ChoosesModel() ? FLAGS_max_numbers : 0;
+  fit.max_parameters = ChoosesModel() ? FLAGS_max_parameters : 0;
   fit.match_reflectance = FLAGS_match_reflectance;
   fit.appearance = AppearanceOptionsFromFlags();
   fit.form = FormFromFlags();
@@ -208,9 +208,9 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "guide", "max_numbers",
-        "robust", "match_reflectance", "probe", "course", "reconstruction", "plots", "diagnose",
-        "shard", "verbose"}) {
+       {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "guide",
+        "max_parameters", "robust", "match_reflectance", "probe", "course", "reconstruction",
+        "plots", "diagnose", "shard", "verbose"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

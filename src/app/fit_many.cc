@@ -118,7 +118,8 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
   outcome->verdict = report.at("verdict").at("words");
   outcome->visibility = report.at("verdict").at("visibility");
   outcome->objective = report.at("objective");
-  outcome->num_parameters = report.at("stored_numbers");
+  outcome->num_parameters = report.contains("stored_parameters") ? report.at("stored_parameters")
+                                                                 : report.at("stored_numbers");
   outcome->anisotropic = report.at("model") == "anisotropic";
   const Json& files = report.at("files");
   if (std::ranges::find(files, Json("view.html")) != files.end()) outcome->page = "view.html";

@@ -19,7 +19,7 @@ DEFINE_string(
     "shared: D and G shared by the channels, F by the lobes (Peng et al.), isotropic, or "
     "anisotropic where the measurement is; isotropic: though it is not; anisotropic: on the nodes "
     "of the paper and without a guide; independent: one lobe, nothing shared (Bagher et al.); "
-    "auto: what looks best within --max_numbers (docs/model-choice.md)");
+    "auto: what looks best within --max_parameters (docs/model-choice.md)");
 DEFINE_string(
     d_nodes, "",
     "of an anisotropic model, nodes of D: so many theta_h by so many phi_h, theta_h at even "

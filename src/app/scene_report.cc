@@ -106,7 +106,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
       {"budget", ToJson(material.budget)},
       {"samples", {{"valid", fit.valid_samples}, {"used", fit.used_samples}}},
       {"lobes", fit.file.model.spec().lobes},
-      {"numbers", {{"full", fit.full_parameters}, {"pruned", fit.num_parameters}}},
+      {"parameters", {{"full", fit.full_parameters}, {"pruned", fit.num_parameters}}},
       {"bytes", {{"full", BytesOf(fit.full_parameters)}, {"pruned", BytesOf(fit.num_parameters)}}},
       {"objective", {{"full", fit.full.objective}, {"pruned", fit.pruned.objective}}},
       {"relative_rise", RelativeRise(fit.full, fit.pruned)},

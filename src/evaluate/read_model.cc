@@ -312,8 +312,9 @@ void ReadNumbers(const Node& root, ModelFile* file) {
 std::vector<bool> ReadUnobserved(const Node& root, const FactorModel& model) {
   const ModelSpec& spec = model.spec();
   std::vector<bool> unobserved(spec.num_parameters(), false);
-  if (!root.has("dead")) return unobserved;
-  const Node node = root["dead"].CheckObject();
+  const char* const key = root.has("unobserved") ? "unobserved" : "dead";  // as it was called first
+  if (!root.has(key)) return unobserved;
+  const Node node = root[key].CheckObject();
   for (const Factor factor : kFactors) {
     const Node lists = node[FactorName(factor)];
     lists.CheckArraySize(spec.num_tables(factor));

@@ -182,8 +182,9 @@ class ModelSearch {
     if (options_.judge_beyond && best_.chosen >= 0) {
       constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
       const double gain = last.score - best_.candidates.front().score;
-      last.wild = !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
-      if (last.wild) return;
+      last.fails_beyond =
+          !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
+      if (last.fails_beyond) return;
     }
     best_.chosen = static_cast<int>(best_.candidates.size()) - 1;
     best_.model = model;

@@ -51,10 +51,10 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
   Json array = Json::array();
   for (const ModelCandidate& candidate : candidates) {
     array.push_back({{"name", candidate.name},
-                     {"numbers", candidate.num_parameters},
+                     {"parameters", candidate.num_parameters},
                      {"objective", candidate.E},
                      {"psnr_db", candidate.score},
-                     {"wild_beyond_data", candidate.wild},
+                     {"fails_beyond_data", candidate.fails_beyond},
                      {"seconds", candidate.seconds}});
   }
   return array;
@@ -130,7 +130,7 @@ std::string Describe(const FitReport::Finished& finished) {
     text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
             Text(candidate.score) + " dB, " + std::to_string(candidate.num_parameters) +
             " parameters, E " + Text(candidate.E) +
-            (candidate.wild ? ", but runs wild beyond the data" : "") +
+            (candidate.fails_beyond ? ", but fails beyond the data" : "") +
             (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
   }
   if (finished.matched) {
@@ -174,7 +174,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
           {"lobes", report.spec.lobes},
           {"stretch", StretchesToJson<Json>(report.spec)},
           {"parameters", report.spec.num_parameters()},
-          {"stored_numbers", report.stored_parameters},
+          {"stored_parameters", report.stored_parameters},
           {"candidates", ToJson(report.finished.candidates)},
           {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
           {"guide", report.guide

@@ -139,7 +139,7 @@ std::string FormatModel(const ModelFile& file) {
   }
   if (!file.unobserved.empty()) {
     for (const Factor factor : kFactors) {
-      json["dead"][FactorName(factor)] = UnobservedToJson(file, factor);
+      json["unobserved"][FactorName(factor)] = UnobservedToJson(file, factor);
     }
   }
   json["fit"] = OrderedJson::object();

@@ -181,7 +181,7 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
   EXPECT_THAT(fit.out, HasSubstr("left out: isotropic instead of anisotropic"));
   const json plan = Parse(Contents(In("scene/plan.json")));
   for (const json& material : plan["materials"]) {
-    EXPECT_LT(material["numbers"]["pruned"], material["numbers"]["full"]);
+    EXPECT_LT(material["parameters"]["pruned"], material["parameters"]["full"]);
     EXPECT_LE(material["psnr_db"]["full"].get<double>() - 3,
               material["psnr_db"]["pruned"].get<double>() + 1e-9);
   }

@@ -144,6 +144,11 @@ TEST(ProgramTest, SaysWhichFlagWasMeant) {
   }
 }
 
+TEST(ProgramTest, TakesFormerNamesOfFlags) {
+  ExpectError(RunProgram({"fit", "synth:plastic", "--max_numbers=0"}),
+              "--max_parameters must be at least 1");
+}
+
 TEST(ProgramTest, SaysWhatAFlagMayBe) {
   ExpectError(RunProgram({"fit", "synth:felt", "--lobes=x"}), "--lobes=x: give a whole number");
   ExpectError(RunProgram({"fit", "synth:felt", "--lobes=99999999999"}), "to 2147483647");
@@ -745,7 +750,7 @@ TEST(InfoTest, TellsWhatACompactModelStores) {
   EXPECT_THAT(RunProgram({"info", folder / "model.json"}).out,
               AllOf(HasSubstr("8 parameters, and 6 places of nodes"), HasSubstr("3 stored")));
   const json info = json::parse(RunProgram({"info", folder / "model.json", "--json"}).out);
-  EXPECT_EQ(info["stored_numbers"], 8);
+  EXPECT_EQ(info["stored_parameters"], 8);
   EXPECT_EQ(info["tables"]["F"]["stored"], 2);
 }
 

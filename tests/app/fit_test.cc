@@ -283,7 +283,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   const std::string out = folder / "out";
   // So that there is little to do, and an edge of the data.
   const ProgramResult result =
-      RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_numbers=150",
+      RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_parameters=150",
                   "--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=40",
                   "--noise=0.02", "--verbose", "--out=" + out});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -294,7 +294,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   EXPECT_LT(parameters, file.model.spec().num_parameters());
 
   const nlohmann::json report = Json(out + "/report.json");
-  EXPECT_EQ(report["stored_numbers"], parameters);
+  EXPECT_EQ(report["stored_parameters"], parameters);
   EXPECT_EQ(report["parameters"], file.model.spec().num_parameters());
   EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
   EXPECT_GT(report["seconds"]["finish"], 0);
@@ -302,7 +302,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   const nlohmann::json& candidates = report["candidates"];
   ASSERT_GE(candidates.size(), 4U);  // as fitted, thinned, and two forms
   EXPECT_EQ(candidates[0]["name"], "as fitted");
-  EXPECT_EQ(candidates[0]["numbers"], 156);
+  EXPECT_EQ(candidates[0]["parameters"], 156);
   int like_the_chosen = 0;
   double best = 0;
   for (const auto& candidate : candidates) {
@@ -311,10 +311,10 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
       EXPECT_GT(candidate[key], 0) << key;
     }
     EXPECT_GE(candidate["seconds"], 0);
-    if (candidate["numbers"] > 150) continue;
+    if (candidate["parameters"] > 150) continue;
     best = std::max(best, candidate["psnr_db"].get<double>());
     like_the_chosen +=
-        candidate["numbers"] == parameters && candidate["objective"] == report["objective"];
+        candidate["parameters"] == parameters && candidate["objective"] == report["objective"];
   }
   EXPECT_EQ(like_the_chosen, 1);
   // What the judge saw of it, on a quarter of the pixels.
@@ -336,7 +336,7 @@ TEST(Fit, WithoutABudgetThereAreNoCandidates) {
   ASSERT_EQ(RunProgram(Fit(folder / "out")).status, 0);
   const nlohmann::json report = Json(folder / "out/report.json");
   EXPECT_EQ(report["candidates"], nlohmann::json::array());
-  EXPECT_EQ(report["stored_numbers"], 282);
+  EXPECT_EQ(report["stored_parameters"], 282);
   EXPECT_TRUE(report["tied_at_data_edge"].is_null());  // all directions were measured
 }
 
@@ -411,10 +411,10 @@ TEST(Fit, AThinnedModelReflectsAsMuchToo) {
   const TemporaryFolder folder;
   const ProgramResult result =
       RunProgram({"fit", "synth:rubber@30x30x60", "--noise=0.3", "--max_angle=40", "--model=auto",
-                  "--max_numbers=150", "--lobes=1", "--nodiagnose", "--out=" + folder / "out"});
+                  "--max_parameters=150", "--lobes=1", "--nodiagnose", "--out=" + folder / "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json report = Json(folder / "out/report.json");
-  EXPECT_LT(report["stored_numbers"], report["parameters"]);
+  EXPECT_LT(report["stored_parameters"], report["parameters"]);
   const nlohmann::json& how = report["matched_reflectance"];
   ASSERT_TRUE(how.is_object());
   EXPECT_GT(how["error_before"], 0.03);
@@ -442,8 +442,9 @@ TEST(Fit, CtrlCKeepsTheBestModelSoFar) {
 TEST(Fit, CtrlCWhileFinishingKeepsTheModelToo) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  const TerminalResult result = RunOnTerminal(
-      Fit(out, {"--model=auto", "--max_numbers=500", "--max_iterations=0"}), "iteration 0", SIGINT);
+  const TerminalResult result =
+      RunOnTerminal(Fit(out, {"--model=auto", "--max_parameters=500", "--max_iterations=0"}),
+                    "iteration 0", SIGINT);
   EXPECT_EQ(result.status, 130) << result.text;
   EXPECT_THAT(result.text, HasSubstr("interrupted"));
   const nlohmann::json report = Json(out + "/report.json");
@@ -508,11 +509,11 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--init=/nowhere/model.json"}, "/nowhere/model.json"},
       {{"--model=x"},
        "unknown model 'x'; known: shared, isotropic, anisotropic, independent, auto"},
-      {{"--max_numbers=100"}, "--max_numbers goes with --model=auto"},
-      {{"--model=independent", "--max_numbers=100"}, "--max_numbers goes with --model=auto"},
-      {{"--model=auto", "--max_numbers=0"}, "--max_numbers must be at least 1"},
-      {{"--max_numbers=0"}, "--max_numbers must be at least 1"},
-      {{"--model=auto", "--max_numbers=-5"}, "--max_numbers must be at least 1"},
+      {{"--max_parameters=100"}, "--max_parameters goes with --model=auto"},
+      {{"--model=independent", "--max_parameters=100"}, "--max_parameters goes with --model=auto"},
+      {{"--model=auto", "--max_parameters=0"}, "--max_parameters must be at least 1"},
+      {{"--max_parameters=0"}, "--max_parameters must be at least 1"},
+      {{"--model=auto", "--max_parameters=-5"}, "--max_parameters must be at least 1"},
       {{"--robust=-1"}, "--robust must be from 0 to 1e6"},
       {{"--robust=nan"}, "--robust must be from 0 to 1e6"},
       {{"--robust=inf"}, "--robust must be from 0 to 1e6"},

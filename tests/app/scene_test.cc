@@ -80,7 +80,7 @@ TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
     const nlohmann::json one = Json(folder / "one/model.json");
     const nlohmann::json of_scene = Json(folder / "scene/" + names[k] + ".json");
     const nlohmann::json of_many = Json(folder / "many/" + names[k] + "/model.json");
-    for (const char* const key : {"d", "s", "D", "F", "G", "dead"}) {
+    for (const char* const key : {"d", "s", "D", "F", "G", "unobserved"}) {
       EXPECT_EQ(of_scene[key], one[key]) << names[k] << " " << key;
       EXPECT_EQ(of_many[key], one[key]) << names[k] << " " << key;
     }
@@ -101,7 +101,7 @@ TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
   ASSERT_EQ(fit.status, 0) << fit.err;
   const nlohmann::json material = Json(folder / "out/plan.json")["materials"][0];
   const double full = material["objective"]["full"];
-  EXPECT_LT(material["numbers"]["pruned"], material["numbers"]["full"]);
+  EXPECT_LT(material["parameters"]["pruned"], material["parameters"]["full"]);
   EXPECT_LE(material["objective"]["pruned"], 1.01 * full * (1 + 1e-12));
   const nlohmann::json score =
       nlohmann::json::parse(RunProgram({"score", folder / "out/few.json", source, "--json"}).out);
@@ -151,7 +151,8 @@ TEST(Scene, IsPlannedFittedAndCompared) {
     const std::string name = material["name"];
     const FactorModel model = ReadModel(out + "/" + name + ".json").model;
     EXPECT_EQ(model.spec().lobes, material["lobes"].get<int>());
-    EXPECT_LT(material["numbers"]["pruned"].get<int>(), material["numbers"]["full"].get<int>());
+    EXPECT_LT(material["parameters"]["pruned"].get<int>(),
+              material["parameters"]["full"].get<int>());
     EXPECT_LT(material["samples"]["used"].get<int>(), material["samples"]["valid"].get<int>());
     EXPECT_LE(material["relative_rise"].get<double>(), 0.05 + 1e-12);
     const std::string verdict = material["verdict"];
@@ -169,8 +170,9 @@ TEST(Scene, IsPlannedFittedAndCompared) {
   ASSERT_EQ(compared["materials"].size(), 2U);
   for (size_t k = 0; k < 2; ++k) {
     const auto& row = compared["materials"][k];
-    EXPECT_EQ(row["full"]["numbers"], ModelSpec::SharedFactors(1, {30, 30, 60}).num_parameters());
-    EXPECT_EQ(row["pruned"]["numbers"], json["materials"][k]["numbers"]["pruned"]);
+    EXPECT_EQ(row["full"]["parameters"],
+              ModelSpec::SharedFactors(1, {30, 30, 60}).num_parameters());
+    EXPECT_EQ(row["pruned"]["parameters"], json["materials"][k]["parameters"]["pruned"]);
     const double planned = json["materials"][k]["objective"]["pruned"];
     EXPECT_NEAR(row["pruned"]["objective"].get<double>(), planned, 1e-10 * planned);
   }
@@ -304,8 +306,8 @@ TEST(Scene, BadUseIsAnError) {
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--course"}, "not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--robust=0.1"},
        "--robust is for the fit of one SOURCE, not for --scene"},
-      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--max_numbers=100"},
-       "--max_numbers is for the fit of one SOURCE, not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--max_parameters=100"},
+       "--max_parameters is for the fit of one SOURCE, not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--model=auto"},
        "--model is for the fit of one SOURCE, not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--probe=x.hdr"},

@@ -237,7 +237,7 @@ TEST(ModelFile, IgnoresUnknownKeysAndTakesDefaultsForOptionalOnes) {
   json document = json::parse(FormatModel(file));
   document["comment"] = {{"D", "mine"}};
   document["fit"]["machine"] = nullptr;
-  for (const char* key : {"sharing", "dead", "fit"}) {
+  for (const char* key : {"sharing", "unobserved", "fit"}) {
     ParseModel(document.dump(), "model.json");
     document.erase(key);
   }
@@ -246,6 +246,15 @@ TEST(ModelFile, IgnoresUnknownKeysAndTakesDefaultsForOptionalOnes) {
   EXPECT_EQ(read.unobserved, file.unobserved);
   EXPECT_EQ(read.fit.solver, "");
   EXPECT_EQ(read.fit.iterations, 0);
+}
+
+TEST(ModelFile, ReadsTheFormerNameOfUnobserved) {
+  ModelFile file = RandomModel(ModelSpec::SharedFactors(3));
+  file.unobserved[file.unobserved.size() - 2] = true;
+  json document = json::parse(FormatModel(file));
+  document["dead"] = document["unobserved"];
+  document.erase("unobserved");
+  EXPECT_EQ(ParseModel(document.dump(), "model.json").unobserved, file.unobserved);
 }
 
 TEST(ModelFile, NamesEachMissingKey) {
@@ -258,13 +267,13 @@ TEST(ModelFile, NamesEachMissingKey) {
               HasSubstr("key 'sharing.F' is missing"));
   EXPECT_THAT(ErrorAfter([](json* document) { (*document)["sharing"]["G"].erase("per_lobe"); }),
               HasSubstr("key 'sharing.G.per_lobe' is missing"));
-  EXPECT_THAT(ErrorAfter([](json* document) { (*document)["dead"].erase("D"); }),
-              HasSubstr("key 'dead.D' is missing"));
+  EXPECT_THAT(ErrorAfter([](json* document) { (*document)["unobserved"].erase("D"); }),
+              HasSubstr("key 'unobserved.D' is missing"));
 }
 
 TEST(ModelFile, NamesEachKeyOfTheWrongType) {
-  for (const char* key :
-       {"format", "version", "kind", "lobes", "d", "s", "D", "F", "G", "sharing", "dead", "fit"}) {
+  for (const char* key : {"format", "version", "kind", "lobes", "d", "s", "D", "F", "G", "sharing",
+                          "unobserved", "fit"}) {
     for (const json& value : {json(nullptr), json(true), json(-1.5)}) {
       EXPECT_THAT(ErrorAfter([&](json* document) { (*document)[key] = value; }),
                   AllOf(HasSubstr("model.json"), HasSubstr("key '" + std::string(key))))
@@ -287,8 +296,9 @@ TEST(ModelFile, NamesTheKeyOfAWrongShape) {
   EXPECT_THAT(error_of("/D/0/5", {1}), HasSubstr("key 'D[0][5]' must be a number, not array"));
   EXPECT_THAT(error_of("/lobes", 2), HasSubstr("key 'D' must have 2 entries, not 3"));
   EXPECT_THAT(error_of("/sharing/D/per_channel", true), HasSubstr("key 'D[0]' must have 3"));
-  EXPECT_THAT(error_of("/dead/F/2", {90}), HasSubstr("key 'dead.F[2][0]'"));
-  EXPECT_THAT(error_of("/dead/F", {{1}}), HasSubstr("key 'dead.F' must have 3 entries, not 1"));
+  EXPECT_THAT(error_of("/unobserved/F/2", {90}), HasSubstr("key 'unobserved.F[2][0]'"));
+  EXPECT_THAT(error_of("/unobserved/F", {{1}}),
+              HasSubstr("key 'unobserved.F' must have 3 entries, not 1"));
   EXPECT_THAT(error_of("/fit/iterations", 1e10), HasSubstr("key 'fit.iterations'"));
   EXPECT_THAT(error_of("/fit/solver", 1), HasSubstr("key 'fit.solver' must be a string"));
 }

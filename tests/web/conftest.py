@@ -91,7 +91,7 @@ def models(folder: Path, fits: Path) -> dict[str, Path]:
     } | {"lobes": 0, "d": [0.1, 0.2, 0.3], "s": [], "D": [], "F": [], "G": []}
     paths = {}
     for name, model in made.items():
-        model.pop("dead", None)
+        model.pop("unobserved", None)
         paths[name] = folder / f"{name}.json"
         paths[name].write_text(json.dumps(model))
     paths["anisotropic"] = fits / "shot_silk/model.json"

@@ -49,7 +49,7 @@ class MatchTest(unittest.TestCase):
 
     def test_unobserved_entries_do_not_count(self):
         a = content(1)
-        b = {**a, "D": [[*a["D"][0][:-1], 1e6]], "dead": {"D": [[BINS - 1]], "F": [], "G": []}}
+        b = {**a, "D": [[*a["D"][0][:-1], 1e6]], "unobserved": {"D": [[BINS - 1]], "F": [], "G": []}}
         self.assertAlmostEqual(lobes.scores(lobes.Model(a), lobes.Model(b))[0, 0], 1)
 
     def test_a_vanished_lobe_matches_nothing(self):

@@ -21,7 +21,7 @@ struct ModelChoiceOptions {
 
   // How good one is in all directions, where some were not measured. One that is more than
   // 3 dB below the fitted model there, and more than half of what it gains where data are, runs
-  // wild where they end, and is not taken.
+  // astray where they end, and is not taken.
   std::function<double(const FactorModel&)> judge_beyond = nullptr;
 
   // Asked after each step; true to stop with the best so far that keeps to the budget.
@@ -30,12 +30,12 @@ struct ModelChoiceOptions {
 
 // One form that was tried.
 struct ModelCandidate {
-  std::string name;        // "as fitted", "stretched", "stretched, thinned", ...
-  int num_parameters = 0;  // stored
-  double E = 0;            // Objective::Value; of a form that is not stored, about that
-  double score = 0;        // by the judge; -infinity where that says NaN
-  bool wild = false;       // beyond the data, and not chosen for that
-  double seconds = 0;      // that it took to make, from the one that it came from
+  std::string name;           // "as fitted", "stretched", "stretched, thinned", ...
+  int num_parameters = 0;     // stored
+  double E = 0;               // Objective::Value; of a form that is not stored, about that
+  double score = 0;           // by the judge; -infinity where that says NaN
+  bool fails_beyond = false;  // beyond the data, and not chosen for that
+  double seconds = 0;         // that it took to make, from the one that it came from
 };
 
 struct ChosenModel {
