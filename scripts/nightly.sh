@@ -56,6 +56,9 @@ tests/faults/harness.py --trials="${1:-400}"
 step "Testing files for renderers in Mitsuba, which draws a picture of the pages"
 scripts/check_renderers.sh
 
+step "Testing pages and shaders in a browser"
+scripts/check_pages.sh
+
 step "Making the pictures of the pages"
 scripts/check_pictures.py ${3:+--data="$3"}
 

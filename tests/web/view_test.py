@@ -202,7 +202,8 @@ def test_a_measurement_is_opened(open_page: Open, tmp_path: Path) -> None:
 def test_a_link_holds_the_state(open_page: Open) -> None:
     page = open_page("plastic", view="difference", object="knot", exposure=1.5,
                      edit={"lobes": [{"gain": 2}, {}, {"on": False}]})
-    assert page.evaluate("[trilobe.state.view, trilobe.state.object, trilobe.state.exposure]") == ["difference", "knot", 1.5]
+    state = page.evaluate("[trilobe.state.view, trilobe.state.object, trilobe.state.exposure]")
+    assert state == ["difference", "knot", 1.5]
     assert page.evaluate("trilobe.model.s[2]") == [0, 0, 0]
     page.click("#link")
     page.wait_for_function("document.querySelector('#message').textContent !== ''")
