@@ -43,7 +43,9 @@ export function decodeMeasured(header, text) {
 }
 
 export function bytesOf(base64) {
-  return Uint8Array.from(atob(base64), c => c.charCodeAt(0));
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = text.charCodeAt(k);
+  return bytes;
 }
 
 // Where nothing is valid, the value of the nearest that is: along phi_d, which wraps around, else theta_d, else theta_h.
@@ -70,8 +72,15 @@ function fillFromNearest(rgb, valid, [nh, nd, np]) {
     for (let p = 0; p < np && !missing; ++p) missing = !known[i * np + p];
     if (missing) fill(i * np, np, 1, true);
   }
-  for (let h = 0; h < nh; ++h) for (let p = 0; p < np; ++p) fill(h * nd * np + p, nd, np, false);
-  for (let i = 0; i < nd * np; ++i) fill(i, nh, nd * np, false);
+  // What is known by now is known for all phi_d of a row.
+  const rows = Array.from({length: nh * nd}, (_, i) => known[i * np]);
+  for (let h = 0; h < nh; ++h) {
+    if (rows.slice(h * nd, (h + 1) * nd).every(Boolean)) continue;
+    for (let p = 0; p < np; ++p) fill(h * nd * np + p, nd, np, false);
+  }
+  if (rows.some((_, i) => i % nd === 0 && !rows.slice(i, i + nd).some(Boolean))) {
+    for (let i = 0; i < nd * np; ++i) fill(i, nh, nd * np, false);
+  }
 }
 
 function tableMeasured(shape, rgb, valid, extra) {

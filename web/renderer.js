@@ -160,16 +160,16 @@ export class Renderer {
     this.measured = measured;
     this.exposure = 0;
     if (!measured) return this.restart();
-    const texels = new Float32Array((measured.rgb.length / 3) * 4);
-    for (let k = 0; k < texels.length / 4; ++k) {
-      texels.set(measured.rgb.subarray(3 * k, 3 * k + 3), 4 * k);
-      texels[4 * k + 3] = measured.valid[k];
+    const {rgb, valid} = measured, texels = new Float32Array((rgb.length / 3) * 4);
+    for (let k = 0; k < valid.length; ++k) {
+      for (let c = 0; c < 3; ++c) texels[4 * k + c] = Math.min(rgb[3 * k + c], 65504);  // the most of a half float
+      texels[4 * k + 3] = valid[k];
     }
     let defines = '#define MEASURED_NODES 0\n';
     if (measured.kind === 'table') {
       const [h, d, p] = measured.shape, t = gl.createTexture();
       gl.bindTexture(gl.TEXTURE_3D, t);
-      gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA16F, p, d, h, 0, gl.RGBA, gl.FLOAT, texels.map(x => Math.min(x, 65504)));
+      gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA16F, p, d, h, 0, gl.RGBA, gl.FLOAT, texels);
       for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_3D, name, gl.LINEAR);
       gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_WRAP_S, gl.REPEAT);
       for (const name of [gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) gl.texParameteri(gl.TEXTURE_3D, name, gl.CLAMP_TO_EDGE);

@@ -245,3 +245,26 @@ def test_pages_are_small(pages: dict[str, Path]) -> None:
     for page in pages.values():
         text = page.read_text()
         assert "http://" not in text.replace("http://www.w3.org/2000/svg", "") and "https://" not in text
+
+
+def test_a_probe_lights_the_page(fits: Path, tmp_path: Path, browser: Any) -> None:
+    width, height = 64, 32
+    pixels = np.zeros((height, width, 4), np.uint8)
+    pixels[..., :] = [64, 64, 64, 128]  # 0.25 everywhere,
+    pixels[4:8, 20:24] = [128, 16, 16, 136]  # and a red lamp
+    header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {height} +X {width}\n".encode()
+    (tmp_path / "lamp.hdr").write_bytes(header + pixels.tobytes())
+    out = tmp_path / "out"
+    run("fit", "synth:plastic", "synth:felt", "--solver=awls", "--max_iterations=1", f"--probe={tmp_path}/lamp.hdr",
+        f"--out={out}")
+    run("view", out / "plastic/model.json", "synth:plastic", f"--probe={tmp_path}/lamp.hdr", f"--out={tmp_path}/x.html")
+    page = browser.new_page()
+    page.goto(f"file://{tmp_path}/x.html")
+    page.wait_for_function("window.trilobe?.renderer?.shown")
+    page.evaluate("trilobe.state.size = 96; trilobe.renderer.rate = 1e9; trilobe.renderer.setSize(96)")
+    finished(page)
+    pair = np.asarray(Image.open(out / "plastic/pair.png").convert("RGB")).astype(float)
+    y, x = np.mgrid[:96, :96] + 0.5 - 48
+    off = np.abs(encoded(picture(page, 1)) - pair[3:99, 3:99]).max(axis=-1)[np.hypot(x, y) < 46.5]
+    page.close()
+    assert (off <= 1).mean() >= 0.98, f"{(off > 1).sum()} pixels are off, by {off.max()}"
