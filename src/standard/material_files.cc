@@ -132,8 +132,8 @@ std::string FormatPrincipled(const OpenPbr& material, const MaterialNotes& notes
   const auto color = [](const Rgb& rgb) {
     return nlohmann::ordered_json::array({Rounded(rgb[0]), Rounded(rgb[1]), Rounded(rgb[2]), 1});
   };
-  // Blender's axes of roughness are r^2 / a and r^2 a, a = sqrt(1 - 0.9 anisotropic); the ratio is
-  // what is seen, and the turn is in parts of a circle.
+  // Blender's coat does not roughen what lies below. Its axes of roughness are r^2 / a and r^2 a, a
+  // = sqrt(1 - 0.9 anisotropic); the ratio is what is seen, and the turn is in parts of a circle.
   const double ratio = 1 - material.specular_roughness_anisotropy;
   const double mean = std::sqrt(std::sqrt(ratio) * std::sqrt(2 / (1 + ratio * ratio)));
   nlohmann::ordered_json json;
@@ -144,7 +144,7 @@ std::string FormatPrincipled(const OpenPbr& material, const MaterialNotes& notes
   json["lost"] = notes.lost;
   json["inputs"] = {{"Base Color", color(material.base_color)},
                     {"Metallic", Rounded(material.base_metalness)},
-                    {"Roughness", Rounded(std::min(material.specular_roughness * mean, 1.0))},
+                    {"Roughness", Rounded(std::min(RoughnessThroughCoat(material) * mean, 1.0))},
                     {"Diffuse Roughness", Rounded(material.base_diffuse_roughness)},
                     {"IOR", Rounded(material.specular_ior)},
                     {"Specular IOR Level", 0.5},

@@ -118,16 +118,19 @@ double OpenPbrBrdf::Ggx::Value(const DirectionPair& pair, const Direction& half)
   return d / (1 + lambda(pair.wi) + lambda(pair.wo)) / (4 * pair.wi[2] * pair.wo[2]);
 }
 
+double RoughnessThroughCoat(const OpenPbr& parameters) {
+  const double base = std::pow(parameters.specular_roughness, 4);
+  const double through =
+      std::pow(std::min(base + 2 * std::pow(parameters.coat_roughness, 4), 1.0), 0.25);
+  return parameters.specular_roughness +
+         parameters.coat_weight * (through - parameters.specular_roughness);
+}
+
 OpenPbrBrdf::OpenPbrBrdf(const OpenPbr& parameters)
     : parameters_(parameters),
       cos_turn_(std::cos(parameters.turn)),
       sin_turn_(std::sin(parameters.turn)) {
-  // A rough coat makes what is seen through it rougher.
-  const double base = std::pow(parameters.specular_roughness, 4);
-  const double through =
-      std::pow(std::min(base + 2 * std::pow(parameters.coat_roughness, 4), 1.0), 0.25);
-  const double roughness = parameters.specular_roughness +
-                           parameters.coat_weight * (through - parameters.specular_roughness);
+  const double roughness = RoughnessThroughCoat(parameters);
   constexpr double kLeast = 1e-4;
   const double anisotropy = 1 - parameters.specular_roughness_anisotropy;
   specular_.alpha_x =

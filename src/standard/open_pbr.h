@@ -26,6 +26,9 @@ struct OpenPbr {
   double turn = 0;  // of geometry_tangent, along which it is rougher, from x towards y [rad]
 };
 
+// specular_roughness as it is seen through the coat, a rough one of which roughens what lies below.
+double RoughnessThroughCoat(const OpenPbr& parameters);
+
 // Its BRDF as MaterialX's code for shaders has it, layer over layer, each dimmed by what the ones
 // above it reflect of the light towards the eye: coat, a GGX of a dielectric; metal, a GGX with
 // Schlick's F and a tint at 82 degrees (F82), mixed by base_metalness with a GGX of a dielectric

@@ -54,6 +54,17 @@ TEST(FormatPrincipled, HasTheInputsOfTheNode) {
   EXPECT_EQ(inputs.size(), 12U);
 }
 
+// Where OpenPBR's base is rougher below a rough coat, Blender's is as rough as it says.
+TEST(FormatPrincipled, HasTheRoughnessThatIsSeenThroughTheCoat) {
+  OpenPbr material;
+  material.specular_roughness = 0.2;
+  material.coat_weight = 1;
+  material.coat_roughness = 0.5;
+  const nlohmann::json inputs = nlohmann::json::parse(FormatPrincipled(material, kNotes))["inputs"];
+  EXPECT_NEAR(inputs["Roughness"], std::pow(0.0016 + 2 * 0.0625, 0.25), 1e-4);
+  EXPECT_NEAR(inputs["Coat Roughness"], 0.5, 1e-9);
+}
+
 // Both of Blender's alphas: r^2 / a and r^2 a, a = sqrt(1 - 0.9 anisotropic).
 TEST(FormatPrincipled, HasTheSameTwoRoughnesses) {
   OpenPbr material;
