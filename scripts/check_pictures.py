@@ -106,7 +106,8 @@ def main() -> int:
     parser.add_argument("pictures", nargs="*", help="names of the pictures to look at (all)")
     options = parser.parse_args()
     root = options.root.resolve()
-    path = f"{root / 'build/release/bin'}:{root / 'experiments/renderer'}:{os.environ['PATH']}"
+    commands = ["build/release/bin", "experiments/renderer", "python/examples"]
+    path = ":".join([*(str(root / folder) for folder in commands), os.environ["PATH"]])
 
     made, wrong = pictures(root)
     for picture, how in sorted(made.items()):

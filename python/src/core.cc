@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -123,6 +124,24 @@ class Material {
   mutable Made<double> double_;
 };
 
+// Calls what(begin, size) for blocks of the rows, which are small enough to stay near.
+constexpr size_t kBlock = 256;
+template <typename What>
+void ForBlocks(size_t count, const What& what) {
+  for (size_t begin = 0; begin < count; begin += kBlock) {
+    what(begin, std::min(kBlock, count - begin));
+  }
+}
+
+// Some rows as they lie side by side.
+template <typename Row>
+using Block = std::array<Row, kBlock>;
+template <typename From, typename Row>
+std::span<const Row> Gather(const From& rows, size_t begin, size_t size, Block<Row>* block) {
+  for (size_t k = 0; k < size; ++k) (*block)[k] = rows[begin + k];
+  return {block->data(), size};
+}
+
 template <typename Real>
 void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
           const Output<Real>& out, bool cosine) {
@@ -132,21 +151,16 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
   Real* to = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
-  constexpr size_t kBlock = 256;
-  std::array<std::array<Real, 3>, kBlock> incident, outgoing;
-  std::array<typename Bsdf<Real>::Colour, kBlock> values;
-  for (size_t begin = 0; begin < count; begin += kBlock) {
-    const size_t size = std::min(kBlock, count - begin);
-    for (size_t k = 0; k < size; ++k) {
-      incident[k] = in[begin + k];
-      outgoing[k] = away[begin + k];
-    }
-    bsdf.Values({incident.data(), size}, {outgoing.data(), size}, {values.data(), size});
+  Block<std::array<Real, 3>> incident, outgoing;
+  Block<typename Bsdf<Real>::Colour> values;
+  ForBlocks(count, [&](size_t begin, size_t size) {
+    bsdf.Values(Gather(in, begin, size, &incident), Gather(away, begin, size, &outgoing),
+                {values.data(), size});
     for (size_t k = 0; k < size; ++k) {
       const Real scale = cosine ? std::max(outgoing[k][2], Real{0}) : Real{1};
       for (const Real f : values[k]) *to++ = f * scale;
     }
-  }
+  });
 }
 
 // Rows of (1 + lobes) colours: the diffuse term, then each lobe.
@@ -178,7 +192,11 @@ void Pdf(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
   const Directions<Real> in(wi, count, "wi"), away(wo, count, "wo");
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
-  for (size_t k = 0; k < count; ++k) out.data()[k] = bsdf.Pdf(in[k], away[k]);
+  Block<std::array<Real, 3>> incident, outgoing;
+  ForBlocks(count, [&](size_t begin, size_t size) {
+    bsdf.Pdfs(Gather(in, begin, size, &incident), Gather(away, begin, size, &outgoing),
+              {out.data() + begin, size});
+  });
 }
 
 // Rows of wo, pdf and weight: 7 numbers.
@@ -192,12 +210,18 @@ void Sample(const Material& material, const Input<Real>& wi, const Input<Real>& 
   Real* to = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
-  for (size_t k = 0; k < count; ++k) {
-    const auto sample = bsdf.SampleWo(in[k], numbers[k]);
-    to = std::copy(sample.wo.begin(), sample.wo.end(), to);
-    *to++ = sample.pdf;
-    to = std::copy(sample.weight.begin(), sample.weight.end(), to);
-  }
+  Block<std::array<Real, 3>> incident;
+  Block<std::array<Real, 2>> pairs;
+  Block<typename Bsdf<Real>::Sample> samples;
+  ForBlocks(count, [&](size_t begin, size_t size) {
+    bsdf.SamplesOfWo(Gather(in, begin, size, &incident), Gather(numbers, begin, size, &pairs),
+                     {samples.data(), size});
+    for (size_t k = 0; k < size; ++k) {
+      to = std::copy(samples[k].wo.begin(), samples[k].wo.end(), to);
+      *to++ = samples[k].pdf;
+      to = std::copy(samples[k].weight.begin(), samples[k].weight.end(), to);
+    }
+  });
 }
 
 template <typename Real>
@@ -255,7 +279,7 @@ nb::dict AxisOf(const Material& material, const std::string& factor) {
   return dict;
 }
 
-nb::object TablesOf(const Material& material, const std::string& name) {
+NumpyArray<double> TablesOf(const Material& material, const std::string& name) {
   const FactorModel& model = material.file().model;
   const Factor factor = FactorOf(name);
   std::vector<double> values;
@@ -268,7 +292,7 @@ nb::object TablesOf(const Material& material, const std::string& name) {
   return OwnedArray(std::move(values), {tables, size});
 }
 
-nb::object UnobservedOf(const Material& material, const std::string& name) {
+NumpyArray<uint8_t> UnobservedOf(const Material& material, const std::string& name) {
   const FactorModel& model = material.file().model;
   const Factor factor = FactorOf(name);
   const size_t tables = model.spec().lobes > 0 ? model.spec().num_tables(factor) : 0;
@@ -303,21 +327,21 @@ NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param):
   material.def(nb::init<const nb::bytes&, const std::string&>(), nb::arg("text"), nb::arg("source"))
       .def_prop_ro("lobes", [](const Material& self) { return self.spec().lobes; })
       .def_prop_ro("anisotropic", [](const Material& self) { return self.spec().anisotropic(); })
-      .def_prop_ro("d",
-                   [](const Material& self) {
-                     const auto d = self.file().model.d();
-                     return OwnedArray(std::vector<double>(d.begin(), d.end()), {d.size()});
-                   })
-      .def_prop_ro("s",
-                   [](const Material& self) {
-                     std::vector<double> values;
-                     const size_t lobes = self.spec().lobes;
-                     for (size_t m = 0; m < lobes; ++m) {
-                       const auto s = self.file().model.s(static_cast<int>(m));
-                       values.insert(values.end(), s.begin(), s.end());
-                     }
-                     return OwnedArray(std::move(values), {lobes, size_t{kChannels}});
-                   })
+      .def("d",
+           [](const Material& self) {
+             const auto d = self.file().model.d();
+             return OwnedArray(std::vector<double>(d.begin(), d.end()), {d.size()});
+           })
+      .def("s",
+           [](const Material& self) {
+             std::vector<double> values;
+             const size_t lobes = self.spec().lobes;
+             for (size_t m = 0; m < lobes; ++m) {
+               const auto s = self.file().model.s(static_cast<int>(m));
+               values.insert(values.end(), s.begin(), s.end());
+             }
+             return OwnedArray(std::move(values), {lobes, size_t{kChannels}});
+           })
       .def_prop_ro("stretch",
                    [](const Material& self) {
                      std::vector<std::pair<double, double>> of_lobes;

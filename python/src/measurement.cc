@@ -123,7 +123,7 @@ size_t CountOf(const Measured& measured) {
   return data.table ? data.table->grid.size() : data.samples.size();
 }
 
-nb::object DirectionsOf(const Measured& measured, bool incident) {
+NumpyArray<double> DirectionsOf(const Measured& measured, bool incident) {
   const Measurement& data = *measured.data;
   const size_t count = CountOf(measured);
   std::vector<double> values;
@@ -143,7 +143,7 @@ nb::object DirectionsOf(const Measured& measured, bool incident) {
   return OwnedArray(std::move(values), {count, size_t{3}});
 }
 
-nb::object ValuesOf(const Measured& measured) {
+NumpyArray<double> ValuesOf(const Measured& measured) {
   const Measurement& data = *measured.data;
   const size_t count = CountOf(measured);
   std::vector<double> values;
@@ -160,7 +160,7 @@ nb::object ValuesOf(const Measured& measured) {
   return OwnedArray(std::move(values), {count, size_t{3}});
 }
 
-nb::object ReasonsOfAll(const Measured& measured) {
+NumpyArray<uint8_t> ReasonsOfAll(const Measured& measured) {
   const Measurement& data = *measured.data;
   std::vector<uint8_t> reasons =
       data.table ? ReasonsOfBins(*data.table) : std::vector<uint8_t>(data.samples.size());

@@ -12,15 +12,18 @@
 
 namespace trilobe::python {
 
-// A numpy array that owns these values.
 template <typename T>
-nanobind::object OwnedArray(std::vector<T> values, std::initializer_list<size_t> shape) {
+using NumpyArray = nanobind::ndarray<nanobind::numpy, T>;
+
+// One that owns these values.
+template <typename T>
+NumpyArray<T> OwnedArray(std::vector<T> values, std::initializer_list<size_t> shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
   if (kept->empty()) kept->reserve(1);  // an array of no entries has an address, too
   T* const data = kept->data();
   nanobind::capsule owner(
       kept.release(), [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
-  return nanobind::cast(nanobind::ndarray<nanobind::numpy, T>(data, shape, owner));
+  return NumpyArray<T>(data, shape, owner);
 }
 
 }  // namespace trilobe::python

@@ -58,7 +58,7 @@ nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const nb:
   return nb::bytes(text.data(), text.size());
 }
 
-nb::object ImageOf(const RenderedImage& image) {
+NumpyArray<double> ImageOf(const RenderedImage& image) {
   std::vector<double> values;
   for (const Rgb& radiance : image.radiance) {
     values.insert(values.end(), radiance.begin(), radiance.end());
@@ -74,7 +74,7 @@ int SizeOf(const nb::dict& options) {
 }
 
 // Linear radiance of a model on a sphere under the built-in light. [size][size][3]
-nb::object RenderModel(const nb::bytes& model_text, const nb::dict& options) {
+NumpyArray<double> RenderModel(const nb::bytes& model_text, const nb::dict& options) {
   const FactorModel model = ModelOf(model_text);
   const AppearanceOptions appearance{.size = SizeOf(options), .num_threads = ThreadsOf(options)};
   RenderedImage image;

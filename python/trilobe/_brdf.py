@@ -6,7 +6,7 @@ import json
 import os
 import tempfile
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -198,13 +198,13 @@ class Brdf:
     @property
     def d(self) -> Table:
         """The diffuse term [1/sr]: (channel)."""
-        return _frozen(Table(self._material.d, ("channel",), {"channel": CHANNELS}))
+        return _frozen(Table(self._material.d(), ("channel",), {"channel": CHANNELS}))
 
     @property
     def s(self) -> Table:
         """The specular weights: (lobe, channel)."""
         coords = {"lobe": np.arange(self.lobes), "channel": CHANNELS}
-        return _frozen(Table(self._material.s, ("lobe", "channel"), coords))
+        return _frozen(Table(self._material.s(), ("lobe", "channel"), coords))
 
     @property
     def D(self) -> Table:
@@ -221,8 +221,8 @@ class Brdf:
         """Shadowing: (lobe, theta), or of anisotropic models (lobe, theta, phi)."""
         return self._table("G")
 
-    def unobserved(self, factor: Literal["D", "F", "G"]) -> NDArray[np.bool_]:
-        """Which entries of a table no sample of the fit has touched, in the table's shape."""
+    def unobserved(self, factor: str) -> NDArray[np.bool_]:
+        """Which entries of "D", "F" or "G" no sample of the fit has touched, in the table's shape."""
         if factor not in _AXIS:
             raise Error(f"there is no factor {factor!r}; there are D, F and G")
         marks: NDArray[np.bool_] = self._material.unobserved(factor).astype(bool)
@@ -509,7 +509,7 @@ def _stretch_of(stretch: Any, like: Brdf | None, lobes: int) -> Any:
         raise Error(f"stretch has the shape {array.shape}, and must have (2,) or ({lobes}, 2)")
     if not np.isfinite(array).all():
         raise Error("stretch must be finite")
-    pairs = [{"along": along, "across": across} for along, across in array.reshape(-1, 2).tolist()]
+    named = [{"along": along, "across": across} for along, across in array.reshape(-1, 2).tolist()]
     if not array.any():
         return None
-    return pairs[0] if array.ndim == 1 else pairs
+    return named[0] if array.ndim == 1 else named

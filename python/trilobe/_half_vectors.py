@@ -102,4 +102,5 @@ def _density(
     lobes = brdf.eval(wi, wo, components=True)[..., 1:, :].sum(axis=-2).mean(axis=-1)
     # dω_o = 4 (wi . h) sin theta_h dtheta_h dphi, and both sides of wi.
     scale = 4 * wi_h * sin_h * 2 * v[:, None] * theta_max * 2 * widest
-    return np.maximum(lobes, 0) * wo[..., 2] * np.maximum(scale, 0)
+    density: NDArray[np.float64] = np.maximum(lobes, 0) * wo[..., 2] * np.maximum(scale, 0)
+    return density

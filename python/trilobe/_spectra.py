@@ -39,7 +39,8 @@ def _colour_of_spectra() -> NDArray[np.float64]:
     to_rgb = np.array([[3.240479, -1.537150, -0.498535], [-0.969256, 1.875991, 0.041556],
                        [0.055648, -0.204043, 1.057311]])
     rgb: NDArray[np.float64] = to_rgb @ weighted
-    return rgb / rgb.sum(axis=1, keepdims=True)  # white is white, to the last digit
+    rgb /= rgb.sum(axis=1, keepdims=True)  # white is white, to the last digit
+    return rgb
 
 
 @functools.lru_cache(maxsize=1)

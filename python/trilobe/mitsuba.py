@@ -417,7 +417,7 @@ def _define() -> Any:
     """The BSDF of the current variant."""
     compiled = dr.is_jit_v(mi.Float)
 
-    class Trilobe(mi.BSDF):  # type: ignore[misc, name-defined]
+    class Trilobe(mi.BSDF):  # type: ignore[misc]
         """A fitted model (trilobe.mitsuba)."""
 
         def __init__(self, props: Any) -> None:

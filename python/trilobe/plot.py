@@ -146,7 +146,8 @@ def _in_plane(measurement: Measurement, theta_i: float) -> tuple[NDArray[Any], N
 
 def _srgb(linear: NDArray[Any]) -> NDArray[Any]:
     x = np.clip(linear, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+    encoded: NDArray[Any] = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+    return encoded
 
 
 def spheres(

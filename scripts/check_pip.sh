@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Installs the Python package by pip in fresh virtual environments, whole and only what evaluates, and runs README.md's
+# example in the former; says how long each takes. Needs PyPI, and the packages of the group run.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# install NAME ARGUMENT...: into an environment of that name.
+install() {
+  local name=$1 started=$EPOCHSECONDS
+  shift
+  /usr/bin/python3 -m venv "$folder/$name"
+  "$folder/$name/bin/pip" install --quiet --disable-pip-version-check . "$@"
+  echo "pip install of $name: $((EPOCHSECONDS - started)) s"
+}
+
+install evaluates --config-settings=cmake.define.TRILOBE_BUILD_LIBRARY=OFF
+install all
+awk '/^```/ { inside = ($0 == "```python"); next } inside' README.md >"$folder/example.py"
+cd "$folder"
+all/bin/python example.py
+all/bin/trilobe help >all.txt
+evaluates/bin/python -c 'import trilobe; print(trilobe.load("brighter.json").eval([0, 0, 1], [0, 0, 1]))'
+if evaluates/bin/python -c 'import trilobe; trilobe.solvers()' 2>evaluates.txt; then exit 1; fi
+grep -q "this package only evaluates models" evaluates.txt
