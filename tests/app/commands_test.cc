@@ -11,6 +11,7 @@
 
 #include "tests/app/run_program.h"
 #include "tests/formats/tensor_bytes.h"
+#include "tests/test_util.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
