@@ -37,7 +37,9 @@ std::string RequiredMeasurementOut(const std::string& command) {
     WritableFormat(out);
   } catch (const Error& error) {
     throw Error("--out=" + std::string(error.what()) +
-                (command == "convert" ? ", or in .bsdf for renderers" : ""));
+                (command == "convert"
+                     ? ", or in .bsdf, .glsl, .mtlx or .principled.json for renderers"
+                     : ""));
   }
   return out;
 }
