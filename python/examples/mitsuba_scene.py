@@ -64,7 +64,7 @@ def main():
     picture = mi.render(mi.load_dict(scene))
     arguments.out.mkdir(parents=True, exist_ok=True)
     mi.util.write_bitmap(str(arguments.out / "mitsuba_scene.png"), picture)
-    print(f"{arguments.out / 'scene.png'}: {models}, and Mitsuba's roughplastic to their right")
+    print(f"{arguments.out / 'mitsuba_scene.png'}: {models}, and Mitsuba's roughplastic to their right")
 
 
 if __name__ == "__main__":

@@ -174,7 +174,7 @@ names = st.sampled_from(["auto", "awls", "lm", "independent", "isotropic", "anis
 
 
 @needs_fits
-@settings
+@hypothesis.settings(settings, max_examples=max(CALLS // 10, 20))  # of which each takes some 50 ms
 @hypothesis.given(st.dictionaries(st.sampled_from(FIT_OPTIONS), st.one_of(names, anything), max_size=3))
 def test_fits_by_any_option(options):
     options = {"solver": "awls", "max_seconds": 0.05, **options, "progress": False}
