@@ -361,6 +361,7 @@ function editTo(change) {
 function settle() {
   history.push(state.edit);
   showButtons();
+  showVerdict();
 }
 function showButtons() {
   byId('undo').disabled = !history.canUndo;
@@ -473,6 +474,7 @@ function showVerdict() {
   } else {
     parts.push(`A fitted model of ${base.lobes} ${base.lobes === 1 ? 'lobe' : 'lobes'}. Drop its measurement here (MERL or CSV) to see where they differ.`);
   }
+  if (isEdited(state.edit, base)) parts.push(' The model has been changed since.');
   text.replaceChildren(...parts);
   byId('formula').textContent = base.lobes > 0
     ? 'ρ is the diffuse colour and, for each lobe, its strength × D(θh) × F(θd) × G(θi) G(θo) / (cos θi cos θo). Lines mark the point under the pointer.'
@@ -658,6 +660,7 @@ function listen() {
   const go = step => () => {
     state.edit = history[step]();
     applyEdit();
+    showVerdict();
   };
   byId('undo').addEventListener('click', go('undo'));
   byId('redo').addEventListener('click', go('redo'));

@@ -146,6 +146,7 @@ def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Pa
     page.keyboard.press("ArrowRight")
     page.locator("input[aria-label='Lobe 1: tint']").fill("#ff8800")
     finished(page)
+    assert "changed since" in page.inner_text("#verdict")
     changed = picture(page, 0)
     with page.expect_download() as download:
         page.click("#save")

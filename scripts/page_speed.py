@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Says how fast a page is without a graphics card: until its first picture, and a frame of 512 x 512 under a lamp.
+
+scripts/page_speed.py PAGE.html      needs Playwright (PyPI) and Debian's chromium
+
+Seconds by the clock, and of processor time, which a busy machine changes less.
+"""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import sys
+import tempfile
+import time
+
+from page_picture import SOFTWARE
+from playwright.sync_api import sync_playwright
+
+FRAMES = 40
+LAMP = f"""async () => {{
+  const r = trilobe.renderer, panels = [{{mode: 'fitted', x: 0, y: 0, size: 512}}];
+  r.setMeasured(null);
+  r.exposure = 1;
+  r.setSize(512);
+  for (let k = 0; k < {FRAMES}; ++k) {{
+    r.lamp = [0.3 + 0.001 * k, 0.4, 0.86];
+    r.restart();
+    do r.work(false); while (r.pending);
+    r.show(panels, {{wipe: 0.5, stops: 0, mark: null}});
+    await new Promise(next => setTimeout(next, 0));
+  }}
+}}"""
+
+
+def processor_seconds(mark: str) -> float:
+    """Of all processes that were started with this in their command line."""
+    ticks = 0
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if mark in (folder / "cmdline").read_text():
+                fields = (folder / "stat").read_text().rsplit(")", 1)[1].split()
+                ticks += int(fields[11]) + int(fields[12])
+        except OSError:
+            continue  # it has ended
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def main() -> int:
+    """Prints two lines."""
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    page_path = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory(prefix="page_speed_") as profile, sync_playwright() as playwright:
+        browser = playwright.chromium.launch_persistent_context(
+            profile, executable_path="/usr/bin/chromium", args=SOFTWARE, viewport={"width": 1440, "height": 900})
+        page = browser.pages[0]
+        page.wait_for_timeout(1000)
+        processor, clock = processor_seconds(profile), time.time()
+        page.goto(page_path.as_uri())
+        page.wait_for_function("window.trilobe?.renderer?.shown", timeout=120000)
+        print(f"opens in {time.time() - clock:.1f} s, {processor_seconds(profile) - processor:.1f} s of processor time")
+        page.wait_for_function("!trilobe.renderer.pending", timeout=120000)
+        page.evaluate(LAMP)  # what compiles at first does not count
+        processor, clock = processor_seconds(profile), time.time()
+        page.evaluate(LAMP)
+        print(f"a frame in {1000 * (time.time() - clock) / FRAMES:.0f} ms, "
+              f"{1000 * (processor_seconds(profile) - processor) / FRAMES:.0f} ms of processor time")
+        browser.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
