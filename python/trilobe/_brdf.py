@@ -223,8 +223,8 @@ class Brdf:
 
     def unobserved(self, factor: str) -> NDArray[np.bool_]:
         """Which entries of "D", "F" or "G" no sample of the fit has touched, in the table's shape."""
-        if factor not in _AXIS:
-            raise Error(f"there is no factor {factor!r}; there are D, F and G")
+        if not isinstance(factor, str) or factor not in _AXIS:
+            raise Error(f"there is no factor {' '.join(repr(factor).split())[:60]}; there are D, F and G")
         marks: NDArray[np.bool_] = self._material.unobserved(factor).astype(bool)
         return marks.reshape(self._table(factor).shape)
 

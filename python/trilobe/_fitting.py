@@ -136,11 +136,11 @@ def fit(
         if array.ndim not in (1, 2) or array.shape[-1] != 2:
             raise Error("stretch must be (along, across), once or for each lobe")
         pairs = array.reshape(-1, 2).tolist()
-    if nodes not in ("given", "held_out"):
-        raise Error(f"unknown nodes {nodes!r}; known: given, held_out")
+    if not isinstance(nodes, str) or nodes not in ("given", "held_out"):
+        raise Error(f"unknown nodes {' '.join(repr(nodes).split())[:60]}; known: given, held_out")
     if start is not None and not isinstance(start, Brdf):
         raise Error("start must be a trilobe.Brdf")
-    if start is not None and (lobes is not None or pairs or model != "shared"):
+    if start is not None and (lobes is not None or pairs or not isinstance(model, str) or model != "shared"):
         raise Error("start brings its own lobes and tables; leave out model, lobes and stretch")
     options = {
         "model": model,
@@ -173,7 +173,8 @@ def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:
         return None
     match = re.fullmatch(r"(\d{1,4})(r?)x(\d{1,4})", text) if isinstance(text, str) else None
     if match is None or (match[2] and name == "g_nodes"):
-        raise Error(f"{name}={text!r} are no nodes; give theta x phi, as '6x48'")
+        given = " ".join(repr(text).split())[:60]
+        raise Error(f"{name}={given} are no nodes; give theta x phi, as '6x48'")
     return int(match[1]), bool(match[2]), int(match[3])
 
 

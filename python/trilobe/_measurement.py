@@ -75,9 +75,9 @@ class Measurement:
         lengths = {name: len(array) for name, array in arrays.items()}
         if len(set(lengths.values())) > 1:
             raise Error(f"wi, wo and rho have {', '.join(map(str, lengths.values()))} rows, and must have the same")
-        if anisotropic not in (None, True, False):
+        if anisotropic is not None and not isinstance(anisotropic, (bool, np.bool_)):
             raise Error("anisotropic must be True, False or None")
-        azimuths = {None: "auto", True: "yes", False: "no"}[anisotropic]
+        azimuths = "auto" if anisotropic is None else "yes" if anisotropic else "no"
         options = source_options(max_angle=max_angle, min_theta_d=min_theta_d)
         self._set(fits().from_arrays(*arrays.values(), _name(source), azimuths, options))
 

@@ -167,6 +167,10 @@ BAD = [
     (lambda: trilobe.fit(SMALL, stretch=(1, 2, 3)), "stretch must be"),
     (lambda: trilobe.fit(SMALL, stretch=[(0, 1), (1, 0)]), "stretch has 2 pairs for 3 lobes"),
     (lambda: trilobe.fit(SMALL, d_nodes="many"), "d_nodes='many' are no nodes"),
+    (lambda: trilobe.fit(SMALL, d_nodes=np.zeros((3, 3))), "d_nodes=array.*are no nodes"),
+    (lambda: trilobe.fit(SMALL, nodes=np.zeros((3, 3))), "unknown nodes array"),
+    (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]], [1.0], anisotropic=np.ones(2)), "must be True, False"),
+    (lambda: isotropic().unobserved(np.ones((2, 2))), "there is no factor array"),
     (lambda: trilobe.fit(SMALL, weighting="light"), "light"),
     (lambda: trilobe.fit(SMALL, init="there"), "there"),
     (lambda: trilobe.fit(SMALL, start=3), "start must be"),
@@ -202,12 +206,18 @@ print("kept", flush=True)
 
 
 def test_ctrl_c_keeps_the_best_so_far():
+    pytest.importorskip("tqdm")
+    environment = {key: value for key, value in os.environ.items() if key != "TQDM_DISABLE"}
     process = subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE, text=True,
-                               stderr=subprocess.PIPE)
-    time.sleep(2.5)
+                               stderr=subprocess.PIPE, env=environment)
+    told = ""
+    while "3it" not in told:  # there is a model
+        more = process.stderr.read(1)
+        assert more, told
+        told += more
     process.send_signal(signal.SIGINT)
-    out, told = process.communicate(timeout=60)
-    assert process.returncode == 0, told
+    out, more = process.communicate(timeout=60)
+    assert process.returncode == 0, told + more
     assert "kept" in out
 
 
