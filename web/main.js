@@ -132,7 +132,7 @@ function captionOf(mode) {
   if (mode === 'measured') return ['Measured', samples];
   if (mode === 'fitted') return [`Fitted${edited}`, model_];
   if (mode === 'wipe') return [`Measured | Fitted${edited}`, 'move the line below the picture, or drag it'];
-  return ['Where they differ', seen ? `ΔE ${short(seen.mean)} in the mean${seen.mean < 1 ? ': not seen' : ''}` : 'to the eye'];
+  return ['Where they differ', seen ? `ΔE ${short(seen.mean)} in the mean${seen.partial ? ', with light from unmeasured directions' : seen.mean < 1 ? ': not seen' : ''}` : 'to the eye'];
 }
 
 // CIELAB differences of what is shown, in the mean and below which 95 % stay.
@@ -146,14 +146,16 @@ function compareShown(level) {
     const z = f((0.0193 * r + 0.1192 * g + 0.9505 * l) / 1.089);
     return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
   };
+  let partial = false;
   for (let k = 0; k < a.length; k += 4) {
+    partial ||= b[k + 3] < 0.99 * a[k + 3];
     if (!(a[k + 3] > 0) || b[k + 3] < 0.5 * a[k + 3]) continue;
     const p = lab(a, k), q = lab(b, k);
     found.push(Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
   }
   if (found.length === 0) return;
   found.sort((x, y) => x - y);
-  seen = {mean: found.reduce((x, y) => x + y, 0) / found.length, high: found[Math.floor(0.95 * found.length)]};
+  seen = {mean: found.reduce((x, y) => x + y, 0) / found.length, high: found[Math.floor(0.95 * found.length)], partial};
   const index = panels.findIndex(p => p.mode === 'difference');
   if (index >= 0) byId('captions').children[index]?.lastChild?.replaceWith(captionOf('difference')[1]);
 }
