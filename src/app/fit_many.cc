@@ -212,7 +212,9 @@ std::vector<FitOutcome> FitsIn(const std::string& folder) {
     }
   }
   if (names.empty()) {
-    throw Error("'" + folder + "' has no folder of a fit, with model.json and report.json in it");
+    const fs::path model = fs::path(folder) / "model.json";
+    throw Error("'" + folder + "' has no folder of a fit, with model.json and report.json in it" +
+                (fs::exists(model) ? "; to look at one model, give '" + model.string() + "'" : ""));
   }
   std::ranges::sort(names);
   std::vector<FitOutcome> outcomes;

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <utility>
 
+#include "app/inputs.h"
 #include "app/interrupt.h"
 #include "app/program.h"
 #include "app/view_page.h"
@@ -72,9 +73,9 @@ void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* fol
   const FitReport& report = run.report;
   std::optional<SeenError> seen = report.samples_seen;
   if (report.appearance) seen = report.appearance->sphere;
-  const std::string page = ViewPage(run.file, run.file.fit.source, &run.measured, seen,
-                                    report.summary.trace, settings.fit.appearance);
-  folder->Write(kViewName, [&](std::ostream& out) { out << page; });
+  const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, seen,
+                                   report.summary.trace, settings.fit.appearance);
+  folder->Write(kViewName, [&](std::ostream& out) { out << page.text; });
 }
 
 }  // namespace
@@ -111,6 +112,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   Stopwatch stopwatch;
   SourceOptions source_options = settings.source;
   source_options.num_threads = num_threads;
+  RefuseMaterial(source);
   Measurement measured;
   if (IsSynthetic(source)) {
     measured = LoadMeasurement(source, source_options);

@@ -18,6 +18,16 @@ bool IsModelFile(const std::string& path) {
   return RecogniseFile(path).kind == Content::Kind::kJson;
 }
 
+void RefuseMaterial(const std::string& source) {
+  if (!IsMaterial(source)) return;
+  throw Error(source + ": this is a model; give the file of a measurement, or synth:NAME");
+}
+
+Measurement MeasurementOfSource(const std::string& source, const SourceOptions& options) {
+  RefuseMaterial(source);
+  return LoadMeasurement(source, options);
+}
+
 std::string RequiredOut(const std::string& command, const std::string& what) {
   if (FLAGS_out.empty()) {
     throw Error("trilobe " + command + " needs --out=" + what + ", to know where to write");

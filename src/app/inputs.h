@@ -3,11 +3,20 @@
 
 #include <string>
 
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/formats/source.h"
+
 namespace trilobe {
 
-// True of material:NAME, and if the file can be read and begins like a JSON object, as model files do and no measurement
-// does.
+// True of material:NAME, and if the file can be read and begins like a JSON object, as model files
+// do and no measurement does.
 bool IsModelFile(const std::string& path);
+
+// Throws Error for material:NAME, which is a model where a measurement is asked for.
+void RefuseMaterial(const std::string& source);
+
+// The measurement that an argument SOURCE stands for. Throws Error.
+Measurement MeasurementOfSource(const std::string& source, const SourceOptions& options);
 
 // --out, or an Error that says what it is for: "trilobe synth needs --out=FILE".
 std::string RequiredOut(const std::string& command, const std::string& what);

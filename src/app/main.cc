@@ -118,8 +118,9 @@ int Run(const CommandLine& line) {
   const std::vector<std::string> arguments(line.words.begin() + 1, line.words.end());
   const int count = static_cast<int>(arguments.size());
   if (count < command.min_arguments || count > command.max_arguments) {
-    throw Error("trilobe " + command.name + " takes " + command.arguments + ", but got " +
-                std::to_string(count) + " arguments; see `trilobe help " + command.name + "`");
+    throw Error("trilobe " + command.name + " takes " +
+                (command.arguments.empty() ? "no arguments" : command.arguments) + ", but got " +
+                std::to_string(count) + "; see `trilobe help " + command.name + "`");
   }
   return command.run(arguments);
 }

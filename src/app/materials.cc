@@ -4,6 +4,7 @@
 
 #include "base/nearest_name.h"
 #include "trilobe/base/error.h"
+#include "trilobe/formats/source.h"
 
 namespace trilobe {
 namespace {
@@ -35,6 +36,11 @@ const std::vector<LibraryMaterial>& LibraryMaterials() {
 bool IsMaterial(std::string_view path) { return path.starts_with(kMaterialPrefix); }
 
 ModelFile LoadModel(const std::string& path) {
+  if (IsSynthetic(path)) {
+    throw Error(path +
+                ": this is a measurement; a model is a model.json that `trilobe fit` "
+                "wrote, or material:NAME");
+  }
   if (!IsMaterial(path)) return ReadModel(path);
   const std::string name = path.substr(kMaterialPrefix.size());
   std::vector<std::string_view> known;
@@ -45,9 +51,13 @@ ModelFile LoadModel(const std::string& path) {
     }
   }
   if (known.empty()) throw Error(path + ": the program was built without materials");
-  throw Error(path + ": there is no material of this name; did you mean '" +
-              std::string(kMaterialPrefix) + std::string(NearestName(name, known)) +
-              "'? `trilobe materials` lists all");
+  const std::string_view nearest = NearestName(name, known);
+  const bool meant = 3 * EditDistance(name, nearest) <= name.size();
+  throw Error(path + ": there is no material of this name; " +
+              (meant
+                   ? "did you mean '" + std::string(kMaterialPrefix) + std::string(nearest) + "'? "
+                   : "") +
+              "`trilobe materials` lists all");
 }
 
 }  // namespace trilobe

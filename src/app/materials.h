@@ -27,7 +27,7 @@ inline constexpr std::string_view kMaterialPrefix = "material:";
 bool IsMaterial(std::string_view path);
 
 // A model file, or the model of material:NAME. Throws Error for a name that there is none of, with
-// those that are like it.
+// one that is like it, and for a synthetic measurement.
 ModelFile LoadModel(const std::string& path);
 
 }  // namespace trilobe

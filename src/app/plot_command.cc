@@ -35,7 +35,7 @@ int RunPlot(std::span<const std::string> arguments) {
   std::optional<Measurement> measured;
   PictureData data;
   if (arguments.size() > 1) {
-    measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
+    measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
     TellNotes(*measured);
     data = PictureDataOf(*measured);
   }

@@ -93,7 +93,7 @@ int RunScore(std::span<const std::string> arguments) {
   } else {
     other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }
-  const Measurement measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
+  const Measurement measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
   TellNotes(measured);
   const PictureData pictured = PictureDataOf(measured);
   if (!FLAGS_out.empty() && pictured.empty()) TableOf(measured);  // its error

@@ -72,13 +72,19 @@ int RunView(std::span<const std::string> arguments) {
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
   std::optional<Measurement> measured;
   if (arguments.size() > 1) {
-    measured = LoadMeasurement(arguments[1], SourceOptionsFromFlags());
+    measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
     TellNotes(*measured);
   }
   const AppearanceOptions appearance = AppearanceOptionsFromFlags();
-  const std::string page = ViewPage(model, arguments[0], measured ? &*measured : nullptr,
-                                    std::nullopt, trace, appearance);
-  Write(path, page, "a page");
+  const ViewedPage page = ViewPage(model, arguments[0], measured ? &*measured : nullptr,
+                                   std::nullopt, trace, appearance);
+  const bool missing = measured && !page.has_measured;
+  Write(path, page.text, missing ? "a page of the model alone" : "a page");
+  if (missing) {
+    PrintLine("note: " + arguments[1] + " is not on it: " +
+              (measured->table ? "a table knows no azimuths, which an anisotropic model needs"
+                               : "its samples stand at no grid of directions"));
+  }
   return 0;
 }
 

@@ -22,9 +22,9 @@ void Compare(const SeenError& seen, PageContents* contents) {
 
 }  // namespace
 
-std::string ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
-                     const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
-                     const AppearanceOptions& appearance) {
+ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
+                    const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
+                    const AppearanceOptions& appearance) {
   const ModelSpec& spec = model.model.spec();
   PageContents contents;
   const std::string& of = measured != nullptr ? measured->source : model.fit.source;
@@ -51,7 +51,7 @@ std::string ViewPage(const ModelFile& model, const std::string& path, const Meas
       Compare(*seen, &contents);
     }
   }
-  return FormatPage(model, contents);
+  return {.text = FormatPage(model, contents), .has_measured = contents.measured.has_value()};
 }
 
 }  // namespace trilobe

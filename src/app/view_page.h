@@ -13,12 +13,17 @@
 
 namespace trilobe {
 
+struct ViewedPage {
+  std::string text;
+  bool has_measured = false;  // pictures of the measurement, not of the model alone
+};
+
 // The page of a model (view/page.h), beside `measured` where that is not null. `seen` is how the
 // two differ on the sphere; where it is not given it is found out. `path` is what names the
 // material where the model does not say of what it is a fit.
-std::string ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
-                     const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
-                     const AppearanceOptions& appearance);
+ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
+                    const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
+                    const AppearanceOptions& appearance);
 
 }  // namespace trilobe
 

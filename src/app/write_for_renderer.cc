@@ -112,7 +112,8 @@ void CheckOut(const std::string& source) {
   const std::filesystem::path folder = std::filesystem::path(FLAGS_out).parent_path();
   std::error_code ignored;
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    throw Error("cannot write '" + FLAGS_out + "': there is no folder '" + folder.string() + "'");
+    throw Error("cannot write '" + FLAGS_out + "': there is no folder '" + folder.string() +
+                "'; make it first");
   }
 }
 
@@ -146,6 +147,7 @@ void WriteTensorFile(const std::string& source) {
 // A file that is made of a model alone: its errors before any work.
 ModelFile ModelFor(const std::string& source, const std::string& ending) {
   if (!IsModelFile(source)) {
+    LoadMeasurement(source);  // or an error that says why it is not even that
     throw Error("--out=" + FLAGS_out + ": " + source + " is a measurement, and trilobe writes " +
                 ending + " files of models; fit it first");
   }

@@ -81,6 +81,15 @@ ssize_t ReadAll(int fd, char* data, size_t size) {
   return static_cast<ssize_t>(done);
 }
 
+// Why no file can be made at `path`, by errno.
+std::string WhyNot(const std::filesystem::path& path) {
+  std::string reason = std::strerror(errno);  // before other calls
+  std::error_code ignored;
+  const std::filesystem::path folder = path.parent_path();
+  if (folder.empty() || std::filesystem::exists(folder, ignored)) return reason;
+  return "there is no folder '" + folder.string() + "'; make it first";
+}
+
 // Marks the names of temporary files, which are hidden: .NAME.trilobe-tmp-0123456789abcdef
 constexpr std::string_view kTemporaryMark = ".trilobe-tmp-";
 constexpr size_t kTemporaryDigits = 16;
@@ -217,7 +226,8 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
   if (!stream) FailToWrite(path, "its content could not be produced");
 
   TemporaryFile file(target);
-  if (!file.ok() || !file.Write(stream.view())) FailToWrite(path, std::strerror(errno));
+  if (!file.ok()) FailToWrite(path, WhyNot(path));
+  if (!file.Write(stream.view())) FailToWrite(path, std::strerror(errno));
   before_renaming();
   if (!file.RenameTo(target)) FailToWrite(path, std::strerror(errno));
 }

@@ -34,7 +34,8 @@ std::string EndText(StopReason reason) {
 }
 
 std::string FormText(const FitReport& report) {
-  std::string text = std::to_string(report.spec.lobes) + " lobes of " + ParametersText(report);
+  std::string text = std::to_string(report.spec.lobes) +
+                     (report.spec.lobes == 1 ? " lobe of " : " lobes of ") + ParametersText(report);
   const FitReport::Finished& finished = report.finished;
   if (finished.chosen < 0) return text;
   return text + ", the best of " + std::to_string(finished.candidates.size()) + " forms (" +

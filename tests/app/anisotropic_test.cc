@@ -89,6 +89,17 @@ TEST_F(AnisotropicCommands, ReconstructionIsAMeasurementOfTheModel) {
   ExpectRefusal({"convert", model, "--out=" + In("c.binary")}, "end the name in .bin");
 }
 
+TEST_F(AnisotropicCommands, PageSaysWhatIsNotOnIt) {
+  const std::string model = In("fit/model.json"), page = In("x.html");
+  const ProgramResult both = RunProgram({"view", model, kVelvet, "--out=" + page});
+  ASSERT_EQ(both.status, 0) << both.err;
+  EXPECT_THAT(both.out, testing::Not(HasSubstr("note:")));
+  const ProgramResult alone = RunProgram({"view", model, "synth:felt@12x12x24", "--out=" + page});
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  EXPECT_THAT(alone.out, HasSubstr(": a page of the model alone of "));
+  EXPECT_THAT(alone.out, HasSubstr("synth:felt@12x12x24 is not on it: a table knows no azimuths"));
+}
+
 TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   const ProgramResult fit =
       RunProgram({"fit", kVelvet, "--model=isotropic", "--lobes=1", "--solver=awls",

@@ -369,6 +369,10 @@ TEST(ConvertTest, WritesStandardMaterials) {
 
   ExpectError(RunProgram({"convert", "synth:felt", "--out=" + (folder / "y.mtlx")}),
               "is a measurement, and trilobe writes .mtlx files of models; fit it first");
+  ExpectError(RunProgram({"convert", folder / "none.json", "--out=" + (folder / "y.mtlx")}),
+              "cannot read '" + (folder / "none.json") + "'");
+  ExpectError(RunProgram({"convert", "synth:none", "--out=" + (folder / "y.glsl")}),
+              "unknown synthetic material 'none'");
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "y.json")}),
               "y.json: trilobe writes no '.json'");
   ExpectError(RunProgram({"convert", folder / "model.json", "--out=" + (folder / "no/y.mtlx")}),

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -46,12 +47,32 @@ TEST(Materials, StandWhereverAModelIsTaken) {
 }
 
 TEST(Materials, OfAnotherNameAreToldInOneLine) {
-  for (const std::string name : {"none", "", "materials", "../x"}) {
+  for (const std::string name : {"none", "", "materials", "../x", "acrylic_felt_pnik"}) {
     const ProgramResult result = RunProgram({"info", "material:" + name});
     EXPECT_EQ(result.status, 1);
-    EXPECT_THAT(result.err, HasSubstr("there is no material of this name; did you mean"));
+    EXPECT_THAT(result.err, HasSubstr("there is no material of this name; "));
+    EXPECT_THAT(result.err, HasSubstr("`trilobe materials` lists all"));
+    EXPECT_EQ(result.err.find("did you mean 'material:acrylic_felt_pink'?") != std::string::npos,
+              name == "acrylic_felt_pnik");
     EXPECT_EQ(std::ranges::count(result.err, '\n'), 1);
   }
+}
+
+TEST(Materials, AreNoMeasurementsNorMeasurementsModels) {
+  const TemporaryFolder folder;
+  const std::string material = "material:" + Listed()[0]["name"].get<std::string>();
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"fit", material, "--out=" + (folder / "fit")},
+           {"score", material, material},
+           {"plot", material, material, "--out=" + (folder / "plot")},
+           {"view", material, material, "--out=" + (folder / "x.html")}}) {
+    const ProgramResult result = RunProgram(command);
+    EXPECT_EQ(result.status, 1) << command[0];
+    EXPECT_THAT(result.err, HasSubstr(material + ": this is a model; give the file of a"));
+  }
+  const ProgramResult result = RunProgram({"view", "synth:felt", "--out=" + (folder / "x.html")});
+  EXPECT_THAT(result.err, HasSubstr("synth:felt: this is a measurement; a model is"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.html"));
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ TEST_F(View, OfAFolderShowsAllFitsInIt) {
   EXPECT_THAT(result.out, HasSubstr("a page of 1 fit,"));
   EXPECT_THAT(Contents(folder_ / "index.html"), HasSubstr("<b>out</b> fitted, "));
   EXPECT_EQ(RunProgram({"view", all, "--out=" + (folder_ / "out/x.html")}).status, 1);
-  EXPECT_EQ(RunProgram({"view", folder_ / "out"}).status, 1);  // no fits in it
+  EXPECT_THAT(RunProgram({"view", folder_ / "out"}).err,  // no fits in it, but a model
+              HasSubstr("to look at one model, give '" + model() + "'"));
 }
 
 TEST_F(View, TakesNamesAsText) {

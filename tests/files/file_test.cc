@@ -132,7 +132,8 @@ TEST(WriteFile, RefusesImpossibleTargets) {
   const TestDirectory directory;
   EXPECT_THAT(ErrorOf([&] { WriteText(directory.path(), ""); }), HasSubstr("is a directory"));
   EXPECT_THAT(ErrorOf([&] { WriteText(directory.Path("no/file"), ""); }),
-              AllOf(HasSubstr(directory.Path("no/file")), HasSubstr("No such file or directory")));
+              AllOf(HasSubstr(directory.Path("no/file")),
+                    HasSubstr("there is no folder '" + directory.Path("no") + "'; make it first")));
   EXPECT_THAT(ErrorOf([] { WriteText("", ""); }), HasSubstr("cannot write ''"));
   // Renaming over a device would replace it.
   EXPECT_THAT(ErrorOf([] { WriteText("/dev/null", ""); }), HasSubstr("not a regular file"));
