@@ -106,7 +106,7 @@ def main() -> int:
     parser.add_argument("pictures", nargs="*", help="names of the pictures to look at (all)")
     options = parser.parse_args()
     root = options.root.resolve()
-    commands = ["build/release/bin", "experiments/renderer", "python/examples"]
+    commands = ["build/release/bin", "experiments/renderer", "python/examples", "scripts"]
     path = ":".join([*(str(root / folder) for folder in commands), os.environ["PATH"]])
 
     made, wrong = pictures(root)
