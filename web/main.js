@@ -256,7 +256,7 @@ function drawCharts() {
   }
   drawPolarChart();
   if (hasMeasured()) {
-    heat ??= differenceMap(measured, evaluate, measured.kind === 'table' ? 45 : 20);
+    heat ??= differenceMap(measured, evaluate, measured.kind === 'table' ? Math.min(45, ...measured.shape.slice(0, 2)) : 20);
     drawHeat(byId('heat'), heat, at ? [at.theta_h * DEGREES, at.theta_d * DEGREES] : null, isDark());
     byId('typical').textContent = Number.isFinite(heat.typical) ? `Typically ${short(100 * (Math.exp(heat.typical) - 1))} % apart.` : '';
   }

@@ -197,7 +197,8 @@ export function parseCsv(text) {
 }
 
 // Mean log ratio of fitted over measured in `size` x `size` bins of (theta_h, theta_d), NaN where nothing was
-// measured: {size, ratio: Float32Array, typical}. theta_h by its root, as in the tables.
+// measured: {size, ratio: Float32Array, typical}. theta_h by its root, as in the tables, which have `size` bins or more:
+// else some would be empty.
 export function differenceMap(measured, evaluate, size = 45) {
   const sums = new Float64Array(size * size), weights = new Float64Array(size * size);
   let absolute = 0, total = 0;

@@ -56,7 +56,10 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
   if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
   if (found.empty()) {
     std::string endings;
-    for (const MeasurementFormat& format : MeasurementFormats()) endings += " *" + format.ending;
+    for (const MeasurementFormat& format : MeasurementFormats()) {
+      const std::string ending = " *" + format.ending;
+      if ((endings + " ").find(ending + " ") == std::string::npos) endings += ending;
+    }
     throw Error("'" + folder + "' has no measurement, no file of these:" + endings);
   }
   std::ranges::sort(found);

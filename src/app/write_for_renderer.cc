@@ -37,7 +37,8 @@
 DEFINE_double(error, 0,
               "of a .bsdf file: how far it may be off the model or the measurement, relative, in "
               "the median over directions; finer tables are taken until it is met. 0: 0.005, of an "
-              "anisotropic model 0.02, and of a measurement as near as files of usual size come");
+              "anisotropic model 0.02, or as near as files come, and of a measurement as files of "
+              "usual size come");
 DEFINE_bool(spectral, false,
             "of a .bsdf file: spectra in place of RGB, for spectral renderers (Mitsuba's spectral "
             "variants, pbrt-v4); the others cannot read it");

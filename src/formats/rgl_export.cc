@@ -359,8 +359,9 @@ RglExport Export(const FactorModel& model, const PairBrdf& value,
   const double max_error = options.max_error.value_or(anisotropic ? 0.02 : 0.005);
   const Tables tables(model, value, options.max_theta);
   RglExport result = Smallest(tables, sizes, places, max_error, description, options.spectral);
-  if (any_error || result.median_error <= max_error) return result;
+  if (any_error || !options.max_error || result.median_error <= max_error) return result;
   std::ostringstream message;
+  message.precision(3);
   message << "no file is exact enough: one of " << static_cast<double>(result.bytes.size()) / 1e6
           << " MB is off by " << 100 * result.median_error << " % in the median, where "
           << 100 * max_error << " % is asked for; allow a larger error";

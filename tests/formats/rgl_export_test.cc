@@ -11,8 +11,10 @@
 
 #include "formats/tensor_file.h"
 #include "tests/evaluate/materials.h"
+#include "tests/paths.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
+#include "trilobe/evaluate/read_model.h"
 #include "trilobe/formats/completed_measurement.h"
 #include "trilobe/formats/rgl_file.h"
 #include "trilobe/lobes/reconstruct.h"
@@ -163,6 +165,14 @@ TEST(RglExport, TakesFinerTablesForLessError) {
   EXPECT_LT(coarse.bytes.size(), fine.bytes.size());
   EXPECT_GT(coarse.median_error, fine.median_error);
   EXPECT_THROW(ExportRgl(model, {.max_error = 0}), Error);
+}
+
+TEST(RglExport, IsAsNearAsItComesWhereNothingElseIsAskedFor) {
+  const FactorModel model = ReadModel(InRepository("materials/chm_mint.json")).model;
+  const RglExport file = ExportRgl(model, {.max_theta = 1.4});
+  EXPECT_GT(file.median_error, 0.005);
+  EXPECT_LT(file.median_error, 0.02);
+  EXPECT_THROW(ExportRgl(model, {.max_error = 0.005, .max_theta = 1.4}), Error);
 }
 
 TEST(RglExport, RefusesABlackModel) {

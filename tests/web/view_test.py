@@ -25,6 +25,8 @@ def pages(fits: Path) -> dict[str, Path]:
         made[name] = fits / name / "page.html"
         run("view", fits / name / "model.json", f"synth:{name}", f"--out={made[name]}",
             f"--trace={fits / name / 'trace.csv'}")
+    made["coarse"] = fits / "plastic/coarse.html"
+    run("view", fits / "plastic/model.json", "synth:plastic@24x30x12", f"--out={made['coarse']}")
     made["alone"] = fits / "plastic/alone.html"
     run("view", fits / "plastic/model.json", f"--out={made['alone']}")
     return made
@@ -117,6 +119,15 @@ def test_the_pointer_reads_both_values(open_page: Open) -> None:
     measured, fitted = (np.array([float(x) for x in rows[f"ρ {kind}"]]) for kind in ("measured", "fitted"))
     assert np.abs(fitted / measured - 1).max() < 0.1
     assert all(0 < float(x) < 1 for x in rows["albedo at θo"])
+
+
+def test_the_map_has_no_gaps_where_a_table_is_coarse(open_page: Open) -> None:
+    page = open_page("coarse")
+    opaque = page.evaluate(
+        "(() => { const map = document.getElementById('heat'), {width, height} = map, r = width / map.clientWidth;"
+        " const row = map.getContext('2d').getImageData(44 * r, height - 24 * r, 0.7 * width, 1).data;"
+        " return Array.from(row).filter((_, k) => k % 4 === 3); })()")
+    assert len(opaque) > 100 and min(opaque) == 255
 
 
 def test_views_are_chosen_by_the_keyboard(open_page: Open) -> None:

@@ -13,7 +13,8 @@ namespace trilobe {
 struct RglExportOptions {
   // What the file may be off by, relative, in the median over pairs of directions that are
   // distributed by their cosines, of rho cos theta_o. Finer tables are taken until it is met.
-  // 0.005 if it is not given, of anisotropic models 0.02.
+  // 0.005 if it is not given, of anisotropic models 0.02, or where no table is that near, hardly
+  // worse than the nearest; what is given and cannot be met is an Error.
   std::optional<double> max_error = {};
   // Pairs with a direction further than this from the normal do not count [rad]: beyond what was
   // measured, a model says little, and may say it with any contrast.
