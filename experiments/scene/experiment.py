@@ -64,7 +64,7 @@ def _material_rows(budget, compared, side):
 
 def _scene_row(budget, compared, side, rows):
     of = compared["all"]
-    return {"budget": budget, "materials": len(rows), "numbers": of["parameters"][side],
+    return {"budget": budget, "materials": len(rows), "parameters": of["parameters"][side],
             "bytes": of["bytes"][side], "threads": compared["threads"],
             "seconds": of["seconds"][side],
             "mean_relative_rise": 0.0 if side == FULL else of["mean_relative_rise"],
@@ -106,15 +106,15 @@ def _scene_table(rows):
     whole = next((row for row in rows if row["budget"] == FULL), None)
     lines = []
     for row in rows:
-        if row.get("numbers") is None:
+        if row.get("parameters") is None:
             lines.append([_budget(row), "missing", *[""] * 7])
             continue
-        lines.append([_budget(row), str(row["numbers"]), str(row["bytes"]),
-                      f"{whole['numbers'] / row['numbers']:.1f}", f"{row['seconds']:.1f}",
+        lines.append([_budget(row), str(row["parameters"]), str(row["bytes"]),
+                      f"{whole['parameters'] / row['parameters']:.1f}", f"{row['seconds']:.1f}",
                       f"{whole['seconds'] / row['seconds']:.2f}",
                       _percent(row["mean_relative_rise"]), _percent(row["largest_relative_rise"]),
                       f"{row['mean_psnr_db']:.2f}"])
-    return tables.markdown(["rise of E allowed", "numbers", "bytes", "times fewer", "seconds",
+    return tables.markdown(["rise of E allowed", "parameters", "bytes", "times fewer", "seconds",
                             "times sooner", "rise of E, mean", "largest", "PSNR dB, mean"], lines)
 
 
@@ -122,11 +122,11 @@ def _materials_table(rows):
     lines = []
     for name, of in tables.groups(rows, "material").items():
         for row in of:
-            lines.append([name, _budget(row), str(row["numbers"]), str(row["bytes"]),
+            lines.append([name, _budget(row), str(row["parameters"]), str(row["bytes"]),
                           f"{row['seconds'] * row['threads']:.1f}",
                           _percent(row["relative_rise"]), f"{row['objective']:.5g}",
                           f"{row['psnr_db']:.2f}"])
-    return tables.markdown(["material", "rise of E allowed", "numbers", "bytes",
+    return tables.markdown(["material", "rise of E allowed", "parameters", "bytes",
                             "seconds × threads", "rise of E", "E", "PSNR dB"], lines)
 
 
@@ -189,7 +189,7 @@ def draw(drawn, _):
     if rows:
         budgets = [row["budget"] for row in of_scene if row["budget"] != FULL]
         products["bytes"] = _figure(rows, budgets, lambda row: row["bytes"],
-                                    "bytes of the model's numbers")
+                                    "bytes of the model's parameters")
         products["seconds"] = _figure(rows, budgets, lambda row: row["seconds"] * row["threads"],
                                       "seconds × threads to make the model")
     return products
