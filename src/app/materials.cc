@@ -20,7 +20,7 @@ std::vector<LibraryMaterial> MadeMaterials() {
                            .licence = entry.at("licence"),
                            .psnr_db = entry.at("psnr_db"),
                            .mean_delta_e = entry.at("mean_delta_e"),
-                           .numbers = entry.at("numbers")});
+                           .parameters = entry.at("parameters")});
     }
   }
   return materials;

@@ -18,7 +18,7 @@ std::span<const WebFile> MaterialFiles();
 struct LibraryMaterial {
   std::string name, title, source, licence;
   double psnr_db = 0, mean_delta_e = 0;
-  int numbers = 0;
+  int parameters = 0;
 };
 const std::vector<LibraryMaterial>& LibraryMaterials();
 

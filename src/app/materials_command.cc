@@ -16,7 +16,7 @@ int RunMaterials(std::span<const std::string> /*arguments*/) {
   }
   for (const LibraryMaterial& material : LibraryMaterials()) {
     PrintLine("  " + material.name + std::string(width + 2 - material.name.size(), ' ') +
-              material.title + "; " + std::to_string(material.numbers) + " numbers, sphere " +
+              material.title + "; " + std::to_string(material.parameters) + " parameters, sphere " +
               Text(material.psnr_db, 3) + " dB, Delta E " + Text(material.mean_delta_e, 2) + "; " +
               material.licence);
   }
