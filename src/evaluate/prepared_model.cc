@@ -316,7 +316,8 @@ class PairEvaluation {
                         Cubic(at_o[4 * v].lane, Real{at.lower[3]}, Real{at.upper[3]}),
                     G[v].lane);
       }
-      readings->scale = 1 / G->lane[kPlain ? 3 : model_.cosine_lane_];
+      const int lane = kPlain ? 3 : model_.cosine_lane_;
+      readings->scale = 1 / G[lane / 4].lane[lane % 4];
     }
     return true;
   }

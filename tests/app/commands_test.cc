@@ -125,7 +125,7 @@ TEST(ProgramTest, RejectsWhatItDoesNotKnow) {
   ExpectError(RunProgram({"frobnicate"}), "known: fit, solvers, ");
   ExpectError(RunProgram({"help", "frobnicate"}), "known: fit, solvers, ");
   ExpectError(RunProgram({"info"}), "takes SOURCE|MODEL");
-  ExpectError(RunProgram({"info", "a", "b"}), "2 arguments");
+  ExpectError(RunProgram({"info", "a", "b"}), "takes SOURCE|MODEL, but got 2; ");
   ExpectError(RunProgram({"synth", "--weighting=log"}), "no flag --weighting");
   ExpectError(RunProgram({"help", "synth", "--weighting=log"}), "no flag --weighting");
   ExpectError(RunProgram({"synth", "foam", "--out=x", "--threads=-1"}), "--threads is negative");
