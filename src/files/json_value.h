@@ -9,9 +9,9 @@
 namespace trilobe {
 
 // Of the JSON files here the largest that means something is a model of 8 lobes whose 72 tables
-// differ, of 1024 entries each, all of them stored as nodes and listed as unobserved: 221,184 numbers, 2
-// MB on a line a table, 9 MB on a line a number. A scene has room for 150,000 single directions;
-// more of them are a histogram.
+// differ, of 1024 entries each, all of them stored as nodes and listed as unobserved: 221,184
+// numbers, 2 MB on a line a table, 9 MB on a line a number. A scene has room for 150,000 single
+// directions; more of them are a histogram.
 inline constexpr size_t kMaxJsonBytes = size_t{1} << 24;
 inline constexpr size_t kMaxJsonValues = size_t{1} << 20;  // keys count, too
 

@@ -273,7 +273,8 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
               return model.spec().D.per_channel ? 20 - loss : 20.0;
             }};
     const ChosenModel result = ChooseModel(fit.objective, fit.model, options);
-    EXPECT_EQ(result.candidates.back().fails_beyond, wild) << gain << " dB more, " << loss << " less";
+    EXPECT_EQ(result.candidates.back().fails_beyond, wild)
+        << gain << " dB more, " << loss << " less";
     EXPECT_EQ(result.model.spec().D.per_channel, !wild);
   }
 }

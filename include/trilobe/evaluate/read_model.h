@@ -47,9 +47,9 @@ struct ModelFile {
 // where it is shared; "sharing" {"D": {"per_lobe": true, "per_channel": false}, ...} says so, and
 // may be missing for the paper's model. In a compact file, one with a layout, "d" and the rows of
 // "s" may be [1], and a table may be {"size", "nodes": [indices], "values": [as many]}.
-// "unobserved" {"D": [[indices], ...] a table, ...} lists unobserved bins. Unknown keys are ignored.
-// Errors name the file and the key. All numbers must be finite and >= 0. Doubles read back bit for
-// bit.
+// "unobserved" {"D": [[indices], ...] a table, ...} lists unobserved bins. Unknown keys are
+// ignored. Errors name the file and the key. All numbers must be finite and >= 0. Doubles read back
+// bit for bit.
 ModelFile ParseModel(std::string_view text, const std::string& source);
 ModelFile ReadModel(const std::string& path);
 
