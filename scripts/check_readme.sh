@@ -24,7 +24,7 @@ import json
 import sys
 
 for material in json.load(open(sys.argv[1]))["materials"]:
-    numbers, psnr = material["numbers"], material["psnr_db"]
+    numbers, psnr = material["parameters"], material["psnr_db"]
     good = (material["lobes"] > 0 and numbers["pruned"] < numbers["full"] / 10
             and 0.1 < psnr["full"] - psnr["pruned"] <= 1)
     if not good:

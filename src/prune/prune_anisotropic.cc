@@ -13,6 +13,7 @@
 #include "prune/pruning.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/lobes/with_axes.h"
+#include "trilobe/prune/prune.h"
 #include "trilobe/start/initial_model.h"
 
 namespace trilobe {
