@@ -245,9 +245,9 @@ class PairEvaluation {
   // A factor of one lobe, and the product of a lobe's, for each channel.
   TRILOBE_ALWAYS_INLINE static Four<Real> FactorOf(const Tables& tables, const Quad* values,
                                                    int lobe) {
-    const Real* const lanes = values->lane + lobe * tables.lobe_stride;
-    if (!tables.per_channel) return Broadcast(*lanes);
-    return Load(lanes);
+    const auto lane = static_cast<unsigned>(lobe * tables.lobe_stride);
+    const Quad& at = values[lane / 4];
+    return tables.per_channel ? Load(at.lane) : Broadcast(at.lane[lane % 4]);
   }
   TRILOBE_ALWAYS_INLINE Four<Real> LobeOf(const Readings& at, int lobe) const {
     return Load(model_.specular_[lobe].lane) * FactorOf(model_.d_, at.D, lobe) *

@@ -169,7 +169,8 @@ TEST(JsonValue, LimitsAreCheckedBeforeAnythingIsAllocated) {
   EXPECT_LT(peak, 200 << 20);
   const auto error_of = [](const std::string& refused) {
     std::string error;
-    EXPECT_LT(PeakOf([&] { error = ErrorOf([&] { JsonValue::Parse(refused, "t"); }); }), 1 << 20);
+    EXPECT_LT(PeakOf([&] { error = ErrorOf([&] { JsonValue::Parse(refused, "t"); }); }),
+              4 << 20);  // of what else a process and its sanitizers take meanwhile
     return error;
   };
   EXPECT_EQ(error_of(most + ",0]"), "t: it has about 1048577 values; at most 1048576 can be read");
