@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "appearance/color.h"
 #include "trilobe/appearance/environment.h"
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/directions.h"
@@ -52,9 +53,6 @@ class EnvironmentSampler {
   }
 
  private:
-  static double Luminance(const Rgb& rgb) {
-    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-  }
   size_t At(int row, int column) const { return static_cast<size_t>(row) * of_.width + column; }
   double SolidAngle(int row) const {
     return 2 * kPi / of_.width *

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "appearance/color.h"
 #include "benchmarks/ggx.h"
 #include "experiments/program.h"
 #include "experiments/sampling/environment_sampler.h"
@@ -80,7 +81,7 @@ std::vector<Pixel> PixelsOfSphere(int size) {
   return pixels;
 }
 
-// Numbers in [0, 1) that repeat (PCG's output function of a counter).
+// Numbers in [0, 1) that repeat (SplitMix64).
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}
@@ -250,10 +251,8 @@ void WritePicture(const std::vector<Pixel>& pixels, const Picture& picture, doub
   std::string bytes(size * size * kChannels, '\x20');
   for (size_t k = 0; k < pixels.size(); ++k) {
     for (int c = 0; c < kChannels; ++c) {
-      const double x = std::clamp(exposure * picture.radiance[k][c], 0.0, 1.0);
-      const double shown = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
       bytes[static_cast<size_t>(pixels[k].at) * kChannels + static_cast<size_t>(c)] =
-          static_cast<char>(std::lround(255 * shown));
+          static_cast<char>(std::lround(255 * EncodeSrgb(exposure * picture.radiance[k][c])));
     }
   }
   WritePng(FLAGS_pictures + "/" + name + ".png", FLAGS_size, FLAGS_size, bytes);

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/markup.h"
 #include "reports/print.h"
 #include "trilobe/base/printable.h"
 #include "view/document.h"
@@ -45,9 +46,9 @@ std::string Figure(const FitOutcome& outcome) {
   const std::string folder = Address(outcome.name);
   std::ostringstream figure;
   figure << R"(<figure><a href=")" << folder << '/' << outcome.page << R"("><img src=")" << folder
-         << '/' << outcome.picture << R"(" loading="lazy" alt=")" << EscapedHtml(outcome.name)
-         << ": measured and fitted\"></a>\n<figcaption><b>" << EscapedHtml(outcome.name) << "</b>"
-         << EscapedHtml(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
+         << '/' << outcome.picture << R"(" loading="lazy" alt=")" << EscapedMarkup(outcome.name)
+         << ": measured and fitted\"></a>\n<figcaption><b>" << EscapedMarkup(outcome.name) << "</b>"
+         << EscapedMarkup(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
          << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
          << Text(100 * outcome.mean_color_error, 2) << " %, " << outcome.num_parameters
          << " numbers</figcaption></figure>\n";
@@ -118,9 +119,9 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
   for (const FitOutcome& outcome : outcomes) {
     if (outcome.has_picture) continue;
     body << "<p" << (outcome.has_model() ? "" : " class=\"failed\"") << "><b>"
-         << EscapedHtml(outcome.name) << "</b> " << StateName(outcome.state)
-         << (outcome.verdict.empty() ? "" : ", " + EscapedHtml(outcome.verdict))
-         << (outcome.error.empty() ? "" : ": ") << EscapedHtml(outcome.error) << "</p>\n";
+         << EscapedMarkup(outcome.name) << "</b> " << StateName(outcome.state)
+         << (outcome.verdict.empty() ? "" : ", " + EscapedMarkup(outcome.verdict))
+         << (outcome.error.empty() ? "" : ": ") << EscapedMarkup(outcome.error) << "</p>\n";
   }
   body << "<main>\n";
   for (const FitOutcome& outcome : fits) body << Figure(outcome);

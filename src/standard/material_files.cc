@@ -1,5 +1,6 @@
 #include "standard/material_files.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <locale>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/markup.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe {
@@ -27,29 +29,11 @@ std::string Text(const Rgb& rgb) {
 
 double Rounded(double x) { return std::round(x * 1e4) / 1e4; }
 
-// Within an attribute.
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      // XML has no other control characters, not even escaped.
-      default:
-        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return escaped;
+// Within an attribute. XML has no other control characters, not even escaped.
+std::string Escaped(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return EscapedMarkup(text);
 }
 
 std::string NameOf(const std::string& name) {

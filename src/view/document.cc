@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/markup.h"
 #include "trilobe/base/error.h"
 #include "view/web_files.h"
 
@@ -71,29 +72,6 @@ std::string Module(std::string_view name) {
 
 }  // namespace
 
-std::string EscapedHtml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json,
                            std::string_view body) {
   constexpr std::string_view kBegin = "<!-- ", kEnd = " -->";
@@ -107,7 +85,7 @@ std::string FormatDocument(std::string_view name, std::string_view title, std::s
     rest.remove_prefix(end + kEnd.size());
     const std::string_view file = what.substr(std::min(what.find(": ") + 2, what.size()));
     if (what == "title") {
-      page += EscapedHtml(title);
+      page += EscapedMarkup(title);
     } else if (what == "body") {
       page += body;
     } else if (what == "data") {
