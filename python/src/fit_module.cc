@@ -25,6 +25,7 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
   SourceOptions source{
       .noise = OptionOf<double>(options, "noise", "a number"),
       .missing = OptionOf<double>(options, "missing", "a number"),
+      .corrupt = OptionOf<std::string>(options, "corrupt", "a text"),
       .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
       .num_threads = ThreadsOf(options),
       .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),

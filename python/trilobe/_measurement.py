@@ -178,6 +178,7 @@ def read(
     *,
     noise: float = 0,
     missing: float = 0,
+    corrupt: str = "",
     seed: int = 1,
     max_angle: float = 90,
     min_theta_d: float = -1,
@@ -191,6 +192,7 @@ def read(
         source: the file; its content tells the format.
         noise: relative noise of a synthetic material, 0 to 1.
         missing: the share of the samples that is left out at random.
+        corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
         seed: of whatever is random.
         max_angle: theta_i and theta_o beyond it are left out [degrees].
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
@@ -205,6 +207,7 @@ def read(
     options = source_options(
         noise=noise,
         missing=missing,
+        corrupt=corrupt,
         seed=seed,
         max_angle=max_angle,
         min_theta_d=min_theta_d,
@@ -250,6 +253,7 @@ def source_options(**given: Any) -> dict[str, Any]:
     return {
         "noise": 0.0,
         "missing": 0.0,
+        "corrupt": "",
         "seed": 1,
         "max_angle": 90.0,
         "min_theta_d": -1.0,

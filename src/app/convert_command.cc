@@ -15,6 +15,7 @@
 #include "trilobe/appearance/node_reconstruction.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/corruption/corruption.h"
 #include "trilobe/formats/csv_file.h"
 #include "trilobe/formats/merl_file.h"
 #include "trilobe/formats/rgl_export.h"
@@ -44,8 +45,18 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
                    .kind = "reconstruction",
                    .table = Reconstruct(model, source, {}, options.num_threads)};
   }
+  CorruptBy(options, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
+}
+
+std::string ListOfCorruptions() {
+  std::string text;
+  for (const CorruptionKind& kind : CorruptionKinds()) {
+    text += "\n  " + kind.name + ", from " + Text(kind.min) + " to " + Text(kind.max) + " [" +
+            kind.unit + "]: " + kind.formula;
+  }
+  return text;
 }
 
 int RunConvert(std::span<const std::string> arguments) {
@@ -93,7 +104,10 @@ Command ConvertCommand() {
           ".glsl it writes\nfunctions for shaders; to one that ends in .mtlx the nearest OpenPBR "
           "of "
           "MaterialX, and in .principled.json\nthat of Blender's Principled BSDF, with how near it "
-          "is. A FILE with another ending is an error.",
+          "is. A FILE with another ending is an error.\n\nkinds of corruption "
+          "(--corrupt=KIND:STRENGTH,...), x the strength, rho the BRDF, b = rho cos "
+          "theta_i the signal:" +
+          ListOfCorruptions(),
       .flags = WithSourceFlags({"out", "error", "spectral", "picture", "probe"}),
       .run = RunConvert};
 }

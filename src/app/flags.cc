@@ -23,6 +23,9 @@ DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
 DEFINE_double(missing, 0,
               "share of the measured bins or samples to leave out at random, by --seed, from 0 up "
               "to 1: how would a fit do with fewer?");
+DEFINE_string(corrupt, "",
+              "do to the measurement what instruments do, by --seed: KIND:STRENGTH,..., as "
+              "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
 DEFINE_double(min_theta_d, -1,
@@ -79,6 +82,7 @@ int ThreadsFromFlags() {
 SourceOptions SourceOptionsFromFlags() {
   SourceOptions options = {.noise = FLAGS_noise,
                            .missing = FLAGS_missing,
+                           .corrupt = FLAGS_corrupt,
                            .seed = static_cast<uint64_t>(FLAGS_seed),
                            .num_threads = ThreadsFromFlags(),
                            .max_angle_deg = FLAGS_max_angle,
@@ -90,7 +94,8 @@ SourceOptions SourceOptionsFromFlags() {
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise", "missing", "seed", "max_angle", "min_theta_d", "extrapolated", "radiometry"};
+  return {"noise",     "missing",     "corrupt",      "seed",
+          "max_angle", "min_theta_d", "extrapolated", "radiometry"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

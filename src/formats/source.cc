@@ -7,6 +7,7 @@
 #include "files/text_lines.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
+#include "trilobe/corruption/corruption.h"
 #include "trilobe/files/content.h"
 #include "trilobe/formats/utia_file.h"
 #include "trilobe/synth/synth.h"
@@ -100,6 +101,10 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
 
 }  // namespace
 
+void CorruptBy(const SourceOptions& options, Measurement* measurement) {
+  Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
+}
+
 void CheckSourceOptions(const SourceOptions& options) {
   const double angle = options.max_angle_deg, theta_d = options.min_theta_d_deg;
   CheckNumThreads(options.num_threads);
@@ -110,6 +115,7 @@ void CheckSourceOptions(const SourceOptions& options) {
   CheckNumber("--min_theta_d", theta_d, theta_d == -1 || (theta_d >= 0 && theta_d < 90),
               "in degrees from 0 to below 90, or -1 to go by the data");
   FindNamed("radiometry", options.radiometry, UtiaRadiometries());
+  ParseCorruptions(options.corrupt);
 }
 
 const std::vector<MeasurementFormat>& MeasurementFormats() {
@@ -188,6 +194,7 @@ Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
   const MeasurementFormat& format = FormatOf(bytes, source);
   Measurement measurement = format.read(bytes, source, options);
   NoteUnread(options, format.name, &measurement);
+  CorruptBy(options, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
   DecideMeasured(options, &measurement);
@@ -216,6 +223,7 @@ Measurement LoadMeasurement(const std::string& source, const SourceOptions& opti
     measurement.table->source = source;
   }
   NoteUnread(options, kSynth, &measurement);
+  CorruptBy(options, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
 }
