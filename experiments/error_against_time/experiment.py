@@ -79,8 +79,8 @@ def _curves(results, fit_of, best, grid):
         reference = final[result.labels["material"]]
         lowest = best[result.labels["material"]]
         objective = _on_grid(fit.trace, "objective", grid)
-        psnr = _on_grid(fit.course, "psnr_db", grid)
-        log_error = _on_grid(fit.course, "mean_log_error", grid)
+        psnr = _on_grid(fit.convergence, "psnr_db", grid)
+        log_error = _on_grid(fit.convergence, "mean_log_error", grid)
         for k, seconds in enumerate(grid):
             if math.isinf(objective[k]):
                 continue
@@ -314,7 +314,7 @@ def _summary(rows, solvers):
 
 
 def _errors_table(curves, solvers, threads):
-    """The course's other errors, soon and at the end: median over the materials, and the worst. A
+    """The convergence curve's other errors, soon and at the end: median over the materials, and the worst. A
     fit that is missing, or has no model yet, has infinite errors."""
     curves = [row for row in curves if row["threads"] == threads]
     names = {row["material"] for row in curves}

@@ -28,7 +28,7 @@ def _flag(name, value):
 
 
 def words(flags):
-    """Flags of the program, {"max_iterations": 500, "course": True}, as its words."""
+    """Flags of the program, {"max_iterations": 500, "convergence": True}, as its words."""
     return [_flag(name, flags[name]) for name in sorted(flags)]
 
 
@@ -167,11 +167,11 @@ class Fit:
         return rows
 
     @functools.cached_property
-    def course(self):
-        """Rows of course.csv, of a fit with the flag "course": scores of models on the way;
+    def convergence(self):
+        """Rows of convergence.csv, of a fit with the flag "convergence": scores of models on the way;
         `clock` as in the trace."""
         clock = {row["iteration"]: row["clock"] for row in self.trace}
-        rows = self._rows("course.csv")
+        rows = self._rows("convergence.csv")
         for row in rows:
             row["clock"] = clock[row["iteration"]]
         return rows

@@ -38,7 +38,7 @@ namespace trilobe::python {
 namespace {
 
 // What the thread that fits tells the one that waits for it, and is told.
-class Course {
+class Progress {
  public:
   void Stop() { stopped_ = true; }
   bool stopped() const { return stopped_; }
@@ -203,9 +203,9 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
   };
   CheckSolverOptions(fit.solver_options(ModelSpec()));
   fit.weighting = FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
-  fit.guide = MaybeOf<double>(options, "guide", "a number");
-  if (fit.guide && !(*fit.guide >= 0 && *fit.guide <= 1e6)) {
-    throw Error("guide must be from 0 to 1e6");
+  fit.prior = MaybeOf<double>(options, "prior", "a number");
+  if (fit.prior && !(*fit.prior >= 0 && *fit.prior <= 1e6)) {
+    throw Error("prior must be from 0 to 1e6");
   }
   fit.robust = OptionOf<double>(options, "robust", "a number");
   if (!(fit.robust >= 0 && fit.robust <= 1e6)) throw Error("robust must be from 0 to 1e6");
@@ -222,7 +222,7 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
 }
 
 Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict& solver_options,
-               Course* course) {
+               Progress* progress) {
   FitOptions fit_options = OptionsOf(options, solver_options);
   const std::shared_ptr<const Measurement> data = measured.data;
   FitReport report;
@@ -232,9 +232,9 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   const nb::gil_scoped_release released;
   { const BlasCall memory_is_there; }
   Outcome outcome;
-  fit_options.stop = [course] { return course->stopped(); };
+  fit_options.stop = [progress] { return progress->stopped(); };
   fit_options.on_begin = [&outcome] { outcome.begun = true; };
-  fit_options.on_progress = [course](const IterationRecord& record) { course->Show(record); };
+  fit_options.on_progress = [progress](const IterationRecord& record) { progress->Show(record); };
   const FitResult fit = Fit(*data, fit_options);
   outcome.interrupted = fit.interrupted;
   if (!outcome.begun) return outcome;
@@ -274,8 +274,8 @@ nb::dict TraceColumns(const Outcome& outcome) {
   columns["step"] = column([](const IterationRecord& r) { return r.step; });
   columns["optimality"] =
       column([&](const IterationRecord& r) { return r.optimality.value_or(kUnknown); });
-  columns["guided_objective"] =
-      column([&](const IterationRecord& r) { return r.guided_objective.value_or(kUnknown); });
+  columns["objective_with_prior"] =
+      column([&](const IterationRecord& r) { return r.objective_with_prior.value_or(kUnknown); });
   return columns;
 }
 
@@ -307,10 +307,10 @@ nb::list Names(const std::vector<T>& entries) {
 }  // namespace
 
 void BindFit(nb::module_* module) {
-  nb::class_<Course>(*module, "Course", "How far a fit has come; and the way to stop it.")
+  nb::class_<Progress>(*module, "Progress", "How far a fit has come; and the way to stop it.")
       .def(nb::init<>())
-      .def("stop", &Course::Stop)
-      .def("latest", &Course::Latest);
+      .def("stop", &Progress::Stop)
+      .def("latest", &Progress::Latest);
   nb::class_<Outcome>(*module, "Outcome", "What a fit has come to.")
       .def_ro("begun", &Outcome::begun)
       .def_ro("interrupted", &Outcome::interrupted)
@@ -325,7 +325,7 @@ void BindFit(nb::module_* module) {
                    })
       .def("trace", &TraceColumns);
   module->def("fit", &RunFit, nb::arg("measured"), nb::arg("options"), nb::arg("solver_options"),
-              nb::arg("course"));
+              nb::arg("progress"));
   module->def("solvers", &SolverList);
   module->def("initial_models", [] { return Names(InitialModels()); });
   module->def("weightings", [] { return Names(Weightings()); });

@@ -27,7 +27,7 @@ class Result:
     Attributes:
         model: the fitted `Brdf`, in canonical form.
         trace: a structured array, a row an iteration, with the columns of trace.csv: iteration, seconds,
-            objective, filtered, accepted, step, optimality, guided_objective (NaN where unknown).
+            objective, filtered, accepted, step, optimality, priord_objective (NaN where unknown).
         report: a dict, as report.json is (docs/file-formats.md).
         interrupted: whether Ctrl-C ended it early.
     """
@@ -91,7 +91,7 @@ def fit(
     init: str = "analytic",
     start: Brdf | None = None,
     weighting: str = "appearance",
-    guide: float | None = None,
+    prior: float | None = None,
     robust: float = 0,
     match_reflectance: bool = True,
     max_parameters: int = 822,
@@ -117,7 +117,7 @@ def fit(
         init: a name of `initial_models()`.
         start: a model to start from, whose form the fit then has.
         weighting: a name of `weightings()`, or "power:...".
-        guide: of scattered samples, how much a small model counts between them.
+        prior: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
         match_reflectance: whether the light that is reflected is mended after the fit.
         max_parameters: of model="auto", how many the model may store.
@@ -154,7 +154,7 @@ def fit(
         "init": init,
         "start": None if start is None else start.to_json().encode(),
         "weighting": weighting,
-        "guide": guide,
+        "prior": prior,
         "robust": robust,
         "match_reflectance": match_reflectance,
         "max_parameters": max_parameters,
@@ -181,13 +181,13 @@ def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:
 def _run(data: Measurement, options: dict[str, Any], solver_options: dict[str, Any], progress: bool) -> Any:
     """Fits in a thread, so that this one hears Ctrl-C whatever C++ does."""
     module = fits()
-    course = module.Course()
+    progress = module.Progress()
     ended: dict[str, Any] = {}
     done = threading.Event()  # as join() forgets the thread when Ctrl-C ends it
 
     def work() -> None:
         try:
-            ended["outcome"] = module.fit(data._data, options, solver_options, course)
+            ended["outcome"] = module.fit(data._data, options, solver_options, progress)
         except BaseException as error:
             ended["error"] = error
         finally:
@@ -201,9 +201,9 @@ def _run(data: Measurement, options: dict[str, Any], solver_options: dict[str, A
         while not done.is_set():
             try:
                 done.wait(_POLL_SECONDS)
-                bar.show(*course.latest())
+                bar.show(*progress.latest())
             except KeyboardInterrupt:
-                course.stop()
+                progress.stop()
                 if stopped:
                     raise
                 stopped = True

@@ -27,7 +27,12 @@ bool IsKnown(const std::string& name) {
 
 // What a flag is called today that has had another name.
 std::string CurrentName(const std::string& name) {
-  return name == "max_numbers" ? "max_parameters" : name;
+  constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
+      {"max_numbers", "max_parameters"}, {"guide", "prior"}, {"course", "convergence"}};
+  for (const auto& [before, now] : kRenamed) {
+    if (name == before) return std::string(now);
+  }
+  return name;
 }
 
 template <typename Integer>

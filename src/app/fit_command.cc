@@ -53,8 +53,8 @@ DEFINE_bool(reconstruction, false,
             "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
             "model DIR/reconstruction.bin, in UTIA's");
 DEFINE_bool(
-    course, false,
-    "also write DIR/course.csv: errors of the models on the way, scored when the fit is over");
+    convergence, false,
+    "also write DIR/convergence.csv: errors of the models on the way, scored when the fit is over");
 DEFINE_bool(
     plots, true,
     "write the page of `trilobe view` and the pictures of `trilobe plot` into DIR; without --out "
@@ -96,10 +96,10 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags = WithSourceFlags(
-      {"solver", "init", "weighting", "guide", "robust", "match_reflectance", "max_parameters"});
+      {"solver", "init", "weighting", "prior", "robust", "match_reflectance", "max_parameters"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
-  flags.insert(flags.end(), {"out", "reconstruction", "course", "plots", "verbose", "probe",
+  flags.insert(flags.end(), {"out", "reconstruction", "convergence", "plots", "verbose", "probe",
                              "shard", "scene", "cache", "nocache"});
   return flags;
 }
@@ -135,11 +135,11 @@ FitSettings SettingsFromFlags() {
   fit.match_reflectance = FLAGS_match_reflectance;
   fit.appearance = AppearanceOptionsFromFlags();
   fit.form = FormFromFlags();
-  fit.guide = GuideFromFlags();
+  fit.prior = PriorFromFlags();
   fit.seed = static_cast<uint64_t>(FLAGS_seed);
   SolverOptionsFromFlags(solver, ModelSpec());  // its errors
   settings.source = SourceOptionsFromFlags();
-  settings.course = FLAGS_course;
+  settings.convergence = FLAGS_convergence;
   settings.reconstruction = FLAGS_reconstruction;
   settings.plots = settings.view = FLAGS_plots && !IsDefault("plots");
   settings.key = KeyOfFlags();
@@ -164,7 +164,7 @@ int RunFitOfOne(const std::string& source) {
   }
   std::optional<ResultFolder> folder;
   // Who asks for files gets them.
-  const bool wants_files = settings.plots || settings.reconstruction || settings.course;
+  const bool wants_files = settings.plots || settings.reconstruction || settings.convergence;
   const std::string out = FLAGS_out.empty() && wants_files ? "out/" + FitNameOf(source) : FLAGS_out;
   if (!out.empty()) {
     std::vector<std::string> inputs = settings.inputs;
@@ -208,8 +208,8 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "guide",
-        "max_parameters", "robust", "match_reflectance", "probe", "course", "reconstruction",
+       {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "prior",
+        "max_parameters", "robust", "match_reflectance", "probe", "convergence", "reconstruction",
         "plots", "diagnose", "shard", "verbose"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");

@@ -30,7 +30,7 @@
 #include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/pictures/plots.h"
-#include "trilobe/prior/guide.h"
+#include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/results/trace_file.h"
 #include "trilobe/scene/fit_cache.h"
 
@@ -40,7 +40,7 @@ namespace {
 constexpr const char* kModelName = "model.json";
 constexpr const char* kTraceName = "trace.csv";
 constexpr const char* kReportName = "report.json";
-constexpr const char* kCourseName = "course.csv";
+constexpr const char* kConvergenceName = "convergence.csv";
 constexpr const char* kReconstructionName = "reconstruction.binary";
 constexpr const char* kAtNodesName = "reconstruction.bin";
 constexpr const char* kPairName = "pair.png";
@@ -82,7 +82,7 @@ void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* fol
 
 const std::vector<std::string>& FitFileNames() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = {kReportName,         kModelName,   kTraceName, kCourseName,
+    std::vector<std::string> all = {kReportName,         kModelName,   kTraceName, kConvergenceName,
                                     kReconstructionName, kAtNodesName, kPairName,  kViewName};
     all.insert(all.end(), std::begin(kPictureNames), std::end(kPictureNames));
     return all;
@@ -138,7 +138,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   };
   bool begun = false;
   std::optional<UnsavedModel> unsaved;
-  Course course;
+  ConvergenceCurve convergence;
   FitOptions options = settings.fit;
   options.num_threads = num_threads;
   options.stop = [] { return InterruptGuard::signal() != 0; };
@@ -150,7 +150,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   };
   options.on_progress = on_iteration;
   options.on_iteration = [&](const IterationRecord& record, const FactorModel& model) {
-    if (settings.course) course.Keep(record, model);
+    if (settings.convergence) convergence.Keep(record, model);
   };
   options.on_model = [&](const FitResult& fit) {
     if (folder != nullptr) WriteModelInto(file_of(fit), folder);
@@ -167,7 +167,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                 .objective = std::move(fit.objective),
                 .file = std::move(file),
                 .report = std::move(report),
-                .course = std::move(course)};
+                .convergence = std::move(convergence)};
 }
 
 void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
@@ -176,7 +176,7 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   FitReport& report = run->report;
   Stopwatch stopwatch;
   WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
-  if (settings.course) run->course.Write(folder->PathOf(kCourseName), objective);
+  if (settings.convergence) run->convergence.Write(folder->PathOf(kConvergenceName), objective);
   if (settings.reconstruction) {
     const FactorModel& model = run->file.model;
     const std::string& source = run->file.fit.source;

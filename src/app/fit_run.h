@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/course.h"
+#include "app/convergence_curve.h"
 #include "app/result_folder.h"
 #include "reports/fit_report.h"
 #include "trilobe/fit/fit.h"
@@ -21,7 +21,7 @@ struct FitSettings {
   FitOptions fit;  // its threads and callbacks are replaced
   SourceOptions source;
   // What is written besides model.json, trace.csv and report.json: files of these names.
-  bool course = false, reconstruction = false, plots = false;
+  bool convergence = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail
   bool view = false;                // view.html, a page
   std::vector<std::string> inputs;  // files that all fits read
@@ -45,7 +45,7 @@ struct FitRun {
   Objective objective;
   ModelFile file;
   FitReport report;
-  Course course;
+  ConvergenceCurve convergence;
 };
 
 // Reads a measurement, fits it, writes the model into `folder` (none if null), and only then scores

@@ -18,7 +18,7 @@ DEFINE_string(
     model, "shared",
     "shared: D and G shared by the channels, F by the lobes (Peng et al.), isotropic, or "
     "anisotropic where the measurement is; isotropic: though it is not; anisotropic: on the nodes "
-    "of the paper and without a guide; independent: one lobe, nothing shared (Bagher et al.); "
+    "of the paper and without a prior; independent: one lobe, nothing shared (Bagher et al.); "
     "auto: what looks best within --max_parameters (docs/model-choice.md)");
 DEFINE_string(
     d_nodes, "",
@@ -44,7 +44,7 @@ DEFINE_string(
     "of D and G, from coarse to fine, with the least error on directions that are held out "
     "(docs/anisotropic.md)");
 DEFINE_double(
-    guide, 1,
+    prior, 1,
     "of scattered samples: how much a small model, fitted first, counts between the measured "
     "directions, much less where no azimuths matter (docs/anisotropic.md, "
     "docs/few-samples.md); 0: not at all, the default with --model=anisotropic");
@@ -140,9 +140,9 @@ std::vector<std::string> ModelFlags() {
   return {"model", "lobes", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes"};
 }
 
-std::optional<double> GuideFromFlags() {
-  if (!(FLAGS_guide >= 0 && FLAGS_guide <= 1e6)) throw Error("--guide must be from 0 to 1e6");
-  return IsDefault("guide") ? std::nullopt : std::optional(FLAGS_guide);
+std::optional<double> PriorFromFlags() {
+  if (!(FLAGS_prior >= 0 && FLAGS_prior <= 1e6)) throw Error("--prior must be from 0 to 1e6");
+  return IsDefault("prior") ? std::nullopt : std::optional(FLAGS_prior);
 }
 
 }  // namespace trilobe

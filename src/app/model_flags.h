@@ -21,8 +21,8 @@ bool ChoosesModel();
 
 std::vector<std::string> ModelFlags();
 
-// FitOptions::guide.
-std::optional<double> GuideFromFlags();
+// FitOptions::prior.
+std::optional<double> PriorFromFlags();
 
 }  // namespace trilobe
 

@@ -24,7 +24,7 @@ void Progress::Show(const IterationRecord& record) {
   const double before = last_.minimised(), now = record.minimised();
   const double relative_change = before > 0 ? (now - before) / before : 0;
   std::fprintf(stderr, "\r\033[Kiteration %d   E %s%.6g", record.iteration,
-               record.guided_objective ? "with the guide " : "", now);
+               record.objective_with_prior ? "with the prior " : "", now);
   if (record.iteration > 0) {
     const double left =
         std::min((max_iterations_ - record.iteration) * record.seconds / record.iteration,

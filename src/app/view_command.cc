@@ -91,20 +91,21 @@ int RunView(std::span<const std::string> arguments) {
 }  // namespace
 
 Command ViewCommand() {
-  return {.name = "view",
-          .summary = "write a page that shows a model beside its measurement",
-          .arguments = "MODEL [SOURCE] | FOLDER",
-          .min_arguments = 1,
-          .max_arguments = 2,
-          .details =
-              "Writes one file of HTML to --out, which a browser opens without a server or a "
-              "network: the material on\na sphere, a knot, a cloth or a flat sample, under an "
-              "environment or a lamp; with SOURCE the measurement\nbeside it, and where the two "
-              "differ; its factors, to be looked at and edited; with --trace the\ncourse of the "
-              "fit. --probe lights it by your own light probe.\n\nOf a FOLDER of fits it writes "
-              "FOLDER/index.html, a page of their pictures to sort, filter and compare.",
-          .flags = WithSourceFlags({"out", "trace", "probe"}),
-          .run = RunView};
+  return {
+      .name = "view",
+      .summary = "write a page that shows a model beside its measurement",
+      .arguments = "MODEL [SOURCE] | FOLDER",
+      .min_arguments = 1,
+      .max_arguments = 2,
+      .details =
+          "Writes one file of HTML to --out, which a browser opens without a server or a "
+          "network: the material on\na sphere, a knot, a cloth or a flat sample, under an "
+          "environment or a lamp; with SOURCE the measurement\nbeside it, and where the two "
+          "differ; its factors, to be looked at and edited; with --trace the\niterations of the "
+          "fit. --probe lights it by your own light probe.\n\nOf a FOLDER of fits it writes "
+          "FOLDER/index.html, a page of their pictures to sort, filter and compare.",
+      .flags = WithSourceFlags({"out", "trace", "probe"}),
+      .run = RunView};
 }
 
 }  // namespace trilobe

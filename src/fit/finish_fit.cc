@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "prune/unmeasured_guide.h"
+#include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/reflectance.h"
 #include "trilobe/appearance/material.h"
@@ -93,13 +93,13 @@ void MatchReflectanceOf(const Objective& of, const StopCheck& stop, Looks* looks
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error
   const FactorModel& model = fit->model;
-  if (!ReflectanceOf(of, model).IsOff()) return;  // and needs no guide
+  if (!ReflectanceOf(of, model).IsOff()) return;  // and needs no prior
   const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
   // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
   // entries that hardly a sample reads are held by what the model says where nothing was measured.
   const std::vector<double> all_covered(model.parameters().size(), 1.0);
-  const Objective held = thinned ? UnmeasuredGuide(of, model).With(of) : of;
+  const Objective held = thinned ? UnmeasuredPrior(of, model).With(of) : of;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
     std::optional<MatchedModel> matched = MatchReflectance(of, held, model, layout, price, stop);
@@ -128,10 +128,10 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
   Objective of =
       options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
-  std::optional<TamedFit> tamed;
+  std::optional<CorrectedOvershoot> overshoot;
   std::optional<double> tied;
-  if (options.guide != nullptr) {
-    tamed = TameBetweenSamples(*options.guide, options.stop, &of, &model);
+  if (options.prior != nullptr) {
+    overshoot = CorrectOvershoot(*options.prior, options.stop, &of, &model);
   }
   if (!options.stop()) {
     const double before = of.data().Value(model);
@@ -140,7 +140,8 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     }
   }
   Canonicalize(objective, &model);
-  FinishedFit fit{.objective = objective, .model = std::move(model), .tamed = tamed, .tied = tied};
+  FinishedFit fit{
+      .objective = objective, .model = std::move(model), .overshoot = overshoot, .tied = tied};
   std::optional<Looks> looks;
   if (measured != nullptr) looks.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();

@@ -18,15 +18,15 @@
 namespace trilobe {
 namespace {
 
-double GuideWeight(const Measurement& measurement, const FitOptions& options) {
+double PriorWeight(const Measurement& measurement, const FitOptions& options) {
   if (measurement.table) {
-    if (options.guide) {
-      throw Error(measurement.source + ": --guide is for scattered samples, and a " +
+    if (options.prior) {
+      throw Error(measurement.source + ": --prior is for scattered samples, and a " +
                   measurement.kind + " is a table");
     }
     return 0;
   }
-  return options.guide.value_or(options.form.kind == FormOptions::Kind::kAnisotropic ? 0 : 1);
+  return options.prior.value_or(options.form.kind == FormOptions::Kind::kAnisotropic ? 0 : 1);
 }
 
 BrdfSamples SamplesToFit(const Measurement& measurement, const FitOptions& options) {
@@ -34,12 +34,12 @@ BrdfSamples SamplesToFit(const Measurement& measurement, const FitOptions& optio
   return options.select ? options.select(std::move(samples)) : samples;
 }
 
-std::optional<Guide> GuideOf(const Measurement& measurement, const FitOptions& options,
-                             const Objective& data) {
-  const double weight = GuideWeight(measurement, options);
+std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitOptions& options,
+                                      const Objective& data) {
+  const double weight = PriorWeight(measurement, options);
   if (!(weight > 0)) return std::nullopt;
-  return Guide(data,
-               {.weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop});
+  return SyntheticPrior(
+      data, {.weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop});
 }
 
 FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
@@ -105,7 +105,7 @@ class Fitting {
     const std::vector<NodeCandidate> nodes = options_.start_model
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
-    GuideWeight(measurement_, options_);  // its error
+    PriorWeight(measurement_, options_);  // its error
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
     fit.seconds.prepare = stopwatch_.Lap();
@@ -129,7 +129,7 @@ class Fitting {
 
   void ChooseAmong(const std::vector<NodeCandidate>& nodes, FitResult* fit, FactorModel* model) {
     NodeChoiceOptions choice{.seed = options_.seed,
-                             .guide = GuideWeight(measurement_, options_),
+                             .prior = PriorWeight(measurement_, options_),
                              .on_iteration =
                                  [this](const IterationRecord& record, const FactorModel&) {
                                    options_.on_progress(record);
@@ -145,12 +145,12 @@ class Fitting {
   }
 
   void Solve(FitResult* fit, FactorModel* model) {
-    const std::optional<Guide> guide = GuideOf(measurement_, options_, fit->objective);
-    std::optional<Objective> guided;
-    if (guide) guided.emplace(fit->objective, guide->With(fit->objective));
-    const Objective& solved = guided ? *guided : fit->objective;
+    const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, fit->objective);
+    std::optional<Objective> with_prior;
+    if (prior) with_prior.emplace(fit->objective, prior->With(fit->objective));
+    const Objective& solved = with_prior ? *with_prior : fit->objective;
     const int added = solved.samples().size() - fit->objective.samples().size();
-    if (added > 0) fit->guide = {solved.samples().multiplicity.back(), added};
+    if (added > 0) fit->prior = {solved.samples().multiplicity.back(), added};
     SolverOptions solver = options_.solver_options(solved.spec());
     solver.on_iteration = [this](const IterationRecord& record, const FactorModel& current) {
       options_.on_progress(record);
@@ -168,7 +168,7 @@ class Fitting {
       fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
       options_.on_model(*fit);
     }
-    Finish(solved, guide ? &*guide : nullptr, std::move(*model), fit);
+    Finish(solved, prior ? &*prior : nullptr, std::move(*model), fit);
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.compare) Compare(fit);
@@ -176,12 +176,12 @@ class Fitting {
     fit->interrupted = options_.stop();
   }
 
-  void Finish(const Objective& solved, const Guide* guide, FactorModel model,
+  void Finish(const Objective& solved, const SyntheticPrior* prior, FactorModel model,
               FitResult* fit) const {
     FinishOptions finish{
         .robust = options_.robust,
         .max_parameters = options_.max_parameters,
-        .guide = guide,
+        .prior = prior,
         // One that was stopped early gains more by going on.
         .match_reflectance = options_.match_reflectance && HasEnded(fit->summary.stop_reason),
         .appearance = Appearance(),
@@ -193,8 +193,8 @@ class Fitting {
     } else {
       fit->objective = finished.objective;
     }
-    fit->finished = {finished.tamed, finished.tied, std::move(finished.candidates), finished.chosen,
-                     finished.matched};
+    fit->finished = {finished.overshoot, finished.tied, std::move(finished.candidates),
+                     finished.chosen, finished.matched};
     fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
     fit->file.layout = std::move(finished.layout);
     const ModelSpec& spec = fit->model().spec();
@@ -244,8 +244,8 @@ FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
                       const ModelSpec& spec) {
   FitProblem problem{.data = Objective(SamplesToFit(measurement, options), spec, options.weighting,
                                        options.num_threads)};
-  const std::optional<Guide> guide = GuideOf(measurement, options, problem.data);
-  if (guide) problem.guided.emplace(problem.data, guide->With(problem.data));
+  const std::optional<SyntheticPrior> prior = PriorOf(measurement, options, problem.data);
+  if (prior) problem.with_prior.emplace(problem.data, prior->With(problem.data));
   return problem;
 }
 

@@ -229,11 +229,11 @@ Objective::Objective(const Objective& other, const ModelSpec& spec)
     prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
   }
   coverage_ = CoverageOfParameters(prepared_->coverage, spec);
-  if (other.has_guide()) data_ = std::make_shared<const Objective>(other.data(), spec);
+  if (other.has_prior()) data_ = std::make_shared<const Objective>(other.data(), spec);
 }
 
-Objective::Objective(const Objective& data, BrdfSamples with_guide)
-    : Objective(std::move(with_guide), data.spec(), data.weighting(), data.num_threads()) {
+Objective::Objective(const Objective& data, BrdfSamples with_prior)
+    : Objective(std::move(with_prior), data.spec(), data.weighting(), data.num_threads()) {
   data_ = std::make_shared<const Objective>(data);
 }
 

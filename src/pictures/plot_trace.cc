@@ -14,7 +14,7 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
   // Iteration, seconds, E that the solver lowers, filtered, rejected, E of the data.
   std::vector<std::vector<double>> rows;
   std::vector<double> objectives;
-  const bool guided = trace.front().guided_objective.has_value();
+  const bool with_prior = trace.front().objective_with_prior.has_value();
   bool filtered = false, rejected = false;
   for (const IterationRecord& record : trace) {
     rows.push_back({static_cast<double>(record.iteration), record.seconds, record.minimised(),
@@ -41,8 +41,8 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
               "'\nset xrange [0:" + GnuplotNumber(last > 0 ? 1.02 * last : 1) +
               "]\nplot $trace using " + column +
               ":3 with linespoints pointtype 7 pointsize 0.9 linewidth 2.5 linecolor '" +
-              kOkabeIto[4] + "' " + (guided ? "title 'of data and guide'" : "notitle");
-    if (guided) {
+              kOkabeIto[4] + "' " + (with_prior ? "title 'of data and prior'" : "notitle");
+    if (with_prior) {
       script += std::string(", '' using ") + column +
                 ":6 with linespoints pointtype 5 pointsize 0.7 linewidth 2 linecolor '" +
                 kOkabeIto[1] + "' title 'of the data alone'";

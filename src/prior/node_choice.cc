@@ -11,7 +11,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/geometry/directions.h"
 #include "trilobe/lobes/with_axes.h"
-#include "trilobe/prior/guide.h"
+#include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"
@@ -87,7 +87,7 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   const Stopwatch since;
   const BrdfSamples& samples = data.samples();
   if (ladder.empty()) throw Error(samples.source + ": no nodes to choose from");
-  CheckNumber("guide", options.guide, options.guide >= 0 && std::isfinite(options.guide),
+  CheckNumber("prior", options.prior, options.prior >= 0 && std::isfinite(options.prior),
               "finite and 0 or more");
   std::vector<int> kept, held;
   const std::vector<bool> held_out = HeldOut(samples, options.seed);
@@ -101,8 +101,8 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   };
   const Objective judge = objective_of(Selected(samples, held));
   Objective fitted = objective_of(Selected(samples, kept));
-  if (options.guide > 0) {
-    fitted = Objective(fitted, WithGuide(fitted, {.weight = options.guide, .stop = options.stop}));
+  if (options.prior > 0) {
+    fitted = Objective(fitted, WithPrior(fitted, {.weight = options.prior, .stop = options.stop}));
   }
   std::optional<FactorModel> model;
   NodeChoice choice = {.model = FactorModel(ladder[0].spec), .held_out = judge.samples().size()};

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "solvers/joint/joint_step.h"
-#include "solvers/race/start_race.h"
+#include "solvers/multistart/start_elimination.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/lobes/lobes.h"
 
@@ -12,7 +12,7 @@ namespace trilobe {
 namespace {
 
 // A lobe less may cost hardly more than the budget, so the samples are less thin than in `auto`.
-constexpr StartRace::Thinning kThinning{.samples_per_parameter = 100, .max_stride = 8};
+constexpr StartElimination::Thinning kThinning{.samples_per_parameter = 100, .max_stride = 8};
 // Steps of each start on thinned samples, and of the best two, so many at a time.
 constexpr int kFirstTries = 3, kLeg = 3, kLastTries = 12;
 // On all samples.
@@ -50,23 +50,23 @@ FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& obj
   JointStepper stepper(objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kProjected, &phases);
   {
-    StartRace race(objective, kThinning, stop);
+    StartElimination elimination(objective, kThinning, stop);
     // They come from fits, so their magnitudes need no sweeps.
     for (const FactorModel& start : starts) {
-      race.Enter("", [&start] { return std::optional(start); }, {.count = 0});
+      elimination.Enter("", [&start] { return std::optional(start); }, {.count = 0});
     }
-    race.Advance(kFirstTries);
-    if (race.leader() == nullptr) return {starts.front(), objective.Value(starts.front())};
-    race.Keep(2);
-    double E = race.Results().front().objective;
+    elimination.Advance(kFirstTries);
+    if (elimination.leader() == nullptr) return {starts.front(), objective.Value(starts.front())};
+    elimination.Keep(2);
+    double E = elimination.Results().front().objective;
     for (int tries = kFirstTries + kLeg; tries <= kLastTries; tries += kLeg) {
-      race.Advance(tries);
-      const double before = std::exchange(E, race.Results().front().objective);
+      elimination.Advance(tries);
+      const double before = std::exchange(E, elimination.Results().front().objective);
       if (E > wanted + kPatience * (before - E) / kLeg) {
-        return {*race.leader(), objective.Value(*race.leader())};
+        return {*elimination.leader(), objective.Value(*elimination.leader())};
       }
     }
-    stepper.Restart(*race.leader());
+    stepper.Restart(*elimination.leader());
   }
   for (int tries = 0; tries < kMaxTries && !stepper.exhausted() && !stop(); ++tries) {
     const double before = stepper.E();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prune/model_forms.h"
-#include "prune/unmeasured_guide.h"
+#include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
@@ -105,7 +105,7 @@ FactorModel FitAnew(const Objective& few, const FactorModel& start, const StopCh
 }
 
 // Whether the data rather have a form that shares less: a stretch may look like one. What more
-// parameters fit of few samples by chance is taken off; those of the guide tell nothing.
+// parameters fit of few samples by chance is taken off; those of the prior tell nothing.
 bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
                 const SteppedModel& stretched, const StopCheck& stop) {
   constexpr int kSteps = 5;
@@ -134,9 +134,9 @@ class ModelSearch {
         all_(objective),
         some_(Some(objective)),
         few_(Few(objective)),
-        guide_(objective, fitted),
-        guided_some_(guide_.With(some_.own())),
-        guided_few_(guide_.With(few_.own())) {}
+        prior_(objective, fitted),
+        some_with_prior_(prior_.With(some_.own())),
+        few_with_prior_(prior_.With(few_.own())) {}
 
   ChosenModel Run() {
     const TableLayout full = TableLayout::Full(fitted_.spec());
@@ -212,7 +212,7 @@ class ModelSearch {
 
   // Beyond the data it goes on about as the whole model does.
   void Thin(const std::string& name, const Weighting& weighting, const FactorModel& model) {
-    const UnmeasuredGuide guide(objective_, model);
+    const UnmeasuredPrior prior(objective_, model);
     PruneOptions prune;
     prune.lobes = prune.colour = false;
     prune.max_parameters = options_.max_parameters;
@@ -221,9 +221,9 @@ class ModelSearch {
     const bool of_fit = best_.chosen < 0;
     prune.sharing = of_fit;
     if (!of_fit) prune.stop = options_.stop;
-    PrunedModel pruned = Prune(guide.With(few_.For(model.spec(), weighting)), model, prune);
+    PrunedModel pruned = Prune(prior.With(few_.For(model.spec(), weighting)), model, prune);
     if (!of_fit && options_.stop()) return;
-    const Objective to = guide.With(some_.For(pruned.model.spec(), weighting));
+    const Objective to = prior.With(some_.For(pruned.model.spec(), weighting));
     const Reduction stored(to.spec(), pruned.layout);
     pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
@@ -249,11 +249,11 @@ class ModelSearch {
     const ModelSpec& spec = form.start.spec();
     constexpr int kStepsOnFew = 12;
     constexpr double kSmall = 2e-3;  // a decrease of E, relative, that no picture shows
-    form.start = JointSteps(guided_few_.For(spec, form.weighting), form.start, kStepsOnFew,
+    form.start = JointSteps(few_with_prior_.For(spec, form.weighting), form.start, kStepsOnFew,
                             options_.stop, /*reduction=*/nullptr, kSmall)
                      .model;
-    form.start = GoOn(guided_some_.For(spec, form.weighting), form.start, options_.stop);
-    // Entries that no measured sample reads are what the guide makes of them, next to others that
+    form.start = GoOn(some_with_prior_.For(spec, form.weighting), form.start, options_.stop);
+    // Entries that no measured sample reads are what the prior makes of them, next to others that
     // have moved far away; a picture reads between the two.
     Canonicalize(some_.For(spec, form.weighting), &form.start);
     const double score =
@@ -268,7 +268,7 @@ class ModelSearch {
     bool stretched = false;
     if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
         !fitted_.spec().stretches.any()) {
-      const Objective of = guided_few_.For(fitted_.spec(), objective_.weighting());
+      const Objective of = few_with_prior_.For(fitted_.spec(), objective_.weighting());
       const SteppedModel start = FitStretches(of, fitted_, options_.stop);
       if (!Fit({"stretched", start.model, objective_.weighting()})) return false;
       // Under other weights it may look better even where it does not under these.
@@ -290,10 +290,10 @@ class ModelSearch {
     }
     // From starts of its own, since it ends in another minimum.
     ModelForm form{"weighed by channel anew",
-                   FitAnew(guided_few_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
+                   FitAnew(few_with_prior_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
                    by_channel};
     if (stretched) {
-      const Objective of = guided_few_.For(fitted_.spec(), by_channel);
+      const Objective of = few_with_prior_.For(fitted_.spec(), by_channel);
       form = {"stretched, weighed by channel anew",
               FitStretches(of, form.start, options_.stop).model, by_channel};
     }
@@ -359,8 +359,8 @@ class ModelSearch {
   const FactorModel& fitted_;
   const ModelChoiceOptions& options_;
   Objectives all_, some_, few_;
-  const UnmeasuredGuide guide_;  // for forms that go on from the fit
-  Objectives guided_some_, guided_few_;
+  const UnmeasuredPrior prior_;  // for forms that go on from the fit
+  Objectives some_with_prior_, few_with_prior_;
   Stopwatch stopwatch_;     // since the last candidate
   double beyond_ = 0;       // the data, the score of the fit
   double some_of_fit_ = 0;  // of E of the fit

@@ -113,18 +113,19 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
 
 // True where the error alone limits, and less than half of what it may grow is spent, in decibels.
 bool SparesError(const Pruning& pruning) {
-  if (!pruning.limits_error() || pruning.guide() >= pruning.limit()) return false;
+  if (!pruning.limits_error() || pruning.search_limit() >= pruning.limit()) return false;
   return pruning.ErrorOf(pruning.state()) < std::sqrt(pruning.full_error() * pruning.max_error());
 }
 
 // Shape and nodes.
-void ThinWithin(double guide, Pruning* pruning) {
-  pruning->set_guide(std::max(guide, pruning->state().E));
+void ThinWithin(double limit, Pruning* pruning) {
+  pruning->set_search_limit(std::max(limit, pruning->state().E));
   ChooseShape(pruning);
   ThinTables(pruning);
   for (int round = 0; round < kStretches && SparesError(*pruning); ++round) {
-    pruning->set_guide(std::min(
-        pruning->limit(), pruning->E_full() + kStretch * (pruning->guide() - pruning->E_full())));
+    pruning->set_search_limit(
+        std::min(pruning->limit(),
+                 pruning->E_full() + kStretch * (pruning->search_limit() - pruning->E_full())));
     ThinTables(pruning);
   }
 }
@@ -132,9 +133,9 @@ void ThinWithin(double guide, Pruning* pruning) {
 // With as few lobes as the budget allows; and with one more where that took most of it.
 void SpendBudget(Pruning* pruning) {
   const PruneState& state = pruning->state();
-  // The guide says nothing about an error far away, so that E may rise beyond it here.
-  const double guide = pruning->guide();
-  const double wanted = pruning->limits_error() ? pruning->limit() : guide;
+  // The search limit says nothing about an error far away, so that E may rise beyond it here.
+  const double limit = pruning->search_limit();
+  const double wanted = pruning->limits_error() ? pruning->limit() : limit;
   PruneState with_one_more;
   bool dear = false;  // the last lobe
   size_t last_lobe = 0;
@@ -145,11 +146,11 @@ void SpendBudget(Pruning* pruning) {
     dear = state.E - pruning->E_full() > kDear * (wanted - pruning->E_full());
     with_one_more = std::move(before);
   }
-  ThinWithin(guide, pruning);
+  ThinWithin(limit, pruning);
   if (!dear || pruning->options().stop()) return;
   PruneState fewer = pruning->GoOnFrom(std::move(with_one_more));
   const size_t end = pruning->decisions().size();
-  ThinWithin(guide, pruning);
+  ThinWithin(limit, pruning);
   if (state.num_parameters() < fewer.num_parameters()) {
     pruning->Withdraw(last_lobe, end, "with one lobe more fewer parameters are enough");
   } else {
@@ -163,7 +164,7 @@ void AddLobes(Pruning* pruning) {
   const PruneState& state = pruning->state();
   while (!pruning->Keeps(state) && state.lobes() < pruning->options().max_lobes) {
     const std::vector<FactorModel> starts = WithOneLobeMore(state.model);
-    if (starts.empty() || !TryLobes(starts, pruning->guide(), pruning)) break;
+    if (starts.empty() || !TryLobes(starts, pruning->search_limit(), pruning)) break;
   }
   if (!pruning->Keeps(state)) {
     pruning->Record("nothing else left out", state, false,
@@ -216,9 +217,9 @@ void MeetParameters(Pruning* pruning) {
 
 }  // namespace
 
-PrunedModel Prune(const Objective& measured, const Objective& guided, const FactorModel& full,
+PrunedModel Prune(const Objective& measured, const Objective& with_prior, const FactorModel& full,
                   const PruneOptions& options) {
-  Pruning pruning(measured, guided, full, options);
+  Pruning pruning(measured, with_prior, full, options);
   LeaveOutWhatIsFree(&pruning);
   if (pruning.by_parameters()) {
     MeetParameters(&pruning);

@@ -135,12 +135,12 @@ std::vector<Reduce> Reductions(const PruneOptions& options) {
 
 class AnisotropicPruning {
  public:
-  AnisotropicPruning(const Objective& measured, const Objective& guided, const FactorModel& full,
-                     const PruneOptions& options)
-      : guided_(guided),
+  AnisotropicPruning(const Objective& measured, const Objective& with_prior,
+                     const FactorModel& full, const PruneOptions& options)
+      : with_prior_(with_prior),
         options_(options),
         pruning_(measured, measured, full, options),
-        E_guided_(guided.Value(pruning_.state().model)) {}
+        E_with_prior_(with_prior.Value(pruning_.state().model)) {}
 
   Pruning& pruning() { return pruning_; }
   const PruneState& state() const { return pruning_.state(); }
@@ -149,7 +149,7 @@ class AnisotropicPruning {
   PruneState Fit(const Candidate& candidate) const {
     const ModelSpec& spec = candidate.starts.front().spec();
     const FittedModel fitted =
-        FitFrom(candidate.starts, Objective(guided_, spec), Wanted(), options_.stop);
+        FitFrom(candidate.starts, Objective(with_prior_, spec), Wanted(), options_.stop);
     return pruning_.MakeState(spec, fitted.model);
   }
 
@@ -191,7 +191,7 @@ class AnisotropicPruning {
     if (state().num_parameters() <= max_parameters) {
       const ModelSpec& spec = state().spec();
       const FittedModel fitted =
-          FitFrom({state().model}, Objective(guided_, spec), kInfinity, options_.stop);
+          FitFrom({state().model}, Objective(with_prior_, spec), kInfinity, options_.stop);
       PruneState to = pruning_.MakeState(spec, fitted.model);
       const bool lower = to.E < state().E;
       pruning_.Decide("fitted again", std::move(to), lower && !stopped(), "");
@@ -202,28 +202,28 @@ class AnisotropicPruning {
   }
 
  private:
-  // Where E of the guided samples is to go for that of the measured ones to go where it may.
+  // Where E with the prior is to go for that of the measured ones to go where it may.
   double Wanted() const {
     if (pruning_.by_parameters()) return 0;  // nothing can be given up: a few steps tell enough
-    return pruning_.E_full() > 0 ? E_guided_ * pruning_.guide() / pruning_.E_full() : 0;
+    return pruning_.E_full() > 0 ? E_with_prior_ * pruning_.search_limit() / pruning_.E_full() : 0;
   }
 
-  const Objective& guided_;
+  const Objective& with_prior_;
   const PruneOptions& options_;
   Pruning pruning_;
-  const double E_guided_;
+  const double E_with_prior_;
 };
 
 // An isotropic fit of the same samples.
-Candidate Isotropic(const FactorModel& model, const Objective& guided) {
+Candidate Isotropic(const FactorModel& model, const Objective& with_prior) {
   const ModelSpec& of = model.spec();
-  ModelSpec spec = ModelSpec::SharedFactors(of.lobes, guided.samples().grid);
+  ModelSpec spec = ModelSpec::SharedFactors(of.lobes, with_prior.samples().grid);
   spec.D = of.D;
   spec.F = of.F;
   spec.G = of.G;
   return {"isotropic instead of anisotropic",
           {WithAxes(Rounded(model), spec),
-           FindInitialModel("analytic").make(Objective(guided, spec), 0)}};
+           FindInitialModel("analytic").make(Objective(with_prior, spec), 0)}};
 }
 
 // Prune, within what is left of the budget.
@@ -245,9 +245,9 @@ PrunedModel PruneFurther(const Pruning& pruning, PruneOptions options) {
 
 }  // namespace
 
-PrunedModel PruneAnisotropic(const Objective& measured, const Objective& guided,
+PrunedModel PruneAnisotropic(const Objective& measured, const Objective& with_prior,
                              const FactorModel& full, const PruneOptions& options) {
-  AnisotropicPruning search(measured, guided, full, options);
+  AnisotropicPruning search(measured, with_prior, full, options);
   Pruning& pruning = search.pruning();
   if (!pruning.Keeps(pruning.state())) {
     pruning.Record("nothing left out", pruning.state(), false,
@@ -258,7 +258,7 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& guided,
     search.ReduceTo(options.max_parameters);
   } else if (pruning.may_rise()) {
     if (options.tables) {
-      const Candidate isotropic = Isotropic(pruning.state().model, guided);
+      const Candidate isotropic = Isotropic(pruning.state().model, with_prior);
       if (search.Decide(isotropic.what, search.Fit(isotropic))) {
         return PruneFurther(pruning, options);
       }

@@ -40,7 +40,7 @@ constexpr int kFewInExcess = 10;
 
 EliminationLimits LimitsFor(const Pruning& pruning, double E, int parameters) {
   EliminationLimits limits;
-  limits.max_rise = pruning.by_parameters() ? kInfinity : pruning.guide() - E;
+  limits.max_rise = pruning.by_parameters() ? kInfinity : pruning.search_limit() - E;
   limits.max_count = pruning.by_parameters()
                          ? std::max(parameters - pruning.options().max_parameters, 0)
                          : parameters;
@@ -55,8 +55,9 @@ void Polish(const Pruning& pruning, PruneState* state) {
   JointStepper stepper(*state->objective, JointStepper::Curvature::kByProgress,
                        JointStepper::Trial::kAsItIs, &phases, &reduction);
   stepper.Restart(state->model);
-  const double small = pruning.by_parameters() ? kSmallOfE * state->E
-                                               : kSmallGain * (pruning.guide() - pruning.E_full());
+  const double small = pruning.by_parameters()
+                           ? kSmallOfE * state->E
+                           : kSmallGain * (pruning.search_limit() - pruning.E_full());
   for (int step = 0; step < kMaxPolish && !stepper.exhausted(); ++step) {
     if (pruning.options().stop()) break;
     const double before = stepper.E();
@@ -64,7 +65,7 @@ void Polish(const Pruning& pruning, PruneState* state) {
     const double decrease = before - stepper.E();
     const bool hopeless =
         !pruning.by_parameters() &&
-        state->Judged(stepper.current(), stepper.E()) - kHope * decrease > pruning.guide();
+        state->Judged(stepper.current(), stepper.E()) - kHope * decrease > pruning.search_limit();
     if (decrease < small || hopeless) break;
   }
   state->model = stepper.current();
@@ -72,7 +73,7 @@ void Polish(const Pruning& pruning, PruneState* state) {
 }
 
 bool WithinBudget(const Pruning& pruning, const PruneState& to) {
-  return pruning.by_parameters() || (to.E <= pruning.guide() && pruning.Keeps(to));
+  return pruning.by_parameters() || (to.E <= pruning.search_limit() && pruning.Keeps(to));
 }
 
 // A shape, with the parameters that would be best by the quadratic.
@@ -108,7 +109,7 @@ std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& sha
     std::ranges::copy(inner.Expand(best.y), option.model.parameters().begin());
   }
   option.E = state.E + rise;
-  if (!pruning.by_parameters() && option.E > pruning.guide()) return std::nullopt;
+  if (!pruning.by_parameters() && option.E > pruning.search_limit()) return std::nullopt;
 
   // The quadratic of the shape's parameters, moved there.
   QuadraticModel there = sharing(at);
@@ -204,7 +205,7 @@ void ThinTables(Pruning* pruning) {
         at, from.model, from.layout, LimitsFor(*pruning, from.E, from.num_parameters()));
     int count = static_cast<int>(order.size());
     if (by_parameters && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
-    const double left = pruning->guide() - from.E;
+    const double left = pruning->search_limit() - from.E;
     bool worth_more = false;
     for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
       if (share < 1) count = std::min(count, CountWithin(order, share * left));

@@ -39,7 +39,7 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
       options_(options),
       state_(MakeState(objective.spec(), full)),
       E_full_(state_.E),
-      E_of_guide_(&data == &objective ? 0 : objective.Value(state_.model) - E_full_),
+      E_of_prior_(&data == &objective ? 0 : objective.Value(state_.model) - E_full_),
       by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
   if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
       std::isnan(options.max_error) || options.max_parameters < 1) {
@@ -50,20 +50,20 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
   if (by_parameters_) return;
   limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
   if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(data));
-  guide_ = limit_;
+  search_limit_ = limit_;
   // Where E is the squared error, that grows by as much at this E; elsewhere it is a start.
   if (options.error) {
     error_ = [this](const PruneState& state) { return options_.error(state.model); };
     full_error_ = ErrorOf(state_);
     max_error_ = options.max_error;
     const double growth = full_error_ > 0 ? max_error_ / full_error_ : kInfinity;
-    guide_ = std::min({limit_, growth * growth * E_full_, data.MeasuredEnergy()});
+    search_limit_ = std::min({limit_, growth * growth * E_full_, data.MeasuredEnergy()});
   } else if (std::isfinite(options.max_psnr_drop_db)) {
     error_ = ErrorByPsnr;
     const double growth = std::pow(10, options.max_psnr_drop_db / 20);
     full_error_ = ErrorOf(state_);
     max_error_ = growth * full_error_;
-    guide_ = std::min(limit_, growth * growth * E_full_);
+    search_limit_ = std::min(limit_, growth * growth * E_full_);
   }
   const bool relative = !options.error && options.max_relative_rise > 0;
   if (relative && E_full_ <= kPracticallyZero * data.MeasuredEnergy()) {
@@ -104,7 +104,7 @@ const QuadraticModel& Pruning::Linearized() {
   return quadratic_;
 }
 
-bool Pruning::may_rise() const { return guide_ > E_full_ * (1 + kRounding); }
+bool Pruning::may_rise() const { return search_limit_ > E_full_ * (1 + kRounding); }
 
 bool Pruning::Keeps(const PruneState& state) const {
   if (by_parameters_) return true;

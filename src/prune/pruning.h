@@ -27,7 +27,7 @@ std::string LobesText(int lobes);
 // A model on the way from the full to the pruned one, with its own objectives.
 struct PruneState {
   std::shared_ptr<const Objective> objective;  // that its fits lower
-  std::shared_ptr<const Objective> data;       // by which it is judged; the same without a guide
+  std::shared_ptr<const Objective> data;       // by which it is judged; the same without a prior
   FactorModel model = {};
   TableLayout layout = {};
   double E = 0;  // of the data
@@ -45,7 +45,7 @@ struct PruneState {
 // What the parts of Prune share: the budget, where the model has got to, and what was decided.
 class Pruning {
  public:
-  // All must outlive it. `objective` has the samples of `data`, or these and a guide's.
+  // All must outlive it. `objective` has the samples of `data`, or these and a prior's.
   Pruning(const Objective& data, const Objective& objective, const FactorModel& full,
           const PruneOptions& options);
 
@@ -68,10 +68,10 @@ class Pruning {
   bool may_rise() const;  // by more than rounding
   double limit() const { return limit_; }
   // Where E is to go, limit() or less: by a limit of the error that is known only roughly.
-  double guide() const { return guide_; }
-  void set_guide(double guide) { guide_ = guide; }
-  // Where E of fits is to go, of the data and of the guide's samples, for that of the data to be E.
-  double ForFits(double E) const { return E + E_of_guide_; }
+  double search_limit() const { return search_limit_; }
+  void set_search_limit(double limit) { search_limit_ = limit; }
+  // Where E of fits is to go, of the data and of the prior's samples, for that of the data to be E.
+  double ForFits(double E) const { return E + E_of_prior_; }
   // Besides E: how far off the state's model is in what options() or a PSNR limit, and how far it
   // may be; 0 where nothing but E counts.
   bool limits_error() const { return error_ != nullptr; }
@@ -98,12 +98,12 @@ class Pruning {
   const FactorModel& full_;
   const PruneOptions& options_;
   PruneState state_;
-  double E_full_ = 0, E_of_guide_ = 0;
+  double E_full_ = 0, E_of_prior_ = 0;
   std::function<double(const PruneState&)> error_;
   double full_error_ = 0, max_error_ = 0;
   bool by_parameters_ = false;
   double limit_ = kInfinity;
-  double guide_ = kInfinity;
+  double search_limit_ = kInfinity;
   QuadraticModel quadratic_;
   std::optional<FactorModel> linearized_;  // where quadratic_ was made
   std::vector<PruneDecision> decisions_;

@@ -104,20 +104,20 @@ std::string Describe(const NodeChoice& choice) {
   return text + ")\n";
 }
 
-std::string Describe(const FitReport::Guide& guide) {
-  return "guide        a small model, fitted first, speaks for " + std::to_string(guide.samples) +
-         " directions between the measured ones, each of weight " + Text(guide.weight) +
+std::string Describe(const FitReport::Prior& prior) {
+  return "prior        a small model, fitted first, speaks for " + std::to_string(prior.samples) +
+         " directions between the measured ones, each of weight " + Text(prior.weight) +
          "; E is of the measured directions alone, but where it says otherwise\n";
 }
 
 // What was chosen, and what it was chosen from.
 std::string Describe(const FitReport::Finished& finished) {
   std::string text;
-  if (finished.tamed) {
+  if (finished.overshoot) {
     text +=
         "between      the fit reached more than four times the largest measured value between the "
-        "samples, and was drawn to the guide there; E " +
-        Text(finished.tamed->E_before) + " -> " + Text(finished.tamed->E_after) + "\n";
+        "samples, and was drawn to the prior there; E " +
+        Text(finished.overshoot->E_before) + " -> " + Text(finished.overshoot->E_after) + "\n";
   }
   if (finished.tied) {
     // A fit that was stopped early gains more from the steps of the refit than tying costs.
@@ -159,82 +159,83 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
-  return {{"verdict", ToJson(VerdictOn(report))},
-          {"source", fit.source},
-          {"noise", report.noise},
-          {"seed", report.seed},
-          {"valid_samples", fit.valid_samples},
-          {"max_angle", fit.max_angle},
-          {"bins", ToJson(report.bins)},
-          {"data_notes", report.data_notes},
-          {"solver", fit.solver},
-          {"init", fit.init},
-          {"weighting", fit.weighting},
-          {"model", ModelName(report.spec)},
-          {"lobes", report.spec.lobes},
-          {"stretch", StretchesToJson<Json>(report.spec)},
-          {"parameters", report.spec.num_parameters()},
-          {"stored_parameters", report.stored_parameters},
-          {"candidates", ToJson(report.finished.candidates)},
-          {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
-          {"guide", report.guide
-                        ? Json{{"weight", report.guide->weight},
-                               {"samples", report.guide->samples},
-                               {"initial_objective", summary.trace.front().minimised()},
-                               {"objective", summary.trace[summary.BestIteration()].minimised()}}
-                        : Json()},
-          {"matched_reflectance",
-           report.finished.matched ? Json{{"error_before", report.finished.matched->error_before},
-                                          {"error_after", report.finished.matched->error_after},
-                                          {"objective_rise", report.finished.matched->rise}}
-                                   : Json()},
-          {"tamed_between_samples",
-           report.finished.tamed ? Json{{"objective_before", report.finished.tamed->E_before},
-                                        {"objective_after", report.finished.tamed->E_after}}
-                                 : Json()},
-          {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
-          {"threads", fit.threads},
-          {"options",
-           {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
-          {"notes", summary.notes},
-          {"starts", ToJson(summary.starts)},
-          {"stop_reason", fit.stop_reason},
-          {"iterations", fit.iterations},
-          {"best_iteration", summary.BestIteration()},
-          {"rejected_steps", summary.RejectedSteps()},
-          {"initial_objective", fit.initial_objective},
-          {"objective", score.objective},
-          {"relative_objective", score.relative_objective},
-          {"irreducible_objective", score.irreducible_objective},
-          {"psnr_db", score.psnr_db},
-          {"psnr_peak", score.psnr_peak},
-          {"rmse", score.rmse},
-          {"mean_relative_error", score.mean_relative_error},
-          {"mean_log_error", score.mean_log_error},
-          {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
-          {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
-          {"reach", report.reach ? Json{{"between_samples", report.reach->between},
-                                        {"beyond_samples", report.reach->beyond}}
-                                 : Json()},
-          {"light", ToJson(report.light)},
-          {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
-          {"seconds",
-           {{"read", seconds.read},
-            {"prepare", seconds.prepare},
-            {"init", seconds.init},
-            {"nodes", seconds.nodes},
-            {"solve", seconds.solve},
-            {"finish", seconds.finish},
-            {"score", seconds.score},
-            {"draw", seconds.draw}}},
-          {"phases", ToJson(summary.phases)},
-          {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
-          {"program", fit.program},
-          {"date", fit.date},
-          {"key", report.key},
-          {"interrupted", report.interrupted},
-          {"run", fit.run},
-          {"files", report.files}};
+  return {
+      {"verdict", ToJson(VerdictOn(report))},
+      {"source", fit.source},
+      {"noise", report.noise},
+      {"seed", report.seed},
+      {"valid_samples", fit.valid_samples},
+      {"max_angle", fit.max_angle},
+      {"bins", ToJson(report.bins)},
+      {"data_notes", report.data_notes},
+      {"solver", fit.solver},
+      {"init", fit.init},
+      {"weighting", fit.weighting},
+      {"model", ModelName(report.spec)},
+      {"lobes", report.spec.lobes},
+      {"stretch", StretchesToJson<Json>(report.spec)},
+      {"parameters", report.spec.num_parameters()},
+      {"stored_parameters", report.stored_parameters},
+      {"candidates", ToJson(report.finished.candidates)},
+      {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
+      {"prior", report.prior
+                    ? Json{{"weight", report.prior->weight},
+                           {"samples", report.prior->samples},
+                           {"initial_objective", summary.trace.front().minimised()},
+                           {"objective", summary.trace[summary.BestIteration()].minimised()}}
+                    : Json()},
+      {"matched_reflectance", report.finished.matched
+                                  ? Json{{"error_before", report.finished.matched->error_before},
+                                         {"error_after", report.finished.matched->error_after},
+                                         {"objective_rise", report.finished.matched->rise}}
+                                  : Json()},
+      {"corrected_overshoot", report.finished.overshoot
+                                  ? Json{{"objective_before", report.finished.overshoot->E_before},
+                                         {"objective_after", report.finished.overshoot->E_after}}
+                                  : Json()},
+      {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
+      {"threads", fit.threads},
+      {"options",
+       {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
+      {"notes", summary.notes},
+      {"starts", ToJson(summary.starts)},
+      {"stop_reason", fit.stop_reason},
+      {"iterations", fit.iterations},
+      {"best_iteration", summary.BestIteration()},
+      {"rejected_steps", summary.RejectedSteps()},
+      {"initial_objective", fit.initial_objective},
+      {"objective", score.objective},
+      {"relative_objective", score.relative_objective},
+      {"irreducible_objective", score.irreducible_objective},
+      {"psnr_db", score.psnr_db},
+      {"psnr_peak", score.psnr_peak},
+      {"rmse", score.rmse},
+      {"mean_relative_error", score.mean_relative_error},
+      {"mean_log_error", score.mean_log_error},
+      {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
+      {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
+      {"reach", report.reach ? Json{{"between_samples", report.reach->between},
+                                    {"beyond_samples", report.reach->beyond}}
+                             : Json()},
+      {"light", ToJson(report.light)},
+      {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
+      {"seconds",
+       {{"read", seconds.read},
+        {"prepare", seconds.prepare},
+        {"init", seconds.init},
+        {"nodes", seconds.nodes},
+        {"solve", seconds.solve},
+        {"finish", seconds.finish},
+        {"score", seconds.score},
+        {"draw", seconds.draw}}},
+      {"phases", ToJson(summary.phases)},
+      {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
+      {"program", fit.program},
+      {"date", fit.date},
+      {"key", report.key},
+      {"interrupted", report.interrupted},
+      {"run", fit.run},
+      {"files", report.files}};
 }
 
 void PrintDetails(const FitReport& report) {
@@ -252,7 +253,7 @@ void PrintDetails(const FitReport& report) {
             << RelativeErrorText(score.mean_relative_error) << "\n"
             << Irreducible(score) << StretchLine(report.spec)
             << (report.nodes ? Describe(*report.nodes) : "")
-            << (report.guide ? Describe(*report.guide) : "") << Describe(report.finished)
+            << (report.prior ? Describe(*report.prior) : "") << Describe(report.finished)
             << (report.appearance
                     ? Describe(*report.appearance)
                     : "appearance   samples on no grid are not compared on a sphere; slices.png "

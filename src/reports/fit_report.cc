@@ -28,7 +28,7 @@ void TellFit(const FitResult& fit, FitReport* report) {
   report->spec = fit.model().spec();
   report->summary = fit.summary;
   report->nodes = fit.nodes;
-  report->guide = fit.guide;
+  report->prior = fit.prior;
   report->finished = fit.finished;
   report->stored_parameters = fit.stored_parameters;
   report->score = fit.score;

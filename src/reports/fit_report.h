@@ -41,8 +41,8 @@ struct FitReport {
   BinCounts bins;                       // of the source: how many were left out, and why
   SolverSummary summary;
   std::optional<NodeChoice> nodes;  // of those of D and G, where it was asked for
-  using Guide = FitResult::Guide;
-  std::optional<Guide> guide;
+  using Prior = FitResult::Prior;
+  std::optional<Prior> prior;
   using Finished = FitResult::Finished;
   Finished finished;
   int stored_parameters = 0;

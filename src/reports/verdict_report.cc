@@ -32,7 +32,7 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
              "reciprocal)";
     case Advice::kKeepWithin:
       return "render it only within the measured directions: beyond, it reaches " +
-             Text(facts.reach_beyond, 3) + " times the largest measured value; try --guide=10";
+             Text(facts.reach_beyond, 3) + " times the largest measured value; try --prior=10";
   }
   return "";
 }

@@ -15,7 +15,9 @@ namespace {
 
 constexpr std::string_view kHeader =
     "iteration,seconds,objective,filtered,accepted,step,optimality";
-constexpr std::string_view kGuided = ",guided_objective";  // of a fit with a guide, after these
+// Of a fit with a prior, after these; and what that was called once.
+constexpr std::string_view kWithPrior = ",objective_with_prior";
+constexpr std::string_view kGuided = ",guided_objective";
 
 template <typename T>
 void Append(T value, std::string* text) {
@@ -81,8 +83,8 @@ class Row {
 
 std::string FormatTrace(std::span<const IterationRecord> records) {
   std::string text(kHeader);
-  const bool guided = !records.empty() && records.front().guided_objective;
-  if (guided) text += kGuided;
+  const bool with_prior = !records.empty() && records.front().objective_with_prior;
+  if (with_prior) text += kWithPrior;
   text += '\n';
   for (const IterationRecord& record : records) {
     Append(record.iteration, &text);
@@ -95,7 +97,7 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
     Append(record.step, &text);
     text += ',';
     if (record.optimality) Append(*record.optimality, &text);
-    if (guided) {
+    if (with_prior) {
       text += ',';
       Append(record.minimised(), &text);
     }
@@ -106,17 +108,22 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
 
 std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string& source) {
   std::vector<IterationRecord> records;
-  bool guided = false;
+  bool with_prior = false;
   for (int line = 1; line == 1 || !text.empty(); ++line) {
     std::string_view content = TakeUntil('\n', &text);
     if (content.ends_with('\r')) content.remove_suffix(1);  // saved by a spreadsheet
     const std::string where = source + ": line " + std::to_string(line);
     if (line == 1) {
-      guided = content.ends_with(kGuided);
-      if (content.substr(0, content.size() - (guided ? kGuided.size() : 0)) == kHeader) continue;
+      for (const std::string_view name : {kWithPrior, kGuided}) {
+        if (!content.ends_with(name)) continue;
+        content.remove_suffix(name.size());
+        with_prior = true;
+        break;
+      }
+      if (content == kHeader) continue;
       throw Error(where + ": not a trace; the first line must be " + std::string(kHeader));
     }
-    Row row(content, CountCells(kHeader) + (guided ? 1 : 0), where);
+    Row row(content, CountCells(kHeader) + (with_prior ? 1 : 0), where);
     IterationRecord record;
     record.iteration = row.Take<int>("iteration");
     record.seconds = row.Take<double>("seconds");
@@ -125,7 +132,7 @@ std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string
     record.accepted = row.TakeBool("accepted");
     record.step = row.Take<double>("step");
     record.optimality = row.TakeOptional("optimality");
-    if (guided) record.guided_objective = row.Take<double>("guided_objective");
+    if (with_prior) record.objective_with_prior = row.Take<double>("objective_with_prior");
     records.push_back(record);
   }
   return records;

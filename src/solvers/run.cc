@@ -93,9 +93,9 @@ bool Run::Record(const FactorModel& current, const Step& step) {
     const ScopedTimer timer = Time(&PhaseSeconds::tracing);
     record.objective = objective_.Value(current);
   }
-  if (objective_.has_guide()) {
+  if (objective_.has_prior()) {
     const ScopedTimer timer = Time(&PhaseSeconds::tracing);
-    record.guided_objective = record.objective;
+    record.objective_with_prior = record.objective;
     record.objective = objective_.data().Value(current);
   }
   if (record.iteration == 0 && !std::isfinite(record.minimised())) {

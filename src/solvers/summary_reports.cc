@@ -45,8 +45,8 @@ std::string SolverSummary::BriefReport() const {
   std::ostringstream out;
   out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
       << initial_objective << " to " << final_objective;
-  if (has_guide()) {
-    out << " (with the guide " << trace.front().minimised() << " to "
+  if (has_prior()) {
+    out << " (with the prior " << trace.front().minimised() << " to "
         << trace[BestIteration()].minimised() << ")";
   }
   out << ", stopped by " << StopReasonName(stop_reason);
@@ -63,16 +63,16 @@ std::string SolverSummary::FullReport() const {
     if (RejectedSteps() > 0) out << ", " << RejectedSteps() << " steps taken back";
     out << std::setprecision(3) << ", last step " << trace.back().step << " of |x|";
   }
-  if (has_guide()) {
+  if (has_prior()) {
     out << std::setprecision(6)
-        << "\n             with the guide, which is what the solver lowers: E "
+        << "\n             with the prior, which is what the solver lowers: E "
         << trace.front().minimised() << " -> " << trace[BestIteration()].minimised();
   }
   out << "\noptions      " << OptionsText(*this) << "\n";
   for (const std::string& note : notes) out << "note         " << note << "\n";
   for (size_t k = 0; k < starts.size(); ++k) {
     out << (k > 0         ? ", "
-            : has_guide() ? "starts       E with the guide: "
+            : has_prior() ? "starts       E with the prior: "
                           : "starts       ")
         << starts[k].name << " " << starts[k].objective;
   }

@@ -123,28 +123,29 @@ TEST_F(AnisotropicCommands, IsotropicFitSaysWhatItLeavesOut) {
   for (int k = 1; k < 70; ++k) EXPECT_NEAR(at(k), at(k - 1), 0.1 * most) << k;
 }
 
-// Where six theta were measured, what D and F are between them is the guide's.
+// Where six theta were measured, what D and F are between them is the prior's.
 TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
-  const auto psnr_from_formula = [&](const char* guide) {
+  const auto psnr_from_formula = [&](const char* prior) {
     const ProgramResult fit =
         RunProgram({"fit", "synth:linen@6x12", "--model=isotropic", "--lobes=1", "--solver=varpro",
-                    guide, "--out=" + In("guided")});
+                    prior, "--out=" + In("with_prior")});
     EXPECT_EQ(fit.status, 0) << fit.err;
     return Parse(Contents(
-        In("guided/report.json")))["appearance"]["from_formula"]["fitted"]["psnr_db"]
+        In("with_prior/report.json")))["appearance"]["from_formula"]["fitted"]["psnr_db"]
         .get<double>();
   };
-  EXPECT_GT(psnr_from_formula("--guide=1"), psnr_from_formula("--guide=0") + 6);
-  ExpectRefusal({"fit", "synth:plastic@30x30x60", "--guide=2"},
-                "--guide is for scattered samples, and a ");
+  EXPECT_GT(psnr_from_formula("--prior=1"), psnr_from_formula("--prior=0") + 6);
+  ExpectRefusal({"fit", "synth:plastic@30x30x60", "--prior=2"},
+                "--prior is for scattered samples, and a ");
 }
 
 TEST_F(AnisotropicCommands, FitWritesItsCourseAndTheTablesThatItFitted) {
-  const ProgramResult fit = RunProgram({"fit", "synth:linen@4x12", "--lobes=1", "--course",
-                                        "--max_iterations=3", "--out=" + In("course")});
+  const ProgramResult fit = RunProgram({"fit", "synth:linen@4x12", "--lobes=1", "--convergence",
+                                        "--max_iterations=3", "--out=" + In("convergence")});
   ASSERT_EQ(fit.status, 0) << fit.err;
-  EXPECT_THAT(Contents(In("course/course.csv")), StartsWith("iteration,seconds,objective,"));
-  EXPECT_EQ(ReadModel(In("course/model.json")).model.spec().f_axis.size, 6);
+  EXPECT_THAT(Contents(In("convergence/convergence.csv")),
+              StartsWith("iteration,seconds,objective,"));
+  EXPECT_EQ(ReadModel(In("convergence/model.json")).model.spec().f_axis.size, 6);
 }
 
 TEST_F(AnisotropicCommands, InfoGivesNodesAndAlbedosAlongAndAcross) {

@@ -219,16 +219,16 @@ TEST(Fit, PicturesAreTheSameForAnyNumberOfThreads) {
 TEST(Fit, CourseScoresTheModelsOnTheWay) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  ASSERT_EQ(RunProgram(Fit(out, {"--course"})).status, 0);
+  ASSERT_EQ(RunProgram(Fit(out, {"--convergence"})).status, 0);
   const std::vector<IterationRecord> trace = ReadTrace(out + "/trace.csv");
   const nlohmann::json report = Json(out + "/report.json");
-  std::istringstream course(Contents(out + "/course.csv"));
+  std::istringstream curve(Contents(out + "/convergence.csv"));
   std::string line;
-  ASSERT_TRUE(std::getline(course, line));
+  ASSERT_TRUE(std::getline(curve, line));
   EXPECT_EQ(line, "iteration,seconds,objective,psnr_db,rmse,mean_relative_error,mean_log_error");
   int rows = 0, iteration = -1;
   double seconds = -1, objective = 0, psnr_db = 0;
-  while (std::getline(course, line)) {
+  while (std::getline(curve, line)) {
     const double before = seconds;
     ASSERT_EQ(
         std::sscanf(line.c_str(), "%d,%lf,%lf,%lf", &iteration, &seconds, &objective, &psnr_db), 4);
@@ -406,7 +406,7 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
 }
 
 // Noise leaves the least E too dark. A thinned model is held where nothing was measured: else it
-// ran wild there on its way to more light, and stayed as it was.
+// overshot there on its way to more light, and stayed as it was.
 TEST(Fit, AThinnedModelReflectsAsMuchToo) {
   const TemporaryFolder folder;
   const ProgramResult result =

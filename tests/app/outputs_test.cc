@@ -50,11 +50,11 @@ TEST(FitFolder, HoldsTheFilesOfOneRun) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   ASSERT_EQ(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--plots", "--reconstruction",
-                              "--course", "--out=" + out}))
+                              "--convergence", "--out=" + out}))
                 .status,
             0);
   EXPECT_THAT(Names(out),
-              UnorderedElementsAre("model.json", "trace.csv", "report.json", "course.csv",
+              UnorderedElementsAre("model.json", "trace.csv", "report.json", "convergence.csv",
                                    "reconstruction.binary", "factors.png", "slices.png",
                                    "spheres.png", "trace.png", "view.html"));
   // Of MERL's bins, though the fit had others.
@@ -168,10 +168,10 @@ TEST(Outputs, APictureOfAMeasurementDoesNotReplaceIt) {
 // Names that a run uses are common ones; without a run of ours in the folder they are somebody's.
 TEST(FitFolder, LeavesFilesOfNoRunAlone) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "course.csv") << "mine";
+  std::ofstream(folder / "convergence.csv") << "mine";
   ExpectRefusal(RunProgram(Quick({"fit", "synth:felt@30x30x60", "--out=" + (folder / "")})),
-                "course.csv' is not of a run of this command");
-  EXPECT_EQ(Contents(folder / "course.csv"), "mine");
+                "convergence.csv' is not of a run of this command");
+  EXPECT_EQ(Contents(folder / "convergence.csv"), "mine");
 }
 
 TEST(Outputs, AreCheckedBeforeTheWork) {

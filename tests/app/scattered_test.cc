@@ -29,9 +29,9 @@ class Scattered : public ::testing::Test {
     EXPECT_EQ(made.status, 0) << made.err;
   }
 
-  // Without a guide, so that the solver's E is that of the data.
+  // Without a prior, so that the solver's E is that of the data.
   json Fit(const std::string& name, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"fit", folder_ / "few.csv", "--guide=0", "--solver=awls",
+    std::vector<std::string> arguments = {"fit", folder_ / "few.csv", "--prior=0", "--solver=awls",
                                           "--out=" + folder_ / name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult fit = RunProgram(arguments);

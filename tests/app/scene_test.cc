@@ -88,7 +88,7 @@ TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
   }
 }
 
-// What a guide says between them does not count.
+// What a prior says between them does not count.
 TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
   const TemporaryFolder folder;
   const std::string source = FewSamples(folder, "plastic@30x30x60");
@@ -303,7 +303,7 @@ TEST(Scene, BadUseIsAnError) {
       {{"fit", "synth:felt@30x30x60", "--scene=" + scene}, "leave out synth:felt@30x30x60"},
       {{"fit", "synth:felt@30x30x60", "--nocache"}, "--nocache goes with --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--plots"}, "not for --scene"},
-      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--course"}, "not for --scene"},
+      {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--convergence"}, "not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--robust=0.1"},
        "--robust is for the fit of one SOURCE, not for --scene"},
       {{"fit", "--scene=" + scene, "--out=" + (folder / "o"), "--max_parameters=100"},

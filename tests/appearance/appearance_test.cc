@@ -321,10 +321,10 @@ TEST(CompareAppearance, OverflowIsAnError) {
   // Beyond the data only.
   BrdfTable part = table;
   Unmeasure([](const HalfDiffAngles& angles) { return angles.theta_d > 1; }, &part);
-  const AngularBrdf wild = [](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
+  const AngularBrdf unbounded = [](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
     return angles.theta_d > 1 ? Rgb{1, kInfinity, 1} : Rgb{1, 1, 1};
   };
-  EXPECT_THAT(ErrorOf(part, wild), testing::HasSubstr("overflow"));
+  EXPECT_THAT(ErrorOf(part, unbounded), testing::HasSubstr("overflow"));
 }
 
 TEST(CompareAppearance, NothingToCompareIsAnError) {

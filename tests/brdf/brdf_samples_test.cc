@@ -15,7 +15,7 @@ namespace {
 constexpr MerlGrid kEven{.theta_h = 10, .theta_d = 9, .phi_d = 24};
 constexpr MerlGrid kOdd{.theta_h = 10, .theta_d = 9, .phi_d = 23};  // one bin is its own mirror
 
-// As long a row as MERL's has, for strides up to that of a race.
+// As long a row as MERL's has, for strides up to that of the solver multistart.
 constexpr MerlGrid kLong{.theta_h = 7, .theta_d = 6, .phi_d = 180};
 constexpr int kLongestStride = 24;
 

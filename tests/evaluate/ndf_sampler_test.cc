@@ -108,9 +108,9 @@ TEST(NdfSamplerTest, HasAnAnswerForAnyNumbersAndDirections) {
       }
     }
   }
-  FactorModel wild = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
-  for (double& s : wild.s(0)) s = 1e300;
-  EXPECT_THROW(NdfSampler{wild}, Error);
+  FactorModel unbounded = AnalyticModel(ModelSpec::SharedFactors(1), 0.1, 0);
+  for (double& s : unbounded.s(0)) s = 1e300;
+  EXPECT_THROW(NdfSampler{unbounded}, Error);
 }
 
 }  // namespace

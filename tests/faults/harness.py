@@ -32,7 +32,7 @@ import sys
 import tempfile
 import time
 
-FIT_FILES = {"model.json", "trace.csv", "report.json", "course.csv", "reconstruction.binary", "factors.png",
+FIT_FILES = {"model.json", "trace.csv", "report.json", "convergence.csv", "reconstruction.binary", "factors.png",
              "slices.png", "spheres.png", "trace.png", "pair.png", "view.html"}
 QUICK = ["--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=20"]
 # The pictures, and the score, take a tenth of the time under six lights instead of 600.
@@ -91,7 +91,7 @@ class Command:
         self.out = os.path.join(harness.room, "out")
         if kind == "one":
             self.words = ["fit", harness.source, *QUICK, "--plots", "--reconstruction", f"--out={self.out}"]
-            self.earlier = ["fit", "synth:rubber@30x30x60", *QUICK, "--plots", "--course", f"--out={self.out}"]
+            self.earlier = ["fit", "synth:rubber@30x30x60", *QUICK, "--plots", "--convergence", f"--out={self.out}"]
             self.folders = ["."]
         elif kind == "many":
             self.words = ["fit", harness.source, "synth:felt@30x30x60", *QUICK, f"--out={self.out}"]

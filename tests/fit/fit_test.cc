@@ -101,8 +101,8 @@ TEST(Fit, RefusesWhatTheMeasurementCannotHave) {
     return "";
   };
   FitOptions options = Quick();
-  options.guide = 2;
-  EXPECT_THAT(error(table, options), testing::HasSubstr("guide is for scattered samples"));
+  options.prior = 2;
+  EXPECT_THAT(error(table, options), testing::HasSubstr("prior is for scattered samples"));
   options = Quick();
   options.form.kind = FormOptions::Kind::kAnisotropic;
   EXPECT_THAT(error(table, options), testing::HasSubstr("knows no azimuths"));

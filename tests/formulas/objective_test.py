@@ -121,7 +121,7 @@ class Objective(unittest.TestCase):
         self.check(model["fit"]["objective"], E, 1e-11)
 
     def test_of_scattered_samples_with_a_guide(self) -> None:
-        """E is that of the samples alone, the guide's are not in it; at the start, too."""
+        """E is that of the samples alone, the prior's are not in it; at the start, too."""
         source = self.folder / "few.csv"
         self.run_program("convert", "synth:copper", "--noise=0.02", "--missing=0.999", f"--out={source}")
         samples = read_csv(source)
@@ -129,13 +129,13 @@ class Objective(unittest.TestCase):
         self.check(report["objective"], samples.objective(model), 1e-9)
         with (self.folder / "out/trace.csv").open(encoding="utf-8") as trace:
             rows = list(csv.DictReader(trace))
-        guided = [float(row["guided_objective"]) for row in rows]
-        self.assertEqual(guided, sorted(guided, reverse=True))
-        self.assertEqual(report["guide"]["initial_objective"], guided[0])
-        self.assertEqual(report["guide"]["objective"], guided[-1])
+        with_prior = [float(row["objective_with_prior"]) for row in rows]
+        self.assertEqual(with_prior, sorted(with_prior, reverse=True))
+        self.assertEqual(report["prior"]["initial_objective"], with_prior[0])
+        self.assertEqual(report["prior"]["objective"], with_prior[-1])
         self.assertEqual(float(rows[0]["objective"]), report["initial_objective"])
         self.assertEqual(model["fit"]["initial_objective"], report["initial_objective"])
-        _, alone = self.fit(source, "--max_iterations=0", "--guide=0")
+        _, alone = self.fit(source, "--max_iterations=0", "--prior=0")
         self.check(report["initial_objective"], alone["initial_objective"], 1e-12)
 
 

@@ -108,7 +108,7 @@ TEST(ChooseNodes, FinerOnesForDataOfFinerOnes) {
   const std::vector<NodeCandidate> ladder = Nested();
   int wanted = 0;
   for (const NodeCandidate& maker : ladder) {
-    const NodeChoice choice = Choose(OfModel(maker.spec), ladder, {.guide = 0});
+    const NodeChoice choice = Choose(OfModel(maker.spec), ladder, {.prior = 0});
     EXPECT_EQ(choice.tried[choice.chosen].name, maker.name);
     EXPECT_EQ(choice.chosen, wanted++);
     EXPECT_LT(choice.tried[choice.chosen].error, 0.01) << maker.name;
@@ -133,7 +133,7 @@ TEST(ChooseNodes, StopsWithWhatItHas) {
   const ModelSpec coarse = Nested()[0].spec;
   const NodeChoice later =
       Choose(OfModel(Nested()[2].spec), Nested(),
-             {.guide = 0, .on_iteration = [&](const IterationRecord&, const FactorModel& model) {
+             {.prior = 0, .on_iteration = [&](const IterationRecord&, const FactorModel& model) {
                 return model.spec() == coarse;
               }});
   EXPECT_EQ(later.tried.size(), 2U);

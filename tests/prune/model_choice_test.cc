@@ -260,9 +260,9 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
   const Fit fit = MakeFit();
   struct Case {
     double gain, loss;
-    bool wild;
+    bool fails_beyond;
   };
-  for (const auto& [gain, loss, wild] :
+  for (const auto& [gain, loss, fails_beyond] :
        {Case{1, 2.9, false}, Case{1, 3.1, true}, Case{8, 3.9, false}, Case{8, 4.1, true}}) {
     const ModelChoiceOptions options = {
         .max_parameters = kPlenty,
@@ -273,9 +273,9 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
               return model.spec().D.per_channel ? 20 - loss : 20.0;
             }};
     const ChosenModel result = ChooseModel(fit.objective, fit.model, options);
-    EXPECT_EQ(result.candidates.back().fails_beyond, wild)
+    EXPECT_EQ(result.candidates.back().fails_beyond, fails_beyond)
         << gain << " dB more, " << loss << " less";
-    EXPECT_EQ(result.model.spec().D.per_channel, !wild);
+    EXPECT_EQ(result.model.spec().D.per_channel, !fails_beyond);
   }
 }
 
@@ -323,7 +323,7 @@ double ErrorBeyond(const FactorModel& model, const BrdfTable& measured) {
   return sum / count;
 }
 
-// Where data end a form and what is thinned of it go on about as the fit does: neither grows wild
+// Where data end a form and what is thinned of it go on about as the fit does: neither fails there
 // where tables are constant beyond the last node of a thinned table, or few samples read an entry.
 TEST(ModelChoice, FormsGoOnBeyondTheData) {
   BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);

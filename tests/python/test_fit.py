@@ -43,7 +43,7 @@ def without_times(text):
     (SMALL, {}),
     (SMALL, {"solver": "awls", "max_iterations": 3, "g_filter": 0.5, "model": "independent"}),
     (SMALL, {"solver": "varpro", "max_iterations": 3, "stretch": (-0.2, 0.3), "lobes": 2}),
-    ("synth:shot_silk@5x8", {"solver": "lm", "max_iterations": 1, "f_bins": 5, "guide": 0.5}),
+    ("synth:shot_silk@5x8", {"solver": "lm", "max_iterations": 1, "f_bins": 5, "prior": 0.5}),
 ])
 def test_is_the_programs_to_the_bit(source, flags, tmp_path):
     result = trilobe.fit(trilobe.read(source, noise=0.02), **flags, progress=False)
@@ -174,7 +174,7 @@ BAD = [
     (lambda: trilobe.fit(SMALL, weighting="light"), "light"),
     (lambda: trilobe.fit(SMALL, init="there"), "there"),
     (lambda: trilobe.fit(SMALL, start=3), "start must be"),
-    (lambda: trilobe.fit(SMALL, guide=1), "guide"),
+    (lambda: trilobe.fit(SMALL, prior=1), "prior"),
     (lambda: trilobe.fit(None), "a path must be"),
     (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]], [[1, 1]]), r"rho has the shape \(1, 2\)"),
     (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]] * 2, [1.0]), "rows"),

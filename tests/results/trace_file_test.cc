@@ -40,16 +40,24 @@ TEST(TraceFile, ReadsBackTheSameBits) {
   EXPECT_EQ(ReadTrace(directory.Path("trace.csv")), records);
 }
 
-// With a guide the solver lowers another E than that of the data; both are told.
-TEST(TraceFile, OfAGuidedFitHasBothObjectives) {
+// With a prior the solver lowers another E than that of the data; both are told.
+TEST(TraceFile, OfAFitWithAPriorHasBothObjectives) {
   const std::vector<IterationRecord> records = {
-      {.iteration = 0, .objective = 9, .guided_objective = 12},
-      {.iteration = 1, .objective = 9.5, .step = 0.5, .optimality = 0.1, .guided_objective = 11}};
-  const std::string guided_header = kHeader.substr(0, kHeader.size() - 1) + ",guided_objective\n";
-  EXPECT_EQ(FormatTrace(records), guided_header + "0,0,9,0,1,0,,12\n1,0,9.5,0,1,0.5,0.1,11\n");
+      {.iteration = 0, .objective = 9, .objective_with_prior = 12},
+      {.iteration = 1,
+       .objective = 9.5,
+       .step = 0.5,
+       .optimality = 0.1,
+       .objective_with_prior = 11}};
+  const std::string with_prior_header =
+      kHeader.substr(0, kHeader.size() - 1) + ",objective_with_prior\n";
+  EXPECT_EQ(FormatTrace(records), with_prior_header + "0,0,9,0,1,0,,12\n1,0,9.5,0,1,0.5,0.1,11\n");
   EXPECT_EQ(ParseTrace(FormatTrace(records), ""), records);
-  EXPECT_THAT(ParseError(guided_header + "0,0,9,0,1,0,\n"), HasSubstr("line 2: 7 columns"));
-  EXPECT_THAT(ParseError(guided_header + "0,0,9,0,1,0,,\n"), HasSubstr("guided_objective must"));
+  const std::string former_header = kHeader.substr(0, kHeader.size() - 1) + ",guided_objective\n";
+  EXPECT_EQ(ParseTrace(former_header + "0,0,9,0,1,0,,12\n", "").front(), records.front());
+  EXPECT_THAT(ParseError(with_prior_header + "0,0,9,0,1,0,\n"), HasSubstr("line 2: 7 columns"));
+  EXPECT_THAT(ParseError(with_prior_header + "0,0,9,0,1,0,,\n"),
+              HasSubstr("objective_with_prior must"));
 }
 
 TEST(TraceFile, AcceptsWhatASpreadsheetSaves) {

@@ -49,7 +49,7 @@ expect_failure(sums/kind.h "#include \"sums/sample_run.h\""
                "sums: kind, normal_equations, ")
 # The lists of registries count, too.
 expect_failure(solvers/solver.cc "#define TRILOBE_DECLARE(NAME) SolverEntry NAME##Entry();\n//  X(Auto)"
-               "solvers/solver.cc: AutoEntry(), but the room solvers does not see solvers/race")
+               "solvers/solver.cc: AutoEntry(), but the room solvers does not see solvers/multistart")
 execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1)
 file(MAKE_DIRECTORY ${scratch_dir}/src/attic)

@@ -13,8 +13,8 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/prior/guide.h"
 #include "trilobe/prior/node_choice.h"
+#include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/gaussian_filter.h"
@@ -141,15 +141,15 @@ TEST(SolverRoom, NumbersOutOfTheirRange) {
     EXPECT_THAT(ErrorOf([&] { SmoothG(bad, objective.coverage(), &model); }), HasSubstr("sigma"));
   }
   for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
-    EXPECT_THAT(ErrorOf([&] { WithGuide(objective, {.weight = bad}); }), HasSubstr("weight"));
+    EXPECT_THAT(ErrorOf([&] { WithPrior(objective, {.weight = bad}); }), HasSubstr("weight"));
   }
   EXPECT_THAT(ErrorOf([&] { SmoothG(1, std::vector<double>(3), &model); }), HasSubstr("coverage"));
   for (const double bad : {-1.0, kNaN, kInfinity}) {
     EXPECT_THAT(ErrorOf([&] {
                   ChooseNodes(objective, {NodeCandidate{.name = "own", .spec = spec}},
-                              {.guide = bad});
+                              {.prior = bad});
                 }),
-                HasSubstr("guide"));
+                HasSubstr("prior"));
   }
   const std::vector<double> x(3);
   EXPECT_THAT(ErrorOf([&] { ScaledProjectedGradient(QuadraticModel(), x); }),

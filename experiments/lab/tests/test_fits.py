@@ -11,7 +11,7 @@ from lab.tests import FolderTest
 REPORT = {"objective": 3, "seconds": {"read": 1, "prepare": 2, "init": 0.5},
           "phases": {"tracing": 0.3}}
 TRACE = "iteration,seconds,objective,optimality\n0,0.1,9,\n1,1.1,4,0.5\n2,2.1,3,0.1\n"
-COURSE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
+CONVERGENCE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
 
 
 class FitsTest(FolderTest):
@@ -61,10 +61,10 @@ class FitsTest(FolderTest):
 
     def test_flags_of_a_solver_come_last(self):
         unit, = fits.planned(self.setting(
-            [{"solvers": ["mine"], "every": 2, "flags": {"tolerance": 0, "course": True}}],
+            [{"solvers": ["mine"], "every": 2, "flags": {"tolerance": 0, "convergence": True}}],
             flags={"tolerance": 1, "max_iterations": 7},
             solvers={"mine": {"solver": "lm", "max_iterations": 9}}))
-        for word in ("--solver=lm", "--tolerance=0", "--max_iterations=9", "--course"):
+        for word in ("--solver=lm", "--tolerance=0", "--max_iterations=9", "--convergence"):
             self.assertIn(word, unit.arguments)
         self.assertEqual(unit.labels["solver"], "mine")
 
@@ -90,12 +90,12 @@ class FitsTest(FolderTest):
     def test_the_clock_starts_with_reading_and_leaves_out_the_trace(self):
         (self.folder / "report.json").write_text(json.dumps(REPORT))
         (self.folder / "trace.csv").write_text(TRACE)
-        (self.folder / "course.csv").write_text(COURSE)
+        (self.folder / "convergence.csv").write_text(CONVERGENCE)
         fit = fits.Fit(self.folder)
         for clock, expected in zip((row["clock"] for row in fit.trace), (3.5, 4.4, 5.3)):
             self.assertAlmostEqual(clock, expected)
-        self.assertAlmostEqual(fit.course[1]["clock"], 5.3)
-        self.assertEqual(fit.course[1]["psnr_db"], math.inf)
+        self.assertAlmostEqual(fit.convergence[1]["clock"], 5.3)
+        self.assertEqual(fit.convergence[1]["psnr_db"], math.inf)
         self.assertTrue(math.isnan(fit.trace[0]["optimality"]))
 
     def test_processor_seconds_are_the_share_that_the_command_had(self):

@@ -11,7 +11,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/prior/guide.h"
+#include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/prune/model_choice.h"
 
 namespace trilobe {
@@ -19,9 +19,9 @@ namespace trilobe {
 // What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
 // no budget of parameters unless it has begun to choose.
 struct FinishOptions {
-  double robust = 0;              // above 0: passes of reweighting with this delta (Reweighted)
-  int max_parameters = 0;         // above 0: the form that looks best within so many (ChooseModel)
-  const Guide* guide = nullptr;   // that the objective has (TameBetweenSamples)
+  double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
+  int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)
+  const SyntheticPrior* prior = nullptr;  // that the objective has (CorrectOvershoot)
   bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
   AppearanceOptions appearance;
   StopCheck stop = {};
@@ -31,8 +31,8 @@ struct FinishedFit {
   Objective objective;  // for models of the spec that was chosen
   FactorModel model;    // in canonical form
   std::optional<TableLayout> layout = std::nullopt;
-  // Nothing where the fit did not run wild between the samples (TameBetweenSamples).
-  std::optional<TamedFit> tamed = std::nullopt;
+  // Nothing where the fit did not overshoot between the samples (CorrectOvershoot).
+  std::optional<CorrectedOvershoot> overshoot = std::nullopt;
   // By how much tying entries at the edge of the data raised E, as a fraction; nothing if it was
   // not done (TieEntriesAtDataEdge). After a robust fit E, here and of candidates, is that of the
   // reweighted samples.

@@ -20,9 +20,9 @@
 #include "trilobe/objective/objective.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/objective/weighting.h"
-#include "trilobe/prior/guide.h"
 #include "trilobe/prior/node_choice.h"
 #include "trilobe/prior/reach.h"
+#include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/results/model_file.h"
 #include "trilobe/solvers/solver.h"
@@ -48,8 +48,9 @@ struct FitOptions {
     return SolverOptions();
   };
   Weighting weighting = Weightings().front();
-  // Of scattered samples, GuideOptions::weight, or 0; 1 without it, and with kAnisotropic 0.
-  std::optional<double> guide = {};
+  // Of scattered samples, SyntheticPriorOptions::weight, or 0 for no prior; where it is not given,
+  // 1, and with kAnisotropic 0.
+  std::optional<double> prior = {};
   double robust = 0;       // FinishOptions, as the next two
   int max_parameters = 0;  // above 0: --model=auto, of a table
   bool match_reflectance = true;
@@ -75,10 +76,10 @@ struct FitOptions {
 // A measurement, as it is fitted.
 struct FitProblem {
   Objective data;  // by which models are judged
-  // What the solver lowers: with scattered samples, those of a guide besides (WithGuide).
-  std::optional<Objective> guided = {};
+  // What the solver lowers: with scattered samples, those of a prior besides (WithPrior).
+  std::optional<Objective> with_prior = {};
 
-  const Objective& solved() const { return guided ? *guided : data; }
+  const Objective& solved() const { return with_prior ? *with_prior : data; }
 };
 
 struct FitResult {
@@ -89,14 +90,14 @@ struct FitResult {
   SolverSummary summary = {};
   std::optional<NodeChoice> nodes = {};  // of those of D and G, where it was asked for
   // Samples that joined the data for the solver.
-  struct Guide {
+  struct Prior {
     double weight = 0;
     int samples = 0;
   };
-  std::optional<Guide> guide = {};
+  std::optional<Prior> prior = {};
   // What came after the solver (FinishedFit).
   struct Finished {
-    std::optional<TamedFit> tamed = {};
+    std::optional<CorrectedOvershoot> overshoot = {};
     std::optional<double> tied = {};
     std::vector<ModelCandidate> candidates = {};
     int chosen = -1;
@@ -120,13 +121,13 @@ struct FitResult {
 };
 
 // From a measurement to the model that `trilobe fit` writes, and all that it reports: the form, the
-// start, the choice of nodes, the guide, the solver, what comes after it, and the score. The same
+// start, the choice of nodes, the prior, the solver, what comes after it, and the score. The same
 // bits for the same options; functions that are empty are as those by default. Stopped before
 // on_begin it returns no model. Throws Error.
 FitResult Fit(const Measurement& measurement, const FitOptions& options = {});
 
 // What Fit fits, where no nodes are to be chosen; for whoever goes on from its model, whose spec
-// this is. The guide is fitted here, which takes time.
+// this is. The prior is fitted here, which takes time.
 FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
                       const ModelSpec& spec);
 

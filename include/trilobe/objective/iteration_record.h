@@ -15,10 +15,10 @@ struct IterationRecord {
   double step = 0;        // |x - x before| / |x before| over all parameters; 0 at the start
   // Scaled projected gradient (docs/solvers.md), by the solvers that know it at each iteration.
   std::optional<double> optimality = std::nullopt;
-  // With a guide: E of the data and of what the guide says, which the solver lowers.
-  std::optional<double> guided_objective = std::nullopt;
+  // With a prior: E of the data and of what the prior says, which the solver lowers.
+  std::optional<double> objective_with_prior = std::nullopt;
 
-  double minimised() const { return guided_objective.value_or(objective); }
+  double minimised() const { return objective_with_prior.value_or(objective); }
   bool operator==(const IterationRecord&) const = default;
 };
 

@@ -30,14 +30,14 @@ class Objective {
   // prepared is shared, and this costs next to nothing. Throws Error as above.
   Objective(const Objective& other, const ModelSpec& spec);
 
-  // What a fit lowers that has a guide: `with_guide` are the samples of `data` and others, which
-  // say what a model is to be between these (WithGuide). Weights keep the level of the data.
-  Objective(const Objective& data, BrdfSamples with_guide);
+  // What a fit lowers that has a prior: `with_prior` are the samples of `data` and others, which
+  // say what a model is to be between these (WithPrior). Weights keep the level of the data.
+  Objective(const Objective& data, BrdfSamples with_prior);
 
-  // The objective of what was measured, by which models are judged: with a guide the one of its
+  // The objective of what was measured, by which models are judged: with a prior the one of its
   // data, else this.
   const Objective& data() const { return data_ == nullptr ? *this : *data_; }
-  bool has_guide() const { return data_ != nullptr; }
+  bool has_prior() const { return data_ != nullptr; }
 
   const BrdfSamples& samples() const;
   const ModelSpec& spec() const { return spec_; }
@@ -84,7 +84,7 @@ class Objective {
   ModelSpec spec_;
   int num_threads_;
   std::vector<double> coverage_;
-  std::shared_ptr<const Objective> data_;  // null without a guide
+  std::shared_ptr<const Objective> data_;  // null without a prior
 };
 
 }  // namespace trilobe

@@ -36,7 +36,7 @@ std::vector<bool> HeldOut(const BrdfSamples& samples, uint64_t seed);
 
 struct NodeChoiceOptions {
   uint64_t seed = 1;
-  double guide = 1;  // GuideOptions::weight, or 0 for no guide
+  double prior = 1;  // SyntheticPriorOptions::weight, or 0 for no prior
   // As of SolverOptions, of each candidate's fit; returns false to stop.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
   StopCheck stop = {};
@@ -51,7 +51,7 @@ struct NodeChoice {
 };
 
 // Climbs the ladder as long as the error on held-out pairs of directions falls, each time by 1 % or
-// more. Every candidate is fitted, in few iterations, to the other pairs and to a guide made from
+// more. Every candidate is fitted, in few iterations, to the other pairs and to a prior made from
 // these; each starts from the one before. Deterministic, for any number of threads; stopped, it
 // chooses among what it has tried. Throws Error where there is no ladder, where the samples know no
 // directions, and where there are too few to hold any out.

@@ -19,9 +19,10 @@ namespace trilobe {
 // parameter.
 PrunedModel Prune(const Objective& objective, const FactorModel& full, const PruneOptions& options);
 
-// The same for a fit that had a guide: models are fitted to `guided`, the samples of `measured` and
-// those of the guide, and held against the budget by `measured` alone, as are all E of the result.
-PrunedModel Prune(const Objective& measured, const Objective& guided, const FactorModel& full,
+// The same for a fit that had a prior: models are fitted to `with_prior`, the samples of `measured`
+// and those of the prior, and held against the budget by `measured` alone, as are all E of the
+// result.
+PrunedModel Prune(const Objective& measured, const Objective& with_prior, const FactorModel& full,
                   const PruneOptions& options);
 
 }  // namespace trilobe

@@ -10,11 +10,11 @@
 
 namespace trilobe {
 
-// The course of a fit as CSV: the header
+// The iterations of a fit as CSV: the header
 //   iteration,seconds,objective,filtered,accepted,step,optimality
 // then a row a record, with the members of IterationRecord: filtered and accepted are 0 or 1,
-// optimality is empty where it is unknown. Of a fit with a guide, guided_objective is an eighth
-// column. Numbers read back to the same double, whatever the
+// optimality is empty where it is unknown. Of a fit with a prior, objective_with_prior is an eighth
+// column (guided_objective in older files). Numbers read back to the same double, whatever the
 // locale. A row that is not of this form, or a number that is not finite and >= 0, is an Error that
 // names file, line and column.
 std::string FormatTrace(std::span<const IterationRecord> records);

@@ -73,7 +73,7 @@ struct SolverSummary {
   std::vector<std::string> own_options;  // that it reads and not all do, if MakeSolver made it
   StopReason stop_reason = StopReason::kMaxIterations;
   // E of the data at the start and of the returned model. That is the one with the lowest recorded
-  // E of what is minimised, which with a guide is another (IterationRecord::guided_objective).
+  // E of what is minimised, which with a prior is another (IterationRecord::objective_with_prior).
   double initial_objective = 0;
   double final_objective = 0;
   int iterations = 0;                  // made, which may be more than the returned model's number
@@ -89,7 +89,9 @@ struct SolverSummary {
 
   int BestIteration() const;  // the returned model's number in the trace
   int RejectedSteps() const;  // iterations whose step was taken back
-  bool has_guide() const { return !trace.empty() && trace.front().guided_objective.has_value(); }
+  bool has_prior() const {
+    return !trace.empty() && trace.front().objective_with_prior.has_value();
+  }
 
   // One line: solver, iterations, E from and to, why it stopped.
   std::string BriefReport() const;

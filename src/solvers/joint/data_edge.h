@@ -17,8 +17,9 @@ enum class TieRefit { kUntilSettled, kUntilBack };
 // Towards grazing angles, and most of all where a measurement ends before 90 degrees, the last
 // entries of D, F and G are read by few samples of little weight, which leave them free to trade
 // huge values against tiny ones of each other. At the bins these fit; between them, and beyond the
-// data, their products run wild: white rings around a sphere. This ties such entries to the last
-// one before them, and refits all parameters by a few joint steps. Tied are, at the end of a table,
+// data, their products grow without bound: white rings around a sphere. This ties such entries to
+// the last one before them, and refits all parameters by a few joint steps. Tied are, at the end of
+// a table,
 // - before unobserved entries, those with less than a twentieth of the coverage of the third one
 //   inwards;
 // - those from the first on, in the last third, that is five times the median of the five before

@@ -154,11 +154,11 @@ TEST(DataEdge, AHugeNodeAtTheEdgeIsTamed) {
     ASSERT_GT(tail.end, tail.begin);
     for (int k = tail.begin; k < tail.end; ++k) G[k] *= 1000;
   }
-  FactorModel tamed = huge;
-  ASSERT_TRUE(TieEntriesAtDataEdge(objective, &tamed));
-  EXPECT_LE(objective.Value(tamed), 1.05 * objective.Value(fitted));
+  FactorModel overshoot = huge;
+  ASSERT_TRUE(TieEntriesAtDataEdge(objective, &overshoot));
+  EXPECT_LE(objective.Value(overshoot), 1.05 * objective.Value(fitted));
   EXPECT_GT(LargestBeyond(objective, measured, huge), 100 * Largest(measured));
-  EXPECT_LT(LargestBeyond(objective, measured, tamed), 3 * Largest(measured));
+  EXPECT_LT(LargestBeyond(objective, measured, overshoot), 3 * Largest(measured));
 }
 
 // For a model that will be refitted anyway the refit ends once E is back.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "prune/unmeasured_guide.h"
+#include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
@@ -176,15 +176,16 @@ TEST(Reflectance, AGuideHoldsWhatItSpeaksOf) {
   FactorModel fitted = Fitted(objective);
   ASSERT_TRUE(TieEntriesAtDataEdge(objective, &fitted));  // or it would undershoot 0 there
   Canonicalize(objective, &fitted);
-  const Objective guided = UnmeasuredGuide(objective, fitted).With(objective);
+  const Objective with_prior = UnmeasuredPrior(objective, fitted).With(objective);
   // Squares of what it says of directions that were not measured, now less then, weighted.
   const auto change = [&](const FactorModel& model) {
-    return guided.Value(model) - objective.Value(model);
+    return with_prior.Value(model) - objective.Value(model);
   };
   const TableLayout full = Full(fitted);
   const std::optional<MatchedModel> alone =
       MatchReflectance(objective, objective, fitted, full, 30);
-  const std::optional<MatchedModel> held = MatchReflectance(objective, guided, fitted, full, 30);
+  const std::optional<MatchedModel> held =
+      MatchReflectance(objective, with_prior, fitted, full, 30);
   ASSERT_TRUE(alone && held);
   EXPECT_EQ(held->error_before, alone->error_before);
   EXPECT_LT(held->error_after, 0.8 * held->error_before);

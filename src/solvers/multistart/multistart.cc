@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solvers/joint/joint_step.h"
-#include "solvers/race/start_race.h"
+#include "solvers/multistart/start_elimination.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/lobes.h"
@@ -18,10 +18,10 @@ namespace {
 
 // As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
 // takes, however few its samples, rules the time.
-constexpr StartRace::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
+constexpr StartElimination::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
 // Where a step costs more by its parameters than by its samples, fewer do.
-constexpr StartRace::Thinning kThinnedMore{.samples_per_parameter = 6, .max_stride = 24};
-constexpr StartRace::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
+constexpr StartElimination::Thinning kThinnedMore{.samples_per_parameter = 6, .max_stride = 24};
+constexpr StartElimination::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
 
 // A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
 // a little, each time by so many sweeps and a few joint steps: a lobe that grew out of another
@@ -35,23 +35,27 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed, const St
   for (int lobes = 1; lobes < objective.spec().lobes; ++lobes) {
     spec.lobes = lobes;
     const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
-    StartRace race(smaller, kAsTheyAre, stop);
+    StartElimination elimination(smaller, kAsTheyAre, stop);
     if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
-    race.Enter("", [&] { return model; }, {.count = sweeps});
-    race.Advance(kTries);
-    if (race.leader() != nullptr) model = *race.leader();
+    elimination.Enter("", [&] { return model; }, {.count = sweeps});
+    elimination.Advance(kTries);
+    if (elimination.leader() != nullptr) model = *elimination.leader();
     NormalizeScale(smaller.coverage(), &model);
     model = SplitLobe(model, StrongestLobe(model));
   }
   return WithStretches(model, stretches);
 }
 
-// The race's starts, in the order in which they enter: the given one first.
+// The starts, in the order in which they enter: the given one first.
 class Starts {
  public:
-  Starts(const Objective& objective, const FactorModel& given, uint64_t seed, StartRace* race,
-         StopCheck stop)
-      : objective_(objective), given_(given), seed_(seed), race_(race), stop_(std::move(stop)) {}
+  Starts(const Objective& objective, const FactorModel& given, uint64_t seed,
+         StartElimination* elimination, StopCheck stop)
+      : objective_(objective),
+        given_(given),
+        seed_(seed),
+        elimination_(elimination),
+        stop_(std::move(stop)) {}
 
   // Enters more of them, until there have been `count`.
   void EnterUpTo(int count) {
@@ -65,7 +69,7 @@ class Starts {
       constexpr const char* kNames[] = {"freed", "moments", "highlight"};
       EnterInitial(kNames[number - 1], seed_, kNames[number - 1]);
     } else if (number == 0) {
-      race_->Enter("given", [this] { return given_; });
+      elimination_->Enter("given", [this] { return given_; });
     } else if (number == 2) {
       EnterInitial("highlight", seed_, "highlight");
     } else if (number == 4) {
@@ -84,20 +88,20 @@ class Starts {
 
   // As `awls` would go on from the given one: it creeps past minima that longer steps fall into.
   void EnterSwept() {
-    race_->Enter("swept", [this] { return given_; }, {.count = 60, .in_blocks = false});
+    elimination_->Enter("swept", [this] { return given_; }, {.count = 60, .in_blocks = false});
   }
 
   void EnterGrown(int sweeps, const char* name) {
     const auto grow = [this, sweeps]() -> std::optional<FactorModel> {
       const ModelSpec& spec = objective_.spec();
       if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
-      return WithUnobservedBins(Grow(race_->thinned(), sweeps, seed_, stop_));
+      return WithUnobservedBins(Grow(elimination_->thinned(), sweeps, seed_, stop_));
     };
-    race_->Enter(name, grow, {.count = sweeps});
+    elimination_->Enter(name, grow, {.count = sweeps});
   }
 
   void EnterInitial(const char* init, uint64_t seed, std::string name) {
-    race_->Enter(std::move(name), [this, init, seed]() -> std::optional<FactorModel> {
+    elimination_->Enter(std::move(name), [this, init, seed]() -> std::optional<FactorModel> {
       FactorModel model = WithUnobservedBins(FindInitialModel(init).make(objective_, seed));
       if (std::ranges::equal(model.parameters(), given_.parameters())) return std::nullopt;
       return model;
@@ -113,16 +117,16 @@ class Starts {
   const Objective& objective_;
   const FactorModel& given_;
   const uint64_t seed_;
-  StartRace* const race_;
+  StartElimination* const elimination_;
   const StopCheck stop_;
   int entered_ = 0;
   uint64_t random_ = 0;  // of those, random ones
 };
 
-// A part of the race: so many starts have entered, each that is in it goes on until it has tried so
+// A round: so many starts have entered, each that is still in goes on until it has tried so
 // many joint steps, and then the best stay. The leader may show what a few steps on all samples
-// make of it; it goes on racing as it was.
-struct Leg {
+// make of it; it goes on among the others as it was.
+struct Round {
   int starts, tries, keep, steps_on_all = 0;
 };
 
@@ -130,7 +134,7 @@ struct Leg {
 // beyond what follows from a fit of p parameters to n values: (1 + p / n) / (1 - p / n).
 constexpr double kLargeMismatch = 0.03;
 
-// The winner of the race has not been fitted to all samples; with so many steps it must have come
+// The start that is left has not been fitted to all samples; with so many steps it must have come
 // below a former leader who has.
 constexpr int kMaxCatchUp = 6;
 
@@ -140,9 +144,9 @@ double ExpectedMismatch(const Objective& thinned) {
   return 2 * thinned.spec().num_parameters() / std::max(values, 1.0);
 }
 
-// The legs one by one, then joint steps on all samples from the best point.
-void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const FactorModel& given,
-             Run* run) {
+// The rounds one by one, then joint steps on all samples from the best point.
+void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
+               const FactorModel& given, Run* run) {
   // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
   std::optional<JointStepper> stepper;
   const auto begin_at = [&](const FactorModel& model) {
@@ -164,30 +168,31 @@ void RunLegs(const std::vector<Leg>& legs, const Objective& objective, const Fac
                               .objective = better ? stepper->E() : run->best_objective()});
   };
   {
-    StartRace race(objective, objective.spec().anisotropic() ? kThinnedMore : kThinned, stop);
-    Starts starts(objective, given, run->options().seed, &race, stop);
-    for (const Leg& leg : legs) {
-      starts.EnterUpTo(leg.starts);
+    StartElimination elimination(objective,
+                                 objective.spec().anisotropic() ? kThinnedMore : kThinned, stop);
+    Starts starts(objective, given, run->options().seed, &elimination, stop);
+    for (const Round& round : rounds) {
+      starts.EnterUpTo(round.starts);
       stepper->Rest();
-      race.Advance(leg.tries);
-      race.Keep(leg.keep);
-      if (race.leader() == nullptr) continue;
+      elimination.Advance(round.tries);
+      elimination.Keep(round.keep);
+      if (elimination.leader() == nullptr) continue;
       // On all samples a leader may be behind its predecessor.
-      begin_at(*race.leader());
-      const double mismatch = stepper->E() / race.Results().front().objective - 1;
+      begin_at(*elimination.leader());
+      const double mismatch = stepper->E() / elimination.Results().front().objective - 1;
       go_on = record();
-      for (int k = 0; k < leg.steps_on_all && go_on; ++k) {
+      for (int k = 0; k < round.steps_on_all && go_on; ++k) {
         stepper->Step();
         go_on = record();
       }
       if (!go_on) break;
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
-      const bool large = mismatch > kLargeMismatch + ExpectedMismatch(race.thinned());
-      if (large && &leg != &legs.back()) race.ThinLess();
+      const bool large = mismatch > kLargeMismatch + ExpectedMismatch(elimination.thinned());
+      if (large && &round != &rounds.back()) elimination.ThinLess();
     }
-    run->summary().starts = race.Results();
-    run->summary().phases += race.phases();
+    run->summary().starts = elimination.Results();
+    run->summary().phases += elimination.phases();
   }
   for (int k = 0; k < kMaxCatchUp && go_on && stepper->E() > run->best_objective(); ++k) {
     stepper->Step();
@@ -202,7 +207,7 @@ class Auto : public Solver {
  public:
   static constexpr double kToleranceFactor = 10;
 
-  static std::vector<Leg> Legs() {
+  static std::vector<Round> Rounds() {
     return {{.starts = 2, .tries = 4, .keep = 2},
             {.starts = 2, .tries = 16, .keep = 2, .steps_on_all = 1},
             {.starts = 7, .tries = 16, .keep = 3},
@@ -211,7 +216,7 @@ class Auto : public Solver {
   }
 
   // A step of some two thousand parameters costs ten times as much.
-  static std::vector<Leg> FewLegs() {
+  static std::vector<Round> FewRounds() {
     return {{.starts = 2, .tries = 4, .keep = 2},
             {.starts = 5, .tries = 6, .keep = 2},
             {.starts = 5, .tries = 12, .keep = 1}};
@@ -222,8 +227,8 @@ class Auto : public Solver {
     Run run("auto", objective, options, model);
     // A joint step on all samples gains more than an iteration of others, and costs more.
     run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
-    RunLegs(objective.spec().anisotropic() ? FewLegs() : Legs(), objective, FactorModel(*model),
-            &run);
+    RunRounds(objective.spec().anisotropic() ? FewRounds() : Rounds(), objective,
+              FactorModel(*model), &run);
     return run.Finish();
   }
 };
@@ -234,10 +239,10 @@ class Multistart : public Solver {
                         FactorModel* model) const override {
     Run run("multistart", objective, options, model);
     const int n = options.starts, half = (n + 1) / 2;
-    RunLegs({{.starts = n, .tries = 10, .keep = n},
-             {.starts = n, .tries = 25, .keep = half},
-             {.starts = n, .tries = 100, .keep = half}},
-            objective, FactorModel(*model), &run);
+    RunRounds({{.starts = n, .tries = 10, .keep = n},
+               {.starts = n, .tries = 25, .keep = half},
+               {.starts = n, .tries = 100, .keep = half}},
+              objective, FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     if (!tried.empty()) run.summary().notes.push_back(Agreement(tried));
     return run.Finish();
@@ -260,7 +265,7 @@ class Multistart : public Solver {
 
 SolverEntry AutoEntry() {
   return {.name = "auto",
-          .description = "several starts raced on thinned data, the best finished on all",
+          .description = "several starts, all but the best eliminated on thinned data",
           .reference = "docs/solvers.md",
           .options = {"seed"},
           .make = [] { return std::make_unique<Auto>(); }};

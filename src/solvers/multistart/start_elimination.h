@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SOLVERS_RACE_START_RACE_H_
-#define TRILOBE_SOLVERS_RACE_START_RACE_H_
+#ifndef TRILOBE_SOLVERS_MULTISTART_START_ELIMINATION_H_
+#define TRILOBE_SOLVERS_MULTISTART_START_ELIMINATION_H_
 
 #include <functional>
 #include <memory>
@@ -18,7 +18,7 @@ namespace trilobe {
 // Several starting points, fitted side by side to a thinned selection of the samples, a thread
 // each: E has many local minima, which one a start leads to cannot be told beforehand, and the
 // samples lie so dense that a fraction of them ranks the minima as all of them do.
-class StartRace {
+class StartElimination {
  public:
   // Makes a starting point; asked once, from any thread. Nothing if there is none, or no new one.
   using MakeStart = std::function<std::optional<FactorModel>()>;
@@ -30,8 +30,8 @@ class StartRace {
   };
 
   // `stop` may be asked from several threads.
-  StartRace(const Objective& objective, const Thinning& thinning, StopCheck stop);
-  ~StartRace();
+  StartElimination(const Objective& objective, const Thinning& thinning, StopCheck stop);
+  ~StartElimination();
 
   // Goes on with about twice as many samples, if these are not all.
   void ThinLess();
@@ -49,12 +49,12 @@ class StartRace {
     Enter(std::move(name), std::move(make_start), Sweeps());
   }
 
-  // Those in the race go on until they have made their sweeps and then tried so many joint steps.
-  // One that has converged, or is to stop, makes no more; one that has not begun by then never
-  // does.
+  // Those that are still in go on until they have made their sweeps and then tried so many joint
+  // steps. One that has converged, or is to stop, makes no more; one that has not begun by then
+  // never does.
   void Advance(int tries);
 
-  // All but the best `count` leave the race.
+  // All but the best `count` leave the elimination.
   void Keep(int count);
 
   // The best of all that ever entered; null if there is none yet.
@@ -63,21 +63,21 @@ class StartRace {
   // All that started, best first, with E on the thinned samples as an estimate of that on all.
   std::vector<StartResult> Results() const;
 
-  // Summed over the entrants, which work at the same time.
+  // Summed over the candidates, which work at the same time.
   PhaseSeconds phases() const;
 
  private:
-  class Entrant;
+  class Candidate;
   void Thin();
-  std::vector<Entrant*> Ranked() const;
+  std::vector<Candidate*> Ranked() const;
 
   const Objective& objective_;
   const StopCheck stop_;
   int stride_;  // that samples are thinned by
   std::unique_ptr<const Objective> thinned_;
-  std::vector<std::unique_ptr<Entrant>> entrants_;
+  std::vector<std::unique_ptr<Candidate>> candidates_;
 };
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_RACE_START_RACE_H_
+#endif  // TRILOBE_SOLVERS_MULTISTART_START_ELIMINATION_H_

@@ -1,4 +1,4 @@
-#include "trilobe/prior/guide.h"
+#include "trilobe/prior/synthetic_prior.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -73,11 +73,11 @@ double ErrorOfFit(const BrdfSamples& samples, int f_bins) {
   return ErrorBetween(model);
 }
 
-TEST(Guide, AddsSamplesBetweenThoseOfTheData) {
+TEST(SyntheticPrior, AddsSamplesBetweenThoseOfTheData) {
   const BrdfSamples data = SteelAtNodes();
   const Objective one(data, Spec(6), Weightings().front(), 1);
   const Objective three(data, Spec(6), Weightings().front(), 3);
-  const BrdfSamples both = WithGuide(one, {.weight = 0.25});
+  const BrdfSamples both = WithPrior(one, {.weight = 0.25});
   CheckSamples(both);
   ASSERT_EQ(both.size(), data.size() + data.size() / 6);
   EXPECT_TRUE(std::equal(data.rho.begin(), data.rho.end(), both.rho.begin()));
@@ -85,20 +85,20 @@ TEST(Guide, AddsSamplesBetweenThoseOfTheData) {
     ASSERT_EQ(both.Multiplicity(j), j < data.size() ? 1 : 0.25);
     ASSERT_LE(both.directions[j].theta_o, DegreesToRadians(75) + 1e-9);
   }
-  EXPECT_EQ(WithGuide(three, {.weight = 0.25}).rho, both.rho);
-  EXPECT_THROW(WithGuide(one, {.weight = 0}), Error);
+  EXPECT_EQ(WithPrior(three, {.weight = 0.25}).rho, both.rho);
+  EXPECT_THROW(WithPrior(one, {.weight = 0}), Error);
 }
 
 // What a solver lowers is E of both; what it tells as E is that of the data, from the start on.
-TEST(Guide, ObjectivesOfTheDataAreToldBesides) {
+TEST(SyntheticPrior, ObjectivesOfTheDataAreToldBesides) {
   const Objective data(SteelAtNodes(), Spec(6), Weightings().front(), 2);
-  const Objective guided(data, WithGuide(data, {}));
-  EXPECT_TRUE(guided.has_guide());
-  EXPECT_FALSE(guided.data().has_guide());
-  EXPECT_EQ(guided.weighting().level, data.weighting().level);
+  const Objective with_prior(data, WithPrior(data, {}));
+  EXPECT_TRUE(with_prior.has_prior());
+  EXPECT_FALSE(with_prior.data().has_prior());
+  EXPECT_EQ(with_prior.weighting().level, data.weighting().level);
   EXPECT_EQ(&data.data(), &data);
   ModelSpec finer = Spec(18);
-  EXPECT_EQ(Objective(guided, finer).data().MeasuredEnergy(), data.MeasuredEnergy());
+  EXPECT_EQ(Objective(with_prior, finer).data().MeasuredEnergy(), data.MeasuredEnergy());
   const FactorModel start = FindInitialModel("moments").make(data, 1);
   for (const char* const solver : {"varpro", "awls_block", "lm", "auto"}) {
     FactorModel model = start;
@@ -107,33 +107,33 @@ TEST(Guide, ObjectivesOfTheDataAreToldBesides) {
     options.diagnose = false;
     options.on_iteration = [&](const IterationRecord& record, const FactorModel& current) {
       EXPECT_EQ(record.objective, data.Value(current)) << solver;
-      EXPECT_NEAR(*record.guided_objective / guided.Value(current), 1, 1e-12) << solver;
+      EXPECT_NEAR(*record.objective_with_prior / with_prior.Value(current), 1, 1e-12) << solver;
       return true;
     };
-    const SolverSummary summary = MakeSolver(solver)->Solve(guided, options, &model);
+    const SolverSummary summary = MakeSolver(solver)->Solve(with_prior, options, &model);
     EXPECT_EQ(summary.initial_objective, data.Value(start)) << solver;
     EXPECT_EQ(summary.final_objective, data.Value(model)) << solver;
     const IterationRecord& best = summary.trace[summary.BestIteration()];
     EXPECT_EQ(best.objective, summary.final_objective) << solver;
-    EXPECT_NEAR(*best.guided_objective / guided.Value(model), 1, 1e-12) << solver;
-    EXPECT_LT(*best.guided_objective, *summary.trace.front().guided_objective) << solver;
-    EXPECT_THAT(summary.FullReport(), testing::HasSubstr("with the guide, which is what"))
+    EXPECT_NEAR(*best.objective_with_prior / with_prior.Value(model), 1, 1e-12) << solver;
+    EXPECT_LT(*best.objective_with_prior, *summary.trace.front().objective_with_prior) << solver;
+    EXPECT_THAT(summary.FullReport(), testing::HasSubstr("with the prior, which is what"))
         << solver;
-    EXPECT_THAT(summary.BriefReport(), testing::HasSubstr(" (with the guide ")) << solver;
+    EXPECT_THAT(summary.BriefReport(), testing::HasSubstr(" (with the prior ")) << solver;
   }
 }
 
 // Factors that trade between neighbouring nodes fit these as well, and are wrong in between.
-TEST(Guide, KeepsAFitRightBetweenTheSamples) {
+TEST(SyntheticPrior, KeepsAFitRightBetweenTheSamples) {
   const BrdfSamples data = SteelAtNodes();
   const Objective objective(data, Spec(6), Weightings().front(), 2);
-  const double guided = ErrorOfFit(WithGuide(objective, {}), 6);
-  EXPECT_LT(guided, 0.15);
-  EXPECT_LT(2 * guided, ErrorOfFit(data, 90));
+  const double with_prior = ErrorOfFit(WithPrior(objective, {}), 6);
+  EXPECT_LT(with_prior, 0.15);
+  EXPECT_LT(2 * with_prior, ErrorOfFit(data, 90));
 }
 
-// Far fewer values than parameters: what they do not tell is the guide's, not a wild guess.
-TEST(Guide, KeepsAFitOfFewScatteredSamplesTame) {
+// Far fewer values than parameters: what they do not tell is the prior's, and it is no free guess.
+TEST(SyntheticPrior, KeepsAFitOfFewScatteredSamplesTame) {
   constexpr int kFew = 250;
   const BrdfSamples all = SamplesOf(SynthesizeSamples(FindSynthMaterial("velvet"), 0, 1, kGrid));
   std::vector<int> numbers(all.size());
@@ -157,19 +157,19 @@ TEST(Guide, KeepsAFitOfFewScatteredSamplesTame) {
     return unseen.Value(model) / unseen.MeasuredEnergy();
   };
   const Objective objective(data, spec, Weightings().front(), 2);
-  const BrdfSamples guided = WithGuide(objective, {});
-  EXPECT_GE(guided.size() - data.size(), 6 * spec.num_parameters());
+  const BrdfSamples with_prior = WithPrior(objective, {});
+  EXPECT_GE(with_prior.size() - data.size(), 6 * spec.num_parameters());
   double weight = 0;
-  for (int j = data.size(); j < guided.size(); ++j) weight += guided.Multiplicity(j);
+  for (int j = data.size(); j < with_prior.size(); ++j) weight += with_prior.Multiplicity(j);
   EXPECT_NEAR(weight, data.size() / 6.0, 1e-9);
-  const double with = error(guided), without = error(data);
+  const double with = error(with_prior), without = error(data);
   EXPECT_LT(with, 5);
   EXPECT_LT(1000 * with, without);
 }
 
 // 1,500 pairs of directions, as an older gonioreflectometer has them: 822 parameters fit them, and
 // are anything between.
-TEST(Guide, KeepsAnIsotropicFitTameBetweenFewSamples) {
+TEST(SyntheticPrior, KeepsAnIsotropicFitTameBetweenFewSamples) {
   const BrdfTable table = Synthesize(FindSynthMaterial("plastic"), 0, 1);
   const BrdfSamples all = ValidSamples(table);
   BrdfSamples data;
@@ -200,17 +200,17 @@ TEST(Guide, KeepsAnIsotropicFitTameBetweenFewSamples) {
     MakeSolver("varpro")->Solve(objective, options, &model);
     return everywhere.Value(WithAxes(model, full)) / everywhere.MeasuredEnergy();
   };
-  const BrdfSamples guided =
-      WithGuide(Objective(data, few, FindWeighting("appearance")), {.isotropic = true});
-  CheckSamples(guided);
-  const double with = error(guided, few), without = error(data, full);
+  const BrdfSamples with_prior =
+      WithPrior(Objective(data, few, FindWeighting("appearance")), {.isotropic = true});
+  CheckSamples(with_prior);
+  const double with = error(with_prior, few), without = error(data, full);
   EXPECT_LT(with, 0.1);
   EXPECT_LT(1000 * with, without);
 }
 
 // 30 % of noise, and a G that is next to 0 where the data read an entry of D: that one grows, and
 // shines elsewhere.
-TEST(Guide, TamesAFitThatIsWildBetweenNoisySamples) {
+TEST(SyntheticPrior, TamesAFitThatIsWildBetweenNoisySamples) {
   const BrdfTable table = Synthesize(FindSynthMaterial("copper"), 0, 1);
   const TabulatedBrdf between(table);
   std::mt19937 random(3);
@@ -234,38 +234,38 @@ TEST(Guide, TamesAFitThatIsWildBetweenNoisySamples) {
   while (truth.size() < 2000) add(0, &truth);
   const ModelSpec spec = ModelSpec::SharedFactors(3).ForScattered(data.size());
   const Objective objective(data, spec, FindWeighting("appearance"), 2);
-  const Guide guide(objective, {.isotropic = true});
-  Objective guided(objective, guide.With(objective));
+  const SyntheticPrior prior(objective, {.isotropic = true});
+  Objective with_prior(objective, prior.With(objective));
   FactorModel model = FindInitialModel("analytic").make(objective, 1);
   SolverOptions options;
   options.max_iterations = 60;
   options.diagnose = false;
-  MakeSolver("varpro")->Solve(guided, options, &model);
+  MakeSolver("varpro")->Solve(with_prior, options, &model);
   const Objective right(truth, spec, FindWeighting("appearance"), 2);
-  const FactorModel wild = model;
-  ASSERT_GT(ReachOf(data, wild, 2).between, 4);
-  const std::optional<TamedFit> tamed = TameBetweenSamples(
-      guide, [] { return false; }, &guided, &model);
-  ASSERT_TRUE(tamed.has_value());
-  EXPECT_EQ(tamed->E_before, objective.Value(wild));
-  EXPECT_EQ(tamed->E_after, objective.Value(model));
-  EXPECT_LT(tamed->E_after, 1.1 * tamed->E_before);
+  const FactorModel overshooting = model;
+  ASSERT_GT(ReachOf(data, overshooting, 2).between, 4);
+  const std::optional<CorrectedOvershoot> overshoot = CorrectOvershoot(
+      prior, [] { return false; }, &with_prior, &model);
+  ASSERT_TRUE(overshoot.has_value());
+  EXPECT_EQ(overshoot->E_before, objective.Value(overshooting));
+  EXPECT_EQ(overshoot->E_after, objective.Value(model));
+  EXPECT_LT(overshoot->E_after, 1.1 * overshoot->E_before);
   EXPECT_LE(ReachOf(data, model, 2).between, 3);  // it looks at other directions, too
   EXPECT_EQ(ReachOf(data, model, 1).beyond, ReachOf(data, model, 3).beyond);
-  EXPECT_LT(2 * right.Value(model), right.Value(wild));
+  EXPECT_LT(2 * right.Value(model), right.Value(overshooting));
   // Then there is nothing to do.
-  const FactorModel tame = model;
-  EXPECT_FALSE(TameBetweenSamples(
-                   guide, [] { return false; }, &guided, &model)
+  const FactorModel corrected = model;
+  EXPECT_FALSE(CorrectOvershoot(
+                   prior, [] { return false; }, &with_prior, &model)
                    .has_value());
-  EXPECT_TRUE(std::ranges::equal(model.parameters(), tame.parameters()));
+  EXPECT_TRUE(std::ranges::equal(model.parameters(), corrected.parameters()));
 }
 
-TEST(Guide, NeedsDirections) {
+TEST(SyntheticPrior, NeedsDirections) {
   BrdfSamples samples = SteelAtNodes();
   samples.directions.clear();
   const Objective objective(samples, ModelSpec::SharedFactors(1), Weightings().front());
-  EXPECT_THROW(WithGuide(objective, {}), Error);
+  EXPECT_THROW(WithPrior(objective, {}), Error);
 }
 
 }  // namespace

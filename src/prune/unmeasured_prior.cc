@@ -1,4 +1,4 @@
-#include "prune/unmeasured_guide.h"
+#include "prune/unmeasured_prior.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr double kLargest = 1e50;  // that an objective takes
 
 }  // namespace
 
-UnmeasuredGuide::UnmeasuredGuide(const Objective& objective, const FactorModel& model)
+UnmeasuredPrior::UnmeasuredPrior(const Objective& objective, const FactorModel& model)
     : said_{objective.samples().source, objective.samples().grid, {}, {}, {}} {
   const BrdfSamples& measured = objective.samples();
   if (!measured.on_grid()) return;
@@ -50,7 +50,7 @@ UnmeasuredGuide::UnmeasuredGuide(const Objective& objective, const FactorModel& 
   for (double& times : said_.multiplicity) times *= kWeight;
 }
 
-Objective UnmeasuredGuide::With(const Objective& objective) const {
+Objective UnmeasuredPrior::With(const Objective& objective) const {
   if (said_.rho.empty()) return objective;
   const BrdfSamples& measured = objective.samples();
   BrdfSamples both{measured.source, measured.grid, {}, {}, {}};

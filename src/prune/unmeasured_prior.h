@@ -1,5 +1,5 @@
-#ifndef TRILOBE_PRUNE_UNMEASURED_GUIDE_H_
-#define TRILOBE_PRUNE_UNMEASURED_GUIDE_H_
+#ifndef TRILOBE_PRUNE_UNMEASURED_PRIOR_H_
+#define TRILOBE_PRUNE_UNMEASURED_PRIOR_H_
 
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
@@ -9,14 +9,15 @@ namespace trilobe {
 
 // What a model says where nothing was measured, for fits that go on from it: fitted to few samples,
 // thinned, or moved to another reflectance, these would be free there, and entries that hardly a
-// sample reads would run wild. It counts so little that it decides only what the data leave open.
-class UnmeasuredGuide {
+// sample reads may take any value. It counts so little that it decides only what the data leave
+// open.
+class UnmeasuredPrior {
  public:
   // Speaks about the bins above the surface that are not among the objective's samples, and not
   // where these are on no grid. It says the same in every objective that it joins.
-  UnmeasuredGuide(const Objective& objective, const FactorModel& model);
+  UnmeasuredPrior(const Objective& objective, const FactorModel& model);
 
-  // The objective, whose samples are some of the other's, with the guide's samples besides.
+  // The objective, whose samples are some of the other's, with the prior's samples besides.
   Objective With(const Objective& objective) const;
 
  private:
@@ -25,4 +26,4 @@ class UnmeasuredGuide {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_PRUNE_UNMEASURED_GUIDE_H_
+#endif  // TRILOBE_PRUNE_UNMEASURED_PRIOR_H_

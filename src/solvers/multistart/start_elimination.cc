@@ -1,4 +1,4 @@
-#include "solvers/race/start_race.h"
+#include "solvers/multistart/start_elimination.h"
 
 #include <algorithm>
 #include <memory>
@@ -12,10 +12,10 @@
 namespace trilobe {
 namespace {
 
-// A step that lowers E by less than this fraction ends an entrant's run.
+// A step that lowers E by less than this fraction ends a candidate's fit.
 constexpr double kSmallDecrease = 1e-5;
 
-int StrideFor(const Objective& objective, const StartRace::Thinning& thinning) {
+int StrideFor(const Objective& objective, const StartElimination::Thinning& thinning) {
   // Folded samples are half as many.
   const int fold = objective.samples().on_grid() ? 2 : 1;
   const int wanted = fold * thinning.samples_per_parameter * objective.spec().num_parameters();
@@ -24,9 +24,9 @@ int StrideFor(const Objective& objective, const StartRace::Thinning& thinning) {
 
 }  // namespace
 
-class StartRace::Entrant {
+class StartElimination::Candidate {
  public:
-  Entrant(std::string name, MakeStart make_start, Sweeps sweeps, const Objective* objective)
+  Candidate(std::string name, MakeStart make_start, Sweeps sweeps, const Objective* objective)
       : name_(std::move(name)),
         make_start_(std::move(make_start)),
         sweeps_(sweeps),
@@ -62,13 +62,13 @@ class StartRace::Entrant {
   }
 
   void Leave() {
-    racing_ = false;
+    active_ = false;
     stepper_.reset();
   }
 
   const std::string& name() const { return name_; }
   bool started() const { return model_.has_value(); }
-  bool racing() const { return racing_; }
+  bool active() const { return active_; }
   const FactorModel& model() const { return *model_; }
   double E() const { return E_; }
   const PhaseSeconds& phases() const { return phases_; }
@@ -105,81 +105,82 @@ class StartRace::Entrant {
   std::optional<FactorModel> model_;
   double E_ = 0;
   int tries_ = 0;
-  bool racing_ = true, converged_ = false;
+  bool active_ = true, converged_ = false;
   PhaseSeconds phases_;
   std::unique_ptr<JointStepper> stepper_;
 };
 
-StartRace::StartRace(const Objective& objective, const Thinning& thinning, StopCheck stop)
+StartElimination::StartElimination(const Objective& objective, const Thinning& thinning,
+                                   StopCheck stop)
     : objective_(objective), stop_(std::move(stop)), stride_(StrideFor(objective, thinning)) {
   Thin();
 }
 
-void StartRace::Thin() {
+void StartElimination::Thin() {
   thinned_ = std::make_unique<Objective>(Thinned(objective_.samples(), stride_), objective_.spec(),
                                          objective_.weighting(), /*num_threads=*/1);
 }
 
-void StartRace::ThinLess() {
+void StartElimination::ThinLess() {
   if (stride_ == 1) return;
   stride_ /= 2;
-  const auto before = std::exchange(thinned_, nullptr);  // lives until no entrant refers to it
+  const auto before = std::exchange(thinned_, nullptr);  // lives until no candidate refers to it
   Thin();
-  ParallelFor(static_cast<int>(entrants_.size()), objective_.num_threads(),
-              [&](int k) { entrants_[k]->MoveTo(thinned_.get()); });
+  ParallelFor(static_cast<int>(candidates_.size()), objective_.num_threads(),
+              [&](int k) { candidates_[k]->MoveTo(thinned_.get()); });
 }
 
-StartRace::~StartRace() = default;
+StartElimination::~StartElimination() = default;
 
-void StartRace::Enter(std::string name, MakeStart make_start, Sweeps sweeps) {
-  entrants_.push_back(
-      std::make_unique<Entrant>(std::move(name), std::move(make_start), sweeps, thinned_.get()));
+void StartElimination::Enter(std::string name, MakeStart make_start, Sweeps sweeps) {
+  candidates_.push_back(
+      std::make_unique<Candidate>(std::move(name), std::move(make_start), sweeps, thinned_.get()));
 }
 
-void StartRace::Advance(int tries) {
-  std::vector<Entrant*> racing;
-  for (const auto& entrant : entrants_) {
-    if (entrant->racing()) racing.push_back(entrant.get());
+void StartElimination::Advance(int tries) {
+  std::vector<Candidate*> active;
+  for (const auto& candidate : candidates_) {
+    if (candidate->active()) active.push_back(candidate.get());
   }
-  ParallelJobs(static_cast<int>(racing.size()), objective_.num_threads(),
-               [&](int k) { racing[k]->Advance(tries, stop_); });
+  ParallelJobs(static_cast<int>(active.size()), objective_.num_threads(),
+               [&](int k) { active[k]->Advance(tries, stop_); });
 }
 
-void StartRace::Keep(int count) {
+void StartElimination::Keep(int count) {
   int kept = 0;
-  for (Entrant* const entrant : Ranked()) {
-    if (entrant->racing() && kept++ >= count) entrant->Leave();
+  for (Candidate* const candidate : Ranked()) {
+    if (candidate->active() && kept++ >= count) candidate->Leave();
   }
 }
 
-const FactorModel* StartRace::leader() const {
-  const std::vector<Entrant*> ranked = Ranked();
+const FactorModel* StartElimination::leader() const {
+  const std::vector<Candidate*> ranked = Ranked();
   return ranked.empty() ? nullptr : &ranked.front()->model();
 }
 
-std::vector<StartResult> StartRace::Results() const {
+std::vector<StartResult> StartElimination::Results() const {
   const double energy = thinned_->MeasuredEnergy();
   const double scale = energy > 0 ? objective_.MeasuredEnergy() / energy : 1;
   std::vector<StartResult> results;
-  for (const Entrant* const entrant : Ranked()) {
-    results.push_back({.name = entrant->name(), .objective = scale * entrant->E()});
+  for (const Candidate* const candidate : Ranked()) {
+    results.push_back({.name = candidate->name(), .objective = scale * candidate->E()});
   }
   return results;
 }
 
-PhaseSeconds StartRace::phases() const {
+PhaseSeconds StartElimination::phases() const {
   PhaseSeconds sum;
-  for (const auto& entrant : entrants_) sum += entrant->phases();
+  for (const auto& candidate : candidates_) sum += candidate->phases();
   return sum;
 }
 
 // Best first; of equals the one that entered first.
-std::vector<StartRace::Entrant*> StartRace::Ranked() const {
-  std::vector<Entrant*> ranked;
-  for (const auto& entrant : entrants_) {
-    if (entrant->started()) ranked.push_back(entrant.get());
+std::vector<StartElimination::Candidate*> StartElimination::Ranked() const {
+  std::vector<Candidate*> ranked;
+  for (const auto& candidate : candidates_) {
+    if (candidate->started()) ranked.push_back(candidate.get());
   }
-  std::ranges::stable_sort(ranked, {}, &Entrant::E);
+  std::ranges::stable_sort(ranked, {}, &Candidate::E);
   return ranked;
 }
 

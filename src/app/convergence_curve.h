@@ -1,5 +1,5 @@
-#ifndef TRILOBE_APP_COURSE_H_
-#define TRILOBE_APP_COURSE_H_
+#ifndef TRILOBE_APP_CONVERGENCE_CURVE_H_
+#define TRILOBE_APP_CONVERGENCE_CURVE_H_
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@ namespace trilobe {
 
 // How a fit's errors go down with time, measured without delaying the fit: it keeps copies of
 // models at seconds that grow by a constant factor, and scores them when the fit is over.
-class Course {
+class ConvergenceCurve {
  public:
   // The first model, and each that comes when enough time has gone by since the one before.
   void Keep(const IterationRecord& record, const FactorModel& model);
 
-  // Writes course.csv (docs/file-formats.md): those kept, and the last model of the fit.
+  // Writes convergence.csv (docs/file-formats.md): those kept, and the last model of the fit.
   void Write(const std::string& path, const Objective& objective) const;
 
  private:
@@ -31,4 +31,4 @@ class Course {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_COURSE_H_
+#endif  // TRILOBE_APP_CONVERGENCE_CURVE_H_

@@ -1,4 +1,4 @@
-#include "app/course.h"
+#include "app/convergence_curve.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -19,7 +19,7 @@ constexpr double kFirstSeconds = 0.01;
 
 }  // namespace
 
-void Course::Keep(const IterationRecord& record, const FactorModel& model) {
+void ConvergenceCurve::Keep(const IterationRecord& record, const FactorModel& model) {
   last_ = {record, model};
   if (points_.empty() ||
       record.seconds >= std::max(kFirstSeconds, kGrowth * points_.back().record.seconds)) {
@@ -27,7 +27,7 @@ void Course::Keep(const IterationRecord& record, const FactorModel& model) {
   }
 }
 
-void Course::Write(const std::string& path, const Objective& objective) const {
+void ConvergenceCurve::Write(const std::string& path, const Objective& objective) const {
   std::vector<Point> points = points_;
   if (!points.empty() && points.back().record.iteration != last_.record.iteration) {
     points.push_back(last_);

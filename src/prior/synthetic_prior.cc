@@ -1,4 +1,4 @@
-#include "trilobe/prior/guide.h"
+#include "trilobe/prior/synthetic_prior.h"
 
 #include <algorithm>
 #include <array>
@@ -21,28 +21,28 @@
 namespace trilobe {
 namespace {
 
-constexpr int kDataPerSample = 6;  // samples of the data for one of the guide
+constexpr int kDataPerSample = 6;  // samples of the data for one of the prior
 // Where these are fewer than kFew for each of the model's parameters, there are kEnough for each,
-// which then count less: few data leave many parameters to the guide.
+// which then count less: few data leave many parameters to the prior.
 constexpr int kFew = 3, kEnough = 6;
 // Of few data, too, it says no more than so many times the largest value.
 constexpr double kMaxOfLargest = 2;
-// A fit that says more than so many times the largest value, where the guide may say half of it at
-// most, has run wild.
-constexpr double kWild = 2 * kMaxOfLargest;
-// With fewer samples than so many for each parameter of a guide it needs one itself, on fewer
+// A fit that says more than so many times the largest value, where the prior may say half of it at
+// most, overshoots.
+constexpr double kOvershoot = 2 * kMaxOfLargest;
+// With fewer samples than so many for each parameter of a prior it needs one itself, on fewer
 // nodes.
 constexpr int kSamplesPerParameter = 5;
 
-// What a guide is where azimuths were measured, and where not.
-struct GuideKind {
+// What a prior is where azimuths were measured, and where not.
+struct PriorKind {
   std::vector<ModelSpec> specs;  // of one lobe, from fine to coarse
   const char* start;
   double weight;  // what it counts
 };
-GuideKind KindFor(const GuideOptions& options, int lobes) {
+PriorKind KindFor(const SyntheticPriorOptions& options, int lobes) {
   lobes = std::min(lobes, 1);  // none for models without
-  GuideKind kind;
+  PriorKind kind;
   if (options.isotropic) {
     kind = {.specs = {}, .start = "analytic", .weight = 0.003 * options.weight};
     for (const auto& [d, f, g] : {std::array{24, 6, 9}, {12, 4, 6}, {8, 4, 4}}) {
@@ -73,8 +73,8 @@ void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) 
   }
 }
 
-// What `guide` says at these directions.
-BrdfSamples SamplesOf(const FactorModel& guide, std::vector<SphericalAngles> directions,
+// What `prior` says at these directions.
+BrdfSamples SamplesOf(const FactorModel& prior, std::vector<SphericalAngles> directions,
                       const BrdfSamples& measured, int num_threads) {
   BrdfSamples said;
   said.source = measured.source;
@@ -84,7 +84,7 @@ BrdfSamples SamplesOf(const FactorModel& guide, std::vector<SphericalAngles> dir
     said.angles.push_back(ToHalfDiff(ToDirections(at)));
   }
   said.rho.assign(said.directions.size(), {});
-  said.rho = EvaluateSamples(guide, said, num_threads);
+  said.rho = EvaluateSamples(prior, said, num_threads);
   return said;
 }
 
@@ -102,21 +102,22 @@ BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said, double weight) 
 }
 
 // Directions between the samples where a fit is above so many times their largest value.
-std::vector<SphericalAngles> Above(double times, const Objective& guided, const FactorModel& fit) {
-  const BrdfSamples& measured = guided.data().samples();
+std::vector<SphericalAngles> Above(double times, const Objective& with_prior,
+                                   const FactorModel& fit) {
+  const BrdfSamples& measured = with_prior.data().samples();
   return DirectionsAbove(times * LargestValue(measured), LargestTheta(measured), fit,
-                         guided.num_threads());
+                         with_prior.num_threads());
 }
 
-// The data and what `guide` says between them, enough for a model of so many parameters.
-BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int num_parameters,
+// The data and what `prior` says between them, enough for a model of so many parameters.
+BrdfSamples WithSamplesOf(const FactorModel& prior, const Objective& data, int num_parameters,
                           double weight) {
   const BrdfSamples& measured = data.samples();
   const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
   const bool few = share < kFew * num_parameters;
   const auto count = static_cast<size_t>(few ? kEnough * num_parameters : share);
   BrdfSamples said =
-      SamplesOf(guide,
+      SamplesOf(prior,
                 DirectionsBetween(LargestTheta(measured), count,
                                   few ? Spread::kRetroreflectionToo : Spread::kByHighlights),
                 measured, data.num_threads());
@@ -128,18 +129,18 @@ BrdfSamples WithSamplesOf(const FactorModel& guide, const Objective& data, int n
   return Joined(measured, said, weight);
 }
 
-// The guide of this number, from 0 (the finest), itself guided by the next where data are few.
-FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data,
+// The prior of this number, from 0 (the finest), itself fitted with the next where data are few.
+FactorModel FitPrior(const PriorKind& kind, size_t number, const Objective& data,
                      const StopCheck& stop) {
   const ModelSpec& spec = kind.specs[number];
   const int n = spec.num_parameters();
-  const bool guided =
+  const bool with_prior =
       data.samples().size() < kSamplesPerParameter * n && number + 1 < kind.specs.size();
   const Objective objective =
-      guided ? Objective(WithSamplesOf(FitGuide(kind, number + 1, data, stop), data, n,
-                                       /*weight=*/1),
-                         spec, data.weighting(), data.num_threads())
-             : Objective(data, spec);
+      with_prior ? Objective(WithSamplesOf(FitPrior(kind, number + 1, data, stop), data, n,
+                                           /*weight=*/1),
+                             spec, data.weighting(), data.num_threads())
+                 : Objective(data, spec);
   FactorModel model = FindInitialModel(kind.start).make(objective, 0);
   SolverOptions options;
   options.diagnose = false;
@@ -150,55 +151,56 @@ FactorModel FitGuide(const GuideKind& kind, size_t number, const Objective& data
 
 }  // namespace
 
-Guide::Guide(const Objective& data, const GuideOptions& options) {
+SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOptions& options) {
   const BrdfSamples& measured = data.samples();
   if (!(options.weight > 0 && std::isfinite(options.weight))) {
-    throw Error(measured.source + ": the weight of a guide must be finite and above 0");
+    throw Error(measured.source + ": the weight of a prior must be finite and above 0");
   }
   if (measured.directions.empty()) {
-    throw Error(measured.source + ": a guide needs samples with their directions");
+    throw Error(measured.source + ": a prior needs samples with their directions");
   }
-  const GuideKind kind = KindFor(options, data.spec().lobes);
+  const PriorKind kind = KindFor(options, data.spec().lobes);
   weight_ = kind.weight;
-  model_ = FitGuide(kind, 0, data, options.stop);
+  model_ = FitPrior(kind, 0, data, options.stop);
 }
 
-BrdfSamples Guide::With(const Objective& data) const {
+BrdfSamples SyntheticPrior::With(const Objective& data) const {
   return WithSamplesOf(model_, data, data.spec().num_parameters(), weight_);
 }
 
-std::optional<Objective> Guide::WhereLarge(const Objective& guided, const FactorModel& fit,
-                                           double times) const {
-  const BrdfSamples& measured = guided.data().samples();
-  const std::vector<SphericalAngles> large = Above(kMaxOfLargest, guided, fit);
+std::optional<Objective> SyntheticPrior::WhereLarge(const Objective& with_prior,
+                                                    const FactorModel& fit, double times) const {
+  const BrdfSamples& measured = with_prior.data().samples();
+  const std::vector<SphericalAngles> large = Above(kMaxOfLargest, with_prior, fit);
   if (large.empty()) return std::nullopt;
-  BrdfSamples said = SamplesOf(model_, large, measured, guided.num_threads());
+  BrdfSamples said = SamplesOf(model_, large, measured, with_prior.num_threads());
   LimitTo(kMaxOfLargest, measured.rho, &said.rho);
-  return Objective(guided.data(), Joined(guided.samples(), said, times * weight_));
+  return Objective(with_prior.data(), Joined(with_prior.samples(), said, times * weight_));
 }
 
-BrdfSamples WithGuide(const Objective& data, const GuideOptions& options) {
-  return Guide(data, options).With(data);
+BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& options) {
+  return SyntheticPrior(data, options).With(data);
 }
 
-std::optional<TamedFit> TameBetweenSamples(const Guide& guide, const StopCheck& stop,
-                                           Objective* guided, FactorModel* model) {
+std::optional<CorrectedOvershoot> CorrectOvershoot(const SyntheticPrior& prior,
+                                                   const StopCheck& stop, Objective* with_prior,
+                                                   FactorModel* model) {
   constexpr int kRounds = 4, kSteps = 20;
-  constexpr double kMore = 10;  // of what each of the guide's samples there counts, each round
-  if (Above(kWild, *guided, *model).empty()) return std::nullopt;
-  const double before = guided->data().Value(*model);
+  constexpr double kMore = 10;  // of what each of the prior's samples there counts, each round
+  if (Above(kOvershoot, *with_prior, *model).empty()) return std::nullopt;
+  const double before = with_prior->data().Value(*model);
   SolverOptions options;
   options.max_iterations = kSteps;
   options.diagnose = false;
   options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
   double times = 1;
   for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
-    std::optional<Objective> further = guide.WhereLarge(*guided, *model, times);
+    std::optional<Objective> further = prior.WhereLarge(*with_prior, *model, times);
     if (!further) break;
     MakeSolver("varpro")->Solve(*further, options, model);
-    *guided = *std::move(further);
+    *with_prior = *std::move(further);
   }
-  return TamedFit{before, guided->data().Value(*model)};
+  return CorrectedOvershoot{before, with_prior->data().Value(*model)};
 }
 
 }  // namespace trilobe

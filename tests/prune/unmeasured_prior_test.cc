@@ -1,4 +1,4 @@
-#include "prune/unmeasured_guide.h"
+#include "prune/unmeasured_prior.h"
 
 #include <gtest/gtest.h>
 
@@ -25,14 +25,14 @@ Objective Measured(int num_threads = 1) {
   return MakeObjective(table, Spec(), "appearance", num_threads);
 }
 
-TEST(UnmeasuredGuide, SpeaksWhereNothingWasMeasuredAndLittle) {
+TEST(UnmeasuredPrior, SpeaksWhereNothingWasMeasuredAndLittle) {
   const Objective objective = Measured();
   const BrdfSamples& measured = objective.samples();
   const FactorModel model = RandomModel(Spec(), 2);
-  const Objective guided = UnmeasuredGuide(objective, model).With(objective);
-  EXPECT_EQ(guided.spec(), objective.spec());
-  EXPECT_EQ(guided.weighting().level, objective.weighting().level);
-  const BrdfSamples& both = guided.samples();
+  const Objective with_prior = UnmeasuredPrior(objective, model).With(objective);
+  EXPECT_EQ(with_prior.spec(), objective.spec());
+  EXPECT_EQ(with_prior.weighting().level, objective.weighting().level);
+  const BrdfSamples& both = with_prior.samples();
   const std::set<int> own(measured.bins.begin(), measured.bins.end());
   const BrdfTable said = Reconstruct(model, "model", kGrid);
   Rgb most{};
@@ -60,15 +60,15 @@ TEST(UnmeasuredGuide, SpeaksWhereNothingWasMeasuredAndLittle) {
   EXPECT_NEAR(times / static_cast<double>(unmeasured), 0.01, 0.002);
 }
 
-// An entry that a large set reads by the guide alone is read in a small one, too: it could not run
+// An entry that a large set reads by the prior alone is read in a small one, too: it could not run
 // away there.
-TEST(UnmeasuredGuide, SaysTheSameInEveryObjective) {
+TEST(UnmeasuredPrior, SaysTheSameInEveryObjective) {
   const Objective objective = Measured();
-  const UnmeasuredGuide guide(objective, RandomModel(Spec(), 2));
+  const UnmeasuredPrior prior(objective, RandomModel(Spec(), 2));
   const Objective few(Thinned(objective.samples(), 7), Spec(), objective.weighting());
   const auto said = [&](const Objective& of) {
-    const Objective guided = guide.With(of);
-    std::set<int> bins(guided.samples().bins.begin(), guided.samples().bins.end());
+    const Objective with_prior = prior.With(of);
+    std::set<int> bins(with_prior.samples().bins.begin(), with_prior.samples().bins.end());
     for (const int bin : of.samples().bins) bins.erase(bin);
     return bins;
   };
@@ -76,17 +76,17 @@ TEST(UnmeasuredGuide, SaysTheSameInEveryObjective) {
   EXPECT_EQ(said(few), said(objective));
 }
 
-TEST(UnmeasuredGuide, IsSilentWhereAllWasMeasuredOrNothingIsOnAGrid) {
+TEST(UnmeasuredPrior, IsSilentWhereAllWasMeasuredOrNothingIsOnAGrid) {
   const FactorModel model = RandomModel(Spec(), 2);
   const Objective whole = MakeObjective(TableOf(RandomModel(Spec(), 1), kGrid), Spec());
-  EXPECT_EQ(UnmeasuredGuide(whole, model).With(whole).samples().size(), whole.samples().size());
+  EXPECT_EQ(UnmeasuredPrior(whole, model).With(whole).samples().size(), whole.samples().size());
   BrdfSamples scattered = Scattered(Measured().samples());
   const Objective objective(scattered, Spec(), FindWeighting("appearance"));
-  EXPECT_EQ(UnmeasuredGuide(objective, model).With(objective).samples().size(), scattered.size());
+  EXPECT_EQ(UnmeasuredPrior(objective, model).With(objective).samples().size(), scattered.size());
 }
 
 // G so rough that its spline undershoots, and factors whose product overflows.
-TEST(UnmeasuredGuide, SaysNothingThatNoMeasurementCouldSay) {
+TEST(UnmeasuredPrior, SaysNothingThatNoMeasurementCouldSay) {
   const Objective objective = Measured();
   FactorModel model = RandomModel(Spec(), 2);
   for (int k = 0; k < Spec().g_axis.size; ++k) {
@@ -96,9 +96,9 @@ TEST(UnmeasuredGuide, SaysNothingThatNoMeasurementCouldSay) {
   const auto rho = UnclampedSamples(model, objective.samples(), 1);
   EXPECT_TRUE(std::ranges::any_of(rho, [](const Rgb& x) { return x[0] < 0; }));
   const auto expect_valid = [&] {
-    const Objective guided = UnmeasuredGuide(objective, model).With(objective);
-    EXPECT_GT(guided.samples().size(), objective.samples().size());
-    EXPECT_TRUE(std::isfinite(guided.Value(RandomModel(Spec(), 3))));
+    const Objective with_prior = UnmeasuredPrior(objective, model).With(objective);
+    EXPECT_GT(with_prior.samples().size(), objective.samples().size());
+    EXPECT_TRUE(std::isfinite(with_prior.Value(RandomModel(Spec(), 3))));
   };
   expect_valid();
   // So large at the largest theta_h that its samples have no value.
@@ -107,18 +107,18 @@ TEST(UnmeasuredGuide, SaysNothingThatNoMeasurementCouldSay) {
   expect_valid();
   // All of them.
   std::ranges::fill(model.table(Factor::kD, 0), 1e308);
-  EXPECT_EQ(UnmeasuredGuide(objective, model).With(objective).samples().size(),
+  EXPECT_EQ(UnmeasuredPrior(objective, model).With(objective).samples().size(),
             objective.samples().size());
 }
 
 // A sample that counts several times goes on to do so.
-TEST(UnmeasuredGuide, KeepsHowOftenSamplesCount) {
+TEST(UnmeasuredPrior, KeepsHowOftenSamplesCount) {
   BrdfSamples samples = Measured().samples();
   samples.multiplicity.assign(samples.size(), 1);
   for (int j = 0; j < samples.size(); ++j) samples.multiplicity[j] += j % 4;
   const Objective objective(samples, Spec(), FindWeighting("appearance"));
   const BrdfSamples both =
-      UnmeasuredGuide(objective, RandomModel(Spec(), 2)).With(objective).samples();
+      UnmeasuredPrior(objective, RandomModel(Spec(), 2)).With(objective).samples();
   int j = 0;
   for (int k = 0; k < both.size() && j < samples.size(); ++k) {
     if (both.bins[k] == samples.bins[j]) {
@@ -128,11 +128,11 @@ TEST(UnmeasuredGuide, KeepsHowOftenSamplesCount) {
   EXPECT_EQ(j, samples.size());
 }
 
-TEST(UnmeasuredGuide, TheSameBitsForAnyNumberOfThreads) {
+TEST(UnmeasuredPrior, TheSameBitsForAnyNumberOfThreads) {
   const FactorModel model = RandomModel(Spec(), 2);
   const Objective one = Measured(1), three = Measured(3);
-  const BrdfSamples a = UnmeasuredGuide(one, model).With(one).samples();
-  const BrdfSamples b = UnmeasuredGuide(three, model).With(three).samples();
+  const BrdfSamples a = UnmeasuredPrior(one, model).With(one).samples();
+  const BrdfSamples b = UnmeasuredPrior(three, model).With(three).samples();
   EXPECT_EQ(a.bins, b.bins);
   EXPECT_EQ(a.rho, b.rho);
   EXPECT_EQ(a.multiplicity, b.multiplicity);

@@ -20,7 +20,7 @@ namespace {
 
 constexpr MerlGrid kGrid{.theta_h = 8, .theta_d = 8, .phi_d = 16};
 
-// As many iterations at least has `auto` raced with all its starts, and gone on with the best.
+// As many iterations at least has `auto` gone on with all its starts, and then with the best.
 constexpr int kWholeRace = 14;
 
 // Three lobes of a GGX-like width each, with noise: data with more than one minimum.
@@ -176,7 +176,7 @@ TEST_P(Multistart, LeavesUnobservedBinsToTheCaller) {
   }
 }
 
-// With so many samples that the race leaves most of them out; a few of these hold most of E, so
+// With so many samples that thinning leaves most of them out; a few of these hold most of E, so
 // that it has to look at more.
 TEST_P(Multistart, FitsWhatItRacedWithoutAsWell) {
   constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 8, .phi_d = 96};
@@ -221,7 +221,7 @@ TEST_P(Multistart, EndsAtAnyIteration) {
   }
 }
 
-// A leg of a race may take a minute.
+// A round may take a minute.
 TEST_P(Multistart, EndsInTheMidstOfALeg) {
   const Objective objective = NoisyObjective(ModelSpec::SharedFactors(2, kGrid));
   FactorModel model = RandomModel(objective.spec(), 1);
