@@ -62,32 +62,32 @@ static_assert(4 * kMaxTableSize <= std::numeric_limits<uint16_t>::max());
 
 // A sample on its way into the order.
 struct Item {
-  std::array<uint16_t, ReadingOrder::kMost> cell{};  // G first: theta_i, theta_o, D, F
-  uint64_t hash = 0;                                 // of the weights, rounded
+  std::array<uint16_t, LookupOrder::kMost> cell{};  // G first: theta_i, theta_o, D, F
+  uint64_t hash = 0;                                // of the weights, rounded
   int sample = 0;
   bool exchanged = false;  // theta_i and theta_o
 
   auto Key() const { return std::tie(cell, hash, sample); }
 };
 
-ReadingOrder OrderOf(const SampleStencils& at) {
+LookupOrder OrderOf(const SampleStencils& at) {
   return {.of_D = 1 + static_cast<int>(at.more_D.size())};
 }
 
-const Stencil& StencilOf(const SampleStencils& at, const ReadingOrder& order, int reading,
+const Stencil& StencilOf(const SampleStencils& at, const LookupOrder& order, int lookup,
                          bool exchanged) {
-  if (reading < order.F()) return at.DOf(reading);
-  if (reading == order.F()) return at.F;
-  return (reading == order.G_i()) != exchanged ? at.G_i : at.G_o;
+  if (lookup < order.F()) return at.DOf(lookup);
+  if (lookup == order.F()) return at.F;
+  return (lookup == order.G_i()) != exchanged ? at.G_i : at.G_o;
 }
 
-// Where an item has a reading's cell: those of G are first.
-int PlaceInItem(const ReadingOrder& order, int reading) { return (reading + 2) % order.count(); }
+// Where an item has a lookup's cell: those of G are first.
+int PlaceInItem(const LookupOrder& order, int lookup) { return (lookup + 2) % order.count(); }
 
 // The same for weights that differ by rounding errors, but for a few of a million.
 uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
   uint64_t hash = 0;
-  const ReadingOrder order = OrderOf(at);
+  const LookupOrder order = OrderOf(at);
   for (int r = 0; r < order.count(); ++r) {
     const Stencil& stencil = StencilOf(at, order, r, exchanged);
     for (int k = 0; k < stencil.size; ++k) {
@@ -104,7 +104,7 @@ uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
 bool ReadAlike(const WeightedSample& a, bool a_exchanged, const WeightedSample& b,
                bool b_exchanged) {
   constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-  const ReadingOrder order = OrderOf(a.stencils);
+  const LookupOrder order = OrderOf(a.stencils);
   for (int r = 0; r < order.count(); ++r) {
     const Stencil& of_a = StencilOf(a.stencils, order, r, a_exchanged);
     const Stencil& of_b = StencilOf(b.stencils, order, r, b_exchanged);
@@ -123,7 +123,7 @@ std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSampl
   const auto find = [&](Factor factor, const Stencil& stencil) {
     return static_cast<uint16_t>(index[static_cast<int>(factor)].Find(stencil));
   };
-  const ReadingOrder& order = folded->order;
+  const LookupOrder& order = folded->order;
   std::vector<Item> items(samples.size());
   for (size_t j = 0; j < samples.size(); ++j) {
     const SampleStencils& at = samples[j].stencils;
@@ -157,7 +157,7 @@ std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSampl
 FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
   FoldedSamples folded;
   if (!samples.empty()) folded.order = OrderOf(samples.front().stencils);
-  const ReadingOrder& order = folded.order;
+  const LookupOrder& order = folded.order;
   const std::vector<Item> items = Sorted(samples, &folded);
   // Where those begin that read alike.
   std::vector<int> begin;
@@ -175,9 +175,9 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
   begin.push_back(static_cast<int>(items.size()));
 
   folded.inverse_cosines.resize(size);
-  folded.readings.resize(order.count());
+  folded.lookups.resize(order.count());
   for (int r = 0; r < order.count(); ++r) {
-    FoldedSamples::OfReading& of = folded.readings[r];
+    FoldedSamples::Lookup& of = folded.lookups[r];
     int width = 0;
     for (const Cell& cell : folded.cells_of(r)) width = std::max(width, cell.size);
     of.cell.resize(size);
@@ -192,7 +192,7 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
     const SampleStencils& at = samples[first.sample].stencils;
     folded.inverse_cosines[n] = at.inverse_cosines;
     for (int r = 0; r < order.count(); ++r) {
-      FoldedSamples::OfReading& of = folded.readings[r];
+      FoldedSamples::Lookup& of = folded.lookups[r];
       const Stencil& stencil = StencilOf(at, order, r, first.exchanged);
       of.cell[n] = first.cell[PlaceInItem(order, r)];
       for (int k = 0; k < stencil.size; ++k) of.weight[k][n] = stencil.weight[k];

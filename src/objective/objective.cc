@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "objective/sample_reader.h"
+#include "objective/batch_evaluator.h"
 #include "trilobe/base/error.h"
 #include "trilobe/system/parallel.h"
 
@@ -106,11 +106,11 @@ CoverageByChannel ScatteredCoverage(const FoldedSamples& samples, const ModelSpe
       std::vector<double>& table = factor == Factor::kD   ? of.D[r]
                                    : factor == Factor::kF ? of.F
                                                           : of.G;
-      const FoldedSamples::OfReading& readings = samples.readings[r];
+      const FoldedSamples::Lookup& lookup = samples.lookups[r];
       for (int j = 0; j < samples.size(); ++j) {
-        const Cell& cell = samples.cells_of(factor)[readings.cell[j]];
+        const Cell& cell = samples.cells_of(factor)[lookup.cell[j]];
         for (int k = 0; k < cell.size; ++k) {
-          table[cell.entry[k]] += samples.weight[c][j] * std::abs(readings.weight[k][j]);
+          table[cell.entry[k]] += samples.weight[c][j] * std::abs(lookup.weight[k][j]);
         }
       }
     }

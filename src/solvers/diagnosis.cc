@@ -92,12 +92,12 @@ int UndeterminedByThetaD(const Objective& objective) {
   const FoldedSamples* const samples = objective.folded_samples();
   const ModelSpec& spec = objective.spec();
   if (samples == nullptr) return 0;  // every bin of F has its own samples
-  const FoldedSamples::OfReading& F = samples->readings[samples->order.F()];
+  const FoldedSamples::Lookup& F = samples->lookups[samples->order.F()];
   const int bins = spec.table_size(Factor::kF);
   const double eps = std::numeric_limits<double>::epsilon();
   int undetermined = 0;
   for (int t = 0; t < spec.num_tables(Factor::kF); ++t) {
-    // A table's readings as rows, and their products, since only the rank counts.
+    // A table's lookups as rows, and their products, since only the rank counts.
     Eigen::MatrixXd products = Eigen::MatrixXd::Zero(bins, bins);
     const auto [begin, end] = spec.channels(Factor::kF, t);
     for (int j = 0; j < samples->size(); ++j) {

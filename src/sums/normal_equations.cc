@@ -9,7 +9,7 @@
 #include "objective/sample_derivatives.h"
 #include "sums/grid/joint_rows.h"
 #include "sums/grid/joint_shadowing.h"
-#include "sums/sample_equations.h"
+#include "sums/scattered_equations.h"
 #include "trilobe/base/check.h"
 #include "trilobe/system/parallel.h"
 
@@ -17,38 +17,38 @@ namespace trilobe {
 namespace {
 
 // H += scale d2 rho / dx2 for one sample and channel: rho is linear in each of s, D, F and in the
-// two readings of G, so only products of two different ones have any.
+// two lookups of G, so only products of two different ones have any.
 void AddSecondDerivatives(const FactorModel& model, const SampleStencils& at, int c, double scale,
                           std::vector<double>* H) {
   const ModelSpec& spec = model.spec();
   const size_t n = spec.num_parameters();
-  struct Reading {
+  struct Lookup {
     int offset;
     Stencil stencil;
     double value;
   };
   for (int m = 0; m < spec.lobes; ++m) {
-    const auto reading = [&](Factor factor, const Stencil& stencil) {
+    const auto lookup = [&](Factor factor, const Stencil& stencil) {
       const int t = spec.table(factor, m, c);
-      return Reading{model.TableOffset(factor, t), stencil, stencil(model.table(factor, t))};
+      return Lookup{model.TableOffset(factor, t), stencil, stencil(model.table(factor, t))};
     };
     Stencil one;
     one.size = 1;
     one.index[0] = 0;
     one.weight[0] = 1;
-    const Reading readings[] = {{kChannels * (1 + m) + c, one, model.s(m)[c]},
-                                reading(Factor::kD, at.DOf(spec.stretches.index(m))),
-                                reading(Factor::kF, at.F),
-                                reading(Factor::kG, at.G_i),
-                                reading(Factor::kG, at.G_o)};
+    const Lookup lookups[] = {{kChannels * (1 + m) + c, one, model.s(m)[c]},
+                              lookup(Factor::kD, at.DOf(spec.stretches.index(m))),
+                              lookup(Factor::kF, at.F),
+                              lookup(Factor::kG, at.G_i),
+                              lookup(Factor::kG, at.G_o)};
     for (int a = 0; a < 5; ++a) {
       for (int b = 0; b < 5; ++b) {
         if (a == b) continue;
         double others = scale * at.inverse_cosines;
         for (int e = 0; e < 5; ++e) {
-          if (e != a && e != b) others *= readings[e].value;
+          if (e != a && e != b) others *= lookups[e].value;
         }
-        const Reading &of_a = readings[a], &of_b = readings[b];
+        const Lookup &of_a = lookups[a], &of_b = lookups[b];
         for (int k = 0; k < of_a.stencil.size; ++k) {
           for (int l = 0; l < of_b.stencil.size; ++l) {
             (*H)[(of_a.offset + of_a.stencil.index[k]) * n + of_b.offset + of_b.stencil.index[l]] +=
@@ -126,8 +126,8 @@ class NormalEquations::Condensed {
 
 NormalEquations::NormalEquations(const Objective& objective) : objective_(objective) {
   if (objective.folded() == nullptr) {
-    of_samples_ = std::make_unique<SampleEquations>(*objective.folded_samples(), objective.spec(),
-                                                    objective.num_threads());
+    of_samples_ = std::make_unique<ScatteredEquations>(*objective.folded_samples(),
+                                                       objective.spec(), objective.num_threads());
   } else {
     condensed_ = std::make_unique<Condensed>(*objective.folded(), objective.spline_cells(),
                                              objective.spec());

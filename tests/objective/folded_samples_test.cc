@@ -92,8 +92,8 @@ TEST(FoldedSamples, AreSortedByTheirCells) {
     EXPECT_EQ(begin, next);
     EXPECT_GE(cell_i, cell_o);
     for (int j = begin; j < end; ++j) {
-      EXPECT_EQ(folded.readings[folded.order.G_i()].cell[j], cell_i);
-      EXPECT_EQ(folded.readings[folded.order.G_o()].cell[j], cell_o);
+      EXPECT_EQ(folded.lookups[folded.order.G_i()].cell[j], cell_i);
+      EXPECT_EQ(folded.lookups[folded.order.G_o()].cell[j], cell_o);
     }
     next = end;
   }
@@ -118,7 +118,7 @@ TEST(FoldedSamples, CellsOfAnyStencils) {
   EXPECT_EQ(folded.weight[2][0], 6);
   ASSERT_EQ(folded.cells_of(Factor::kD).size(), 1U);
   EXPECT_EQ(folded.cells_of(Factor::kD)[0].size, 4);
-  EXPECT_EQ(folded.readings[0].weight[3][0], 0.4);
+  EXPECT_EQ(folded.lookups[0].weight[3][0], 0.4);
 }
 
 }  // namespace

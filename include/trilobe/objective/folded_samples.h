@@ -25,9 +25,10 @@ struct Cell {
   std::array<int, Stencil::kMaxSize> entry{};  // each once
 };
 
-// A sample's readings from tables, by number: from D, once for each of the lobes' stretches, from
-// F, and from G for each direction.
-struct ReadingOrder {
+// A sample's lookups, by number. A lookup is the value of a table at a sample, the sum over the
+// entries e of a cell of weight_e table[e]: of D, once for each of the lobes' stretches, of F, and
+// of G for each direction.
+struct LookupOrder {
   static constexpr int kMost = kMaxLobes + 3;
 
   int of_D = 1;  // how many
@@ -36,8 +37,8 @@ struct ReadingOrder {
   int G_i() const { return of_D + 1; }
   int G_o() const { return of_D + 2; }
   int count() const { return of_D + 3; }
-  Factor factor(int reading) const {
-    return reading < F() ? Factor::kD : reading == F() ? Factor::kF : Factor::kG;
+  Factor factor(int lookup) const {
+    return lookup < F() ? Factor::kD : lookup == F() ? Factor::kF : Factor::kG;
   }
 };
 
@@ -47,7 +48,8 @@ struct ReadingOrder {
 // and E = sum w (rho - rho*)^2 + constant, as in FoldedGrid. They are sorted by their cells of G,
 // then those of D and F, so that what lies side by side reads and adds to the same few places.
 struct FoldedSamples {
-  struct OfReading {
+  // One of the lookups, of all samples.
+  struct Lookup {
     std::vector<int> cell;  // [size]
     // That of the cell's k-th entry, 0 beyond the last. [most entries of a cell of the table][size]
     std::vector<std::vector<double>> weight;
@@ -58,8 +60,8 @@ struct FoldedSamples {
   };
 
   std::array<std::vector<Cell>, 3> cells;  // of D, F and G
-  ReadingOrder order;
-  std::vector<OfReading> readings;                    // [order.count()]
+  LookupOrder order;
+  std::vector<Lookup> lookups;                        // [order.count()]
   std::vector<double> inverse_cosines;                // [size]
   std::array<std::vector<double>, kChannels> weight;  // [kChannels][size]
   std::array<std::vector<double>, kChannels> rho;     // [kChannels][size], [1/sr]
@@ -69,7 +71,7 @@ struct FoldedSamples {
 
   int size() const { return static_cast<int>(inverse_cosines.size()); }
   const std::vector<Cell>& cells_of(Factor factor) const { return cells[static_cast<int>(factor)]; }
-  const std::vector<Cell>& cells_of(int reading) const { return cells_of(order.factor(reading)); }
+  const std::vector<Cell>& cells_of(int lookup) const { return cells_of(order.factor(lookup)); }
 };
 
 FoldedSamples Fold(const std::vector<WeightedSample>& samples);

@@ -9,11 +9,11 @@
 
 namespace trilobe {
 
-class SampleEquations;
+class ScatteredEquations;
 
 // Accumulates a QuadraticModel without ever storing J, in one pass over the samples
 // (docs/sums.md). Samples on a grid are taken folded, by their cells; others one by one
-// (SampleEquations).
+// (ScatteredEquations).
 class NormalEquations {
  public:
   explicit NormalEquations(const Objective& objective);
@@ -26,7 +26,7 @@ class NormalEquations {
   class Condensed;
   const Objective& objective_;
   std::unique_ptr<Condensed> condensed_;  // null where samples are not on a grid; then:
-  std::unique_ptr<SampleEquations> of_samples_;
+  std::unique_ptr<ScatteredEquations> of_samples_;
 };
 
 // The same from each sample's own derivatives, in a time that only small data forgive: the

@@ -15,7 +15,7 @@ struct Response {
   double p1 = 0, p2 = 0;
 };
 
-// s D F / (cos cos) and the two readings of G, for one lobe, channel and sample.
+// s D F / (cos cos) and the two lookups of G, for one lobe, channel and sample.
 struct LobeTerms {
   double s, D, F, G_i, G_o, inverse_cosines;
   LobeTerms(const FactorModel& model, const SampleStencils& at, int m, int c)

@@ -14,19 +14,19 @@ SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, in
                          PhaseSeconds* phases)
     : Sweep(/*rounds=*/1),  // each costs as much as the first
       phases_(phases),
-      readings_(samples, spec, num_threads),
-      shadowing_(&readings_) {
+      lookups_(samples, spec, num_threads),
+      shadowing_(&lookups_) {
   const ScopedTimer timer(&phases->preparing);
-  sums_.emplace_back(readings_, Kind::kAmplitudes, 0, 1 + spec.lobes);
+  sums_.emplace_back(lookups_, Kind::kAmplitudes, 0, 1 + spec.lobes);
   for (int t = 0; t < spec.num_tables(Factor::kD);) {
-    const int end = readings_.EndOfStretch(t);
-    sums_.emplace_back(readings_, Kind::kD, t, end);
+    const int end = lookups_.EndOfStretch(t);
+    sums_.emplace_back(lookups_, Kind::kD, t, end);
     t = end;
   }
-  if (spec.lobes > 0) sums_.emplace_back(readings_, Kind::kF, 0, spec.num_tables(Factor::kF));
+  if (spec.lobes > 0) sums_.emplace_back(lookups_, Kind::kF, 0, spec.num_tables(Factor::kF));
 }
 
-void SampleSweep::UpdateFrom(ReadingSums* sums, FactorModel* model,
+void SampleSweep::UpdateFrom(BlockEquations* sums, FactorModel* model,
                              const std::function<void()>& update) {
   {
     const ScopedTimer timer(&phases_->evaluating);
@@ -38,15 +38,15 @@ void SampleSweep::UpdateFrom(ReadingSums* sums, FactorModel* model,
   }
   if (sums->kind() == Kind::kAmplitudes) return;
   const ScopedTimer timer(&phases_->evaluating);
-  readings_.Read(*model, FactorOf(sums->kind()), sums->first(), sums->last());
+  lookups_.Read(*model, FactorOf(sums->kind()), sums->first(), sums->last());
 }
 
 void SampleSweep::operator()(const OnElement& on_element, FactorModel* model) {
   {
     const ScopedTimer timer(&phases_->evaluating);
-    readings_.Read(*model);
+    lookups_.Read(*model);
   }
-  for (ReadingSums& sums : sums_) {
+  for (BlockEquations& sums : sums_) {
     UpdateFrom(&sums, model, [&] {
       for (int t = sums.first(); t < sums.last(); ++t) {
         for (int entry = 0; entry < sums.entries(); ++entry) {
@@ -63,14 +63,14 @@ void SampleSweep::UpdateBlocks(double E, int rounds, const OnElement& on_block,
                                FactorModel* model) {
   {
     const ScopedTimer timer(&phases_->evaluating);
-    readings_.Read(*model);
+    lookups_.Read(*model);
   }
   std::array<int, kMaxNonnegativeUnknowns> block{};
   for (int round = 0; round < rounds; ++round) {
-    for (ReadingSums& sums : sums_) {
+    for (BlockEquations& sums : sums_) {
       // A block is an entry of those tables that serve the same channels.
       const bool per_channel = sums.kind() != Kind::kAmplitudes &&
-                               readings_.spec().sharing(FactorOf(sums.kind())).per_channel;
+                               lookups_.spec().sharing(FactorOf(sums.kind())).per_channel;
       const int groups = per_channel ? kChannels : 1;
       UpdateFrom(&sums, model, [&] {
         for (int entry = 0; entry < sums.entries(); ++entry) {
@@ -92,7 +92,7 @@ void SampleSweep::UpdateG(const OnElement& on_element, FactorModel* model) {
     shadowing_.Read(*model);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
-  for (int t = 0; t < readings_.spec().num_tables(Factor::kG); ++t) {
+  for (int t = 0; t < lookups_.spec().num_tables(Factor::kG); ++t) {
     shadowing_.UpdateTable(t, on_element, model);
   }
 }

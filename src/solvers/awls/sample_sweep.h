@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "solvers/awls/sweep.h"
-#include "sums/reading_sums.h"
-#include "sums/sample_readings.h"
-#include "sums/sample_shadowing.h"
+#include "sums/block_equations.h"
+#include "sums/cached_lookups.h"
+#include "sums/shadowing_updates.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/folded_samples.h"
 #include "trilobe/solvers/run.h"
@@ -17,7 +17,7 @@ namespace trilobe {
 // Sweeps from the samples themselves, whatever tables they read and where: the same element updates
 // in the same order as the reference. E is quadratic in d and s, in F, and in the tables of D that
 // are read by one stretch, so that one pass over the samples for each gives sums from which all of
-// its elements can be updated (ReadingSums). G goes node by node (SampleShadowing).
+// its elements can be updated (BlockEquations). G goes node by node (ShadowingUpdates).
 class SampleSweep : public Sweep {
  public:
   SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
@@ -31,13 +31,13 @@ class SampleSweep : public Sweep {
   void UpdateG(const OnElement& on_element, FactorModel* model) override;
 
   // Reads and sums around the model, calls `update`, which moves it, and reads what has moved.
-  void UpdateFrom(ReadingSums* sums, FactorModel* model, const std::function<void()>& update);
+  void UpdateFrom(BlockEquations* sums, FactorModel* model, const std::function<void()>& update);
 
   PhaseSeconds* const phases_;
-  SampleReadings readings_;
+  CachedLookups lookups_;
   // Of amplitudes, of the tables of D that follow each other and are read by one stretch, and of F.
-  std::vector<ReadingSums> sums_;
-  SampleShadowing shadowing_;
+  std::vector<BlockEquations> sums_;
+  ShadowingUpdates shadowing_;
 };
 
 }  // namespace trilobe

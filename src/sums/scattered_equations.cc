@@ -1,21 +1,21 @@
-#include "sums/sample_equations.h"
+#include "sums/scattered_equations.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "algebra/triangle.h"
-#include "sums/sample_sums.h"
+#include "sums/add_normal_equations.h"
 #include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {
 
 // Rows of a kind, or of the tables of D that are read by one stretch, but for where their sums lie.
-SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch) {
+AccumulatorRows RowsOf(const BatchEvaluator& reader, Kind kind, int stretch) {
   const ModelSpec& spec = reader.spec();
   const FactorModel model(spec);
-  SampleRows rows;
+  AccumulatorRows rows;
   rows.kind = kind;
   if (kind == Kind::kAmplitudes) {
     rows.entries = kChannels;
@@ -47,8 +47,8 @@ SampleRows RowsOf(const SampleReader& reader, Kind kind, int stretch) {
 
 }  // namespace
 
-SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& spec,
-                                 int num_threads)
+ScatteredEquations::ScatteredEquations(const FoldedSamples& samples, const ModelSpec& spec,
+                                       int num_threads)
     : reader_(samples, spec),
       num_threads_(num_threads),
       accumulators_(NumAccumulators(samples.size())) {
@@ -59,13 +59,13 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
   for (int k = 0; k < samples.order.of_D; ++k) add(Kind::kD, k);
   add(Kind::kF, 0);
   add(Kind::kG, 0);
-  const SampleRows& amplitudes = layout_.amplitudes();
-  for (SampleRows& rows : layout_.rows) {
+  const AccumulatorRows& amplitudes = layout_.amplitudes();
+  for (AccumulatorRows& rows : layout_.rows) {
     num_parameters_ += static_cast<int>(rows.parameter.size());
-    rows.own_lines = SampleRows::kFirstAmplitude + amplitudes.entries * amplitudes.tables;
+    rows.own_lines = AccumulatorRows::kFirstAmplitude + amplitudes.entries * amplitudes.tables;
     rows.own = layout_.size;
     layout_.size += rows.entries * rows.own_size();
-    for (const SampleRows& of : layout_.rows) {
+    for (const AccumulatorRows& of : layout_.rows) {
       rows.blocks.push_back(layout_.size);
       if (of.kind != Kind::kAmplitudes) {
         layout_.size +=
@@ -78,7 +78,8 @@ SampleEquations::SampleEquations(const FoldedSamples& samples, const ModelSpec& 
   }
 }
 
-void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result) {
+void ScatteredEquations::Evaluate(const FactorModel& model, Hessian hessian,
+                                  QuadraticModel* result) {
   reader_.SetModel(model);
   const int count = static_cast<int>(accumulators_.size());
   std::vector<double> objectives(count);
@@ -86,8 +87,8 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
     const int64_t size = reader_.samples().size();
     accumulators_[k].assign(layout_.size, 0.0);
     objectives[k] =
-        AddSampleSums(reader_, layout_, hessian, static_cast<int>(size * k / count),
-                      static_cast<int>(size * (k + 1) / count), accumulators_[k].data());
+        AddNormalEquations(reader_, layout_, hessian, static_cast<int>(size * k / count),
+                           static_cast<int>(size * (k + 1) / count), accumulators_[k].data());
   });
   result->objective =
       std::accumulate(objectives.begin(), objectives.end(), reader_.samples().constant);
@@ -104,7 +105,7 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
   result->squared_lengths.assign(n, 0.0);
   // All of the lower triangle is set below, but for what is within a kind by cells, which is added.
   result->H.resize(n * n);
-  for (const SampleRows& rows : layout_.rows) {
+  for (const AccumulatorRows& rows : layout_.rows) {
     if (!rows.by_cell || rows.parameter.empty()) continue;
     const int first = std::ranges::min(rows.parameter);
     ParallelFor(static_cast<int>(rows.parameter.size()), num_threads_, [&](int k) {
@@ -112,7 +113,7 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
       std::fill_n(&result->H[p * n + first], p + 1 - first, 0.0);
     });
   }
-  for (const SampleRows& rows : layout_.rows) {
+  for (const AccumulatorRows& rows : layout_.rows) {
     // Entries by threes of tables fill lines of the cache.
     constexpr int kEntries = 8;
     ParallelFor((rows.entries + kEntries - 1) / kEntries, num_threads_, [&](int chunk) {
@@ -128,21 +129,22 @@ void SampleEquations::Evaluate(const FactorModel& model, Hessian hessian, Quadra
 
 // The gradient, and products with amplitudes. A product of two parameters of one kind is in one
 // place or the other, or half in both.
-void SampleEquations::GatherOwn(const SampleRows& rows, int entry, QuadraticModel* result) const {
+void ScatteredEquations::GatherOwn(const AccumulatorRows& rows, int entry,
+                                   QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
-  const SampleRows& amplitudes = layout_.amplitudes();
+  const AccumulatorRows& amplitudes = layout_.amplitudes();
   const double* const sums = accumulators_[0].data();
   for (int t = 0; t < rows.tables; ++t) {
     const size_t p = rows.parameter[entry * rows.tables + t];
     const double* const own = sums + rows.own + entry * rows.own_size() + rows.lane[t];
-    result->gradient[p] = own[SampleRows::kGradient * rows.lanes];
+    result->gradient[p] = own[AccumulatorRows::kGradient * rows.lanes];
     double* const to = &result->H[p * n];
     for (size_t i = 0; i < amplitudes.parameter.size(); ++i) {
-      to[amplitudes.parameter[i]] = own[(SampleRows::kFirstAmplitude + i) * rows.lanes];
+      to[amplitudes.parameter[i]] = own[(AccumulatorRows::kFirstAmplitude + i) * rows.lanes];
     }
     if (rows.kind != Kind::kAmplitudes) continue;
     for (int u = 0; u < rows.tables; ++u) {
-      const size_t line = SampleRows::kFirstAmplitude + entry * rows.tables + t;
+      const size_t line = AccumulatorRows::kFirstAmplitude + entry * rows.tables + t;
       to[rows.parameter[entry * rows.tables + u]] +=
           sums[rows.own + entry * rows.own_size() + line * rows.lanes + rows.lane[u]];
     }
@@ -150,11 +152,11 @@ void SampleEquations::GatherOwn(const SampleRows& rows, int entry, QuadraticMode
 }
 
 // Products of all pairs of entries, for these of the rows.
-void SampleEquations::GatherBlocks(const SampleRows& rows, int first_entry, int last_entry,
-                                   QuadraticModel* result) const {
+void ScatteredEquations::GatherBlocks(const AccumulatorRows& rows, int first_entry, int last_entry,
+                                      QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
   for (size_t k = 1; k < rows.blocks.size(); ++k) {
-    const SampleRows& of = layout_.rows[k];
+    const AccumulatorRows& of = layout_.rows[k];
     const bool own = &of == &rows;
     if (own && rows.by_cell) continue;
     const double* const blocks = accumulators_[0].data() + rows.blocks[k];
@@ -189,7 +191,7 @@ void SampleEquations::GatherBlocks(const SampleRows& rows, int first_entry, int 
 }
 
 // Those within a kind, cell by cell.
-void SampleEquations::GatherCells(const SampleRows& rows, QuadraticModel* result) const {
+void ScatteredEquations::GatherCells(const AccumulatorRows& rows, QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
   const double* const blocks = accumulators_[0].data() + rows.blocks.back();
   const int block = rows.tables * rows.lanes;
@@ -215,16 +217,17 @@ void SampleEquations::GatherCells(const SampleRows& rows, QuadraticModel* result
   }
 }
 
-void SampleEquations::GatherSquaredLengths(const SampleRows& rows, Hessian hessian,
-                                           QuadraticModel* result) const {
+void ScatteredEquations::GatherSquaredLengths(const AccumulatorRows& rows, Hessian hessian,
+                                              QuadraticModel* result) const {
   const double* const own = accumulators_[0].data() + rows.own;
   for (int entry = 0; entry < rows.entries; ++entry) {
     for (int t = 0; t < rows.tables; ++t) {
       const size_t p = rows.parameter[entry * rows.tables + t];
-      result->squared_lengths[p] = hessian == Hessian::kNewton
-                                       ? own[entry * rows.own_size() +
-                                             SampleRows::kSquaredLength * rows.lanes + rows.lane[t]]
-                                       : result->H[p * (static_cast<size_t>(num_parameters_) + 1)];
+      result->squared_lengths[p] =
+          hessian == Hessian::kNewton
+              ? own[entry * rows.own_size() + AccumulatorRows::kSquaredLength * rows.lanes +
+                    rows.lane[t]]
+              : result->H[p * (static_cast<size_t>(num_parameters_) + 1)];
     }
   }
 }

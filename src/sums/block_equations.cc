@@ -1,18 +1,18 @@
-#include "sums/reading_sums.h"
+#include "sums/block_equations.h"
 
 #include <algorithm>
 #include <array>
 
 #include "algebra/nonnegative_least_squares.h"
 #include "base/multiversion.h"
-#include "objective/sample_reader.h"
+#include "objective/batch_evaluator.h"
 #include "trilobe/objective/quadratic_model.h"
 #include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {
 
-constexpr int kBatch = SampleReadings::kBatch;
+constexpr int kBatch = CachedLookups::kBatch;
 constexpr int kMostTables = kChannels * kMaxLobes;
 // Tables of one channel have products with each other, those of different channels have none.
 constexpr int kMostPairs = kChannels * kMaxLobes * (kMaxLobes + 1) / 2;
@@ -77,9 +77,9 @@ void Spread(const SpreadJob& job) {
 
 }  // namespace
 
-ReadingSums::ReadingSums(const SampleReadings& readings, Kind kind, int first, int last)
-    : readings_(readings), kind_(kind), first_(first), last_(last) {
-  const ModelSpec& spec = readings.spec();
+BlockEquations::BlockEquations(const CachedLookups& lookups, Kind kind, int first, int last)
+    : lookups_(lookups), kind_(kind), first_(first), last_(last) {
+  const ModelSpec& spec = lookups.spec();
   const auto channels = [&](int t) -> ModelSpec::ChannelRange {
     if (kind == Kind::kAmplitudes) return {0, kChannels};
     return spec.channels(FactorOf(kind), first + t);
@@ -98,7 +98,7 @@ ReadingSums::ReadingSums(const SampleReadings& readings, Kind kind, int first, i
     for (int c = 0; c < kChannels; ++c) cells_.push_back({.size = 1, .entry = {c}});
     readers_.resize(kChannels);
   } else {
-    cells_ = readings.samples().cells_of(FactorOf(kind));
+    cells_ = lookups.samples().cells_of(FactorOf(kind));
     readers_.resize(spec.table_size(FactorOf(kind)));
   }
   int most = 1;
@@ -113,20 +113,20 @@ ReadingSums::ReadingSums(const SampleReadings& readings, Kind kind, int first, i
   pair_lanes_ = PaddedToVectors(static_cast<int>(pairs_.size()));
   pairs_in_cell_ = most * (most + 1) / 2;
   of_cells_ = readers_.size() * table_lanes_;
-  sums_.resize(NumAccumulators(readings.samples().size()));
+  sums_.resize(NumAccumulators(lookups.samples().size()));
 }
 
-void ReadingSums::Accumulate(const FactorModel& model) {
+void BlockEquations::Accumulate(const FactorModel& model) {
   const int count = static_cast<int>(sums_.size());
-  ParallelFor(count, readings_.num_threads(), [&](int k) {
+  ParallelFor(count, lookups_.num_threads(), [&](int k) {
     std::vector<double>& sums = sums_[k];
     sums.assign(of_cells_ + cells_.size() * pairs_in_cell_ * pair_lanes_, 0.0);
-    const int64_t size = readings_.samples().size();
+    const int64_t size = lookups_.samples().size();
     const int last = static_cast<int>(size * (k + 1) / count);
-    SampleReadings::Batch batch(readings_.spec(), kind_);
+    CachedLookups::Batch batch(lookups_.spec(), kind_);
     for (int begin = static_cast<int>(size * k / count); begin < last; begin += kBatch) {
       const int end = std::min(begin + kBatch, last);
-      readings_.Evaluate(begin, end, model, &batch);
+      lookups_.Evaluate(begin, end, model, &batch);
       if (kind_ == Kind::kAmplitudes) {
         AddAmplitudes(begin, end, batch, &sums);
       } else {
@@ -139,11 +139,11 @@ void ReadingSums::Accumulate(const FactorModel& model) {
   }
 }
 
-void ReadingSums::AddAmplitudes(int begin, int end, const SampleReadings::Batch& batch,
-                                std::vector<double>* sums) const {
+void BlockEquations::AddAmplitudes(int begin, int end, const CachedLookups::Batch& batch,
+                                   std::vector<double>* sums) const {
   const int size = end - begin;
   for (int c = 0; c < kChannels; ++c) {
-    const double* const w = &readings_.samples().weight[c][begin];
+    const double* const w = &lookups_.samples().weight[c][begin];
     for (int t = 0; t < tables(); ++t) {
       (*sums)[c * table_lanes_ + t] +=
           SumOfProducts(size, w, &batch.residual[c * kBatch], batch.Slope(c, t));
@@ -156,9 +156,9 @@ void ReadingSums::AddAmplitudes(int begin, int end, const SampleReadings::Batch&
   }
 }
 
-void ReadingSums::AddBatch(int begin, int end, const SampleReadings::Batch& batch,
-                           std::vector<double>* sums) const {
-  const FoldedSamples& samples = readings_.samples();
+void BlockEquations::AddBatch(int begin, int end, const CachedLookups::Batch& batch,
+                              std::vector<double>* sums) const {
+  const FoldedSamples& samples = lookups_.samples();
   const int size = end - begin;
   std::array<double, kMostTables * kBatch> slopes;
   std::array<double, kMostPairs * kBatch> products;
@@ -173,9 +173,8 @@ void ReadingSums::AddBatch(int begin, int end, const SampleReadings::Batch& batc
       if (t == u) AddProducts(size, w, &batch.residual[c * kBatch], slope, &slopes[t * kBatch]);
     }
   }
-  const int reading =
-      kind_ == Kind::kF ? samples.order.F() : readings_.spec().StretchOfTable(first_);
-  const FoldedSamples::OfReading& of = samples.readings[reading];
+  const int lookup = kind_ == Kind::kF ? samples.order.F() : lookups_.spec().StretchOfTable(first_);
+  const FoldedSamples::Lookup& of = samples.lookups[lookup];
   SpreadJob job{.size = size,
                 .cells = cells_.data(),
                 .cell = &of.cell[begin],
@@ -193,7 +192,7 @@ void ReadingSums::AddBatch(int begin, int end, const SampleReadings::Batch& batc
   Spread(job);
 }
 
-void ReadingSums::Update(int entry, std::span<const int> tables, double E, FactorModel* model) {
+void BlockEquations::Update(int entry, std::span<const int> tables, double E, FactorModel* model) {
   const size_t size = tables.size();
   std::array<double, kMaxNonnegativeUnknowns> g{}, steps{};
   std::array<double, kMaxNonnegativeUnknowns * kMaxNonnegativeUnknowns> H{};

@@ -1,24 +1,27 @@
-#ifndef TRILOBE_SUMS_READING_SUMS_H_
-#define TRILOBE_SUMS_READING_SUMS_H_
+#ifndef TRILOBE_SUMS_BLOCK_EQUATIONS_H_
+#define TRILOBE_SUMS_BLOCK_EQUATIONS_H_
 
 #include <span>
 #include <vector>
 
+#include "sums/cached_lookups.h"
 #include "sums/kind.h"
-#include "sums/sample_readings.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
 
-// E around a model as a function of parameters in which it is quadratic: of d and s, or of tables
-// of D or F that every sample reads once, by one stencil:
-//   E(x + delta) - E(x) = delta'H delta + 2 g'delta.
-// Only entries of one cell have a product in H, so it is kept cell by cell. Amplitudes are tables,
-// too: d, then s of each lobe, with an entry for each channel, which is a cell of its own.
-class ReadingSums {
+// The normal equations of one block of parameters x in which E is quadratic: of d and s, or of
+// tables of D or F that every sample reads once, by one stencil:
+//   E(x + delta) - E(x) = delta'H delta + 2 g'delta,
+//   g = sum over samples and channels of w v r,  H = of w v v',  r = rho - rho*,  v = d rho / d x,
+// which AWLS solves parameter by parameter, and moves with each (ScatteredEquations has the
+// equations of all parameters). Only entries of one cell have a product in H, so it is kept cell by
+// cell. Amplitudes are tables, too: d, then s of each lobe, with an entry for each channel, which
+// is a cell of its own.
+class BlockEquations {
  public:
-  // Of the tables [first, last) of a kind, which one reading reads; of amplitudes of all.
-  ReadingSums(const SampleReadings& readings, Kind kind, int first, int last);
+  // Of the tables [first, last) of a kind, which one lookup reads; of amplitudes of all.
+  BlockEquations(const CachedLookups& lookups, Kind kind, int first, int last);
 
   // The sums around a model whose tables are read. The same bits for any number of threads.
   void Accumulate(const FactorModel& model);
@@ -50,12 +53,12 @@ class ReadingSums {
   size_t InCell(int cell, int k, int l) const {
     return of_cells_ + (static_cast<size_t>(cell) * pairs_in_cell_ + PairOf(k, l)) * pair_lanes_;
   }
-  void AddBatch(int begin, int end, const SampleReadings::Batch& batch,
+  void AddBatch(int begin, int end, const CachedLookups::Batch& batch,
                 std::vector<double>* sums) const;
-  void AddAmplitudes(int begin, int end, const SampleReadings::Batch& batch,
+  void AddAmplitudes(int begin, int end, const CachedLookups::Batch& batch,
                      std::vector<double>* sums) const;
 
-  const SampleReadings& readings_;
+  const CachedLookups& lookups_;
   const Kind kind_;
   const int first_, last_;
   std::vector<Cell> cells_;
@@ -71,4 +74,4 @@ class ReadingSums {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SUMS_READING_SUMS_H_
+#endif  // TRILOBE_SUMS_BLOCK_EQUATIONS_H_

@@ -1,43 +1,43 @@
-#include "sums/sample_sums.h"
+#include "sums/add_normal_equations.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "base/multiversion.h"
-#include "sums/sample_run.h"
+#include "sums/scatter_buffer.h"
 
 namespace trilobe {
 namespace {
 
 constexpr int kMaxLanes = kChannels * PaddedToVectors(kMaxLobes);
 
-// The tables that a reading reads, as columns of products: in what order, the lane of each, and the
+// The tables that a lookup reads, as columns of products: in what order, the lane of each, and the
 // first channel that it serves.
 struct Columns {
   struct Column {
     int lane, channel;
   };
   std::vector<Column> of;
-  // Where a lobe's products with itself lie in those with a later reading; -1 where another stretch
+  // Where a lobe's products with itself lie in those with a later lookup; -1 where another stretch
   // reads that lobe. [order.count()][kChannels][lobes]
   std::vector<int> of_lobe;
 };
 
 // What is the same for all samples.
 struct SumJob {
-  const SampleReader* reader;
-  const SampleLayout* layout;
-  ReadingOrder order;
+  const BatchEvaluator* reader;
+  const AccumulatorLayout* layout;
+  LookupOrder order;
   std::vector<Columns> columns;  // [order.count()]
   double* sums;
 };
 
-// One reading of a sample: how its value moves with it in each channel, and the same times w.
+// One lookup of a sample: how its value moves with it in each channel, and the same times w.
 struct Slopes {
   const Cell* cell;
   const double* weight;                                           // of the cell's entries
-  const double* reading;                                          // [lanes]
+  const double* lookup;                                           // [lanes]
   const double* slope;                                            // [kChannels][lanes]
   alignas(sizeof(Lanes8)) double w_slope[kChannels * kMaxLanes];  // slope times w
 };
@@ -81,10 +81,10 @@ TRILOBE_ALWAYS_INLINE int LaneOf(const TableLanes& lanes, int m, int c) {
   return lanes.First(c) + (lanes.per_lobe ? m : 0);
 }
 
-// What multiplies in a lobe: s and the readings of D, F, G_i and G_o, in their order.
+// What multiplies in a lobe: s and the lookups of D, F, G_i and G_o, in their order.
 enum Part { kS, kOfD, kOfF, kOfG_i, kOfG_o, kParts };
-TRILOBE_ALWAYS_INLINE int PartOf(const ReadingOrder& order, int reading) {
-  return reading < order.F() ? kOfD : kOfF + reading - order.F();
+TRILOBE_ALWAYS_INLINE int PartOf(const LookupOrder& order, int lookup) {
+  return lookup < order.F() ? kOfD : kOfF + lookup - order.F();
 }
 
 struct Sample {
@@ -92,7 +92,7 @@ struct Sample {
   const double* residual;  // [kChannels]
   double w_residual[kChannels];
   const double* amplitude;  // [kChannels][amplitude lanes]
-  Slopes of[ReadingOrder::kMost];
+  Slopes of[LookupOrder::kMost];
   // w (rho - rho*) d2 rho / (d a d b) of each lobe and channel, for two of its parts, a < b: what
   // is left of s D F G_i G_o / (cos cos) without these. Set for second derivatives alone.
   alignas(sizeof(Lanes8)) double second[kParts][kParts][kChannels][PaddedToVectors(kMaxLobes)];
@@ -100,14 +100,14 @@ struct Sample {
 
 template <bool kOneVector>
 TRILOBE_ALWAYS_INLINE void SetSecondDerivatives(const SumJob& job, Sample* at) {
-  const SampleReader& reader = *job.reader;
+  const BatchEvaluator& reader = *job.reader;
   const int lobe_lanes = Lanes<kOneVector>(reader.lobe_lanes());
   for (int c = 0; c < kChannels; ++c) {
     const double scale = at->w_residual[c] * reader.samples().inverse_cosines[at->j];
-    // One reading of D has those of all stretches.
-    const auto load = [&](int reading, int v, Lanes4* part) {
-      const TableLanes& lanes = reader.lanes(job.order.factor(reading));
-      const double* const from = at->of[reading].reading + lanes.First(c);
+    // One lookup of D has those of all stretches.
+    const auto load = [&](int lookup, int v, Lanes4* part) {
+      const TableLanes& lanes = reader.lanes(job.order.factor(lookup));
+      const double* const from = at->of[lookup].lookup + lanes.First(c);
       if (lanes.per_lobe) {
         LoadLanes(from + v, part);
       } else {
@@ -142,31 +142,32 @@ TRILOBE_ALWAYS_INLINE void SetSecondDerivatives(const SumJob& job, Sample* at) {
 
 // d and s of each channel, which move nothing in another one.
 TRILOBE_ALWAYS_INLINE void AddAmplitudes(const SumJob& job, const Sample& at, bool newton) {
-  const SampleRows& rows = job.layout->amplitudes();
+  const AccumulatorRows& rows = job.layout->amplitudes();
   const FoldedSamples& samples = job.reader->samples();
   for (int c = 0; c < kChannels; ++c) {
     double* const own = job.sums + rows.own + c * rows.own_size();
     const double* const slope = at.amplitude + c * rows.lanes;
     const double w = samples.weight[c][at.j];
-    AddScaled(rows.lanes, at.w_residual[c], slope, own + SampleRows::kGradient * rows.lanes);
-    double* const to = own + (SampleRows::kFirstAmplitude + c * rows.tables) * rows.lanes;
+    AddScaled(rows.lanes, at.w_residual[c], slope, own + AccumulatorRows::kGradient * rows.lanes);
+    double* const to = own + (AccumulatorRows::kFirstAmplitude + c * rows.tables) * rows.lanes;
     for (int a = 0; a < rows.tables; ++a) {
       AddScaled(rows.lanes, 0.5 * w * slope[a], slope, to + a * rows.lanes);
       if (newton) {
-        own[SampleRows::kSquaredLength * rows.lanes + a] += w * slope[a] * slope[a];
+        own[AccumulatorRows::kSquaredLength * rows.lanes + a] += w * slope[a] * slope[a];
       }
     }
   }
 }
 
-// Sets what entries that reading r reads have with amplitudes, with each other, and with those of
-// all readings before.
+// Sets what entries that lookup r reads have with amplitudes, with each other, and with those of
+// all lookups before.
 template <bool kOneVector, bool kNewton>
-TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int r, SampleRun* run) {
-  const SampleReader& reader = *job.reader;
+TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int r,
+                                       ScatterBuffer* run) {
+  const BatchEvaluator& reader = *job.reader;
   const ModelSpec& spec = reader.spec();
-  const SampleRows& rows = job.layout->of(r);
-  const SampleRows& amplitudes = job.layout->amplitudes();
+  const AccumulatorRows& rows = job.layout->of(r);
+  const AccumulatorRows& amplitudes = job.layout->amplitudes();
   const int lanes = Lanes<kOneVector>(rows.lanes);
   const TableLanes& row_lanes = reader.lanes(job.order.factor(r));
   const Slopes& own = at.of[r];
@@ -204,7 +205,7 @@ TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int 
         to += lanes;
       }
     }
-    // Stretches of D are those of different lobes, whose readings are not multiplied.
+    // Stretches of D are those of different lobes, whose lookups are not multiplied.
     if (kNewton && q != r && r >= job.order.F()) {
       const auto& second = at.second[PartOf(job.order, q)][own_part];
       const int* place = &columns.of_lobe[static_cast<size_t>(r) * kChannels * spec.lobes];
@@ -223,7 +224,7 @@ TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int 
   }
 }
 
-// y = sum_c slope_c w_slope_c of two readings of one table, lane by lane.
+// y = sum_c slope_c w_slope_c of two lookups of one table, lane by lane.
 TRILOBE_ALWAYS_INLINE void Multiply(const Slopes& a, const Slopes& b, int lanes, double* y) {
   static_assert(kChannels == 3);
   for (int k = 0; k < lanes; ++k) {
@@ -232,15 +233,15 @@ TRILOBE_ALWAYS_INLINE void Multiply(const Slopes& a, const Slopes& b, int lanes,
   }
 }
 
-// The squared lengths of entries that reading r reads: that of an entry which both directions read
+// The squared lengths of entries that lookup r reads: that of an entry which both directions read
 // has a product of the two.
 template <bool kOneVector>
 TRILOBE_ALWAYS_INLINE void AddSquaredLengths(const SumJob& job, const Sample& at, int r) {
-  const SampleRows& rows = job.layout->of(r);
+  const AccumulatorRows& rows = job.layout->of(r);
   const int lanes = Lanes<kOneVector>(rows.lanes);
   const Slopes &own = at.of[r], &other = at.of[job.order.G_i()];
   double* const lengths =
-      job.sums + rows.own + static_cast<ptrdiff_t>(SampleRows::kSquaredLength) * lanes;
+      job.sums + rows.own + static_cast<ptrdiff_t>(AccumulatorRows::kSquaredLength) * lanes;
   alignas(sizeof(Lanes8)) double product[kMaxLanes];
   Multiply(own, own, lanes, product);
   for (int k = 0; k < own.cell->size; ++k) {
@@ -261,11 +262,11 @@ TRILOBE_ALWAYS_INLINE void AddSquaredLengths(const SumJob& job, const Sample& at
 // Samples [begin, end), those of the batch.
 template <bool kOneVector, bool kNewton>
 TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
-                                      const SampleReader::Batch& batch, Sample* at,
-                                      SampleRun* run) {
-  const SampleReader& reader = *job.reader;
+                                      const BatchEvaluator::Batch& batch, Sample* at,
+                                      ScatterBuffer* run) {
+  const BatchEvaluator& reader = *job.reader;
   const FoldedSamples& samples = reader.samples();
-  const ReadingOrder& order = job.order;
+  const LookupOrder& order = job.order;
   const int G_lanes = Lanes<kOneVector>(reader.lanes(Factor::kG).size);
   double objective = 0;
   alignas(sizeof(Lanes8)) double G_slope[2][kChannels * kMaxLanes];
@@ -282,17 +283,17 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
       objective += at->w_residual[c] * at->residual[c];
     }
     for (int r = 0; r < order.count(); ++r) {
-      const FoldedSamples::OfReading& readings = samples.readings[r];
+      const FoldedSamples::Lookup& lookups = samples.lookups[r];
       const Factor factor = order.factor(r);
       const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
       Slopes& of = at->of[r];
-      of.cell = &samples.cells_of(factor)[readings.cell[j]];
-      double* const weight = run->Read(r, readings.cell[j], *of.cell);
-      for (int k = 0; k < of.cell->size; ++k) weight[k] = readings.weight[k][j];
+      of.cell = &samples.cells_of(factor)[lookups.cell[j]];
+      double* const weight = run->Read(r, lookups.cell[j], *of.cell);
+      for (int k = 0; k < of.cell->size; ++k) weight[k] = lookups.weight[k][j];
       of.weight = weight;
       if (factor != Factor::kG) {
         const bool is_D = factor == Factor::kD;
-        of.reading = (is_D ? batch.D : batch.F).data() + n * lanes;
+        of.lookup = (is_D ? batch.D : batch.F).data() + n * lanes;
         of.slope = (is_D ? batch.D_slope : batch.F_slope).data() + n * kChannels * lanes;
       } else {
         // d rho / d G of one direction has G of the other.
@@ -305,7 +306,7 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
             slope[c * G_lanes + b] = shadow[c * G_lanes + b] * other[b];
           }
         }
-        of.reading = (is_i ? batch.G_i : batch.G_o).data() + n * G_lanes;
+        of.lookup = (is_i ? batch.G_i : batch.G_o).data() + n * G_lanes;
         of.slope = slope;
       }
       for (int c = 0; c < kChannels; ++c) {
@@ -323,33 +324,34 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
   return objective;
 }
 
-using AddBatchFunction = double (*)(const SumJob&, int, int, const SampleReader::Batch&, Sample*,
-                                    SampleRun*);
+using AddBatchFunction = double (*)(const SumJob&, int, int, const BatchEvaluator::Batch&, Sample*,
+                                    ScatterBuffer*);
 TRILOBE_MULTIVERSION
-double AddGaussNewton(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
-                      Sample* at, SampleRun* run) {
+double AddGaussNewton(const SumJob& job, int begin, int end, const BatchEvaluator::Batch& batch,
+                      Sample* at, ScatterBuffer* run) {
   return AddBatch<false, false>(job, begin, end, batch, at, run);
 }
 TRILOBE_MULTIVERSION
 double AddGaussNewtonOfOneVector(const SumJob& job, int begin, int end,
-                                 const SampleReader::Batch& batch, Sample* at, SampleRun* run) {
+                                 const BatchEvaluator::Batch& batch, Sample* at,
+                                 ScatterBuffer* run) {
   return AddBatch<true, false>(job, begin, end, batch, at, run);
 }
 TRILOBE_MULTIVERSION
-double AddNewton(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
-                 Sample* at, SampleRun* run) {
+double AddNewton(const SumJob& job, int begin, int end, const BatchEvaluator::Batch& batch,
+                 Sample* at, ScatterBuffer* run) {
   return AddBatch<false, true>(job, begin, end, batch, at, run);
 }
 TRILOBE_MULTIVERSION
-double AddNewtonOfOneVector(const SumJob& job, int begin, int end, const SampleReader::Batch& batch,
-                            Sample* at, SampleRun* run) {
+double AddNewtonOfOneVector(const SumJob& job, int begin, int end,
+                            const BatchEvaluator::Batch& batch, Sample* at, ScatterBuffer* run) {
   return AddBatch<true, true>(job, begin, end, batch, at, run);
 }
 
 }  // namespace
 
-double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hessian hessian,
-                     int begin, int end, double* sums) {
+double AddNormalEquations(const BatchEvaluator& reader, const AccumulatorLayout& layout,
+                          Hessian hessian, int begin, int end, double* sums) {
   SumJob job{};
   job.reader = &reader;
   job.layout = &layout;
@@ -357,7 +359,7 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
   job.sums = &sums[0];
   for (int r = 0; r < job.order.count(); ++r) {
     const Factor factor = job.order.factor(r);
-    const SampleRows& rows = layout.of(r);
+    const AccumulatorRows& rows = layout.of(r);
     Columns columns;
     std::vector<int> place(reader.spec().num_tables(factor), -1);
     for (int k = 0; k < rows.tables; ++k) {
@@ -380,13 +382,13 @@ double AddSampleSums(const SampleReader& reader, const SampleLayout& layout, Hes
                                          ? newton ? AddNewtonOfOneVector : AddGaussNewtonOfOneVector
                                      : newton ? AddNewton
                                               : AddGaussNewton;
-  SampleReader::Batch batch(reader);
+  BatchEvaluator::Batch batch(reader);
   Sample at{};
-  SampleRun run(job.order, layout, sums);
+  ScatterBuffer run(job.order, layout, sums);
   double objective = 0;
   while (begin < end) {
-    const int batch_end = std::min(begin + SampleReader::kBatch, end);
-    reader.Read(begin, batch_end, SampleReader::Slopes::kAll, &batch);
+    const int batch_end = std::min(begin + BatchEvaluator::kBatch, end);
+    reader.Read(begin, batch_end, BatchEvaluator::Slopes::kAll, &batch);
     objective += add_batch(job, begin, batch_end, batch, &at, &run);
     begin = batch_end;
   }

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SUMS_SAMPLE_LAYOUT_H_
-#define TRILOBE_SUMS_SAMPLE_LAYOUT_H_
+#ifndef TRILOBE_SUMS_ACCUMULATOR_LAYOUT_H_
+#define TRILOBE_SUMS_ACCUMULATOR_LAYOUT_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -10,14 +10,15 @@
 
 namespace trilobe {
 
-// How the sums of one kind lie, or, of D, those of its tables that are read by one stretch. Each
+// Where the sums w v r and w v v' of AddNormalEquations lie in memory: those of one kind, or, of D,
+// of its tables that are read by one stretch. Each
 // entry of its tables (of amplitudes, each channel; their tables are s of each lobe, then d) has
 // lines of its own: its squared length, its gradient, and its products with amplitudes. Products
 // with entries of kinds before it are in blocks, one a pair of entries: those for one entry of the
 // other kind follow each other, as do the entries that a sample reads. So are products within G,
 // which a sample reads twice. Within D and F, which it reads once, only entries of one cell have
 // any; there they are by cell. A line is a vector over the kind's tables.
-struct SampleRows {
+struct AccumulatorRows {
   static constexpr int kSquaredLength = 0, kGradient = 1, kFirstAmplitude = 2;
 
   Kind kind = Kind::kAmplitudes;
@@ -37,16 +38,16 @@ struct SampleRows {
   }
 };
 
-struct SampleLayout {
-  std::vector<SampleRows> rows;  // of the amplitudes, of D for each stretch, of F and of G
-  size_t size = 0;               // of all sums
+struct AccumulatorLayout {
+  std::vector<AccumulatorRows> rows;  // of the amplitudes, of D for each stretch, of F and of G
+  size_t size = 0;                    // of all sums
 
-  const SampleRows& amplitudes() const { return rows[0]; }
-  // Both readings of G have the last.
-  int RowsOf(int reading) const { return std::min(1 + reading, static_cast<int>(rows.size()) - 1); }
-  const SampleRows& of(int reading) const { return rows[RowsOf(reading)]; }
+  const AccumulatorRows& amplitudes() const { return rows[0]; }
+  // Both lookups of G have the last.
+  int RowsOf(int lookup) const { return std::min(1 + lookup, static_cast<int>(rows.size()) - 1); }
+  const AccumulatorRows& of(int lookup) const { return rows[RowsOf(lookup)]; }
 };
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SUMS_SAMPLE_LAYOUT_H_
+#endif  // TRILOBE_SUMS_ACCUMULATOR_LAYOUT_H_

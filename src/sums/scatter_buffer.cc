@@ -1,9 +1,9 @@
-#include "sums/sample_run.h"
+#include "sums/scatter_buffer.h"
 
 #include <cstddef>
 
 #include "base/multiversion.h"
-#include "objective/sample_reader.h"
+#include "objective/batch_evaluator.h"
 
 namespace trilobe {
 namespace {
@@ -71,16 +71,17 @@ TRILOBE_ALWAYS_INLINE int EndOfRun(uint32_t begins, int begin, int size) {
 
 }  // namespace
 
-SampleRun::SampleRun(const ReadingOrder& order, const SampleLayout& layout, double* sums)
+ScatterBuffer::ScatterBuffer(const LookupOrder& order, const AccumulatorLayout& layout,
+                             double* sums)
     : sums_(sums) {
   for (int r = 0; r < order.count(); ++r) {
-    const SampleRows& rows = layout.of(r);
-    OfReading& of = readings_.emplace_back();
+    const AccumulatorRows& rows = layout.of(r);
+    LookupBuffer& of = lookups_.emplace_back();
     of.rows = &rows;
-    of.lines_size = (rows.own_lines - SampleRows::kGradient) * rows.lanes;
+    of.lines_size = (rows.own_lines - AccumulatorRows::kGradient) * rows.lanes;
     of.lines.resize(static_cast<size_t>(kMost) * of.lines_size);
     for (int q = 0; q <= r; ++q) {
-      OfPair& pair = pairs_.emplace_back();
+      PairBuffer& pair = pairs_.emplace_back();
       pair.size = layout.of(q).tables * rows.lanes;
       pair.blocks = sums + rows.blocks[layout.RowsOf(q)];
       pair.products.resize(static_cast<size_t>(kMost) * pair.size);
@@ -88,8 +89,8 @@ SampleRun::SampleRun(const ReadingOrder& order, const SampleLayout& layout, doub
   }
 }
 
-double* SampleRun::Read(int r, int number, const Cell& cell) {
-  OfReading& of = readings_[r];
+double* ScatterBuffer::Read(int r, int number, const Cell& cell) {
+  LookupBuffer& of = lookups_[r];
   const int n = size_ - 1;
   if (n == 0) {
     of.begins = 1;
@@ -101,9 +102,10 @@ double* SampleRun::Read(int r, int number, const Cell& cell) {
   return of.weights[n].data();
 }
 
-TRILOBE_ALWAYS_INLINE void SampleRun::AddLines(const OfReading& of) const {
-  const SampleRows& rows = *of.rows;
-  double* const own = sums_ + rows.own + static_cast<ptrdiff_t>(SampleRows::kGradient) * rows.lanes;
+TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddLines(const LookupBuffer& of) const {
+  const AccumulatorRows& rows = *of.rows;
+  double* const own =
+      sums_ + rows.own + static_cast<ptrdiff_t>(AccumulatorRows::kGradient) * rows.lanes;
   for (int begin = 0, end = 0; begin < size_; begin = end) {
     end = EndOfRun(of.begins, begin, size_);
     const Cell& cell = *of.cell[begin];
@@ -117,9 +119,10 @@ TRILOBE_ALWAYS_INLINE void SampleRun::AddLines(const OfReading& of) const {
   }
 }
 
-TRILOBE_ALWAYS_INLINE void SampleRun::AddProducts(const OfReading& of, const OfReading& own,
-                                                  const OfPair& pair) const {
-  const SampleRows& rows = *own.rows;
+TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddProducts(const LookupBuffer& of,
+                                                      const LookupBuffer& own,
+                                                      const PairBuffer& pair) const {
+  const AccumulatorRows& rows = *own.rows;
   const bool same = &of == &own;
   for (int begin = 0, end = 0; begin < size_; begin = end) {
     end = EndOfRun(of.begins | own.begins, begin, size_);
@@ -130,7 +133,7 @@ TRILOBE_ALWAYS_INLINE void SampleRun::AddProducts(const OfReading& of, const OfR
     add.size = pair.size;
     add.from = &pair.products[static_cast<size_t>(begin) * add.size];
     for (int l = 0; l < of_cell.size; ++l) {
-      // Within a reading, those of two entries in the other order are the same.
+      // Within a lookup, those of two entries in the other order are the same.
       const int first = same ? l : 0;
       for (int n = begin; n < end; ++n) {
         Lanes4 own_weights;
@@ -153,14 +156,14 @@ TRILOBE_ALWAYS_INLINE void SampleRun::AddProducts(const OfReading& of, const OfR
 }
 
 TRILOBE_MULTIVERSION
-void SampleRun::Flush() {
+void ScatterBuffer::Flush() {
   if (size_ == 0) return;
-  for (int r = 0; r < static_cast<int>(readings_.size()); ++r) {
-    const OfReading& own = readings_[r];
+  for (int r = 0; r < static_cast<int>(lookups_.size()); ++r) {
+    const LookupBuffer& own = lookups_[r];
     if (own.rows->tables == 0) continue;
     AddLines(own);
     for (int q = 0; q <= r; ++q) {
-      AddProducts(readings_[q], own, pairs_[PairOf(q, r)]);
+      AddProducts(lookups_[q], own, pairs_[PairOf(q, r)]);
     }
   }
   size_ = 0;

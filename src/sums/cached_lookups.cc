@@ -1,11 +1,11 @@
-#include "sums/sample_readings.h"
+#include "sums/cached_lookups.h"
 
 #include <algorithm>
 #include <array>
 #include <span>
 
 #include "base/multiversion.h"
-#include "objective/sample_reader.h"
+#include "objective/batch_evaluator.h"
 #include "trilobe/system/parallel.h"
 
 namespace trilobe {
@@ -87,13 +87,13 @@ TRILOBE_MULTIVERSION void AddByG(const LobeJob& job) { AddLobe<Kind::kG>(job); }
 
 }  // namespace
 
-SampleReadings::Batch::Batch(const ModelSpec& spec, Kind kind)
+CachedLookups::Batch::Batch(const ModelSpec& spec, Kind kind)
     : kind(kind),
       tables(kind == Kind::kAmplitudes ? 1 + spec.lobes : spec.num_tables(FactorOf(kind))),
       residual(kChannels * kBatch),
       slope(kChannels * tables * kBatch) {}
 
-SampleReadings::SampleReadings(const FoldedSamples& samples, const ModelSpec& spec, int num_threads)
+CachedLookups::CachedLookups(const FoldedSamples& samples, const ModelSpec& spec, int num_threads)
     : samples_(samples), spec_(spec), num_threads_(num_threads) {
   const std::vector<double> zeros(samples.size());
   D_.assign(spec.num_tables(Factor::kD), zeros);
@@ -102,13 +102,13 @@ SampleReadings::SampleReadings(const FoldedSamples& samples, const ModelSpec& sp
   G_o_ = G_i_;
 }
 
-void SampleReadings::ForChunks(const std::function<void(int, int)>& work) const {
+void CachedLookups::ForChunks(const std::function<void(int, int)>& work) const {
   constexpr int kChunk = 64 * kBatch;
   ParallelFor((samples_.size() + kChunk - 1) / kChunk, num_threads_,
               [&](int k) { work(k * kChunk, std::min((k + 1) * kChunk, samples_.size())); });
 }
 
-int SampleReadings::EndOfStretch(int d_table) const {
+int CachedLookups::EndOfStretch(int d_table) const {
   int end = d_table + 1;
   while (end < spec_.num_tables(Factor::kD) &&
          spec_.StretchOfTable(end) == spec_.StretchOfTable(d_table)) {
@@ -117,12 +117,12 @@ int SampleReadings::EndOfStretch(int d_table) const {
   return end;
 }
 
-void SampleReadings::Read(const FactorModel& model) {
+void CachedLookups::Read(const FactorModel& model) {
   for (const Factor factor : kFactors) Read(model, factor, 0, spec_.num_tables(factor));
 }
 
-void SampleReadings::Read(const FactorModel& model, Factor factor, int first, int last) {
-  const ReadingOrder& order = samples_.order;
+void CachedLookups::Read(const FactorModel& model, Factor factor, int first, int last) {
+  const LookupOrder& order = samples_.order;
   switch (factor) {
     case Factor::kD:
       for (int t = first; t < last;) {
@@ -140,10 +140,10 @@ void SampleReadings::Read(const FactorModel& model, Factor factor, int first, in
   }
 }
 
-void SampleReadings::ReadBy(int reading, const FactorModel& model, int first, int last,
-                            std::vector<std::vector<double>>* to) {
-  const Factor factor = samples_.order.factor(reading);
-  const FoldedSamples::OfReading& of = samples_.readings[reading];
+void CachedLookups::ReadBy(int lookup, const FactorModel& model, int first, int last,
+                           std::vector<std::vector<double>>* to) {
+  const Factor factor = samples_.order.factor(lookup);
+  const FoldedSamples::Lookup& of = samples_.lookups[lookup];
   std::vector<double> table(static_cast<size_t>(spec_.table_size(factor)) * kVector);
   for (; first < last; first += kVector) {
     ReadJob job{};
@@ -166,7 +166,7 @@ void SampleReadings::ReadBy(int reading, const FactorModel& model, int first, in
   }
 }
 
-void SampleReadings::Evaluate(int begin, int end, const FactorModel& model, Batch* batch) const {
+void CachedLookups::Evaluate(int begin, int end, const FactorModel& model, Batch* batch) const {
   const Kind kind = batch->kind;
   const int size = end - begin;
   std::ranges::fill(batch->slope, 0.0);

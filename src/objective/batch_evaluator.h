@@ -1,5 +1,5 @@
-#ifndef TRILOBE_OBJECTIVE_SAMPLE_READER_H_
-#define TRILOBE_OBJECTIVE_SAMPLE_READER_H_
+#ifndef TRILOBE_OBJECTIVE_BATCH_EVALUATOR_H_
+#define TRILOBE_OBJECTIVE_BATCH_EVALUATOR_H_
 
 #include <array>
 #include <vector>
@@ -34,32 +34,34 @@ struct TableLanes : LaneLayout {
   std::vector<int> of_table;  // [num_tables]
 };
 
-// What models of a spec read at folded samples, a batch of samples at a time, and how their values
-// move with it.
-class SampleReader {
+// Values of models of a spec at folded samples, in each channel c
+//   rho_c = d_c + sum over lobes m of s_mc D_m F_mc G_m(theta_i) G_m(theta_o) / (cos cos),
+// a batch of samples at a time: the lookups D, F, G, the residual rho - rho*, and the slopes of rho
+// by d, s and each lookup. Nothing is kept from call to call.
+class BatchEvaluator {
  public:
   static constexpr int kBatch = 64;
 
   // One batch. Each array is [kBatch][...], lanes as TableLanes has them; lanes that belong to no
   // table are finite and mean nothing.
   struct Batch {
-    explicit Batch(const SampleReader& reader);
+    explicit Batch(const BatchEvaluator& reader);
 
     std::vector<double> residual;  // rho - rho*. [kChannels]
     // d rho / d (s of each lobe, d), padded. [kChannels][amplitude_lanes]
     std::vector<double> amplitude;
     std::vector<double> D, F, G_i, G_o;  // [lanes]
-    // d rho / d reading, of each channel; in the place of those of G, the number that both share:
+    // d rho / d lookup, of each channel; in the place of those of G, the number that both share:
     // d rho / d G_i = G_o shadow and d rho / d G_o = G_i shadow. [kChannels][lanes]
     std::vector<double> D_slope, F_slope, shadow;
   };
 
-  SampleReader(const FoldedSamples& samples, const ModelSpec& spec);
+  BatchEvaluator(const FoldedSamples& samples, const ModelSpec& spec);
 
   // From now on, this model's parameters are read. It is not kept.
   void SetModel(const FactorModel& model);
 
-  // Whether slopes are wanted, besides residuals and readings.
+  // Whether slopes are wanted, besides residuals and lookups.
   enum class Slopes { kNone, kAll };
 
   // Samples [begin, end), kBatch at most.
@@ -75,8 +77,8 @@ class SampleReader {
   int amplitude_lanes() const { return PaddedToVectors(1 + spec_.lobes); }
 
  private:
-  // The number of the reading that reads a table of D, F or, of both, the first of G.
-  int ReadingOf(Factor factor, int table) const;
+  // The number of the lookup that reads a table of D, F or, of both, the first of G.
+  int LookupOf(Factor factor, int table) const;
 
   const FoldedSamples& samples_;
   const ModelSpec spec_;
@@ -94,4 +96,4 @@ double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int n
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_OBJECTIVE_SAMPLE_READER_H_
+#endif  // TRILOBE_OBJECTIVE_BATCH_EVALUATOR_H_

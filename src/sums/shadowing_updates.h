@@ -1,28 +1,28 @@
-#ifndef TRILOBE_SUMS_SAMPLE_SHADOWING_H_
-#define TRILOBE_SUMS_SAMPLE_SHADOWING_H_
+#ifndef TRILOBE_SUMS_SHADOWING_UPDATES_H_
+#define TRILOBE_SUMS_SHADOWING_UPDATES_H_
 
 #include <array>
 #include <functional>
 #include <vector>
 
-#include "sums/sample_readings.h"
+#include "sums/cached_lookups.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
 
-// Updates of G from the samples, node by node. With all else held, what a table adds to rho_c is
-// a_c G_i G_o, so that of a sample's channels only two sums count,
+// Updates of G by AWLS from samples on no grid, node by node. With all else held, what a table adds
+// to rho_c is a_c G_i G_o, so that of a sample's channels only two sums count,
 //   A = sum w a^2,  b = sum w a (rho* - rho),
 // and a node that moves by delta, and G_i G_o by p1 delta + p2 delta^2 with it, changes E by
 //   A p^2 - 2 b p,  p = p1 delta + p2 delta^2,  and b by -A p.
-class SampleShadowing {
+class ShadowingUpdates {
  public:
   // Samples that read a node: as which entry of their cells of theta_i and theta_o, -1 if not.
   struct Readers {
     int begin, end, i, o;
   };
 
-  explicit SampleShadowing(SampleReadings* readings);
+  explicit ShadowingUpdates(CachedLookups* lookups);
 
   // Looks at the samples, whose tables are read by this model. The same bits for any number of
   // threads.
@@ -37,7 +37,7 @@ class SampleShadowing {
  private:
   void SetSums(int t);
 
-  SampleReadings& readings_;
+  CachedLookups& lookups_;
   std::vector<std::vector<Readers>> readers_;            // [node]
   std::array<std::vector<double>, kChannels> residual_;  // rho* - rho. [samples]
   // What a table's G_i G_o is multiplied by in each channel that it serves. [tables][.][samples]
@@ -47,4 +47,4 @@ class SampleShadowing {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SUMS_SAMPLE_SHADOWING_H_
+#endif  // TRILOBE_SUMS_SHADOWING_UPDATES_H_

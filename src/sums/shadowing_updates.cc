@@ -1,4 +1,4 @@
-#include "sums/sample_shadowing.h"
+#include "sums/shadowing_updates.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ struct NodeJob {
   // Of the entries of cells of G, by either direction.
   std::array<const double*, Stencil::kMaxSize> weight_i, weight_o;
 
-  SampleRange Of(const SampleShadowing::Readers& of) const {
+  SampleRange Of(const ShadowingUpdates::Readers& of) const {
     return {.size = of.end - of.begin,
             .A = A + of.begin,
             .weight_i = of.i < 0 ? nullptr : weight_i[of.i] + of.begin,
@@ -95,8 +95,8 @@ TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
 }
 
 TRILOBE_MULTIVERSION
-void AddChange(const NodeJob& job, std::span<const SampleShadowing::Readers> readers, double* c) {
-  for (const SampleShadowing::Readers& of : readers) {
+void AddChange(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers, double* c) {
+  for (const ShadowingUpdates::Readers& of : readers) {
     if (of.i >= 0 && of.o >= 0) {
       AddStretch<true>(job.Of(of), c);
     } else {
@@ -153,19 +153,19 @@ TRILOBE_ALWAYS_INLINE void MoveRange(const SampleRange& at, double step) {
 }
 
 TRILOBE_MULTIVERSION
-void Move(const NodeJob& job, std::span<const SampleShadowing::Readers> readers, double step) {
-  for (const SampleShadowing::Readers& of : readers) MoveRange(job.Of(of), step);
+void Move(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers, double step) {
+  for (const ShadowingUpdates::Readers& of : readers) MoveRange(job.Of(of), step);
 }
 
 }  // namespace
 
-SampleShadowing::SampleShadowing(SampleReadings* readings)
-    : readings_(*readings),
-      readers_(readings->spec().table_size(Factor::kG)),
-      A_(readings->samples().size()),
-      b_(readings->samples().size()) {
-  const ModelSpec& spec = readings_.spec();
-  const FoldedSamples& samples = readings_.samples();
+ShadowingUpdates::ShadowingUpdates(CachedLookups* lookups)
+    : lookups_(*lookups),
+      readers_(lookups->spec().table_size(Factor::kG)),
+      A_(lookups->samples().size()),
+      b_(lookups->samples().size()) {
+  const ModelSpec& spec = lookups_.spec();
+  const FoldedSamples& samples = lookups_.samples();
   for (std::vector<double>& of_channel : residual_) of_channel.resize(samples.size());
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
     const auto [begin, end] = spec.channels(Factor::kG, t);
@@ -195,19 +195,19 @@ SampleShadowing::SampleShadowing(SampleReadings* readings)
   }
 }
 
-void SampleShadowing::Read(const FactorModel& model) {
-  constexpr int kBatch = SampleReadings::kBatch;
-  readings_.ForChunks([&](int chunk_begin, int chunk_end) {
-    SampleReadings::Batch batch(readings_.spec(), Kind::kG);
+void ShadowingUpdates::Read(const FactorModel& model) {
+  constexpr int kBatch = CachedLookups::kBatch;
+  lookups_.ForChunks([&](int chunk_begin, int chunk_end) {
+    CachedLookups::Batch batch(lookups_.spec(), Kind::kG);
     for (int begin = chunk_begin; begin < chunk_end; begin += kBatch) {
       const int size = std::min(kBatch, chunk_end - begin);
-      readings_.Evaluate(begin, begin + size, model, &batch);
+      lookups_.Evaluate(begin, begin + size, model, &batch);
       for (int c = 0; c < kChannels; ++c) {
         std::transform(&batch.residual[c * kBatch], &batch.residual[c * kBatch] + size,
                        &residual_[c][begin], std::negate<>());
       }
       for (int t = 0; t < batch.tables; ++t) {
-        const int first = readings_.spec().channels(Factor::kG, t).begin;
+        const int first = lookups_.spec().channels(Factor::kG, t).begin;
         for (size_t c = 0; c < a_[t].size(); ++c) {
           std::copy_n(batch.Slope(first + static_cast<int>(c), t), size, &a_[t][c][begin]);
         }
@@ -216,30 +216,30 @@ void SampleShadowing::Read(const FactorModel& model) {
   });
 }
 
-void SampleShadowing::SetSums(int t) {
-  const int first = readings_.spec().channels(Factor::kG, t).begin;
-  readings_.ForChunks([&](int begin, int end) {
+void ShadowingUpdates::SetSums(int t) {
+  const int first = lookups_.spec().channels(Factor::kG, t).begin;
+  lookups_.ForChunks([&](int begin, int end) {
     std::fill(A_.begin() + begin, A_.begin() + end, 0.0);
     std::fill(b_.begin() + begin, b_.begin() + end, 0.0);
     for (size_t c = 0; c < a_[t].size(); ++c) {
-      AddToSums(end - begin, &readings_.samples().weight[first + c][begin], &a_[t][c][begin],
+      AddToSums(end - begin, &lookups_.samples().weight[first + c][begin], &a_[t][c][begin],
                 &residual_[first + c][begin], &A_[begin], &b_[begin]);
     }
   });
 }
 
-void SampleShadowing::UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
-                                  FactorModel* model) {
-  const FoldedSamples& samples = readings_.samples();
-  std::vector<double>&G_i = readings_.G_i(t), &G_o = readings_.G_o(t);
+void ShadowingUpdates::UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
+                                   FactorModel* model) {
+  const FoldedSamples& samples = lookups_.samples();
+  std::vector<double>&G_i = lookups_.G_i(t), &G_o = lookups_.G_o(t);
   NodeJob job{.A = A_.data(),
               .b = b_.data(),
               .G_i = G_i.data(),
               .G_o = G_o.data(),
               .weight_i = {},
               .weight_o = {}};
-  const auto weights = [&](int reading, std::array<const double*, Stencil::kMaxSize>* of) {
-    const std::vector<std::vector<double>>& weight = samples.readings[reading].weight;
+  const auto weights = [&](int lookup, std::array<const double*, Stencil::kMaxSize>* of) {
+    const std::vector<std::vector<double>>& weight = samples.lookups[lookup].weight;
     for (size_t k = 0; k < weight.size(); ++k) (*of)[k] = weight[k].data();
   };
   weights(samples.order.G_i(), &job.weight_i);
@@ -258,8 +258,8 @@ void SampleShadowing::UpdateTable(int t, const std::function<void(const FactorMo
     }
     if (on_element) on_element(*model);
   }
-  const int first = readings_.spec().channels(Factor::kG, t).begin;
-  readings_.ForChunks([&](int begin, int end) {
+  const int first = lookups_.spec().channels(Factor::kG, t).begin;
+  lookups_.ForChunks([&](int begin, int end) {
     for (size_t c = 0; c < a_[t].size(); ++c) {
       SubtractChange(end - begin, &a_[t][c][begin], &G_i[begin], &G_o[begin], &old_G_i[begin],
                      &old_G_o[begin], &residual_[first + c][begin]);

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SUMS_SAMPLE_READINGS_H_
-#define TRILOBE_SUMS_SAMPLE_READINGS_H_
+#ifndef TRILOBE_SUMS_CACHED_LOOKUPS_H_
+#define TRILOBE_SUMS_CACHED_LOOKUPS_H_
 
 #include <functional>
 #include <vector>
@@ -10,10 +10,11 @@
 
 namespace trilobe {
 
-// What all samples read from each table of a model, table by table, kept while the model's
-// parameters change, kind after kind: each table is read again only when it has changed, and what
-// follows from the readings is computed side by side for many samples.
-class SampleReadings {
+// The lookups D_t, F_t, G_t(theta_i) and G_t(theta_o) of all samples in all tables t of a model,
+// kept from sweep to sweep: a table is looked up again only when it has changed. From these follow,
+// for a batch of samples, residuals rho - rho* and slopes d rho / d lookup of one kind, without
+// reading a table (BatchEvaluator reads all, and keeps none).
+class CachedLookups {
  public:
   // Samples that are looked at together.
   static constexpr int kBatch = 64;
@@ -29,12 +30,12 @@ class SampleReadings {
     Kind kind;
     int tables;                    // of amplitudes: d, and s of each lobe
     std::vector<double> residual;  // rho - rho*. [kChannels][kBatch]
-    // d rho / d reading; 1 for d, and of G, d rho / d (G_i G_o). [kChannels][tables][kBatch]
+    // d rho / d lookup; 1 for d, and of G, d rho / d (G_i G_o). [kChannels][tables][kBatch]
     std::vector<double> slope;
   };
 
   // The samples must outlive this.
-  SampleReadings(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
+  CachedLookups(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
 
   // The end of the tables of D, from this one on, that are read by one stretch.
   int EndOfStretch(int d_table) const;
@@ -57,8 +58,8 @@ class SampleReadings {
   void ForChunks(const std::function<void(int, int)>& work) const;
 
  private:
-  // Reads tables by one of the readings into to[first .. last).
-  void ReadBy(int reading, const FactorModel& model, int first, int last,
+  // Reads tables by one of the lookups into to[first .. last).
+  void ReadBy(int lookup, const FactorModel& model, int first, int last,
               std::vector<std::vector<double>>* to);
 
   const FoldedSamples& samples_;
@@ -69,4 +70,4 @@ class SampleReadings {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SUMS_SAMPLE_READINGS_H_
+#endif  // TRILOBE_SUMS_CACHED_LOOKUPS_H_

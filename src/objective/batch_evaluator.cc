@@ -1,4 +1,4 @@
-#include "objective/sample_reader.h"
+#include "objective/batch_evaluator.h"
 
 #include <algorithm>
 #include <numeric>
@@ -19,19 +19,19 @@ constexpr LaneLayout kByChannel{
 // All that the loops over samples need.
 struct ReadJob {
   int begin, end;
-  SampleReader::Slopes slopes;
+  BatchEvaluator::Slopes slopes;
   const FoldedSamples* samples;
-  struct OfReading {
+  struct Lookup {
     const Cell* cells;
     const int* cell;
     std::array<const double*, Stencil::kMaxSize> weight;
     const double* table;
     int lanes;
-    double* reading;
+    double* lookup;
     bool adds;  // to what is there: each stretch reads D of its own lobes
   };
-  std::array<OfReading, ReadingOrder::kMost> readings;
-  int num_readings;
+  std::array<Lookup, LookupOrder::kMost> lookups;
+  int num_lookups;
   LaneLayout D, F, G;
   const double *d, *s;
   int lobes, amplitude_lanes;
@@ -40,8 +40,8 @@ struct ReadJob {
 
 // Of the lobes in a channel.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void LobesOf(LaneLayout layout, int c, const double* reading, Lanes4* of) {
-  const double* const first = reading + layout.First(c);
+TRILOBE_ALWAYS_INLINE void LobesOf(LaneLayout layout, int c, const double* lookup, Lanes4* of) {
+  const double* const first = lookup + layout.First(c);
   for (int b = 0; b < kBlocks; ++b) {
     if (layout.per_lobe) {
       LoadLanes(first + kVector * b, &of[b]);
@@ -84,12 +84,12 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
                    G_lanes = kPaper ? kByLobe : job.G;
   for (int j = job.begin; j < job.end; ++j) {
     const int n = j - job.begin;
-    std::array<double*, ReadingOrder::kMost> R;
-    for (int r = 0; r < job.num_readings; ++r) {
-      const ReadJob::OfReading& of = job.readings[r];
+    std::array<double*, LookupOrder::kMost> R;
+    for (int r = 0; r < job.num_lookups; ++r) {
+      const ReadJob::Lookup& of = job.lookups[r];
       const Cell& cell = of.cells[of.cell[j]];
       const int lanes = kOneVector ? kVector : of.lanes;
-      R[r] = of.reading + n * lanes;
+      R[r] = of.lookup + n * lanes;
       for (int b = 0; b < lanes; b += kVector) {
         Lanes4 sum = {};
         if (of.adds) LoadLanes(R[r] + b, &sum);
@@ -105,9 +105,9 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
     for (int c = 0; c < kChannels; ++c) {
       Lanes4 D[kBlocks], F[kBlocks], G_i[kBlocks], G_o[kBlocks], of_s[kBlocks], x[kBlocks];
       LobesOf<kBlocks>(D_lanes, c, R[0], D);
-      LobesOf<kBlocks>(F_lanes, c, R[job.num_readings - 3], F);
-      LobesOf<kBlocks>(G_lanes, c, R[job.num_readings - 2], G_i);
-      LobesOf<kBlocks>(G_lanes, c, R[job.num_readings - 1], G_o);
+      LobesOf<kBlocks>(F_lanes, c, R[job.num_lookups - 3], F);
+      LobesOf<kBlocks>(G_lanes, c, R[job.num_lookups - 2], G_i);
+      LobesOf<kBlocks>(G_lanes, c, R[job.num_lookups - 1], G_o);
       Lanes4 s[kBlocks], K[kBlocks];
       for (int b = 0; b < kBlocks; ++b) {
         LoadLanes(job.s + kVector * (c * kBlocks + b), &s[b]);
@@ -116,7 +116,7 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
         x[b] = s[b] * of_s[b];
       }
       job.residual[n * kChannels + c] = job.d[c] + Sum<kBlocks>(x) - job.samples->rho[c][j];
-      if (job.slopes == SampleReader::Slopes::kNone) continue;
+      if (job.slopes == BatchEvaluator::Slopes::kNone) continue;
       Lanes4 of_D[kBlocks], of_F[kBlocks], of_G[kBlocks];
       for (int b = 0; b < kBlocks; ++b) {
         const Lanes4 sK = s[b] * K[b];
@@ -161,7 +161,7 @@ TableLanes::TableLanes(const ModelSpec& spec, Factor factor)
   }
 }
 
-SampleReader::Batch::Batch(const SampleReader& reader)
+BatchEvaluator::Batch::Batch(const BatchEvaluator& reader)
     : residual(kBatch * kChannels), amplitude(kBatch * kChannels * reader.amplitude_lanes()) {
   D.resize(kBatch * reader.lanes(Factor::kD).size);
   F.resize(kBatch * reader.lanes(Factor::kF).size);
@@ -172,7 +172,7 @@ SampleReader::Batch::Batch(const SampleReader& reader)
   shadow.resize(kBatch * kChannels * reader.lanes(Factor::kG).size);
 }
 
-SampleReader::SampleReader(const FoldedSamples& samples, const ModelSpec& spec)
+BatchEvaluator::BatchEvaluator(const FoldedSamples& samples, const ModelSpec& spec)
     : samples_(samples),
       spec_(spec),
       lobe_lanes_(std::max(PaddedToVectors(spec.lobes), kVector)),
@@ -187,19 +187,19 @@ SampleReader::SampleReader(const FoldedSamples& samples, const ModelSpec& spec)
   }
 }
 
-int SampleReader::ReadingOf(Factor factor, int table) const {
-  const ReadingOrder& order = samples_.order;
+int BatchEvaluator::LookupOf(Factor factor, int table) const {
+  const LookupOrder& order = samples_.order;
   if (factor == Factor::kF) return order.F();
   if (factor == Factor::kG) return order.G_i();
   return spec_.StretchOfTable(table);
 }
 
-void SampleReader::SetModel(const FactorModel& model) {
+void BatchEvaluator::SetModel(const FactorModel& model) {
   for (const Factor factor : kFactors) {
     const TableLanes& of = lanes(factor);
     for (int t = 0; t < spec_.num_tables(factor); ++t) {
       const std::span<const double> table = model.table(factor, t);
-      std::vector<double>& to = tables_[ReadingOf(factor, t)];
+      std::vector<double>& to = tables_[LookupOf(factor, t)];
       for (size_t k = 0; k < table.size(); ++k) to[k * of.size + of.of_table[t]] = table[k];
     }
   }
@@ -209,13 +209,13 @@ void SampleReader::SetModel(const FactorModel& model) {
   }
 }
 
-void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
+void BatchEvaluator::Read(int begin, int end, Slopes slopes, Batch* batch) const {
   ReadJob job{.begin = begin,
               .end = end,
               .slopes = slopes,
               .samples = &samples_,
-              .readings = {},
-              .num_readings = samples_.order.count(),
+              .lookups = {},
+              .num_lookups = samples_.order.count(),
               .D = lanes(Factor::kD),
               .F = lanes(Factor::kF),
               .G = lanes(Factor::kG),
@@ -228,22 +228,22 @@ void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
               .D_slope = batch->D_slope.data(),
               .F_slope = batch->F_slope.data(),
               .shadow = batch->shadow.data()};
-  const ReadingOrder& order = samples_.order;
+  const LookupOrder& order = samples_.order;
   for (int r = 0; r < order.count(); ++r) {
     const Factor factor = order.factor(r);
-    std::vector<double>& reading = r < order.F()      ? batch->D
-                                   : r == order.F()   ? batch->F
-                                   : r == order.G_i() ? batch->G_i
-                                                      : batch->G_o;
-    job.readings[r] = {.cells = samples_.cells_of(factor).data(),
-                       .cell = samples_.readings[r].cell.data(),
-                       .weight = {},
-                       .table = tables_[std::min(r, order.G_i())].data(),
-                       .lanes = lanes(factor).size,
-                       .reading = reading.data(),
-                       .adds = r > 0 && r < order.F()};
-    const std::vector<std::vector<double>>& weight = samples_.readings[r].weight;
-    for (size_t k = 0; k < weight.size(); ++k) job.readings[r].weight[k] = weight[k].data();
+    std::vector<double>& lookup = r < order.F()      ? batch->D
+                                  : r == order.F()   ? batch->F
+                                  : r == order.G_i() ? batch->G_i
+                                                     : batch->G_o;
+    job.lookups[r] = {.cells = samples_.cells_of(factor).data(),
+                      .cell = samples_.lookups[r].cell.data(),
+                      .weight = {},
+                      .table = tables_[std::min(r, order.G_i())].data(),
+                      .lanes = lanes(factor).size,
+                      .lookup = lookup.data(),
+                      .adds = r > 0 && r < order.F()};
+    const std::vector<std::vector<double>>& weight = samples_.lookups[r].weight;
+    for (size_t k = 0; k < weight.size(); ++k) job.lookups[r].weight[k] = weight[k].data();
   }
   if (one_vector_ && job.D == kByLobe && job.F == kByChannel && job.G == kByLobe) {
     ReadPaperSharing(job);
@@ -257,17 +257,17 @@ void SampleReader::Read(int begin, int end, Slopes slopes, Batch* batch) const {
 }
 
 double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int num_threads) {
-  SampleReader reader(samples, model.spec());
+  BatchEvaluator reader(samples, model.spec());
   reader.SetModel(model);
-  constexpr int kChunk = 64 * SampleReader::kBatch;
+  constexpr int kChunk = 64 * BatchEvaluator::kBatch;
   const int chunks = (samples.size() + kChunk - 1) / kChunk;
   std::vector<double> sums(chunks, 0.0);
   ParallelFor(chunks, num_threads, [&](int k) {
-    SampleReader::Batch batch(reader);
+    BatchEvaluator::Batch batch(reader);
     const int chunk_end = std::min((k + 1) * kChunk, samples.size());
-    for (int begin = k * kChunk; begin < chunk_end; begin += SampleReader::kBatch) {
-      const int end = std::min(begin + SampleReader::kBatch, chunk_end);
-      reader.Read(begin, end, SampleReader::Slopes::kNone, &batch);
+    for (int begin = k * kChunk; begin < chunk_end; begin += BatchEvaluator::kBatch) {
+      const int end = std::min(begin + BatchEvaluator::kBatch, chunk_end);
+      reader.Read(begin, end, BatchEvaluator::Slopes::kNone, &batch);
       for (int j = begin; j < end; ++j) {
         for (int c = 0; c < kChannels; ++c) {
           const double residual = batch.residual[(j - begin) * kChannels + c];
