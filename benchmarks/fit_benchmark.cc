@@ -208,8 +208,8 @@ void BM_Fit(benchmark::State& state, const std::vector<std::string>& flags) {
 }
 
 using benchmark::internal::Benchmark;
-void OnTheClock(Benchmark* of) { of->Unit(benchmark::kMillisecond)->UseRealTime(); }
-void ByTheTrace(Benchmark* of) { of->Unit(benchmark::kMillisecond)->UseManualTime(); }
+void OnTheClock(Benchmark* benchmark) { benchmark->Unit(benchmark::kMillisecond)->UseRealTime(); }
+void ByTheTrace(Benchmark* benchmark) { benchmark->Unit(benchmark::kMillisecond)->UseManualTime(); }
 
 BENCHMARK(BM_ReadAndPrepare)->Arg(1)->Arg(2)->Apply(OnTheClock);
 BENCHMARK(BM_Value)->Arg(1)->Arg(2)->Apply(OnTheClock);

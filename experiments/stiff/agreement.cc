@@ -16,9 +16,9 @@ FactorModel Reordered(const FactorModel& model, const std::vector<int>& order) {
     std::ranges::copy(model.s(order[m]), result.s(m).begin());
     for (const Factor factor : kFactors) {
       for (int c = 0; c < kChannels; ++c) {
-        const int to = spec.table(factor, m, c);
+        const int target = spec.table(factor, m, c);
         std::ranges::copy(model.table(factor, spec.table(factor, order[m], c)),
-                          result.table(factor, to).begin());
+                          result.table(factor, target).begin());
       }
     }
   }

@@ -17,7 +17,7 @@ StiffProblem Turned(StiffProblem problem, int nodes);
 // A case whose data are those of another one, turned.
 struct Twin {
   const char* name;
-  const char* of;
+  const char* original;
   int nodes;
 };
 std::vector<Twin> Twins();

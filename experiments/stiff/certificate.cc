@@ -119,12 +119,13 @@ class Neighbourhood {
  private:
   // Of a symmetric matrix in the scale in which columns of J have length 1.
   Eigen::SelfAdjointEigenSolver<MatrixOf<Big>> Spectrum(const MatrixOf<Big>& lower,
-                                                        const std::vector<int>& of) const {
-    const int size = static_cast<int>(of.size());
+                                                        const std::vector<int>& numbers) const {
+    const int size = static_cast<int>(numbers.size());
     MatrixOf<Big> scaled(size, size);
     for (int i = 0; i < size; ++i) {
       for (int j = 0; j <= i; ++j) {
-        scaled(i, j) = scaled(j, i) = lower(of[i], of[j]) / (length_(of[i]) * length_(of[j]));
+        scaled(i, j) = scaled(j, i) =
+            lower(numbers[i], numbers[j]) / (length_(numbers[i]) * length_(numbers[j]));
       }
     }
     return Eigen::SelfAdjointEigenSolver<MatrixOf<Big>>(scaled);
@@ -178,64 +179,65 @@ double MarkDifferences(const FactorModel& other, const FactorModel& model, doubl
   return spread;
 }
 
-Json ToJson(const Certificate& of) {
+Json ToJson(const Certificate& certificate) {
   Json others = Json::array();
-  for (const auto& [objective, starts] : of.others) {
+  for (const auto& [objective, starts] : certificate.others) {
     others.push_back({{"objective", objective}, {"starts", starts}});
   }
-  return {{"name", of.name},
-          {"samples", of.samples},
-          {"parameters", of.parameters},
-          {"objective", of.objective_text},
-          {"measured_energy", of.measured_energy},
-          {"exact", of.exact},
-          {"relative_decrease", of.relative_decrease},
-          {"optimality", of.optimality},
-          {"starts", of.starts},
-          {"agreeing", of.agreeing},
+  return {{"name", certificate.name},
+          {"samples", certificate.samples},
+          {"parameters", certificate.parameters},
+          {"objective", certificate.objective_text},
+          {"measured_energy", certificate.measured_energy},
+          {"exact", certificate.exact},
+          {"relative_decrease", certificate.relative_decrease},
+          {"optimality", certificate.optimality},
+          {"starts", certificate.starts},
+          {"agreeing", certificate.agreeing},
           {"others", others},
-          {"free_parameters", of.free_parameters},
-          {"flat_directions", of.flat_directions},
-          {"descent_directions", of.descent_directions},
-          {"rank", of.rank},
-          {"condition", of.condition},
-          {"spread", of.spread},
-          {"undetermined", of.undetermined},
-          {"model", of.model.parameters()}};
+          {"free_parameters", certificate.free_parameters},
+          {"flat_directions", certificate.flat_directions},
+          {"descent_directions", certificate.descent_directions},
+          {"rank", certificate.rank},
+          {"condition", certificate.condition},
+          {"spread", certificate.spread},
+          {"undetermined", certificate.undetermined},
+          {"model", certificate.model.parameters()}};
 }
 
 Certificate FromJson(const Json& json) {
-  Certificate of;
-  json.at("name").get_to(of.name);
-  json.at("samples").get_to(of.samples);
-  json.at("parameters").get_to(of.parameters);
-  json.at("objective").get_to(of.objective_text);
-  of.objective = static_cast<double>(Big(of.objective_text));
-  json.at("measured_energy").get_to(of.measured_energy);
-  json.at("exact").get_to(of.exact);
-  json.at("relative_decrease").get_to(of.relative_decrease);
-  json.at("optimality").get_to(of.optimality);
-  json.at("starts").get_to(of.starts);
-  json.at("agreeing").get_to(of.agreeing);
+  Certificate certificate;
+  json.at("name").get_to(certificate.name);
+  json.at("samples").get_to(certificate.samples);
+  json.at("parameters").get_to(certificate.parameters);
+  json.at("objective").get_to(certificate.objective_text);
+  certificate.objective = static_cast<double>(Big(certificate.objective_text));
+  json.at("measured_energy").get_to(certificate.measured_energy);
+  json.at("exact").get_to(certificate.exact);
+  json.at("relative_decrease").get_to(certificate.relative_decrease);
+  json.at("optimality").get_to(certificate.optimality);
+  json.at("starts").get_to(certificate.starts);
+  json.at("agreeing").get_to(certificate.agreeing);
   for (const Json& other : json.at("others")) {
-    of.others.push_back({other.at("objective").get<double>(), other.at("starts").get<int>()});
+    certificate.others.push_back(
+        {other.at("objective").get<double>(), other.at("starts").get<int>()});
   }
-  json.at("free_parameters").get_to(of.free_parameters);
-  json.at("flat_directions").get_to(of.flat_directions);
-  json.at("descent_directions").get_to(of.descent_directions);
-  json.at("rank").get_to(of.rank);
-  json.at("condition").get_to(of.condition);
-  json.at("spread").get_to(of.spread);
-  json.at("undetermined").get_to(of.undetermined);
-  of.model = FactorModel(FindStiffCase(of.name).make().spec);
+  json.at("free_parameters").get_to(certificate.free_parameters);
+  json.at("flat_directions").get_to(certificate.flat_directions);
+  json.at("descent_directions").get_to(certificate.descent_directions);
+  json.at("rank").get_to(certificate.rank);
+  json.at("condition").get_to(certificate.condition);
+  json.at("spread").get_to(certificate.spread);
+  json.at("undetermined").get_to(certificate.undetermined);
+  certificate.model = FactorModel(FindStiffCase(certificate.name).make().spec);
   const auto x = json.at("model").get<std::vector<double>>();
-  if (x.size() != of.model.parameters().size()) {
-    throw Error(of.name + ": the certified model has " + std::to_string(x.size()) +
-                " numbers, the case " + std::to_string(of.model.parameters().size()) +
+  if (x.size() != certificate.model.parameters().size()) {
+    throw Error(certificate.name + ": the certified model has " + std::to_string(x.size()) +
+                " numbers, the case " + std::to_string(certificate.model.parameters().size()) +
                 "; run certify again");
   }
-  std::ranges::copy(x, of.model.parameters().begin());
-  return of;
+  std::ranges::copy(x, certificate.model.parameters().begin());
+  return certificate;
 }
 
 }  // namespace
@@ -247,14 +249,14 @@ std::vector<bool> Certificate::Determined() const {
 }
 
 Certificate Certify(const StiffCase& stiff_case, int random_starts) {
-  const StiffProblem of = stiff_case.make();
-  const ReferenceProblem<long double> coarse(of.samples, of.spec, of.weighting);
-  const ReferenceProblem<Big> problem(of.samples, of.spec, of.weighting);
+  const StiffProblem stiff = stiff_case.make();
+  const ReferenceProblem<long double> coarse(stiff.samples, stiff.spec, stiff.weighting);
+  const ReferenceProblem<Big> problem(stiff.samples, stiff.spec, stiff.weighting);
   const Big energy = problem.MeasuredEnergy();
 
   ReferenceMinimizer<long double> explorer(coarse);
   std::vector<Minimum<long double>> ends;
-  for (const FactorModel& start : Starts(of, random_starts)) {
+  for (const FactorModel& start : Starts(stiff, random_starts)) {
     ends.push_back(explorer.Minimize(ToVector<long double>(start.parameters()), kIterations));
   }
   const auto starts = static_cast<int>(ends.size());
@@ -267,8 +269,8 @@ Certificate Certify(const StiffCase& stiff_case, int random_starts) {
 
   Certificate certificate;
   certificate.name = stiff_case.name;
-  certificate.samples = of.samples.size();
-  certificate.parameters = of.spec.num_parameters();
+  certificate.samples = stiff.samples.size();
+  certificate.parameters = stiff.spec.num_parameters();
   certificate.starts = starts;
   std::vector<Minimum<Big>> polished;
   ReferenceMinimizer<Big> polisher(problem);
@@ -297,11 +299,11 @@ Certificate Certify(const StiffCase& stiff_case, int random_starts) {
 
   Neighbourhood around(problem, best.x);
   around.Describe(&certificate);
-  certificate.model = ToModel(of.spec, problem.Canonical(best.x));
+  certificate.model = ToModel(stiff.spec, problem.Canonical(best.x));
   std::vector<bool> undetermined = around.Undetermined();
   if (!best.converged) undetermined.assign(undetermined.size(), true);  // nor E beyond the promise
   const auto canonical = [&](const VectorOf<Big>& x) {
-    return ToModel(of.spec, problem.Canonical(x));
+    return ToModel(stiff.spec, problem.Canonical(x));
   };
   for (const Minimum<Big>& other : polished) {
     certificate.spread =

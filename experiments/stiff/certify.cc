@@ -22,10 +22,10 @@ namespace {
 
 // Replaces a certificate of the list or adds it, in the order of the cases.
 void Put(const Certificate& certificate, std::vector<Certificate>* all) {
-  std::erase_if(*all, [&](const Certificate& of) { return of.name == certificate.name; });
+  std::erase_if(*all, [&](const Certificate& other) { return other.name == certificate.name; });
   all->push_back(certificate);
-  std::ranges::stable_sort(*all, {}, [](const Certificate& of) {
-    return std::ranges::find(StiffCases(), of.name, &StiffCase::name) - StiffCases().begin();
+  std::ranges::stable_sort(*all, {}, [](const Certificate& other) {
+    return std::ranges::find(StiffCases(), other.name, &StiffCase::name) - StiffCases().begin();
   });
 }
 
@@ -36,15 +36,16 @@ int Main() {
   if (std::filesystem::exists(FLAGS_out)) all = ReadCertificates(FLAGS_out);
   for (const StiffCase& stiff_case : cases) {
     const auto start = std::chrono::steady_clock::now();
-    const Certificate of = Certify(stiff_case, FLAGS_random_starts);
+    const Certificate certificate = Certify(stiff_case, FLAGS_random_starts);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     std::printf(
         "%-18s E %.9e of %.3e, optimality %.0e, %d of %d starts agree, %zu other minima, rank %d "
         "of %d, %zu undetermined, %.1f s\n",
-        of.name.c_str(), of.objective, of.measured_energy, of.optimality, of.agreeing, of.starts,
-        of.others.size(), of.rank, of.parameters, of.undetermined.size(), seconds.count());
+        certificate.name.c_str(), certificate.objective, certificate.measured_energy,
+        certificate.optimality, certificate.agreeing, certificate.starts, certificate.others.size(),
+        certificate.rank, certificate.parameters, certificate.undetermined.size(), seconds.count());
     std::fflush(stdout);
-    Put(of, &all);
+    Put(certificate, &all);
     WriteCertificates(all, FLAGS_out);
   }
   return 0;

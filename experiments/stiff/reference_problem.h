@@ -394,8 +394,8 @@ Derivatives<Real> ReferenceProblem<Real>::Evaluate(const VectorOf<Real>& x) cons
   MatrixOf<Real> second = MatrixOf<Real>::Zero(n, n);
   std::vector<std::pair<int, Real>> row;  // d rho / dx, a parameter perhaps more than once
   const std::vector<Entry> kItself = {{0, Real{1}}};
-  const auto add = [](MatrixOf<Real>* to, int i, int j, const Real& value) {
-    if (i >= j) (*to)(i, j) += value;
+  const auto add = [](MatrixOf<Real>* target, int i, int j, const Real& value) {
+    if (i >= j) (*target)(i, j) += value;
   };
   for (const Sample& sample : samples_) {
     for (int c = 0; c < kChannels; ++c) {
@@ -470,8 +470,8 @@ VectorOf<Real> ReferenceProblem<Real>::ProjectedAngles() const {
   VectorOf<Real> result(axis.size);
   for (int k = 0; k < axis.size; ++k) {
     if (!axis.polar()) {
-      const auto edge = [&](int of) {
-        const Real root = static_cast<Real>(of) / axis.size;
+      const auto edge = [&](int bin) {
+        const Real root = static_cast<Real>(bin) / axis.size;
         return static_cast<Real>(root * root * right_angle);
       };
       result(k) = 2 * right_angle * (sin2(edge(k + 1)) - sin2(edge(k)));
@@ -529,12 +529,12 @@ bool ReferenceProblem<Real>::FillUnobserved(Factor factor, int begin, VectorOf<R
       (*x)(ring + k) = (1 - t) * before + t * after;
     }
   }
-  const auto copy = [&](int from, int to) {
-    if (from < 0 || from >= rings || !filled[from] || filled[to]) return;
+  const auto copy = [&](int from, int target) {
+    if (from < 0 || from >= rings || !filled[from] || filled[target]) return;
     for (int k = 0; k < columns; ++k) {
-      (*x)(begin + to * columns + k) = (*x)(begin + from * columns + k);
+      (*x)(begin + target * columns + k) = (*x)(begin + from * columns + k);
     }
-    filled[to] = true;
+    filled[target] = true;
   };
   for (int a = 1; a < rings; ++a) copy(a - 1, a);
   for (int a = rings - 2; a >= 0; --a) copy(a + 1, a);

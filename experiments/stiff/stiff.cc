@@ -139,8 +139,8 @@ void Print(const Json& result) {
 // 0 if no run left a number that is none, or raised E.
 int Main() {
   if (FLAGS_list) {
-    for (const StiffCase& of : StiffCases()) {
-      std::printf("%-20s %s\n", of.name.c_str(), of.description.c_str());
+    for (const StiffCase& stiff_case : StiffCases()) {
+      std::printf("%-20s %s\n", stiff_case.name.c_str(), stiff_case.description.c_str());
     }
     return 0;
   }

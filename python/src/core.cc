@@ -148,7 +148,7 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
   const size_t count = out.shape(0);
   CheckWidth(out, kChannels);
   const Directions<Real> in(wi, count, "wi"), away(wo, count, "wo");
-  Real* to = out.data();
+  Real* next = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
   Block<std::array<Real, 3>> incident, outgoing;
@@ -158,7 +158,7 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
                 {values.data(), size});
     for (size_t k = 0; k < size; ++k) {
       const Real scale = cosine ? std::max(outgoing[k][2], Real{0}) : Real{1};
-      for (const Real f : values[k]) *to++ = f * scale;
+      for (const Real f : values[k]) *next++ = f * scale;
     }
   });
 }
@@ -171,7 +171,7 @@ void EvalComponents(const Material& material, const Input<Real>& wi, const Input
   const int lobes = material.spec().lobes;
   CheckWidth(out, static_cast<size_t>((1 + lobes) * kChannels));
   const Directions<Real> in(wi, count, "wi"), away(wo, count, "wo");
-  Real* to = out.data();
+  Real* next = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
   std::array<typename Bsdf<Real>::Colour, kMaxLobes> values{};
@@ -179,8 +179,8 @@ void EvalComponents(const Material& material, const Input<Real>& wi, const Input
     const auto i = in[k], o = away[k];
     const bool above = i[2] > 0 && o[2] > 0;
     bsdf.LobeValues(i, o, values.data());
-    for (const Real d : bsdf.diffuse()) *to++ = above ? d : Real{0};
-    for (int m = 0; m < lobes; ++m) to = std::copy(values[m].begin(), values[m].end(), to);
+    for (const Real d : bsdf.diffuse()) *next++ = above ? d : Real{0};
+    for (int m = 0; m < lobes; ++m) next = std::copy(values[m].begin(), values[m].end(), next);
   }
 }
 
@@ -207,7 +207,7 @@ void Sample(const Material& material, const Input<Real>& wi, const Input<Real>& 
   CheckWidth(out, 7);
   const Directions<Real> in(wi, count, "wi");
   const Rows<Real, 2> numbers(u, count, "u");
-  Real* to = out.data();
+  Real* next = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
   Block<std::array<Real, 3>> incident;
@@ -217,9 +217,9 @@ void Sample(const Material& material, const Input<Real>& wi, const Input<Real>& 
     bsdf.SamplesOfWo(Gather(in, begin, size, &incident), Gather(numbers, begin, size, &pairs),
                      {samples.data(), size});
     for (size_t k = 0; k < size; ++k) {
-      to = std::copy(samples[k].wo.begin(), samples[k].wo.end(), to);
-      *to++ = samples[k].pdf;
-      to = std::copy(samples[k].weight.begin(), samples[k].weight.end(), to);
+      next = std::copy(samples[k].wo.begin(), samples[k].wo.end(), next);
+      *next++ = samples[k].pdf;
+      next = std::copy(samples[k].weight.begin(), samples[k].weight.end(), next);
     }
   });
 }
@@ -229,12 +229,12 @@ void Albedo(const Material& material, const Input<Real>& wi, const Output<Real>&
   const size_t count = out.shape(0);
   CheckWidth(out, kChannels);
   const Directions<Real> in(wi, count, "wi");
-  Real* to = out.data();
+  Real* next = out.data();
   const nb::gil_scoped_release released;
   const Bsdf<Real>& bsdf = material.Of<Real>();
   for (size_t k = 0; k < count; ++k) {
     const auto albedo = bsdf.Albedo(in[k]);
-    to = std::copy(albedo.begin(), albedo.end(), to);
+    next = std::copy(albedo.begin(), albedo.end(), next);
   }
 }
 

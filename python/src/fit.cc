@@ -38,7 +38,7 @@ namespace trilobe::python {
 namespace {
 
 // What the thread that fits tells the one that waits for it, and is told.
-class Progress {
+class RunningFit {
  public:
   void Stop() { stopped_ = true; }
   bool stopped() const { return stopped_; }
@@ -171,8 +171,8 @@ SolverOptions MakeOptions(const std::vector<std::pair<const SolverOption*, Optio
   for (const SolverOption* const option : OptionsReadBy(solver.options)) {
     if (option->help.empty()) continue;
     std::optional<OptionValue> value;
-    for (const auto& [of, is] : given) {
-      if (of == option) value = is;
+    for (const auto& [name, is] : given) {
+      if (name == option) value = is;
     }
     if (!value && !option->unit) continue;
     if (!value) value = OptionValue(option->unit->default_value);
@@ -222,7 +222,7 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
 }
 
 Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict& solver_options,
-               Progress* progress) {
+               RunningFit* running) {
   FitOptions fit_options = OptionsOf(options, solver_options);
   const std::shared_ptr<const Measurement> data = measured.data;
   FitReport report;
@@ -232,9 +232,9 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   const nb::gil_scoped_release released;
   { const BlasCall memory_is_there; }
   Outcome outcome;
-  fit_options.stop = [progress] { return progress->stopped(); };
+  fit_options.stop = [running] { return running->stopped(); };
   fit_options.on_begin = [&outcome] { outcome.begun = true; };
-  fit_options.on_progress = [progress](const IterationRecord& record) { progress->Show(record); };
+  fit_options.on_progress = [running](const IterationRecord& record) { running->Show(record); };
   const FitResult fit = Fit(*data, fit_options);
   outcome.interrupted = fit.interrupted;
   if (!outcome.begun) return outcome;
@@ -307,10 +307,10 @@ nb::list Names(const std::vector<T>& entries) {
 }  // namespace
 
 void BindFit(nb::module_* module) {
-  nb::class_<Progress>(*module, "Progress", "How far a fit has come; and the way to stop it.")
+  nb::class_<RunningFit>(*module, "RunningFit", "How far a fit has come; and the way to stop it.")
       .def(nb::init<>())
-      .def("stop", &Progress::Stop)
-      .def("latest", &Progress::Latest);
+      .def("stop", &RunningFit::Stop)
+      .def("latest", &RunningFit::Latest);
   nb::class_<Outcome>(*module, "Outcome", "What a fit has come to.")
       .def_ro("begun", &Outcome::begun)
       .def_ro("interrupted", &Outcome::interrupted)
@@ -325,7 +325,7 @@ void BindFit(nb::module_* module) {
                    })
       .def("trace", &TraceColumns);
   module->def("fit", &RunFit, nb::arg("measured"), nb::arg("options"), nb::arg("solver_options"),
-              nb::arg("progress"));
+              nb::arg("running"));
   module->def("solvers", &SolverList);
   module->def("initial_models", [] { return Names(InitialModels()); });
   module->def("weightings", [] { return Names(Weightings()); });

@@ -181,13 +181,13 @@ def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:
 def _run(data: Measurement, options: dict[str, Any], solver_options: dict[str, Any], progress: bool) -> Any:
     """Fits in a thread, so that this one hears Ctrl-C whatever C++ does."""
     module = fits()
-    progress = module.Progress()
+    running = module.RunningFit()
     ended: dict[str, Any] = {}
     done = threading.Event()  # as join() forgets the thread when Ctrl-C ends it
 
     def work() -> None:
         try:
-            ended["outcome"] = module.fit(data._data, options, solver_options, progress)
+            ended["outcome"] = module.fit(data._data, options, solver_options, running)
         except BaseException as error:
             ended["error"] = error
         finally:
@@ -201,9 +201,9 @@ def _run(data: Measurement, options: dict[str, Any], solver_options: dict[str, A
         while not done.is_set():
             try:
                 done.wait(_POLL_SECONDS)
-                bar.show(*progress.latest())
+                bar.show(*running.latest())
             except KeyboardInterrupt:
-                progress.stop()
+                running.stop()
                 if stopped:
                     raise
                 stopped = True

@@ -144,14 +144,14 @@ void SolveNonnegativeLeastSquares(std::span<const double> H_values,
     C(k, k) = 1 + kPenalty;
   }
   const Vector delta = ActiveSet(C, h, lower).Solve();
-  Vector moved(n), to(n);
+  Vector moved(n), solution(n);
   for (int k = 0; k < n; ++k) {
-    to[k] = delta[k] > lower[k] ? x[k] + delta[k] * scale[k] : scale[k] > 0 ? 0 : x[k];
-    to[k] = std::max(to[k], 0.0);
-    moved[k] = to[k] - x[k];
+    solution[k] = delta[k] > lower[k] ? x[k] + delta[k] * scale[k] : scale[k] > 0 ? 0 : x[k];
+    solution[k] = std::max(solution[k], 0.0);
+    moved[k] = solution[k] - x[k];
   }
-  if (to.maxCoeff() <= kMaxParameter && Lowers(H, g, E, moved)) {
-    std::copy_n(to.data(), n, x.data());
+  if (solution.maxCoeff() <= kMaxParameter && Lowers(H, g, E, moved)) {
+    std::copy_n(solution.data(), n, x.data());
   } else {
     MinimizeOneByOne(H, g, x);
   }

@@ -281,9 +281,9 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
 
   std::string written = "a folder each";
   if (FLAGS_shard.empty()) {
-    WriteFile(summary.PathOf(kTableName), [&](std::ostream& to) { to << FitsCsv(outcomes); });
+    WriteFile(summary.PathOf(kTableName), [&](std::ostream& out) { out << FitsCsv(outcomes); });
     WriteFile(summary.PathOf(kPageName),
-              [&](std::ostream& to) { to << FitsPage(outcomes, kTableName); });
+              [&](std::ostream& out) { out << FitsPage(outcomes, kTableName); });
     written += std::string(", ") + kTableName + ", " + kPageName;
   }
   const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);

@@ -159,18 +159,18 @@ int RunSceneFit(const std::string& path) {
     // Should the program be killed, the next run knows by this what there may be.
     if (!begun) {
       const std::string plan = plan_text({{"unfinished", true}}, names);
-      folder.WriteAhead(kPlanName, [&](std::ostream& to) { to << plan; });
+      folder.WriteAhead(kPlanName, [&](std::ostream& out) { out << plan; });
       begun = true;
     }
-    folder.Write(fit.name + ".json", [&](std::ostream& to) { to << text; });
+    folder.Write(fit.name + ".json", [&](std::ostream& out) { out << text; });
   });
   std::ostringstream text;
   PrintPlan(run, text);
   std::cout << text.str();
   if (!run.fits.empty()) {
-    folder.Write(kPlanTextName, [&](std::ostream& to) { to << text.str(); });
+    folder.Write(kPlanTextName, [&](std::ostream& out) { out << text.str(); });
     const std::string plan = plan_text(PlanToJson(run), folder.Files());
-    folder.Write(kPlanName, [&](std::ostream& to) { to << plan; });
+    folder.Write(kPlanName, [&](std::ostream& out) { out << plan; });
     std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
               << kPlanTextName << " in " << Printable(out) << "\n";
   }

@@ -109,9 +109,9 @@ int RunScore(std::span<const std::string> arguments) {
                              : ScoreModel(objective, model)};
   std::optional<SeenError> seen;
   if (pictured.empty()) {
-    const BrdfSamples& of = objective.samples();
-    seen = CompareSamples(
-        of, other ? ValuesAt(fitted.angular, of) : EvaluateSamples(model, of, threads));
+    const BrdfSamples& compared = objective.samples();
+    seen = CompareSamples(compared, other ? ValuesAt(fitted.angular, compared)
+                                          : EvaluateSamples(model, compared, threads));
   } else {
     scored.appearance = CompareAppearance(pictured, fitted, appearance_options);
   }

@@ -27,8 +27,8 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
                     const AppearanceOptions& appearance) {
   const ModelSpec& spec = model.model.spec();
   PageContents contents;
-  const std::string& of = measured != nullptr ? measured->source : model.fit.source;
-  contents.name = FitNameOf(of.empty() ? path : of);
+  const std::string& source = measured != nullptr ? measured->source : model.fit.source;
+  contents.name = FitNameOf(source.empty() ? path : source);
   contents.parameters = model.layout ? model.layout->num_parameters(spec) : spec.num_parameters();
   contents.trace.assign(trace.begin(), trace.end());
   const Environment& environment = EnvironmentOf(appearance);

@@ -18,8 +18,8 @@ Direction DirectionAt(const Environment& environment, double row, double column)
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
-double SmoothStep(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+double SmoothStep(double from, double end, double x) {
+  const double t = std::clamp((x - from) / (end - from), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 

@@ -27,12 +27,12 @@ using Lanes4 = double __attribute__((vector_size(4 * sizeof(double))));
 using Lanes8 = double __attribute__((vector_size(8 * sizeof(double))));
 
 template <typename Lanes>
-TRILOBE_ALWAYS_INLINE void LoadLanes(const double* from, Lanes* to) {
-  std::memcpy(to, from, sizeof(Lanes));
+TRILOBE_ALWAYS_INLINE void LoadLanes(const double* from, Lanes* target) {
+  std::memcpy(target, from, sizeof(Lanes));
 }
 template <typename Lanes>
-TRILOBE_ALWAYS_INLINE void StoreLanes(const Lanes& from, double* to) {
-  std::memcpy(to, &from, sizeof(Lanes));
+TRILOBE_ALWAYS_INLINE void StoreLanes(const Lanes& from, double* target) {
+  std::memcpy(target, &from, sizeof(Lanes));
 }
 // y += a x, for `size` numbers in whole vectors of four.
 TRILOBE_ALWAYS_INLINE void AddScaled(int size, double a, const double* x, double* y) {

@@ -22,18 +22,18 @@ bool IsControl(std::string_view character) {
   return std::ranges::find(kFormat, character) != std::end(kFormat);
 }
 
-void AppendEscaped(char c, std::string* to) {
+void AppendEscaped(char c, std::string* escaped) {
   constexpr std::string_view kControls = "\n\r\t", kLetters = "nrt";
   constexpr std::string_view kDigits = "0123456789abcdef";
-  *to += '\\';
+  *escaped += '\\';
   if (const size_t k = kControls.find(c); k != std::string_view::npos) {
-    *to += kLetters[k];
+    *escaped += kLetters[k];
     return;
   }
   const auto byte = static_cast<unsigned char>(c);
-  *to += 'x';
-  *to += kDigits[byte >> 4];
-  *to += kDigits[byte & 15];
+  *escaped += 'x';
+  *escaped += kDigits[byte >> 4];
+  *escaped += kDigits[byte & 15];
 }
 
 }  // namespace

@@ -46,8 +46,9 @@ PairError ErrorOfPairs(std::span<const std::pair<Rgb, Rgb>> pairs) {
   return Summarize(std::move(differences));
 }
 
-std::string ValidText(const BinCounts& counts, const std::string& of) {
-  return std::to_string(counts.valid) + " of " + std::to_string(counts.total) + " " + of + " valid";
+std::string ValidText(const BinCounts& counts, const std::string& whole) {
+  return std::to_string(counts.valid) + " of " + std::to_string(counts.total) + " " + whole +
+         " valid";
 }
 
 BinCounts CountBins(const BrdfTable& table) {

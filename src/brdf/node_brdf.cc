@@ -64,11 +64,11 @@ std::vector<Rgb> Filled(const NodeTable& table) {
     const size_t from = reached[next];
     const int i = static_cast<int>(from / grid.nodes());
     const int o = static_cast<int>(from % grid.nodes());
-    const auto hand_on = [&](size_t to) {
-      if (known[to]) return;
-      known[to] = true;
-      rho[to] = rho[from];
-      reached.push_back(to);
+    const auto hand_on = [&](size_t target) {
+      if (known[target]) return;
+      known[target] = true;
+      rho[target] = rho[from];
+      reached.push_back(target);
     };
     for (const int other : neighbours(i)) hand_on(IndexOf(grid, other, o));
     for (const int other : neighbours(o)) hand_on(IndexOf(grid, i, other));

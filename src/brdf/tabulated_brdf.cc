@@ -21,10 +21,10 @@ void FillFromNearest(int* first, int count, int stride, bool cyclic) {
   for (int i = 0; i < count; ++i) {
     if (at(i) != kNone) distance[i] = 0;
   }
-  const auto carry = [&](int from, int to) {
-    if (distance[from] + 1 >= distance[to]) return;
-    distance[to] = distance[from] + 1;
-    at(to) = at(from);
+  const auto carry = [&](int from, int target) {
+    if (distance[from] + 1 >= distance[target]) return;
+    distance[target] = distance[from] + 1;
+    at(target) = at(from);
   };
   for (int i = 1; i < steps; ++i) carry((i - 1) % count, i % count);
   for (int i = steps - 1; i > 0; --i) carry(i % count, (i - 1) % count);

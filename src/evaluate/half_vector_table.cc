@@ -103,8 +103,8 @@ typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_i
   at.end = end;
   const int row = IntervalOfY(end);
   const Real part = end - y_[row], width = y_[row + 1] - y_[row];
-  const Real from = OfRow(at, row), to = OfRow(at, row + 1);
-  at.total = Cumulated(at, row) + part * (from + (to - from) * part / (2 * width));
+  const Real lower = OfRow(at, row), upper = OfRow(at, row + 1);
+  at.total = Cumulated(at, row) + part * (lower + (upper - lower) * part / (2 * width));
   return at;
 }
 
@@ -183,8 +183,8 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
   const int row = RowWith(at, wanted);
   const Real before = Cumulated(at, row), mass = Cumulated(at, row + 1) - before;
   const Real part = mass > 0 ? std::clamp((wanted - before) / mass, Real{0}, Real{1}) : Real{0};
-  const Real from = OfRow(at, row), to = OfRow(at, row + 1);
-  const Real t = InvertLinearIntegral(part * (from + to) / 2, from, to);
+  const Real lower = OfRow(at, row), upper = OfRow(at, row + 1);
+  const Real t = InvertLinearIntegral(part * (lower + upper) / 2, lower, upper);
   // The row of values there, as floats: less exact than the numbers are, but as good as a draw.
   constexpr int kMost = (kMaxS - 1) / 4;
   Four<float> fours[kMost];

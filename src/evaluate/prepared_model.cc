@@ -142,11 +142,11 @@ void PreparedModel<Real>::SetTables(const FactorModel& model, Factor factor, Tab
   for (int t = 0; t < tables->tables; ++t) {
     const std::span<const double> table = model.table(factor, t);
     const int lane = tables->LaneOf(t);
-    Quad* to = &tables->entries[lane / 4];
+    Quad* target = &tables->entries[lane / 4];
     for (int ring = 0; ring < rings; ++ring) {
-      for (int k = 0; k < nodes + more; ++k, to += tables->vectors) {
+      for (int k = 0; k < nodes + more; ++k, target += tables->vectors) {
         const int node = axis.polar() ? k % nodes : std::clamp(k - 1, 0, nodes - 1);
-        to->lane[lane % 4] = static_cast<Real>(table[ring * nodes + node]);
+        target->lane[lane % 4] = static_cast<Real>(table[ring * nodes + node]);
       }
     }
   }
@@ -162,9 +162,9 @@ void PreparedModel<Real>::SetSpline(const FactorModel& model) {
     pieces.insert(pieces.end(), 2, {values.back(), values.back(), 0, 0});
     for (size_t k = 0; k < pieces.size(); ++k) {
       const CatmullRom::Piece& piece = pieces[k];
-      Quad* const to = &g_pieces_[(k * g_.vectors + lane / 4) * 4];
+      Quad* const target = &g_pieces_[(k * g_.vectors + lane / 4) * 4];
       const double numbers[] = {piece.f0, piece.f1, piece.a0, piece.a1};
-      for (int n = 0; n < 4; ++n) to[n].lane[lane % 4] = static_cast<Real>(numbers[n]);
+      for (int n = 0; n < 4; ++n) target[n].lane[lane % 4] = static_cast<Real>(numbers[n]);
     }
   };
   std::vector<double> cosines(spline.nodes());

@@ -147,9 +147,9 @@ void ReadStretch(const Node& root, ModelSpec* spec) {
   if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) return;
   const Node node = root["stretch"];
   if (spec->anisotropic()) node.Fail("is for isotropic models");
-  const auto read = [](const Node& of) {
-    of.CheckObject();
-    return Stretch{.along = of["along"].Exponent(), .across = of["across"].Exponent()};
+  const auto read = [](const Node& table) {
+    table.CheckObject();
+    return Stretch{.along = table["along"].Exponent(), .across = table["across"].Exponent()};
   };
   if (node.is_object()) {  // that of all lobes
     spec->stretches = read(node);

@@ -88,27 +88,28 @@ class NoHarm {
 
 // As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
 // the fit's spec.
-void MatchReflectanceOf(const Objective& of, const StopCheck& stop, Looks* looks,
+void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* looks,
                         FinishedFit* fit) {
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error
   const FactorModel& model = fit->model;
-  if (!ReflectanceOf(of, model).IsOff()) return;  // and needs no prior
+  if (!ReflectanceOf(solved, model).IsOff()) return;  // and needs no prior
   const bool thinned = fit->layout && *fit->layout != TableLayout::Full(model.spec());
-  const TableLayout layout = thinned ? *fit->layout : UntiedEntries(of.coverage(), model);
+  const TableLayout layout = thinned ? *fit->layout : UntiedEntries(solved.coverage(), model);
   // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
   // entries that hardly a sample reads are held by what the model says where nothing was measured.
   const std::vector<double> all_covered(model.parameters().size(), 1.0);
-  const Objective held = thinned ? UnmeasuredPrior(of, model).With(of) : of;
+  const Objective held = thinned ? UnmeasuredPrior(solved, model).With(solved) : solved;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
-    std::optional<MatchedModel> matched = MatchReflectance(of, held, model, layout, price, stop);
+    std::optional<MatchedModel> matched =
+        MatchReflectance(solved, held, model, layout, price, stop);
     // A lower price mends still less.
     if (!matched || matched->error_after > kWorthwhile * matched->error_before) return;
     if (thinned) {
-      Canonicalize(all_covered, &matched->model, LobeOrder::kAsTheyAre, of.num_threads());
+      Canonicalize(all_covered, &matched->model, LobeOrder::kAsTheyAre, solved.num_threads());
     } else {
-      Canonicalize(of, &matched->model);
+      Canonicalize(solved, &matched->model);
     }
     if (!no_harm) no_harm.emplace(fit->objective, model, looks);
     if (!(*no_harm)(matched->model)) continue;
@@ -126,17 +127,17 @@ void MatchReflectanceOf(const Objective& of, const StopCheck& stop, Looks* looks
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
   // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
-  Objective of =
+  Objective solved =
       options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
   std::optional<CorrectedOvershoot> overshoot;
   std::optional<double> tied;
   if (options.prior != nullptr) {
-    overshoot = CorrectOvershoot(*options.prior, options.stop, &of, &model);
+    overshoot = CorrectOvershoot(*options.prior, options.stop, &solved, &model);
   }
   if (!options.stop()) {
-    const double before = of.data().Value(model);
-    if (TieEntriesAtDataEdge(of, &model, options.stop) && before > 0) {
-      tied = of.data().Value(model) / before - 1;
+    const double before = solved.data().Value(model);
+    if (TieEntriesAtDataEdge(solved, &model, options.stop) && before > 0) {
+      tied = solved.data().Value(model) / before - 1;
     }
   }
   Canonicalize(objective, &model);
@@ -155,7 +156,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
         return looks->Beyond(candidate);
       };
     }
-    ChosenModel chosen = ChooseModel(of, fit.model, choice);
+    ChosenModel chosen = ChooseModel(solved, fit.model, choice);
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
     fit.layout = std::move(chosen.layout);

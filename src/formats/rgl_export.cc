@@ -268,11 +268,11 @@ std::vector<float> SpectraOf(const std::vector<float>& rgb, const std::vector<do
   int off = 0;
   for (size_t slice = 0; slice < slices; ++slice) {
     const float* from = &rgb[slice * kChannels * nodes];
-    float* to = &spectra[slice * wavelengths.size() * nodes];
+    float* target = &spectra[slice * wavelengths.size() * nodes];
     for (size_t node = 0; node < nodes; ++node) {
       const auto spectrum = spectrum_of({from[node], from[nodes + node], from[2 * nodes + node]});
       for (size_t l = 0; l < wavelengths.size(); ++l) {
-        to[l * nodes + node] = static_cast<float>(spectrum[l]);
+        target[l * nodes + node] = static_cast<float>(spectrum[l]);
       }
       result->color_error = std::max(result->color_error, spectrum_of.error());
       if (spectrum_of.error() > 1e-3) ++off;

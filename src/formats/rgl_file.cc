@@ -162,10 +162,10 @@ std::array<double, 2> FoldingSigns(int symmetry, const Direction& wi) {
 // The directions that the symmetry makes of stored ones: copy 0 is themselves, 1 turns by 180
 // degrees, 2 and 3 mirror at the x and y axes.
 SphericalAngles Copied(const SphericalAngles& at, int copy) {
-  const auto of = [copy](double phi) {
+  const auto index = [copy](double phi) {
     return copy == 0 ? phi : copy == 1 ? phi + kPi : copy == 2 ? -phi : kPi - phi;
   };
-  return {at.theta_i, of(at.phi_i), at.theta_o, of(at.phi_o)};
+  return {at.theta_i, index(at.phi_i), at.theta_o, index(at.phi_o)};
 }
 
 Direction WithSigns(const Direction& w, const std::array<double, 2>& signs) {

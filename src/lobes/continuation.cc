@@ -60,10 +60,10 @@ void FillUnobservedNodes(const Axis& axis, std::span<const double> coverage,
       left = b;
     }
   }
-  const auto copy = [&](int from, int to) {
-    if (from < 0 || from >= rings || !filled[from] || filled[to]) return;
-    std::ranges::copy(table.subspan(from * columns, columns), table.begin() + to * columns);
-    filled[to] = true;
+  const auto copy = [&](int from, int target) {
+    if (from < 0 || from >= rings || !filled[from] || filled[target]) return;
+    std::ranges::copy(table.subspan(from * columns, columns), table.begin() + target * columns);
+    filled[target] = true;
   };
   for (int a = 1; a < rings; ++a) copy(a - 1, a);
   for (int a = rings - 2; a >= 0; --a) copy(a + 1, a);

@@ -75,11 +75,11 @@ std::vector<double> ObservedEntries(const std::vector<bool>& unobserved) {
 }
 
 void CopyUnobservedParameters(std::span<const double> coverage, const FactorModel& from,
-                              FactorModel* to) {
-  CheckSameSpec(from.spec(), NotNull(to, "the model").spec());
+                              FactorModel* target) {
+  CheckSameSpec(from.spec(), NotNull(target, "the model").spec());
   CheckCoverage(coverage, from);
   for (size_t k = 0; k < coverage.size(); ++k) {
-    if (!(coverage[k] > 0)) to->parameters()[k] = from.parameters()[k];
+    if (!(coverage[k] > 0)) target->parameters()[k] = from.parameters()[k];
   }
 }
 

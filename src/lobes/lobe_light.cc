@@ -142,12 +142,12 @@ LobeLight Darkness(const FactorModel& model) {
 void Add(const Part& part, Part* sum) {
   sum->all += part.all;
   const LobeLight& from = part.light;
-  LobeLight& to = sum->light;
-  for (int c = 0; c < kChannels; ++c) to.diffuse[c] += from.diffuse[c];
+  LobeLight& light = sum->light;
+  for (int c = 0; c < kChannels; ++c) light.diffuse[c] += from.diffuse[c];
   for (size_t m = 0; m < from.lobes.size(); ++m) {
-    for (int c = 0; c < kChannels; ++c) to.lobes[m][c] += from.lobes[m][c];
+    for (int c = 0; c < kChannels; ++c) light.lobes[m][c] += from.lobes[m][c];
   }
-  for (size_t k = 0; k < from.through.size(); ++k) to.through[k] += from.through[k];
+  for (size_t k = 0; k < from.through.size(); ++k) light.through[k] += from.through[k];
 }
 
 // Adds what lobes reflect where they read the entries of D at one theta_h, a ring.

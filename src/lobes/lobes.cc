@@ -109,8 +109,8 @@ FactorModel WithLobesMerged(const FactorModel& model, int lobe, int other) {
       const double mine = Size(model, lobe, channels), others = Size(model, other, channels);
       const double share = mine + others > 0 ? others / (mine + others) : 0;
       const auto with = model.table(factor, spec.table(factor, other, channels.begin));
-      const auto to = merged.table(factor, t);
-      for (size_t k = 0; k < to.size(); ++k) to[k] += share * (with[k] - to[k]);
+      const auto target = merged.table(factor, t);
+      for (size_t k = 0; k < target.size(); ++k) target[k] += share * (with[k] - target[k]);
     }
   }
   for (int c = 0; c < kChannels; ++c) merged.s(lobe)[c] += model.s(other)[c];

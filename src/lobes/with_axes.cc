@@ -17,9 +17,9 @@ FactorModel WithAxes(const FactorModel& model, const ModelSpec& spec) {
   std::ranges::copy(model.d(), result.d().begin());
   for (int m = 0; m < spec.lobes; ++m) std::ranges::copy(model.s(m), result.s(m).begin());
   for (const Factor factor : kFactors) {
-    const Axis &from = model.spec().axis(factor), &to = spec.axis(factor);
-    for (int k = 0; k < to.size; ++k) {
-      const Stencil at = from.At(to.Theta(k), to.Phi(k));
+    const Axis &from = model.spec().axis(factor), &axis = spec.axis(factor);
+    for (int k = 0; k < axis.size; ++k) {
+      const Stencil at = from.At(axis.Theta(k), axis.Phi(k));
       for (int t = 0; t < spec.num_tables(factor); ++t) {
         // A spline may undershoot.
         result.table(factor, t)[k] = std::max(at(model.table(factor, t)), 0.0);

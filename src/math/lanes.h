@@ -36,13 +36,13 @@ using Four = typename FourOf<Real>::Type;
 
 template <typename Real>
 TRILOBE_ALWAYS_INLINE Four<Real> Load(const Real* from) {
-  Four<Real> to;
-  std::memcpy(&to, from, sizeof(to));
-  return to;
+  Four<Real> loaded;
+  std::memcpy(&loaded, from, sizeof(loaded));
+  return loaded;
 }
 template <typename Real>
-TRILOBE_ALWAYS_INLINE void Store(const Four<Real>& from, Real* to) {
-  std::memcpy(to, &from, sizeof(from));
+TRILOBE_ALWAYS_INLINE void Store(const Four<Real>& from, Real* target) {
+  std::memcpy(target, &from, sizeof(from));
 }
 template <typename Real>
 TRILOBE_ALWAYS_INLINE Four<Real> Broadcast(Real x) {

@@ -27,7 +27,7 @@ struct ReadJob {
     std::array<const double*, Stencil::kMaxSize> weight;
     const double* table;
     int lanes;
-    double* lookup;
+    double* values;
     bool adds;  // to what is there: each stretch reads D of its own lobes
   };
   std::array<Lookup, LookupOrder::kMost> lookups;
@@ -40,32 +40,32 @@ struct ReadJob {
 
 // Of the lobes in a channel.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void LobesOf(LaneLayout layout, int c, const double* lookup, Lanes4* of) {
+TRILOBE_ALWAYS_INLINE void LobesOf(LaneLayout layout, int c, const double* lookup, Lanes4* lobes) {
   const double* const first = lookup + layout.First(c);
   for (int b = 0; b < kBlocks; ++b) {
     if (layout.per_lobe) {
-      LoadLanes(first + kVector * b, &of[b]);
+      LoadLanes(first + kVector * b, &lobes[b]);
     } else {
-      of[b] = Lanes4{} + *first;
+      lobes[b] = Lanes4{} + *first;
     }
   }
 }
 
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE double Sum(const Lanes4* of) {
-  Lanes4 sum = of[0];
-  for (int b = 1; b < kBlocks; ++b) sum += of[b];
+TRILOBE_ALWAYS_INLINE double Sum(const Lanes4* lobes) {
+  Lanes4 sum = lobes[0];
+  for (int b = 1; b < kBlocks; ++b) sum += lobes[b];
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 // The reverse of LobesOf, for derivatives.
 template <int kBlocks>
-TRILOBE_ALWAYS_INLINE void ToTables(LaneLayout layout, int c, const Lanes4* of, double* slope) {
+TRILOBE_ALWAYS_INLINE void ToTables(LaneLayout layout, int c, const Lanes4* lobes, double* slope) {
   double* const first = slope + c * layout.size + layout.First(c);
   if (layout.per_lobe) {
-    for (int b = 0; b < kBlocks; ++b) StoreLanes(of[b], first + kVector * b);
+    for (int b = 0; b < kBlocks; ++b) StoreLanes(lobes[b], first + kVector * b);
   } else {
-    *first = Sum<kBlocks>(of);
+    *first = Sum<kBlocks>(lobes);
   }
 }
 
@@ -86,17 +86,17 @@ TRILOBE_ALWAYS_INLINE void ReadSamples(const ReadJob& job) {
     const int n = j - job.begin;
     std::array<double*, LookupOrder::kMost> R;
     for (int r = 0; r < job.num_lookups; ++r) {
-      const ReadJob::Lookup& of = job.lookups[r];
-      const Cell& cell = of.cells[of.cell[j]];
-      const int lanes = kOneVector ? kVector : of.lanes;
-      R[r] = of.lookup + n * lanes;
+      const ReadJob::Lookup& lookup = job.lookups[r];
+      const Cell& cell = lookup.cells[lookup.cell[j]];
+      const int lanes = kOneVector ? kVector : lookup.lanes;
+      R[r] = lookup.values + n * lanes;
       for (int b = 0; b < lanes; b += kVector) {
         Lanes4 sum = {};
-        if (of.adds) LoadLanes(R[r] + b, &sum);
+        if (lookup.adds) LoadLanes(R[r] + b, &sum);
         for (int k = 0; k < cell.size; ++k) {
           Lanes4 entry;
-          LoadLanes(of.table + cell.entry[k] * lanes + b, &entry);
-          sum += of.weight[k][j] * entry;
+          LoadLanes(lookup.table + cell.entry[k] * lanes + b, &entry);
+          sum += lookup.weight[k][j] * entry;
         }
         StoreLanes(sum, R[r] + b);
       }
@@ -196,11 +196,12 @@ int BatchEvaluator::LookupOf(Factor factor, int table) const {
 
 void BatchEvaluator::SetModel(const FactorModel& model) {
   for (const Factor factor : kFactors) {
-    const TableLanes& of = lanes(factor);
+    const TableLanes& layout = lanes(factor);
     for (int t = 0; t < spec_.num_tables(factor); ++t) {
       const std::span<const double> table = model.table(factor, t);
-      std::vector<double>& to = tables_[LookupOf(factor, t)];
-      for (size_t k = 0; k < table.size(); ++k) to[k * of.size + of.of_table[t]] = table[k];
+      std::vector<double>& target = tables_[LookupOf(factor, t)];
+      for (size_t k = 0; k < table.size(); ++k)
+        target[k * layout.size + layout.of_table[t]] = table[k];
     }
   }
   for (int c = 0; c < kChannels; ++c) {
@@ -240,7 +241,7 @@ void BatchEvaluator::Read(int begin, int end, Slopes slopes, Batch* batch) const
                       .weight = {},
                       .table = tables_[std::min(r, order.G_i())].data(),
                       .lanes = lanes(factor).size,
-                      .lookup = lookup.data(),
+                      .values = lookup.data(),
                       .adds = r > 0 && r < order.F()};
     const std::vector<std::vector<double>>& weight = samples_.lookups[r].weight;
     for (size_t k = 0; k < weight.size(); ++k) job.lookups[r].weight[k] = weight[k].data();

@@ -177,11 +177,11 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
   folded.inverse_cosines.resize(size);
   folded.lookups.resize(order.count());
   for (int r = 0; r < order.count(); ++r) {
-    FoldedSamples::Lookup& of = folded.lookups[r];
+    FoldedSamples::Lookup& lookup = folded.lookups[r];
     int width = 0;
     for (const Cell& cell : folded.cells_of(r)) width = std::max(width, cell.size);
-    of.cell.resize(size);
-    of.weight.assign(width, std::vector<double>(size));
+    lookup.cell.resize(size);
+    lookup.weight.assign(width, std::vector<double>(size));
   }
   for (int c = 0; c < kChannels; ++c) {
     folded.weight[c].resize(size);
@@ -192,10 +192,10 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
     const SampleStencils& at = samples[first.sample].stencils;
     folded.inverse_cosines[n] = at.inverse_cosines;
     for (int r = 0; r < order.count(); ++r) {
-      FoldedSamples::Lookup& of = folded.lookups[r];
+      FoldedSamples::Lookup& lookup = folded.lookups[r];
       const Stencil& stencil = StencilOf(at, order, r, first.exchanged);
-      of.cell[n] = first.cell[PlaceInItem(order, r)];
-      for (int k = 0; k < stencil.size; ++k) of.weight[k][n] = stencil.weight[k];
+      lookup.cell[n] = first.cell[PlaceInItem(order, r)];
+      for (int k = 0; k < stencil.size; ++k) lookup.weight[k][n] = stencil.weight[k];
     }
     for (int c = 0; c < kChannels; ++c) {
       double w = 0, rho = 0;

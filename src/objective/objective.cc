@@ -97,15 +97,15 @@ bool AllNonnegative(std::span<const double> weights) {  // or NaN, which E shows
 CoverageByChannel ScatteredCoverage(const FoldedSamples& samples, const ModelSpec& spec) {
   CoverageByChannel coverage;
   for (int c = 0; c < kChannels; ++c) {
-    FactorCoverage& of = coverage[c];
-    of.D.assign(samples.order.of_D, std::vector<double>(spec.d_axis.size, 0.0));
-    of.F.assign(spec.f_axis.size, 0.0);
-    of.G.assign(spec.g_axis.size, 0.0);
+    FactorCoverage& observed = coverage[c];
+    observed.D.assign(samples.order.of_D, std::vector<double>(spec.d_axis.size, 0.0));
+    observed.F.assign(spec.f_axis.size, 0.0);
+    observed.G.assign(spec.g_axis.size, 0.0);
     for (int r = 0; r < samples.order.count(); ++r) {
       const Factor factor = samples.order.factor(r);
-      std::vector<double>& table = factor == Factor::kD   ? of.D[r]
-                                   : factor == Factor::kF ? of.F
-                                                          : of.G;
+      std::vector<double>& table = factor == Factor::kD   ? observed.D[r]
+                                   : factor == Factor::kF ? observed.F
+                                                          : observed.G;
       const FoldedSamples::Lookup& lookup = samples.lookups[r];
       for (int j = 0; j < samples.size(); ++j) {
         const Cell& cell = samples.cells_of(factor)[lookup.cell[j]];
@@ -135,8 +135,8 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
                                               ? by_channel[c].D[spec.StretchOfTable(t)]
                                           : factor == Factor::kF ? by_channel[c].F
                                                                  : by_channel[c].G;
-        const std::span<double> to = coverage.table(factor, t);
-        for (size_t k = 0; k < to.size(); ++k) to[k] += from[k];
+        const std::span<double> target = coverage.table(factor, t);
+        for (size_t k = 0; k < target.size(); ++k) target[k] += from[k];
       }
     }
   }
@@ -146,9 +146,9 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
 }  // namespace
 
 struct Objective::Prepared {
-  Prepared(BrdfSamples all, const ModelSpec& of, const Weighting& weights, int num_threads)
-      : samples(Checked(std::move(all), of, num_threads)),
-        spec(of),
+  Prepared(BrdfSamples all, const ModelSpec& form, const Weighting& weights, int num_threads)
+      : samples(Checked(std::move(all), form, num_threads)),
+        spec(form),
         weighting(ForSamples(weights, samples, num_threads)) {
     bool nonnegative = true;
     if (ReadsBinByBin(spec, samples)) {

@@ -170,8 +170,8 @@ void WritePng(const std::string& path, int width, int height, const std::string&
   CheckNumber("the height of a picture", height, height >= 1, "1 or more");
   CheckSize("a picture", pixels.size(), static_cast<size_t>(width) * height * kChannels);
   std::string png;
-  const auto append = [](void* to, void* data, int size) {
-    static_cast<std::string*>(to)->append(static_cast<const char*>(data), size);
+  const auto append = [](void* written, void* data, int size) {
+    static_cast<std::string*>(written)->append(static_cast<const char*>(data), size);
   };
   if (stbi_write_png_to_func(append, &png, width, height, kChannels, pixels.data(),
                              width * kChannels) == 0) {

@@ -62,8 +62,8 @@ Rgb DifferenceColorAt(double position) {
 Rgb DifferenceColor(double delta_e) {
   int i = 0;
   while (i < kLastStop - 1 && delta_e > kDifferenceStops[i + 1].delta_e) ++i;
-  const double from = kDifferenceStops[i].delta_e, to = kDifferenceStops[i + 1].delta_e;
-  return DifferenceColorAt((i + (delta_e - from) / (to - from)) / kLastStop);
+  const double from = kDifferenceStops[i].delta_e, end = kDifferenceStops[i + 1].delta_e;
+  return DifferenceColorAt((i + (delta_e - from) / (end - from)) / kLastStop);
 }
 
 char Byte(double code) {
@@ -240,7 +240,7 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
   }
   const std::string psnr = figures.data();
   std::snprintf(figures.data(), figures.size(), "%s, mean ΔE %.2f, of %s", psnr.c_str(),
-                picture.error.mean_delta_e, picture.of.c_str());
+                picture.error.mean_delta_e, picture.subject.c_str());
   std::array<char, 100> exposed;
   std::snprintf(exposed.data(), exposed.size(), "; mean luminance %g, sRGB", kMeanLuminance);
   // Texts in lines from the bottom.

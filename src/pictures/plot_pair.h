@@ -13,9 +13,9 @@ struct PairPicture {
   std::string source;
   // Texts left of the squares that the pictures consist of, one above another; or none, of one.
   std::vector<std::string> rows;
-  SphereError error;  // the figures below
-  std::string of;     // what they are of
-  ImagePairs images;  // of these the map of differences shows what was measured
+  SphereError error;    // the figures below
+  std::string subject;  // what they are of
+  ImagePairs images;    // of these the map of differences shows what was measured
 };
 
 // Draws them side by side, exposed alike, and how far apart they are to the eye, in colours that

@@ -31,7 +31,7 @@ void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std
   PairPicture picture{.source = measured.source,
                       .rows = {},
                       .error = ErrorOf(RenderMeasuredPair(measured, fitted, options)),
-                      .of = MeasureOf(options),
+                      .subject = MeasureOf(options),
                       .images = {}};
   picture.images = RenderPicture(measured, fitted, Larger(options, kSizeOfTable));
   DrawImagePair(picture, options, path);
@@ -42,7 +42,7 @@ void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const st
   PairPicture picture{.source = measured.table().source,
                       .rows = {},
                       .error = ErrorOf(RenderMeasuredPair(measured, fitted, options)),
-                      .of = MeasureOf(options),
+                      .subject = MeasureOf(options),
                       .images = {}};
   picture.images = RenderPicture(measured, fitted, Shape::kSphere, Larger(options, kSizeOfNodes));
   DrawImagePair(picture, options, path);
@@ -59,7 +59,7 @@ void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std:
       .source = measured.table().source,
       .rows = {"light along the thread", "light across the thread"},
       .error = {},
-      .of = "this picture",
+      .subject = "this picture",
       .images = RenderPicture(measured, fitted, Shape::kCloth, Larger(options, kSizeOfCloth))};
   picture.error = ErrorOf(picture.images.counted);
   DrawImagePair(picture, options, path);

@@ -95,8 +95,8 @@ Reach ReachOf(const BrdfSamples& samples, const FactorModel& model, int num_thre
     const std::vector<double> largest = LargestChannels(pairs, model, num_threads);
     for (size_t k = 0; k < pairs.size(); ++k) {
       const bool within = std::max(pairs[k].theta_i, pairs[k].theta_o) <= reach.max_theta;
-      double& to = within ? reach.between : reach.beyond;
-      to = std::max(to, largest[k] / measured);
+      double& reached = within ? reach.between : reach.beyond;
+      reached = std::max(reached, largest[k] / measured);
     }
   }
   return reach;

@@ -92,8 +92,8 @@ BrdfSamples SamplesOf(const FactorModel& prior, std::vector<SphericalAngles> dir
 BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said, double weight) {
   samples.multiplicity.resize(samples.rho.size(), 1);
   samples.multiplicity.resize(samples.rho.size() + said.rho.size(), weight);
-  const auto append = [](const auto& from, auto* to) {
-    to->insert(to->end(), from.begin(), from.end());
+  const auto append = [](const auto& from, auto* target) {
+    target->insert(target->end(), from.begin(), from.end());
   };
   append(said.angles, &samples.angles);
   append(said.directions, &samples.directions);

@@ -223,9 +223,9 @@ class ModelSearch {
     if (!of_fit) prune.stop = options_.stop;
     PrunedModel pruned = Prune(prior.With(few_.For(model.spec(), weighting)), model, prune);
     if (!of_fit && options_.stop()) return;
-    const Objective to = prior.With(some_.For(pruned.model.spec(), weighting));
-    const Reduction stored(to.spec(), pruned.layout);
-    pruned.model = GoOn(to, pruned.model, options_.stop, &stored);
+    const Objective refitted = prior.With(some_.For(pruned.model.spec(), weighting));
+    const Reduction stored(refitted.spec(), pruned.layout);
+    pruned.model = GoOn(refitted, pruned.model, options_.stop, &stored);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
     Choose(pruned.model, pruned.layout, weighting);
   }
@@ -268,13 +268,13 @@ class ModelSearch {
     bool stretched = false;
     if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
         !fitted_.spec().stretches.any()) {
-      const Objective of = few_with_prior_.For(fitted_.spec(), objective_.weighting());
-      const SteppedModel start = FitStretches(of, fitted_, options_.stop);
+      const Objective few = few_with_prior_.For(fitted_.spec(), objective_.weighting());
+      const SteppedModel start = FitStretches(few, fitted_, options_.stop);
       if (!Fit({"stretched", start.model, objective_.weighting()})) return false;
       // Under other weights it may look better even where it does not under these.
       stretched = start.model.spec().stretches.any() &&
                   best_.candidates.back().E < (1 - kWorthwhile) * best_.candidates.front().E &&
-                  !SharesLess(of, few_.own().samples().size(), fitted_, start, options_.stop);
+                  !SharesLess(few, few_.own().samples().size(), fitted_, start, options_.stop);
       if (stretched) bases_.push_back(forms_.back());
     }
     if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
@@ -293,9 +293,9 @@ class ModelSearch {
                    FitAnew(few_with_prior_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
                    by_channel};
     if (stretched) {
-      const Objective of = few_with_prior_.For(fitted_.spec(), by_channel);
+      const Objective few = few_with_prior_.For(fitted_.spec(), by_channel);
       form = {"stretched, weighed by channel anew",
-              FitStretches(of, form.start, options_.stop).model, by_channel};
+              FitStretches(few, form.start, options_.stop).model, by_channel};
     }
     if (!Fit(form)) return false;
     bases_.push_back(forms_.back());
@@ -336,10 +336,10 @@ class ModelSearch {
                      TieRefit::kUntilBack);
         Thin(name, weighting, model);
       } else {
-        const Objective of = all_.For(model.spec(), weighting);
-        model = GoOn(of, model, options_.stop);
-        Canonicalize(of, &model);
-        model = Tied(of, model, options_.judge(model), TieRefit::kUntilSettled);
+        const Objective all = all_.For(model.spec(), weighting);
+        model = GoOn(all, model, options_.stop);
+        Canonicalize(all, &model);
+        model = Tied(all, model, options_.judge(model), TieRefit::kUntilSettled);
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout, weighting);
       }
@@ -348,10 +348,11 @@ class ModelSearch {
 
   // The model, in canonical form and of this score, with entries at the edge of the data tied,
   // unless that is seen where data are.
-  FactorModel Tied(const Objective& of, const FactorModel& model, double score, TieRefit refit) {
+  FactorModel Tied(const Objective& objective, const FactorModel& model, double score,
+                   TieRefit refit) {
     FactorModel tied = model;
-    if (!TieEntriesAtDataEdge(of, &tied, options_.stop, refit)) return model;
-    Canonicalize(of, &tied);
+    if (!TieEntriesAtDataEdge(objective, &tied, options_.stop, refit)) return model;
+    Canonicalize(objective, &tied);
     return options_.judge(tied) >= score - kNotSeen ? tied : model;
   }
 

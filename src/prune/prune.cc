@@ -39,9 +39,9 @@ void ShareWhatIsEqual(Pruning* pruning) {
     if (!std::ranges::equal(reduction.Expand(reduction.Restrict(x)), x)) continue;
     FactorModel model(shape.spec);
     std::ranges::copy(sharing.Restrict(x), model.parameters().begin());
-    PruneState to = pruning->MakeState(shape.spec, model);
-    to.layout = LayoutOf(shape, std::move(to.layout));
-    pruning->Decide(shape.name, std::move(to), true, "they are equal");
+    PruneState next = pruning->MakeState(shape.spec, model);
+    next.layout = LayoutOf(shape, std::move(next.layout));
+    pruning->Decide(shape.name, std::move(next), true, "they are equal");
     return;
   }
 }
@@ -55,22 +55,22 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
       if (std::ranges::all_of(s, [](double x) { return x == 0; })) model = WithoutLobe(model, m);
     }
     if (model.spec() != pruning->state().spec()) {
-      PruneState to = pruning->MakeState(model.spec(), model);
+      PruneState next = pruning->MakeState(model.spec(), model);
       const std::string what =
-          LobesText(to.lobes()) + " instead of " + LobesText(pruning->state().lobes());
-      pruning->Decide(what, std::move(to), true, "the others reflect nothing");
+          LobesText(next.lobes()) + " instead of " + LobesText(pruning->state().lobes());
+      pruning->Decide(what, std::move(next), true, "the others reflect nothing");
     }
   }
   if (pruning->options().sharing) ShareWhatIsEqual(pruning);
-  PruneState to = pruning->state();
-  const TableLayout needed =
-      NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
-  for (int f = 0; f < 3; ++f) to.layout.nodes[f] = needed.nodes[f];
-  if (to.num_parameters() == pruning->state().num_parameters()) return;
-  ExpandStored(to.layout, &to.model);
-  to.E = to.data->Value(to.model);
-  pruning->Decide("entries without data and runs of equal entries not stored", std::move(to), true,
-                  "they change no value");
+  PruneState next = pruning->state();
+  const TableLayout needed = NeededLayout(next.model, next.objective->coverage(),
+                                          pruning->may_thin(), /*drop_equal=*/true);
+  for (int f = 0; f < 3; ++f) next.layout.nodes[f] = needed.nodes[f];
+  if (next.num_parameters() == pruning->state().num_parameters()) return;
+  ExpandStored(next.layout, &next.model);
+  next.E = next.data->Value(next.model);
+  pruning->Decide("entries without data and runs of equal entries not stored", std::move(next),
+                  true, "they change no value");
 }
 
 // The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
@@ -83,12 +83,12 @@ PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Prunin
                               [&](const FactorModel& start) { return start.spec() == spec; });
     const std::vector<FactorModel> alike(starts.begin(), others);
     starts.erase(starts.begin(), others);
-    PruneState to = pruning.StateFor(spec);
+    PruneState next = pruning.StateFor(spec);
     FittedModel fitted =
-        FitFrom(alike, *to.objective, pruning.ForFits(wanted), pruning.options().stop);
-    to.model = std::move(fitted.model);
-    to.E = fitted.E;
-    if (best.objective == nullptr || !(best.E <= to.E)) best = std::move(to);
+        FitFrom(alike, *next.objective, pruning.ForFits(wanted), pruning.options().stop);
+    next.model = std::move(fitted.model);
+    next.E = fitted.E;
+    if (best.objective == nullptr || !(best.E <= next.E)) best = std::move(next);
   }
   return best;
 }
@@ -96,19 +96,19 @@ PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Prunin
 // Tries the next number of lobes; true if it was taken.
 bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pruning) {
   const PruneState& state = pruning->state();
-  PruneState to = FitLobes(starts, wanted, *pruning);
-  const int lobes = to.model.spec().lobes;
-  NormalizeScale(to.objective->coverage(), &to.model);
-  to.layout =
-      NeededLayout(to.model, to.objective->coverage(), pruning->may_thin(), /*drop_equal=*/true);
-  ExpandStored(to.layout, &to.model);
-  to.E = to.data->Value(to.model);
+  PruneState next = FitLobes(starts, wanted, *pruning);
+  const int lobes = next.model.spec().lobes;
+  NormalizeScale(next.objective->coverage(), &next.model);
+  next.layout = NeededLayout(next.model, next.objective->coverage(), pruning->may_thin(),
+                             /*drop_equal=*/true);
+  ExpandStored(next.layout, &next.model);
+  next.E = next.data->Value(next.model);
   if (pruning->options().stop()) return false;
-  const bool within = to.E <= wanted && pruning->Keeps(to);
-  const bool taken = lobes > state.lobes() ? to.E < state.E : within;
+  const bool within = next.E <= wanted && pruning->Keeps(next);
+  const bool taken = lobes > state.lobes() ? next.E < state.E : within;
   const std::string what = LobesText(lobes) + " instead of " + LobesText(state.lobes());
-  const std::string why = pruning->Against(to.E, within);
-  return pruning->Decide(what, std::move(to), taken, why);
+  const std::string why = pruning->Against(next.E, within);
+  return pruning->Decide(what, std::move(next), taken, why);
 }
 
 // True where the error alone limits, and less than half of what it may grow is spent, in decibels.

@@ -153,10 +153,10 @@ class AnisotropicPruning {
     return pruning_.MakeState(spec, fitted.model);
   }
 
-  bool Decide(const std::string& what, PruneState to) {
-    const bool within = pruning_.Keeps(to);
-    const std::string why = pruning_.Against(to.E, within);
-    return pruning_.Decide(what, std::move(to), within && !stopped(), why);
+  bool Decide(const std::string& what, PruneState next) {
+    const bool within = pruning_.Keeps(next);
+    const std::string why = pruning_.Against(next.E, within);
+    return pruning_.Decide(what, std::move(next), within && !stopped(), why);
   }
 
   // As long as it keeps within the budget.
@@ -177,12 +177,12 @@ class AnisotropicPruning {
       for (const Reduce& reduce : Reductions(options_)) {
         const std::optional<Candidate> candidate = reduce(state().model);
         if (!candidate) continue;
-        PruneState to = Fit(*candidate);
-        const int saved = state().num_parameters() - to.num_parameters();
-        const double cost = (to.E - state().E) / std::max(saved, 1);
+        PruneState next = Fit(*candidate);
+        const int saved = state().num_parameters() - next.num_parameters();
+        const double cost = (next.E - state().E) / std::max(saved, 1);
         if (stopped() || !(cost < lowest)) continue;
         lowest = cost;
-        best.emplace(candidate->what, std::move(to));
+        best.emplace(candidate->what, std::move(next));
       }
       if (!best) break;
       const std::string why = pruning_.Against(best->second.E, true);
@@ -192,9 +192,9 @@ class AnisotropicPruning {
       const ModelSpec& spec = state().spec();
       const FittedModel fitted =
           FitFrom({state().model}, Objective(with_prior_, spec), kInfinity, options_.stop);
-      PruneState to = pruning_.MakeState(spec, fitted.model);
-      const bool lower = to.E < state().E;
-      pruning_.Decide("fitted again", std::move(to), lower && !stopped(), "");
+      PruneState next = pruning_.MakeState(spec, fitted.model);
+      const bool lower = next.E < state().E;
+      pruning_.Decide("fitted again", std::move(next), lower && !stopped(), "");
       return;
     }
     pruning_.Record("nothing else left out", state(), false,
@@ -216,11 +216,11 @@ class AnisotropicPruning {
 
 // An isotropic fit of the same samples.
 Candidate Isotropic(const FactorModel& model, const Objective& with_prior) {
-  const ModelSpec& of = model.spec();
-  ModelSpec spec = ModelSpec::SharedFactors(of.lobes, with_prior.samples().grid);
-  spec.D = of.D;
-  spec.F = of.F;
-  spec.G = of.G;
+  const ModelSpec& before = model.spec();
+  ModelSpec spec = ModelSpec::SharedFactors(before.lobes, with_prior.samples().grid);
+  spec.D = before.D;
+  spec.F = before.F;
+  spec.G = before.G;
   return {"isotropic instead of anisotropic",
           {WithAxes(Rounded(model), spec),
            FindInitialModel("analytic").make(Objective(with_prior, spec), 0)}};

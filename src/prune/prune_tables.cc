@@ -72,8 +72,8 @@ void Polish(const Pruning& pruning, PruneState* state) {
   state->E = state->Judged(state->model, stepper.E());
 }
 
-bool WithinBudget(const Pruning& pruning, const PruneState& to) {
-  return pruning.by_parameters() || (to.E <= pruning.search_limit() && pruning.Keeps(to));
+bool WithinBudget(const Pruning& pruning, const PruneState& next) {
+  return pruning.by_parameters() || (next.E <= pruning.search_limit() && pruning.Keeps(next));
 }
 
 // A shape, with the parameters that would be best by the quadratic.
@@ -128,25 +128,25 @@ std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& sha
 // The state with the first `count` nodes given up, refitted.
 PruneState Without(const Pruning& pruning, const std::vector<Elimination>& order, int count,
                    const QuadraticModel& at) {
-  PruneState to = pruning.state();
+  PruneState next = pruning.state();
   for (int k = 0; k < count; ++k) {
-    std::erase(to.layout.of(order[k].factor, order[k].table), order[k].entry);
+    std::erase(next.layout.of(order[k].factor, order[k].table), order[k].entry);
   }
-  const Reduction reduction(to.spec(), to.layout);
+  const Reduction reduction(next.spec(), next.layout);
   const std::vector<double> y0 = reduction.Restrict(pruning.state().model.parameters());
   const ReducedPoint best =
       LowestWithin(reduction, at, pruning.state().model.parameters(), y0, pruning.state().lobes());
-  to.E = kInfinity;
+  next.E = kInfinity;
   for (const std::vector<double>& y : {best.y, y0}) {
-    FactorModel model(to.spec());
+    FactorModel model(next.spec());
     std::ranges::copy(reduction.Expand(y), model.parameters().begin());
-    const double E = to.objective->Value(model);
-    if (!(E < to.E)) continue;
-    to.E = E;
-    to.model = model;
+    const double E = next.objective->Value(model);
+    if (!(E < next.E)) continue;
+    next.E = E;
+    next.model = model;
   }
-  Polish(pruning, &to);
-  return to;
+  Polish(pruning, &next);
+  return next;
 }
 
 // How many nodes go before E has risen by more than this, but one.
@@ -183,14 +183,14 @@ void ChooseShape(Pruning* pruning) {
   });
   for (const ShapeOption& option : options) {
     if (option.shape.name.empty() || limits.stop()) return;
-    PruneState to = pruning->StateFor(option.shape.spec);
-    to.model = option.model;
-    to.layout = option.layout;
-    to.E = to.data->Value(to.model);
-    Polish(*pruning, &to);
-    const bool taken = WithinBudget(*pruning, to);
-    const std::string why = pruning->Against(to.E, taken);
-    if (pruning->Decide(option.shape.name, std::move(to), taken, why)) return;
+    PruneState next = pruning->StateFor(option.shape.spec);
+    next.model = option.model;
+    next.layout = option.layout;
+    next.E = next.data->Value(next.model);
+    Polish(*pruning, &next);
+    const bool taken = WithinBudget(*pruning, next);
+    const std::string why = pruning->Against(next.E, taken);
+    if (pruning->Decide(option.shape.name, std::move(next), taken, why)) return;
   }
 }
 
@@ -209,15 +209,15 @@ void ThinTables(Pruning* pruning) {
     bool worth_more = false;
     for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
       if (share < 1) count = std::min(count, CountWithin(order, share * left));
-      PruneState to = Without(*pruning, order, count, at);
-      taken = WithinBudget(*pruning, to);
+      PruneState next = Without(*pruning, order, count, at);
+      taken = WithinBudget(*pruning, next);
       if (taken) {
-        const bool few = to.num_parameters() > (1 - kFewParameters) * from.num_parameters();
+        const bool few = next.num_parameters() > (1 - kFewParameters) * from.num_parameters();
         worth_more = by_parameters || share < 1 || !few;
         share = std::min(1.0, kGrowth * share);
-        pruning->GoOnFrom(std::move(to));
+        pruning->GoOnFrom(std::move(next));
       } else {
-        share *= std::clamp(left / (to.E - from.E), kMinCut, kMaxCut);
+        share *= std::clamp(left / (next.E - from.E), kMinCut, kMaxCut);
       }
     }
     if (!worth_more) break;
@@ -227,11 +227,13 @@ void ThinTables(Pruning* pruning) {
   std::ostringstream what;
   what << "nodes of";
   for (const Factor factor : kFactors) {
-    size_t from = 0, to = 0;
-    for (const auto& nodes : before.layout.nodes[static_cast<int>(factor)]) from += nodes.size();
-    for (const auto& nodes : after.layout.nodes[static_cast<int>(factor)]) to += nodes.size();
-    what << (factor == Factor::kD ? " " : ", ") << FactorName(factor) << " from " << from << " to "
-         << to;
+    size_t nodes_before = 0, nodes_after = 0;
+    for (const auto& nodes : before.layout.nodes[static_cast<int>(factor)])
+      nodes_before += nodes.size();
+    for (const auto& nodes : after.layout.nodes[static_cast<int>(factor)])
+      nodes_after += nodes.size();
+    what << (factor == Factor::kD ? " " : ", ") << FactorName(factor) << " from " << nodes_before
+         << " to " << nodes_after;
   }
   const std::string why = pruning->Against(after.E, /*within=*/true);
   pruning->Decide(what.str(), std::move(after), true, why);

@@ -77,9 +77,9 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
 }
 
 PruneState Pruning::StateFor(const ModelSpec& spec) const {
-  const auto made = [&spec](const Objective& of) -> std::shared_ptr<const Objective> {
-    if (spec == of.spec()) return {std::shared_ptr<const Objective>(), &of};
-    return std::make_shared<Objective>(of, spec);
+  const auto made = [&spec](const Objective& objective) -> std::shared_ptr<const Objective> {
+    if (spec == objective.spec()) return {std::shared_ptr<const Objective>(), &objective};
+    return std::make_shared<Objective>(objective, spec);
   };
   PruneState state{.objective = made(objective_), .data = nullptr};
   state.data = &data_ == &objective_ ? state.objective : made(data_);
@@ -126,19 +126,19 @@ std::string Pruning::Against(double E, bool within) const {
   return out.str();
 }
 
-void Pruning::Record(std::string what, const PruneState& to, bool taken, std::string why) {
+void Pruning::Record(std::string what, const PruneState& next, bool taken, std::string why) {
   decisions_.push_back({.what = std::move(what),
                         .parameters_before = state_.num_parameters(),
-                        .parameters_after = to.num_parameters(),
+                        .parameters_after = next.num_parameters(),
                         .E_before = state_.E,
-                        .E_after = to.E,
+                        .E_after = next.E,
                         .taken = taken,
                         .why = std::move(why)});
 }
 
-bool Pruning::Decide(std::string what, PruneState to, bool taken, std::string why) {
-  Record(std::move(what), to, taken, std::move(why));
-  if (taken) state_ = std::move(to);
+bool Pruning::Decide(std::string what, PruneState next, bool taken, std::string why) {
+  Record(std::move(what), next, taken, std::move(why));
+  if (taken) state_ = std::move(next);
   return taken;
 }
 

@@ -33,8 +33,8 @@ struct PruneState {
   double E = 0;  // of the data
 
   // `fitted`: E of the objective.
-  double Judged(const FactorModel& of, double fitted) const {
-    return data.get() == objective.get() ? fitted : data->Value(of);
+  double Judged(const FactorModel& judged, double fitted) const {
+    return data.get() == objective.get() ? fitted : data->Value(judged);
   }
 
   const ModelSpec& spec() const { return model.spec(); }
@@ -83,9 +83,9 @@ class Pruning {
   // E against the full model's, in words.
   std::string Against(double E, bool within) const;
 
-  void Record(std::string what, const PruneState& to, bool taken, std::string why);
+  void Record(std::string what, const PruneState& next, bool taken, std::string why);
   // Records it, and goes on from there if it is taken; returns whether.
-  bool Decide(std::string what, PruneState to, bool taken, std::string why);
+  bool Decide(std::string what, PruneState next, bool taken, std::string why);
   const std::vector<PruneDecision>& decisions() const { return decisions_; }
   // The state's model in canonical form, or the full one as it is if nothing was left out; and how
   // it came about.

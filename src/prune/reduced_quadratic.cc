@@ -24,12 +24,12 @@ void HoldTableSizes(std::span<const FactorModel::Part> parts, int first_table,
 }
 
 std::vector<double> GradientChange(const QuadraticModel& at, std::span<const double> from,
-                                   std::span<const double> to) {
+                                   std::span<const double> target) {
   const size_t n = from.size();
   std::vector<double> change(n, 0.0);
   for (size_t k = 0; k < n; ++k) {
     const double* const row = &at.H[k * n];
-    for (size_t l = 0; l < n; ++l) change[k] += row[l] * (to[l] - from[l]);
+    for (size_t l = 0; l < n; ++l) change[k] += row[l] * (target[l] - from[l]);
   }
   return change;
 }

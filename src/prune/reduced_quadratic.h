@@ -35,7 +35,7 @@ ReducedPoint LowestWithin(const Reduction& reduction, const QuadraticModel& at,
 
 // H (to - from).
 std::vector<double> GradientChange(const QuadraticModel& at, std::span<const double> from,
-                                   std::span<const double> to);
+                                   std::span<const double> target);
 
 }  // namespace trilobe
 

@@ -19,10 +19,10 @@ std::vector<ModelShape> ShapesWithin(const ModelSpec& spec, const TableLayout& l
   const ModelShape own{
       .name = "", .spec = spec, .coloured_d = layout.coloured_d, .coloured_s = layout.coloured_s};
   std::vector<ModelShape> shapes = {own};
-  const auto add = [&](ModelShape shape, const ModelShape& of, const std::string& name) {
-    const bool changes = shape.spec != of.spec || shape.coloured_d != of.coloured_d ||
-                         shape.coloured_s != of.coloured_s || shape.constant_G;
-    shape.name = of.name + (of.name.empty() ? "" : ", ") + name;
+  const auto add = [&](ModelShape shape, const ModelShape& base, const std::string& name) {
+    const bool changes = shape.spec != base.spec || shape.coloured_d != base.coloured_d ||
+                         shape.coloured_s != base.coloured_s || shape.constant_G;
+    shape.name = base.name + (base.name.empty() ? "" : ", ") + name;
     if (changes) shapes.push_back(std::move(shape));
   };
   if (colour) {
@@ -39,13 +39,13 @@ std::vector<ModelShape> ShapesWithin(const ModelSpec& spec, const TableLayout& l
     add(shape, own, "one channel for all");
   }
   if (shadowing && spec.lobes > 0) {
-    for (const ModelShape& of : std::vector<ModelShape>(shapes)) {
-      ModelShape shape = of;
+    for (const ModelShape& base : std::vector<ModelShape>(shapes)) {
+      ModelShape shape = base;
       shape.spec.G.per_lobe = false;
-      if (spec.lobes > 1) add(shape, of, "G shared by the lobes");
+      if (spec.lobes > 1) add(shape, base, "G shared by the lobes");
       shape.spec.G.per_channel = false;
       shape.constant_G = true;
-      add(shape, of, "G constant");
+      add(shape, base, "G constant");
     }
   }
   std::ranges::stable_sort(shapes, {}, [](const ModelShape& shape) {

@@ -12,13 +12,13 @@ namespace {
 
 // to += sum_p factor[p] rows[p], for `count` rows, a multiple of 4, one after the other in memory.
 TRILOBE_MULTIVERSION void AddRows(int size, size_t stride, int count, const double* factor,
-                                  const double* rows, double* to) {
+                                  const double* rows, double* target) {
   for (int p = 0; p < count; p += 4) {
     const double *const a = rows + p * stride, *const b = a + stride, *const c = b + stride,
                         *const d = c + stride;
     const double f = factor[p], g = factor[p + 1], h = factor[p + 2], i = factor[p + 3];
 #pragma omp simd
-    for (int k = 0; k < size; ++k) to[k] += f * a[k] + g * b[k] + h * c[k] + i * d[k];
+    for (int k = 0; k < size; ++k) target[k] += f * a[k] + g * b[k] + h * c[k] + i * d[k];
   }
 }
 
@@ -116,8 +116,8 @@ void Tableau::Remove(int k) {
   for (int i = 0; i <= last; ++i) T_[k * stride_ + i] = T_[last * stride_ + i];
   for (int i = 0; i < last; ++i) T_[i * stride_ + k] = T_[i * stride_ + last];
   T_[k * stride_ + k] = T_[last * stride_ + last];
-  for (std::vector<double>* const of : {&U_, &V_}) {
-    std::copy_n(of->begin() + last * kMaxWaiting, kMaxWaiting, of->begin() + k * kMaxWaiting);
+  for (std::vector<double>* const rows : {&U_, &V_}) {
+    std::copy_n(rows->begin() + last * kMaxWaiting, kMaxWaiting, rows->begin() + k * kMaxWaiting);
   }
   h_[k] = h_[last];
   free_[k] = free_[last];

@@ -17,7 +17,7 @@ std::string Text(double x, int digits) {
   return buffer.data();
 }
 
-double PsnrFall(double from, double to) { return from == to ? 0 : from - to; }
+double PsnrFall(double before, double after) { return before == after ? 0 : before - after; }
 
 std::string Text(const Rgb& rgb) {
   return Text(rgb[0]) + ", " + Text(rgb[1]) + ", " + Text(rgb[2]);

@@ -13,7 +13,7 @@ namespace trilobe {
 std::string Text(double x, int digits = 4);
 
 // By how much a PSNR falls [dB]: 0 where both are infinite, as those of exact fits are.
-double PsnrFall(double from, double to);
+double PsnrFall(double before, double after);
 
 // "0.1, 0.2, 0.3".
 std::string Text(const Rgb& rgb);

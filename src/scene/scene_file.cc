@@ -78,8 +78,8 @@ class Node {
     return *this;
   }
 
-  const Node& CheckArray(const std::string& of) const {
-    CheckType(Type::kArray, "an array of " + of);
+  const Node& CheckArray(const std::string& what) const {
+    CheckType(Type::kArray, "an array of " + what);
     return *this;
   }
 

@@ -18,7 +18,7 @@ struct Columns {
   struct Column {
     int lane, channel;
   };
-  std::vector<Column> of;
+  std::vector<Column> columns;
   // Where a lobe's products with itself lie in those with a later lookup; -1 where another stretch
   // reads that lobe. [order.count()][kChannels][lobes]
   std::vector<int> of_lobe;
@@ -37,7 +37,7 @@ struct SumJob {
 struct Slopes {
   const Cell* cell;
   const double* weight;                                           // of the cell's entries
-  const double* lookup;                                           // [lanes]
+  const double* value;                                            // [lanes]
   const double* slope;                                            // [kChannels][lanes]
   alignas(sizeof(Lanes8)) double w_slope[kChannels * kMaxLanes];  // slope times w
 };
@@ -92,7 +92,7 @@ struct Sample {
   const double* residual;  // [kChannels]
   double w_residual[kChannels];
   const double* amplitude;  // [kChannels][amplitude lanes]
-  Slopes of[LookupOrder::kMost];
+  Slopes lookups[LookupOrder::kMost];
   // w (rho - rho*) d2 rho / (d a d b) of each lobe and channel, for two of its parts, a < b: what
   // is left of s D F G_i G_o / (cos cos) without these. Set for second derivatives alone.
   alignas(sizeof(Lanes8)) double second[kParts][kParts][kChannels][PaddedToVectors(kMaxLobes)];
@@ -107,7 +107,7 @@ TRILOBE_ALWAYS_INLINE void SetSecondDerivatives(const SumJob& job, Sample* at) {
     // One lookup of D has those of all stretches.
     const auto load = [&](int lookup, int v, Lanes4* part) {
       const TableLanes& lanes = reader.lanes(job.order.factor(lookup));
-      const double* const from = at->of[lookup].lookup + lanes.First(c);
+      const double* const from = at->lookups[lookup].value + lanes.First(c);
       if (lanes.per_lobe) {
         LoadLanes(from + v, part);
       } else {
@@ -149,9 +149,9 @@ TRILOBE_ALWAYS_INLINE void AddAmplitudes(const SumJob& job, const Sample& at, bo
     const double* const slope = at.amplitude + c * rows.lanes;
     const double w = samples.weight[c][at.j];
     AddScaled(rows.lanes, at.w_residual[c], slope, own + AccumulatorRows::kGradient * rows.lanes);
-    double* const to = own + (AccumulatorRows::kFirstAmplitude + c * rows.tables) * rows.lanes;
+    double* const target = own + (AccumulatorRows::kFirstAmplitude + c * rows.tables) * rows.lanes;
     for (int a = 0; a < rows.tables; ++a) {
-      AddScaled(rows.lanes, 0.5 * w * slope[a], slope, to + a * rows.lanes);
+      AddScaled(rows.lanes, 0.5 * w * slope[a], slope, target + a * rows.lanes);
       if (newton) {
         own[AccumulatorRows::kSquaredLength * rows.lanes + a] += w * slope[a] * slope[a];
       }
@@ -170,16 +170,16 @@ TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int 
   const AccumulatorRows& amplitudes = job.layout->amplitudes();
   const int lanes = Lanes<kOneVector>(rows.lanes);
   const TableLanes& row_lanes = reader.lanes(job.order.factor(r));
-  const Slopes& own = at.of[r];
+  const Slopes& own = at.lookups[r];
 
-  double* to = run->Lines(r);
-  Combine<kOneVector>(at.residual, 1, own.w_slope, lanes, to);
-  to += lanes;
+  double* target = run->Lines(r);
+  Combine<kOneVector>(at.residual, 1, own.w_slope, lanes, target);
+  target += lanes;
   const int own_part = PartOf(job.order, r);
   for (int c = 0; c < kChannels; ++c) {
-    double* of_lobe = to + row_lanes.First(c);
-    for (int a = 0; a < amplitudes.tables; ++a, to += lanes) {
-      Scale<kOneVector>(c, at.amplitude + a, amplitudes.lanes, own.w_slope, lanes, to);
+    double* of_lobe = target + row_lanes.First(c);
+    for (int a = 0; a < amplitudes.tables; ++a, target += lanes) {
+      Scale<kOneVector>(c, at.amplitude + a, amplitudes.lanes, own.w_slope, lanes, target);
     }
     if (!kNewton) continue;
     const double* const second = at.second[kS][own_part][c];
@@ -189,20 +189,20 @@ TRILOBE_ALWAYS_INLINE void SetProducts(const SumJob& job, const Sample& at, int 
   }
   for (int q = 0; q <= r; ++q) {
     double* const products = run->Products(q, r);  // [tables][lanes]
-    const Slopes& of = at.of[q];
+    const Slopes& other = at.lookups[q];
     const Columns& columns = job.columns[q];
     const Factor factor = job.order.factor(q);
     const int of_lanes = Lanes<kOneVector>(reader.lanes(factor).size);
-    to = products;
+    target = products;
     if (spec.sharing(factor).per_channel) {
-      for (const auto& [lane, channel] : columns.of) {
-        Scale<kOneVector>(channel, of.slope + lane, of_lanes, own.w_slope, lanes, to);
-        to += lanes;
+      for (const auto& [lane, channel] : columns.columns) {
+        Scale<kOneVector>(channel, other.slope + lane, of_lanes, own.w_slope, lanes, target);
+        target += lanes;
       }
     } else {
-      for (const auto& [lane, channel] : columns.of) {
-        Combine<kOneVector>(of.slope + lane, of_lanes, own.w_slope, lanes, to);
-        to += lanes;
+      for (const auto& [lane, channel] : columns.columns) {
+        Combine<kOneVector>(other.slope + lane, of_lanes, own.w_slope, lanes, target);
+        target += lanes;
       }
     }
     // Stretches of D are those of different lobes, whose lookups are not multiplied.
@@ -239,7 +239,7 @@ template <bool kOneVector>
 TRILOBE_ALWAYS_INLINE void AddSquaredLengths(const SumJob& job, const Sample& at, int r) {
   const AccumulatorRows& rows = job.layout->of(r);
   const int lanes = Lanes<kOneVector>(rows.lanes);
-  const Slopes &own = at.of[r], &other = at.of[job.order.G_i()];
+  const Slopes &own = at.lookups[r], &other = at.lookups[job.order.G_i()];
   double* const lengths =
       job.sums + rows.own + static_cast<ptrdiff_t>(AccumulatorRows::kSquaredLength) * lanes;
   alignas(sizeof(Lanes8)) double product[kMaxLanes];
@@ -286,15 +286,15 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
       const FoldedSamples::Lookup& lookups = samples.lookups[r];
       const Factor factor = order.factor(r);
       const int lanes = Lanes<kOneVector>(reader.lanes(factor).size);
-      Slopes& of = at->of[r];
-      of.cell = &samples.cells_of(factor)[lookups.cell[j]];
-      double* const weight = run->Read(r, lookups.cell[j], *of.cell);
-      for (int k = 0; k < of.cell->size; ++k) weight[k] = lookups.weight[k][j];
-      of.weight = weight;
+      Slopes& slopes = at->lookups[r];
+      slopes.cell = &samples.cells_of(factor)[lookups.cell[j]];
+      double* const weight = run->Read(r, lookups.cell[j], *slopes.cell);
+      for (int k = 0; k < slopes.cell->size; ++k) weight[k] = lookups.weight[k][j];
+      slopes.weight = weight;
       if (factor != Factor::kG) {
         const bool is_D = factor == Factor::kD;
-        of.lookup = (is_D ? batch.D : batch.F).data() + n * lanes;
-        of.slope = (is_D ? batch.D_slope : batch.F_slope).data() + n * kChannels * lanes;
+        slopes.value = (is_D ? batch.D : batch.F).data() + n * lanes;
+        slopes.slope = (is_D ? batch.D_slope : batch.F_slope).data() + n * kChannels * lanes;
       } else {
         // d rho / d G of one direction has G of the other.
         const bool is_i = r == order.G_i();
@@ -306,11 +306,12 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
             slope[c * G_lanes + b] = shadow[c * G_lanes + b] * other[b];
           }
         }
-        of.lookup = (is_i ? batch.G_i : batch.G_o).data() + n * G_lanes;
-        of.slope = slope;
+        slopes.value = (is_i ? batch.G_i : batch.G_o).data() + n * G_lanes;
+        slopes.slope = slope;
       }
       for (int c = 0; c < kChannels; ++c) {
-        for (int b = 0; b < lanes; ++b) of.w_slope[c * lanes + b] = w[c] * of.slope[c * lanes + b];
+        for (int b = 0; b < lanes; ++b)
+          slopes.w_slope[c * lanes + b] = w[c] * slopes.slope[c * lanes + b];
       }
     }
     if (kNewton) SetSecondDerivatives<kOneVector>(job, at);
@@ -364,7 +365,8 @@ double AddNormalEquations(const BatchEvaluator& reader, const AccumulatorLayout&
     std::vector<int> place(reader.spec().num_tables(factor), -1);
     for (int k = 0; k < rows.tables; ++k) {
       place[rows.table[k]] = k;
-      columns.of.push_back({rows.lane[k], reader.spec().channels(factor, rows.table[k]).begin});
+      columns.columns.push_back(
+          {rows.lane[k], reader.spec().channels(factor, rows.table[k]).begin});
     }
     for (int later = 0; later < job.order.count(); ++later) {
       const TableLanes& lanes = reader.lanes(job.order.factor(later));

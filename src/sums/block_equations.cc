@@ -62,14 +62,14 @@ void Spread(const SpreadJob& job) {
     for (int t = 0; t < job.tables; ++t) slope[t] = job.slopes[t * kBatch + n];
     for (int p = 0; p < job.pairs; ++p) product[p] = job.products[p * kBatch + n];
     const Cell& cell = job.cells[job.cell[n]];
-    double* to =
+    double* target =
         job.of_cells + static_cast<ptrdiff_t>(job.cell[n]) * job.pairs_in_cell * job.pair_lanes;
     for (int k = 0; k < cell.size; ++k) {
       const double w = job.weight[k][n];
       AddScaled(job.table_lanes, w, slope,
                 job.of_entries + static_cast<ptrdiff_t>(cell.entry[k]) * job.table_lanes);
-      for (int l = 0; l <= k; ++l, to += job.pair_lanes) {
-        AddScaled(job.pair_lanes, w * job.weight[l][n], product, to);
+      for (int l = 0; l <= k; ++l, target += job.pair_lanes) {
+        AddScaled(job.pair_lanes, w * job.weight[l][n], product, target);
       }
     }
   }
@@ -174,10 +174,10 @@ void BlockEquations::AddBatch(int begin, int end, const CachedLookups::Batch& ba
     }
   }
   const int lookup = kind_ == Kind::kF ? samples.order.F() : lookups_.spec().StretchOfTable(first_);
-  const FoldedSamples::Lookup& of = samples.lookups[lookup];
+  const FoldedSamples::Lookup& weights = samples.lookups[lookup];
   SpreadJob job{.size = size,
                 .cells = cells_.data(),
-                .cell = &of.cell[begin],
+                .cell = &weights.cell[begin],
                 .weight = {},
                 .tables = tables(),
                 .table_lanes = table_lanes_,
@@ -188,7 +188,7 @@ void BlockEquations::AddBatch(int begin, int end, const CachedLookups::Batch& ba
                 .products = products.data(),
                 .of_entries = sums->data(),
                 .of_cells = sums->data() + of_cells_};
-  for (size_t k = 0; k < of.weight.size(); ++k) job.weight[k] = &of.weight[k][begin];
+  for (size_t k = 0; k < weights.weight.size(); ++k) job.weight[k] = &weights.weight[k][begin];
   Spread(job);
 }
 

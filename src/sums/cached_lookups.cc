@@ -19,7 +19,7 @@ struct ReadJob {
   std::array<const double*, Stencil::kMaxSize> weight;  // [samples]
   const double* table;                                  // [entries][kVector]
   int tables;
-  std::array<double*, kVector> to;  // [samples]
+  std::array<double*, kVector> target;  // [samples]
 };
 
 TRILOBE_MULTIVERSION
@@ -32,7 +32,7 @@ void ReadTables(const ReadJob& job) {
       LoadLanes(job.table + cell.entry[k] * kVector, &entry);
       sum += job.weight[k][j] * entry;
     }
-    for (int t = 0; t < job.tables; ++t) job.to[t][j] = sum[t];
+    for (int t = 0; t < job.tables; ++t) job.target[t][j] = sum[t];
   }
 }
 
@@ -57,26 +57,26 @@ TRILOBE_ALWAYS_INLINE void AddLobe(const LobeJob& job) {
   double* __restrict const residual = job.residual;
   for (int n = 0; n < job.size; ++n) {
     const double G = G_i[n] * G_o[n], K = G * inverse_cosines[n];
-    double of, own;
+    double others, own;
     switch (kKind) {
       case Kind::kAmplitudes:
-        of = D[n] * F[n] * K;
+        others = D[n] * F[n] * K;
         own = s;
         break;
       case Kind::kD:
-        of = s * K * F[n];
+        others = s * K * F[n];
         own = D[n];
         break;
       case Kind::kF:
-        of = s * K * D[n];
+        others = s * K * D[n];
         own = F[n];
         break;
       default:
-        of = s * (D[n] * F[n]) * inverse_cosines[n];
+        others = s * (D[n] * F[n]) * inverse_cosines[n];
         own = G;
     }
-    slope[n] += of;
-    residual[n] += own * of;
+    slope[n] += others;
+    residual[n] += own * others;
   }
 }
 
@@ -141,21 +141,21 @@ void CachedLookups::Read(const FactorModel& model, Factor factor, int first, int
 }
 
 void CachedLookups::ReadBy(int lookup, const FactorModel& model, int first, int last,
-                           std::vector<std::vector<double>>* to) {
+                           std::vector<std::vector<double>>* target) {
   const Factor factor = samples_.order.factor(lookup);
-  const FoldedSamples::Lookup& of = samples_.lookups[lookup];
+  const FoldedSamples::Lookup& weights = samples_.lookups[lookup];
   std::vector<double> table(static_cast<size_t>(spec_.table_size(factor)) * kVector);
   for (; first < last; first += kVector) {
     ReadJob job{};
     job.cells = samples_.cells_of(factor).data();
-    job.cell = of.cell.data();
+    job.cell = weights.cell.data();
     job.table = table.data();
     job.tables = std::min(kVector, last - first);
-    for (size_t k = 0; k < of.weight.size(); ++k) job.weight[k] = of.weight[k].data();
+    for (size_t k = 0; k < weights.weight.size(); ++k) job.weight[k] = weights.weight[k].data();
     for (int t = 0; t < job.tables; ++t) {
       const std::span<const double> from = model.table(factor, first + t);
       for (size_t k = 0; k < from.size(); ++k) table[k * kVector + t] = from[k];
-      job.to[t] = (*to)[first + t].data();
+      job.target[t] = (*target)[first + t].data();
     }
     ForChunks([&](int begin, int end) {
       ReadJob chunk = job;

@@ -60,7 +60,7 @@ class CachedLookups {
  private:
   // Reads tables by one of the lookups into to[first .. last).
   void ReadBy(int lookup, const FactorModel& model, int first, int last,
-              std::vector<std::vector<double>>* to);
+              std::vector<std::vector<double>>* target);
 
   const FoldedSamples& samples_;
   const ModelSpec spec_;

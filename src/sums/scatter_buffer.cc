@@ -13,7 +13,7 @@ struct Addition {
   int samples, size;
   const double* from;     // [samples][size]
   const double* weights;  // [samples][Stencil::kMaxSize]
-  std::array<double*, Stencil::kMaxSize> to;
+  std::array<double*, Stencil::kMaxSize> target;
 };
 
 // Vectors of these numbers, from the i-th number on. The sums stay in registers.
@@ -22,7 +22,7 @@ template <int kEntries, int kVectors>
 TRILOBE_ALWAYS_INLINE void AddVectors(const Addition& add, int i) {
   std::array<std::array<Lanes4, kVectors>, kEntries> sums;
   for (int k = 0; k < kEntries; ++k) {
-    for (int v = 0; v < kVectors; ++v) LoadLanes(add.to[k] + i + v * kVector, &sums[k][v]);
+    for (int v = 0; v < kVectors; ++v) LoadLanes(add.target[k] + i + v * kVector, &sums[k][v]);
   }
   for (int n = 0; n < add.samples; ++n) {
     std::array<Lanes4, kVectors> x;
@@ -35,7 +35,7 @@ TRILOBE_ALWAYS_INLINE void AddVectors(const Addition& add, int i) {
     }
   }
   for (int k = 0; k < kEntries; ++k) {
-    for (int v = 0; v < kVectors; ++v) StoreLanes(sums[k][v], add.to[k] + i + v * kVector);
+    for (int v = 0; v < kVectors; ++v) StoreLanes(sums[k][v], add.target[k] + i + v * kVector);
   }
 }
 
@@ -76,10 +76,10 @@ ScatterBuffer::ScatterBuffer(const LookupOrder& order, const AccumulatorLayout& 
     : sums_(sums) {
   for (int r = 0; r < order.count(); ++r) {
     const AccumulatorRows& rows = layout.of(r);
-    LookupBuffer& of = lookups_.emplace_back();
-    of.rows = &rows;
-    of.lines_size = (rows.own_lines - AccumulatorRows::kGradient) * rows.lanes;
-    of.lines.resize(static_cast<size_t>(kMost) * of.lines_size);
+    LookupBuffer& lookup = lookups_.emplace_back();
+    lookup.rows = &rows;
+    lookup.lines_size = (rows.own_lines - AccumulatorRows::kGradient) * rows.lanes;
+    lookup.lines.resize(static_cast<size_t>(kMost) * lookup.lines_size);
     for (int q = 0; q <= r; ++q) {
       PairBuffer& pair = pairs_.emplace_back();
       pair.size = layout.of(q).tables * rows.lanes;
@@ -90,43 +90,43 @@ ScatterBuffer::ScatterBuffer(const LookupOrder& order, const AccumulatorLayout& 
 }
 
 double* ScatterBuffer::Read(int r, int number, const Cell& cell) {
-  LookupBuffer& of = lookups_[r];
+  LookupBuffer& lookup = lookups_[r];
   const int n = size_ - 1;
   if (n == 0) {
-    of.begins = 1;
-  } else if (of.number[n - 1] != number) {
-    of.begins |= uint32_t{1} << n;
+    lookup.begins = 1;
+  } else if (lookup.number[n - 1] != number) {
+    lookup.begins |= uint32_t{1} << n;
   }
-  of.number[n] = number;
-  of.cell[n] = &cell;
-  return of.weights[n].data();
+  lookup.number[n] = number;
+  lookup.cell[n] = &cell;
+  return lookup.weights[n].data();
 }
 
-TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddLines(const LookupBuffer& of) const {
-  const AccumulatorRows& rows = *of.rows;
+TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddLines(const LookupBuffer& lookup) const {
+  const AccumulatorRows& rows = *lookup.rows;
   double* const own =
       sums_ + rows.own + static_cast<ptrdiff_t>(AccumulatorRows::kGradient) * rows.lanes;
   for (int begin = 0, end = 0; begin < size_; begin = end) {
-    end = EndOfRun(of.begins, begin, size_);
-    const Cell& cell = *of.cell[begin];
+    end = EndOfRun(lookup.begins, begin, size_);
+    const Cell& cell = *lookup.cell[begin];
     Addition add{};
     add.samples = end - begin;
-    add.size = of.lines_size;
-    add.from = &of.lines[static_cast<size_t>(begin) * add.size];
-    add.weights = of.weights[begin].data();
-    for (int k = 0; k < cell.size; ++k) add.to[k] = own + cell.entry[k] * rows.own_size();
+    add.size = lookup.lines_size;
+    add.from = &lookup.lines[static_cast<size_t>(begin) * add.size];
+    add.weights = lookup.weights[begin].data();
+    for (int k = 0; k < cell.size; ++k) add.target[k] = own + cell.entry[k] * rows.own_size();
     AddTo(cell.size, add);
   }
 }
 
-TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddProducts(const LookupBuffer& of,
+TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddProducts(const LookupBuffer& other,
                                                       const LookupBuffer& own,
                                                       const PairBuffer& pair) const {
   const AccumulatorRows& rows = *own.rows;
-  const bool same = &of == &own;
+  const bool same = &other == &own;
   for (int begin = 0, end = 0; begin < size_; begin = end) {
-    end = EndOfRun(of.begins | own.begins, begin, size_);
-    const Cell &of_cell = *of.cell[begin], &cell = *own.cell[begin];
+    end = EndOfRun(other.begins | own.begins, begin, size_);
+    const Cell &of_cell = *other.cell[begin], &cell = *own.cell[begin];
     Addition add{};
     std::array<Weights, kMost> weights;
     add.samples = end - begin;
@@ -138,12 +138,12 @@ TRILOBE_ALWAYS_INLINE void ScatterBuffer::AddProducts(const LookupBuffer& of,
       for (int n = begin; n < end; ++n) {
         Lanes4 own_weights;
         LoadLanes(own.weights[n].data(), &own_weights);
-        StoreLanes(of.weights[n][l] * own_weights, weights[n - begin].data());
+        StoreLanes(other.weights[n][l] * own_weights, weights[n - begin].data());
         if (same) weights[n - begin][l] *= 0.5;
       }
       add.weights = &weights[0][first];
       for (int k = first; k < cell.size; ++k) {
-        add.to[k - first] =
+        add.target[k - first] =
             same && rows.by_cell
                 ? pair.blocks + rows.InCell(own.number[begin], l) + k * pair.size
                 : pair.blocks +

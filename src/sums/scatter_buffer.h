@@ -37,8 +37,8 @@ class ScatterBuffer {
     return &lookups_[r].lines[static_cast<size_t>(size_ - 1) * lookups_[r].lines_size];
   }
   double* Products(int q, int r) {
-    PairBuffer& of = pairs_[PairOf(q, r)];
-    return &of.products[static_cast<size_t>(size_ - 1) * of.size];
+    PairBuffer& pair = pairs_[PairOf(q, r)];
+    return &pair.products[static_cast<size_t>(size_ - 1) * pair.size];
   }
 
   void Flush();
@@ -60,8 +60,9 @@ class ScatterBuffer {
     std::vector<double> products;  // [kMost][size]
   };
   static int PairOf(int q, int r) { return r * (r + 1) / 2 + q; }
-  void AddLines(const LookupBuffer& of) const;
-  void AddProducts(const LookupBuffer& of, const LookupBuffer& own, const PairBuffer& pair) const;
+  void AddLines(const LookupBuffer& lookup) const;
+  void AddProducts(const LookupBuffer& other, const LookupBuffer& own,
+                   const PairBuffer& pair) const;
 
   double* const sums_;
   int size_ = 0;

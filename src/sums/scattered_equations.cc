@@ -65,15 +65,15 @@ ScatteredEquations::ScatteredEquations(const FoldedSamples& samples, const Model
     rows.own_lines = AccumulatorRows::kFirstAmplitude + amplitudes.entries * amplitudes.tables;
     rows.own = layout_.size;
     layout_.size += rows.entries * rows.own_size();
-    for (const AccumulatorRows& of : layout_.rows) {
+    for (const AccumulatorRows& others : layout_.rows) {
       rows.blocks.push_back(layout_.size);
-      if (of.kind != Kind::kAmplitudes) {
+      if (others.kind != Kind::kAmplitudes) {
         layout_.size +=
-            &of == &rows && rows.by_cell
+            &others == &rows && rows.by_cell
                 ? rows.InCell(static_cast<int>(samples.cells_of(FactorOf(rows.kind)).size()), 0)
-                : static_cast<size_t>(of.entries) * rows.entries * of.tables * rows.lanes;
+                : static_cast<size_t>(others.entries) * rows.entries * others.tables * rows.lanes;
       }
-      if (&of == &rows) break;
+      if (&others == &rows) break;
     }
   }
 }
@@ -138,14 +138,14 @@ void ScatteredEquations::GatherOwn(const AccumulatorRows& rows, int entry,
     const size_t p = rows.parameter[entry * rows.tables + t];
     const double* const own = sums + rows.own + entry * rows.own_size() + rows.lane[t];
     result->gradient[p] = own[AccumulatorRows::kGradient * rows.lanes];
-    double* const to = &result->H[p * n];
+    double* const target = &result->H[p * n];
     for (size_t i = 0; i < amplitudes.parameter.size(); ++i) {
-      to[amplitudes.parameter[i]] = own[(AccumulatorRows::kFirstAmplitude + i) * rows.lanes];
+      target[amplitudes.parameter[i]] = own[(AccumulatorRows::kFirstAmplitude + i) * rows.lanes];
     }
     if (rows.kind != Kind::kAmplitudes) continue;
     for (int u = 0; u < rows.tables; ++u) {
       const size_t line = AccumulatorRows::kFirstAmplitude + entry * rows.tables + t;
-      to[rows.parameter[entry * rows.tables + u]] +=
+      target[rows.parameter[entry * rows.tables + u]] +=
           sums[rows.own + entry * rows.own_size() + line * rows.lanes + rows.lane[u]];
     }
   }
@@ -156,23 +156,24 @@ void ScatteredEquations::GatherBlocks(const AccumulatorRows& rows, int first_ent
                                       QuadraticModel* result) const {
   const auto n = static_cast<size_t>(num_parameters_);
   for (size_t k = 1; k < rows.blocks.size(); ++k) {
-    const AccumulatorRows& of = layout_.rows[k];
-    const bool own = &of == &rows;
+    const AccumulatorRows& others = layout_.rows[k];
+    const bool own = &others == &rows;
     if (own && rows.by_cell) continue;
     const double* const blocks = accumulators_[0].data() + rows.blocks[k];
-    const int block = of.tables * rows.lanes;
+    const int block = others.tables * rows.lanes;
     const auto at = [&](int e_of, int e) {
       return blocks + (static_cast<size_t>(e_of) * rows.entries + e) * block;
     };
-    for (int e = 0; e < of.entries; ++e) {
-      const int* const columns = of.parameter.data() + static_cast<ptrdiff_t>(e) * of.tables;
+    for (int e = 0; e < others.entries; ++e) {
+      const int* const columns =
+          others.parameter.data() + static_cast<ptrdiff_t>(e) * others.tables;
       for (int entry = first_entry; entry < last_entry; ++entry) {
         const double* const from = at(e, entry);
         const double* const mirrored = own ? at(entry, e) : nullptr;
         for (int t = 0; t < rows.tables; ++t) {
           const int lane = rows.lane[t];
           const auto p = static_cast<size_t>(rows.parameter[entry * rows.tables + t]);
-          for (int u = 0; u < of.tables; ++u) {
+          for (int u = 0; u < others.tables; ++u) {
             double value = from[u * rows.lanes + lane];
             if (own) value += mirrored[t * rows.lanes + rows.lane[u]];
             const auto q = static_cast<size_t>(columns[u]);

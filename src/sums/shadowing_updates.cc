@@ -25,14 +25,14 @@ struct NodeJob {
   // Of the entries of cells of G, by either direction.
   std::array<const double*, Stencil::kMaxSize> weight_i, weight_o;
 
-  SampleRange Of(const ShadowingUpdates::Readers& of) const {
-    return {.size = of.end - of.begin,
-            .A = A + of.begin,
-            .weight_i = of.i < 0 ? nullptr : weight_i[of.i] + of.begin,
-            .weight_o = of.o < 0 ? nullptr : weight_o[of.o] + of.begin,
-            .b = b + of.begin,
-            .G_i = G_i + of.begin,
-            .G_o = G_o + of.begin};
+  SampleRange Of(const ShadowingUpdates::Readers& readers) const {
+    return {.size = readers.end - readers.begin,
+            .A = A + readers.begin,
+            .weight_i = readers.i < 0 ? nullptr : weight_i[readers.i] + readers.begin,
+            .weight_o = readers.o < 0 ? nullptr : weight_o[readers.o] + readers.begin,
+            .b = b + readers.begin,
+            .G_i = G_i + readers.begin,
+            .G_o = G_o + readers.begin};
   }
 };
 
@@ -96,11 +96,11 @@ TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
 
 TRILOBE_MULTIVERSION
 void AddChange(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers, double* c) {
-  for (const ShadowingUpdates::Readers& of : readers) {
-    if (of.i >= 0 && of.o >= 0) {
-      AddStretch<true>(job.Of(of), c);
+  for (const ShadowingUpdates::Readers& range : readers) {
+    if (range.i >= 0 && range.o >= 0) {
+      AddStretch<true>(job.Of(range), c);
     } else {
-      AddStretch<false>(job.Of(of), c);
+      AddStretch<false>(job.Of(range), c);
     }
   }
 }
@@ -154,7 +154,7 @@ TRILOBE_ALWAYS_INLINE void MoveRange(const SampleRange& at, double step) {
 
 TRILOBE_MULTIVERSION
 void Move(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers, double step) {
-  for (const ShadowingUpdates::Readers& of : readers) MoveRange(job.Of(of), step);
+  for (const ShadowingUpdates::Readers& range : readers) MoveRange(job.Of(range), step);
 }
 
 }  // namespace
@@ -171,13 +171,13 @@ ShadowingUpdates::ShadowingUpdates(CachedLookups* lookups)
     const auto [begin, end] = spec.channels(Factor::kG, t);
     a_.emplace_back(end - begin, std::vector<double>(samples.size()));
   }
-  const auto add = [&](int node, const Readers& of) {
+  const auto add = [&](int node, const Readers& range) {
     std::vector<Readers>& all = readers_[node];
-    if (!all.empty() && all.back().end == of.begin && all.back().i == of.i &&
-        all.back().o == of.o) {
-      all.back().end = of.end;
+    if (!all.empty() && all.back().end == range.begin && all.back().i == range.i &&
+        all.back().o == range.o) {
+      all.back().end = range.end;
     } else {
-      all.push_back(of);
+      all.push_back(range);
     }
   };
   const std::vector<Cell>& cells = samples.cells_of(Factor::kG);
@@ -238,9 +238,9 @@ void ShadowingUpdates::UpdateTable(int t, const std::function<void(const FactorM
               .G_o = G_o.data(),
               .weight_i = {},
               .weight_o = {}};
-  const auto weights = [&](int lookup, std::array<const double*, Stencil::kMaxSize>* of) {
+  const auto weights = [&](int lookup, std::array<const double*, Stencil::kMaxSize>* pointers) {
     const std::vector<std::vector<double>>& weight = samples.lookups[lookup].weight;
-    for (size_t k = 0; k < weight.size(); ++k) (*of)[k] = weight[k].data();
+    for (size_t k = 0; k < weight.size(); ++k) (*pointers)[k] = weight[k].data();
   };
   weights(samples.order.G_i(), &job.weight_i);
   weights(samples.order.G_o(), &job.weight_o);

@@ -50,11 +50,11 @@ void AddModule(std::string_view name, std::vector<std::string>* added, std::stri
     std::string_view line = text.substr(at, end - at);
     at = end;
     if (line.starts_with("import ")) {
-      const size_t from = line.find("'./"), to = line.rfind('\'');
-      if (from == std::string_view::npos || to < from + 3) {
+      const size_t from = line.find("'./"), quote = line.rfind('\'');
+      if (from == std::string_view::npos || quote < from + 3) {
         throw Error("web/" + std::string(name) + ": an import that is not of one line");
       }
-      AddModule(line.substr(from + 3, to - from - 3), added, script);
+      AddModule(line.substr(from + 3, quote - from - 3), added, script);
       continue;
     }
     if (line.starts_with("export ")) line.remove_prefix(std::string_view("export ").size());

@@ -83,9 +83,9 @@ class Packer {
     }
     for (int k = 0; k < spline.nodes(); ++k) {
       for (int g = 0; g < groups; ++g) {
-        for (const auto* const of : {&tables, &bends}) {
+        for (const auto* const columns : {&tables, &bends}) {
           for (size_t t = size_t{4} * g; t < size_t{4} * (g + 1); ++t) {
-            texels_.push_back(t < of->size() ? ToFloat((*of)[t][k]) : 0.0F);
+            texels_.push_back(t < columns->size() ? ToFloat((*columns)[t][k]) : 0.0F);
           }
         }
       }

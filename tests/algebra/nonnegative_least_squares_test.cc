@@ -27,8 +27,8 @@ struct Problem {
   VectorXd x;
   double E = 0;
 
-  double Change(const VectorXd& to) const {
-    const VectorXd delta = to - x;
+  double Change(const VectorXd& end) const {
+    const VectorXd delta = end - x;
     return delta.dot(H * delta) - 2 * g.dot(delta);
   }
   VectorXd Solve() const {
@@ -61,7 +61,7 @@ double BruteForce(const Problem& problem) {
   double best = 0;
   for (int zeros = 0; zeros < 1 << n; ++zeros) {
     std::vector<int> free;
-    VectorXd to = VectorXd::Zero(n);
+    VectorXd solution = VectorXd::Zero(n);
     for (int k = 0; k < n; ++k) {
       if (!(zeros >> k & 1)) free.push_back(k);
     }
@@ -70,18 +70,18 @@ double BruteForce(const Problem& problem) {
       const MatrixXd H = problem.H(free, free);
       const VectorXd rhs_free = rhs(free);
       const VectorXd x_free = H.ldlt().solve(rhs_free);
-      to(free) = x_free;
+      solution(free) = x_free;
     }
-    if (to.minCoeff() >= 0) best = std::min(best, problem.Change(to));
+    if (solution.minCoeff() >= 0) best = std::min(best, problem.Change(solution));
   }
   return best;
 }
 
 // The penalty of 2^-30 moves the minimum by that fraction of |delta|^2, in units in which the
 // diagonal of H is 1.
-double Tolerance(const Problem& problem, const VectorXd& to) {
-  const double penalty = problem.H.diagonal().dot((to - problem.x).cwiseAbs2());
-  const double size = problem.g.cwiseAbs().dot((to - problem.x).cwiseAbs());
+double Tolerance(const Problem& problem, const VectorXd& solution) {
+  const double penalty = problem.H.diagonal().dot((solution - problem.x).cwiseAbs2());
+  const double size = problem.g.cwiseAbs().dot((solution - problem.x).cwiseAbs());
   return kPenalty * penalty + 1e-13 * (size + penalty);
 }
 
@@ -89,9 +89,9 @@ TEST(NonnegativeLeastSquares, FindsTheLowestOfAllActiveSets) {
   for (int n = 2; n <= kMaxNonnegativeUnknowns; ++n) {
     for (uint64_t seed = 1; seed <= (n > 6 ? 5 : 50); ++seed) {
       const Problem problem = RandomProblem(n, n + 2, seed);
-      const VectorXd to = problem.Solve();
-      EXPECT_GE(to.minCoeff(), 0);
-      EXPECT_NEAR(problem.Change(to), BruteForce(problem), Tolerance(problem, to))
+      const VectorXd solution = problem.Solve();
+      EXPECT_GE(solution.minCoeff(), 0);
+      EXPECT_NEAR(problem.Change(solution), BruteForce(problem), Tolerance(problem, solution))
           << n << " unknowns, seed " << seed;
     }
   }
@@ -104,20 +104,20 @@ TEST(NonnegativeLeastSquares, IsOptimalWhereHIsSingular) {
     for (int rank = 1; rank < n; ++rank) {
       for (uint64_t seed = 1; seed <= 10; ++seed) {
         const Problem problem = RandomProblem(n, rank, seed);
-        const VectorXd to = problem.Solve();
-        const VectorXd descent = problem.g - problem.H * (to - problem.x);
+        const VectorXd solution = problem.Solve();
+        const VectorXd descent = problem.g - problem.H * (solution - problem.x);
         const double scale = problem.g.cwiseAbs().maxCoeff() +
-                             problem.H.cwiseAbs().maxCoeff() * (to - problem.x).lpNorm<1>();
+                             problem.H.cwiseAbs().maxCoeff() * (solution - problem.x).lpNorm<1>();
         for (int k = 0; k < n; ++k) {
-          ASSERT_GE(to[k], 0);
+          ASSERT_GE(solution[k], 0);
           EXPECT_LE(descent[k], 2 * kPenalty * scale)
               << n << ", rank " << rank << ", seed " << seed;
-          if (to[k] > 0) {
+          if (solution[k] > 0) {
             EXPECT_GE(descent[k], -2 * kPenalty * scale)
                 << n << ", rank " << rank << ", seed " << seed;
           }
         }
-        EXPECT_LE(problem.Change(to), 0);
+        EXPECT_LE(problem.Change(solution), 0);
       }
     }
   }
@@ -126,10 +126,10 @@ TEST(NonnegativeLeastSquares, IsOptimalWhereHIsSingular) {
 TEST(NonnegativeLeastSquares, StaysAtAMinimum) {
   for (uint64_t seed = 1; seed <= 50; ++seed) {
     Problem problem = RandomProblem(4, 6, seed);
-    const VectorXd to = problem.Solve();
-    const double tolerance = Tolerance(problem, to);
-    problem.g -= problem.H * (to - problem.x);
-    problem.x = to;
+    const VectorXd solution = problem.Solve();
+    const double tolerance = Tolerance(problem, solution);
+    problem.g -= problem.H * (solution - problem.x);
+    problem.x = solution;
     EXPECT_NEAR(problem.Change(problem.Solve()), 0, tolerance) << "seed " << seed;
   }
 }
@@ -138,12 +138,12 @@ TEST(NonnegativeLeastSquares, StaysAtAMinimum) {
 TEST(NonnegativeLeastSquares, StaysInFlatDirections) {
   Problem problem{MatrixXd::Constant(2, 2, 3), VectorXd::Constant(2, 6), VectorXd(2)};
   problem.x << 5, 1;
-  const VectorXd to = problem.Solve();
+  const VectorXd solution = problem.Solve();
   constexpr double kTolerance =
       4 * kEpsilon / kPenalty * 6 / 3;  // rounding of g / 3, by the penalty
-  EXPECT_NEAR(to[0], 6, kTolerance);
-  EXPECT_NEAR(to[1], 2, kTolerance);
-  EXPECT_NEAR(to.sum(), 8, 4 * kPenalty);
+  EXPECT_NEAR(solution[0], 6, kTolerance);
+  EXPECT_NEAR(solution[1], 2, kTolerance);
+  EXPECT_NEAR(solution.sum(), 8, 4 * kPenalty);
 }
 
 // Rounding errors of g that are out of H's range look like a decrease of 2^30 times their square;
@@ -169,13 +169,13 @@ TEST(NonnegativeLeastSquares, HoldsWhatEDoesNotDependOn) {
 
 TEST(NonnegativeLeastSquares, DoesNotDependOnUnits) {
   const Problem problem = RandomProblem(5, 5, 1);
-  const VectorXd to = problem.Solve();
+  const VectorXd solution = problem.Solve();
   VectorXd units(5);
   units << 0x1p100, 1, 0x1p-100, 0x1p7, 0x1p-3;
   const VectorXd inverse = units.cwiseInverse();
   const Problem scaled{inverse.asDiagonal() * problem.H * inverse.asDiagonal(),
                        inverse.cwiseProduct(problem.g), units.cwiseProduct(problem.x)};
-  EXPECT_EQ(scaled.Solve(), units.cwiseProduct(to));
+  EXPECT_EQ(scaled.Solve(), units.cwiseProduct(solution));
 }
 
 // Nothing here is a number or small enough for a model; what comes back is.
@@ -187,10 +187,10 @@ TEST(NonnegativeLeastSquares, SurvivesWhatIsNoNumber) {
       problem.g[1] = bad;
       problem.H(0, 0) = diagonal;
       problem.H(0, 1) = problem.H(1, 0) = bad;
-      const VectorXd to = problem.Solve();
-      EXPECT_TRUE(to.allFinite()) << bad << ", " << diagonal;
-      EXPECT_GE(to.minCoeff(), 0);
-      EXPECT_LE(to.maxCoeff(), kMaxParameter);
+      const VectorXd solution = problem.Solve();
+      EXPECT_TRUE(solution.allFinite()) << bad << ", " << diagonal;
+      EXPECT_GE(solution.minCoeff(), 0);
+      EXPECT_LE(solution.maxCoeff(), kMaxParameter);
     }
   }
 }

@@ -145,9 +145,9 @@ TEST(SphereTest, EqualsTheReferenceSum) {
   const std::vector<Light> lights = NotFromTheEye();
   const AngularBrdf materials[] = {Interpolated(brdf), Interpolated(other)};
   const std::vector<RenderedImage> images = RenderSpheres(materials, lights, kSize, Everything, 1);
-  const auto reference = [&](const TabulatedBrdf& of) {
-    return RenderReference([&](const DirectionPair& pair) { return of.Interpolate(pair); }, lights,
-                           kSize, Everything)
+  const auto reference = [&](const TabulatedBrdf& brdf) {
+    return RenderReference([&](const DirectionPair& pair) { return brdf.Interpolate(pair); },
+                           lights, kSize, Everything)
         .radiance;
   };
   EXPECT_LT(LargestDifference(images[0].radiance, reference(brdf)), 1e-6);

@@ -74,10 +74,10 @@ TEST(ThinnedByPlace, KeepsWhatIsRareAndCountsItRight) {
     constexpr int kStride = 8, kLeast = 20;
     const BrdfSamples thinned = ThinnedByPlace(samples, kStride, kLeast);
     EXPECT_LT(thinned.size(), samples.size() / 2);
-    const auto by_theta_h = [&](const BrdfSamples& of) {
+    const auto by_theta_h = [&](const BrdfSamples& some) {
       std::vector<int> counts(kLong.theta_h, 0);
-      for (int j = 0; j < of.size(); ++j) {
-        const double h = kLong.ThetaHCoordinate(of.Angles(j).theta_h);
+      for (int j = 0; j < some.size(); ++j) {
+        const double h = kLong.ThetaHCoordinate(some.Angles(j).theta_h);
         ++counts[std::clamp(static_cast<int>(h), 0, kLong.theta_h - 1)];
       }
       return counts;

@@ -112,8 +112,9 @@ TEST(BsdfSampling, MovesContinuouslyWithItsNumbers) {
     Random random(6);
     for (int k = 0; k < 500; ++k) {
       const double u = random.Uniform(0, 1 - kStep), v = random.Uniform(0, 1 - kStep);
-      const auto from = bsdf.SampleWo(wi, {u, v}), to = bsdf.SampleWo(wi, {u + kStep, v + kStep});
-      const double distance = std::hypot(to.wo[0] - from.wo[0], to.wo[1] - from.wo[1]);
+      const auto from = bsdf.SampleWo(wi, {u, v}),
+                 sampled = bsdf.SampleWo(wi, {u + kStep, v + kStep});
+      const double distance = std::hypot(sampled.wo[0] - from.wo[0], sampled.wo[1] - from.wo[1]);
       jumps += distance > 0.05;
     }
     EXPECT_LE(jumps, 1) << name;  // from one component to the other

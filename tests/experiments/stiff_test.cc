@@ -48,10 +48,10 @@ TEST(CompareTables, LobesHaveNoOrder) {
   const FactorModel right = RandomModel(spec, 1);
   FactorModel turned = right;  // lobes 0, 1, 2 in the places 1, 2, 0
   for (int m = 0; m < 3; ++m) {
-    const int to = (m + 1) % 3;
-    std::ranges::copy(right.s(m), turned.s(to).begin());
+    const int target = (m + 1) % 3;
+    std::ranges::copy(right.s(m), turned.s(target).begin());
     for (const Factor factor : {Factor::kD, Factor::kG}) {
-      std::ranges::copy(right.table(factor, m), turned.table(factor, to).begin());
+      std::ranges::copy(right.table(factor, m), turned.table(factor, target).begin());
     }
   }
   const std::vector<bool> all(spec.num_parameters(), true);
@@ -67,9 +67,9 @@ TEST(CompareTables, LobesHaveNoOrder) {
 class ReferenceDerivatives : public testing::TestWithParam<std::string> {};
 
 TEST_P(ReferenceDerivatives, AreThoseOfItsValue) {
-  const StiffProblem of = FindStiffCase(GetParam()).make();
-  const ReferenceProblem<Big> problem(of.samples, of.spec, of.weighting);
-  VectorOf<Big> x = ToVector<Big>(RandomModel(of.spec, 3));
+  const StiffProblem stiff = FindStiffCase(GetParam()).make();
+  const ReferenceProblem<Big> problem(stiff.samples, stiff.spec, stiff.weighting);
+  VectorOf<Big> x = ToVector<Big>(RandomModel(stiff.spec, 3));
   const Derivatives<Big> at = problem.Evaluate(x);
   EXPECT_LT(static_cast<double>(abs(at.objective / problem.Value(x) - 1)), 1e-45);
   const Big h(1e-12);
@@ -101,52 +101,52 @@ INSTANTIATE_TEST_SUITE_P(Cases, ReferenceDerivatives,
 class Stiff : public testing::TestWithParam<std::string> {};
 
 TEST_P(Stiff, IsAProblem) {
-  const StiffProblem of = FindStiffCase(GetParam()).make();
-  const Objective objective = MakeObjective(of);
-  for (const Rgb& rho : of.samples.rho) {
+  const StiffProblem problem = FindStiffCase(GetParam()).make();
+  const Objective objective = MakeObjective(problem);
+  for (const Rgb& rho : problem.samples.rho) {
     for (const double value : rho) EXPECT_TRUE(std::isfinite(value) && value >= 0) << value;
   }
-  const FactorModel start = StartOf(of, objective);
-  EXPECT_TRUE(start.spec() == of.spec);
+  const FactorModel start = StartOf(problem, objective);
+  EXPECT_TRUE(start.spec() == problem.spec);
   EXPECT_TRUE(std::isfinite(objective.Value(start)));
   // The library's E and coverage are those of the definition, each sum to within its rounding.
-  const ReferenceProblem<long double> reference(of.samples, of.spec, of.weighting);
+  const ReferenceProblem<long double> reference(problem.samples, problem.spec, problem.weighting);
   const auto E = static_cast<double>(reference.Value(ToVector<long double>(start)));
   if (E > 1e-290) {  // below, squares lose digits
     EXPECT_NEAR(objective.Value(start) / E, 1, 1e-11);
   }
-  for (int k = 0; k < of.spec.num_parameters(); ++k) {
+  for (int k = 0; k < problem.spec.num_parameters(); ++k) {
     const auto coverage = static_cast<double>(reference.coverage()(k));
     EXPECT_NEAR(objective.coverage()[k], coverage, 1e-11 * coverage) << k;
   }
 }
 
 TEST_P(Stiff, HasItsAnswer) {
-  const StiffProblem of = FindStiffCase(GetParam()).make();
-  const Objective objective = MakeObjective(of);
+  const StiffProblem problem = FindStiffCase(GetParam()).make();
+  const Objective objective = MakeObjective(problem);
   const Certificate& right = CertificateOf(GetParam());
   ASSERT_NO_THROW(CheckCertifies(right, objective));
   EXPECT_EQ(right.descent_directions, 0);
   // The certified model, rounded to doubles, has the certified E.
-  const ReferenceProblem<long double> reference(of.samples, of.spec, of.weighting);
+  const ReferenceProblem<long double> reference(problem.samples, problem.spec, problem.weighting);
   const auto E = static_cast<double>(reference.Value(ToVector<long double>(right.model)));
   const double rounding = 1e-25 * right.measured_energy;
   EXPECT_NEAR(E, right.objective, 1e-11 * right.objective + rounding);
   // And is canonical for the library, too.
   FactorModel canonical = right.model;
   NormalizeScale(objective.coverage(), &canonical);
-  const std::vector<bool> all(of.spec.num_parameters(), true);
+  const std::vector<bool> all(problem.spec.num_parameters(), true);
   EXPECT_GT(CompareTables(canonical, right.model, all).tables, 11);
 }
 
 std::vector<std::string> CaseNames() {
   std::vector<std::string> names;
-  for (const StiffCase& of : StiffCases()) names.push_back(of.name);
+  for (const StiffCase& stiff_case : StiffCases()) names.push_back(stiff_case.name);
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Stiff, testing::ValuesIn(CaseNames()), [](const auto& of) {
-  std::string name = of.param;
+INSTANTIATE_TEST_SUITE_P(Cases, Stiff, testing::ValuesIn(CaseNames()), [](const auto& test) {
+  std::string name = test.param;
   std::ranges::replace(name, '-', '_');
   return name;
 });
@@ -163,8 +163,8 @@ TEST(Certify, FindsTheAnswerAgain) {
 
 // Turned data have the turned answer, with the same E.
 TEST(Turned, HaveTheTurnedAnswer) {
-  for (const auto& [name, of, nodes] : Twins()) {
-    const Certificate &turned = CertificateOf(name), &right = CertificateOf(of);
+  for (const auto& [name, original, nodes] : Twins()) {
+    const Certificate &turned = CertificateOf(name), &right = CertificateOf(original);
     EXPECT_NEAR(turned.objective / right.objective, 1, 1e-12) << name;
     EXPECT_EQ(turned.undetermined.size(), right.undetermined.size()) << name;
     EXPECT_GT(CompareTables(turned.model, Turned(right.model, nodes), turned.Determined()).tables,
@@ -174,8 +174,8 @@ TEST(Turned, HaveTheTurnedAnswer) {
 }
 
 TEST(CheckCertifies, RefusesOtherSamples) {
-  const StiffProblem of = FindStiffCase("regular").make();
-  EXPECT_THROW(CheckCertifies(CertificateOf("quantised"), MakeObjective(of)), Error);
+  const StiffProblem problem = FindStiffCase("regular").make();
+  EXPECT_THROW(CheckCertifies(CertificateOf("quantised"), MakeObjective(problem)), Error);
 }
 
 }  // namespace

@@ -138,9 +138,9 @@ std::vector<TensorField> WithSpectra(const TinyRgl& file, const std::vector<floa
   for (size_t slice = 0; slice < shape[0] * shape[1]; ++slice) {
     for (const float wavelength : wavelengths) {
       for (size_t node = 0; node < nodes; ++node) {
-        const float* of = &file.rgb[slice * 3 * nodes + node];
-        spectra.push_back(of[0] + (wavelength < 490 ? of[nodes] : 0) +
-                          (wavelength > 590 ? of[2 * nodes] : 0));
+        const float* values = &file.rgb[slice * 3 * nodes + node];
+        spectra.push_back(values[0] + (wavelength < 490 ? values[nodes] : 0) +
+                          (wavelength > 590 ? values[2 * nodes] : 0));
       }
     }
   }

@@ -98,9 +98,9 @@ TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
   EXPECT_EQ(ParseError(""), "x.bsdf: line 0: the file ends before DataBegin");
   EXPECT_THAT(ParseError(kBegin + kData), HasSubstr("the header has no SampleRotation"));
   EXPECT_THAT(ParseError(kAngles + kData), HasSubstr("the header has no ScatterType"));
-  const auto changed = [](const std::string& from, const std::string& to) {
+  const auto changed = [](const std::string& from, const std::string& after) {
     std::string text = kBegin + kAngles + kData;
-    text.replace(text.find(from), from.size(), to);
+    text.replace(text.find(from), from.size(), after);
     return ParseError(text);
   };
   EXPECT_EQ(changed("BRDF", "BTDF"), "x.bsdf: line 5: ScatterType is BTDF; only BRDF can be read");

@@ -56,9 +56,9 @@ TEST(Axis, PolarReadingsAreBilinearPeriodicAndClamped) {
 
 TEST(Axis, RefusesNodesThatDoNotAscendOrAreTooMany) {
   const auto spec = [](const Axis& axis) {
-    ModelSpec of = ModelSpec::Anisotropic(1);
-    of.g_axis = axis;
-    return of;
+    ModelSpec spec = ModelSpec::Anisotropic(1);
+    spec.g_axis = axis;
+    return spec;
   };
   EXPECT_NO_THROW(CheckSpec(spec(Axis::Polar({0, 40, 89}, 4))));
   EXPECT_THROW(CheckSpec(spec(Axis::Polar({0, 40, 40}, 4))), Error);

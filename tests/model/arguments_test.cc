@@ -48,39 +48,46 @@ std::string ErrorWith(const std::function<void(BrdfSamples*)>& change, bool scat
 }
 
 TEST(Arguments, SamplesOfAnObjective) {
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { *to = Selected(*to, {}); }), HasSubstr("no sample"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.pop_back(); }), HasSubstr("each needs one"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.clear(); }), HasSubstr("0 bins"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins[0] = -1; }), HasSubstr("sample 0"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.back() = kGrid.size(); }),
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { *changed = Selected(*changed, {}); }),
+              HasSubstr("no sample"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->bins.pop_back(); }),
+              HasSubstr("each needs one"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->bins.clear(); }), HasSubstr("0 bins"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->bins[0] = -1; }),
+              HasSubstr("sample 0"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->bins.back() = kGrid.size(); }),
               HasSubstr("bin 240 of 240"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { std::swap(to->bins[3], to->bins[4]); }),
+  EXPECT_THAT(
+      ErrorWith([](BrdfSamples* changed) { std::swap(changed->bins[3], changed->bins[4]); }),
+      HasSubstr("ascend"));
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->bins[4] = changed->bins[3]; }),
               HasSubstr("ascend"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins[4] = to->bins[3]; }), HasSubstr("ascend"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->bins.back() = kGrid.Index(5, 4, 0); }),
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->bins.back() = kGrid.Index(5, 4, 0); }),
               HasSubstr("below the surface"));
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) {
-                to->multiplicity = {1, 1};
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) {
+                changed->multiplicity = {1, 1};
               }),
               HasSubstr("2 multiplicities"));
   for (const double bad : {-1e-300, -1.0, kNaN, kInfinity}) {
-    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) { to->rho[3][1] = bad; }), HasSubstr("sample 3"));
-    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) {
-                  to->multiplicity.assign(to->size(), 1);
-                  to->multiplicity[5] = bad;
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* changed) { changed->rho[3][1] = bad; }),
+                HasSubstr("sample 3"));
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* changed) {
+                  changed->multiplicity.assign(changed->size(), 1);
+                  changed->multiplicity[5] = bad;
                 }),
                 HasSubstr("sample 5"));
   }
   for (const HalfDiffAngles& bad :
        {HalfDiffAngles{kNaN, 0, 0}, HalfDiffAngles{0, kNaN, 0}, HalfDiffAngles{0, 0, kNaN},
         HalfDiffAngles{-0.1, 0, 0}, HalfDiffAngles{0, 2, 0}, HalfDiffAngles{1.5, 1.5, 0}}) {
-    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) { to->angles[2] = bad; }, true),
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* changed) { changed->angles[2] = bad; }, true),
                 HasSubstr("sample 2"));
   }
-  EXPECT_THAT(ErrorWith([](BrdfSamples* to) { to->angles.pop_back(); }, true),
+  EXPECT_THAT(ErrorWith([](BrdfSamples* changed) { changed->angles.pop_back(); }, true),
               HasSubstr("angles; each needs one"));
   for (const int phi_d : {0, -1, 1 << 30}) {
-    EXPECT_THAT(ErrorWith([&](BrdfSamples* to) { to->grid.phi_d = phi_d; }), HasSubstr("grid"));
+    EXPECT_THAT(ErrorWith([&](BrdfSamples* changed) { changed->grid.phi_d = phi_d; }),
+                HasSubstr("grid"));
   }
 }
 

@@ -98,12 +98,12 @@ TEST(SampleResidual, ReadsEachBlockOnce) {
   std::vector<std::set<size_t>> sizes;
   for (const BrdfSamples& samples : OnGridAndBetween()) {
     const Objective objective(samples, spec, FindWeighting("uniform"));
-    std::set<size_t>& of = sizes.emplace_back();
+    std::set<size_t>& own = sizes.emplace_back();
     for (const WeightedSample& sample : objective.weighted_samples()) {
       const Reading reading(sample, &layout);
       EXPECT_EQ(std::set<int>(reading.numbers.begin(), reading.numbers.end()).size(),
                 reading.numbers.size());
-      of.insert(reading.numbers.size());
+      own.insert(reading.numbers.size());
     }
   }
   // d, s, a row of D and of F, and of the 6 rows of G those within 2 nodes of either direction.

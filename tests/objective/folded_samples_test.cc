@@ -53,9 +53,9 @@ TEST(FoldedSamples, KeepsWhatReadsOtherwiseApart) {
   const Objective apart = ScatteredObjective(samples);
   EXPECT_EQ(apart.folded_samples()->size(), size);
   const FactorModel model = RandomModel(together.spec(), 5);
-  for (const Objective* const of : {&together, &apart}) {
-    const auto expected = static_cast<double>(ExactObjective(*of, model));
-    EXPECT_NEAR(of->Value(model), expected, 1e-12 * expected);
+  for (const Objective* const objective : {&together, &apart}) {
+    const auto expected = static_cast<double>(ExactObjective(*objective, model));
+    EXPECT_NEAR(objective->Value(model), expected, 1e-12 * expected);
   }
 }
 

@@ -172,8 +172,8 @@ TEST(Robust, TheUnitOfTheDataDoesNotMatter) {
     for (int m = 0; m < kSpec.lobes; ++m) {
       for (double& x : brighter.s(m)) x = std::ldexp(x, k);
     }
-    const Objective of = MakeObjective(scaled, kSpec, "appearance");
-    EXPECT_EQ(Reweighted(of, brighter, delta).multiplicity, expected) << k;
+    const Objective scaled_objective = MakeObjective(scaled, kSpec, "appearance");
+    EXPECT_EQ(Reweighted(scaled_objective, brighter, delta).multiplicity, expected) << k;
   }
 }
 

@@ -220,15 +220,15 @@ TEST(SyntheticPrior, TamesAFitThatIsWildBetweenNoisySamples) {
   constexpr double kMaxTheta = 0.5;
   BrdfSamples data, truth;
   data.source = truth.source = "noisy";
-  const auto add = [&](double noise, BrdfSamples* to) {
+  const auto add = [&](double noise, BrdfSamples* samples) {
     const SphericalAngles at{
         .theta_i = draw(kMaxTheta), .theta_o = draw(kMaxTheta), .phi_o = draw(2 * kPi)};
     const HalfDiffAngles angles = ToHalfDiff(ToDirections(at));
-    to->directions.push_back(at);
-    to->angles.push_back(angles);
+    samples->directions.push_back(at);
+    samples->angles.push_back(angles);
     Rgb rho = between.Interpolate(angles);
     for (double& x : rho) x *= std::exp(noise * (draw(1) + draw(1) + draw(1) + draw(1) - 2));
-    to->rho.push_back(rho);
+    samples->rho.push_back(rho);
   };
   while (data.size() < 200) add(0.5, &data);
   while (truth.size() < 2000) add(0, &truth);

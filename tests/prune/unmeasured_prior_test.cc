@@ -66,10 +66,10 @@ TEST(UnmeasuredPrior, SaysTheSameInEveryObjective) {
   const Objective objective = Measured();
   const UnmeasuredPrior prior(objective, RandomModel(Spec(), 2));
   const Objective few(Thinned(objective.samples(), 7), Spec(), objective.weighting());
-  const auto said = [&](const Objective& of) {
-    const Objective with_prior = prior.With(of);
+  const auto said = [&](const Objective& objective) {
+    const Objective with_prior = prior.With(objective);
     std::set<int> bins(with_prior.samples().bins.begin(), with_prior.samples().bins.end());
-    for (const int bin : of.samples().bins) bins.erase(bin);
+    for (const int bin : objective.samples().bins) bins.erase(bin);
     return bins;
   };
   EXPECT_FALSE(said(objective).empty());

@@ -69,11 +69,11 @@ TEST(SceneFile, MaterialsTakeTheScenesLimitsUnlessTheyHaveTheirOwn) {
 }
 
 TEST(SceneFile, ReadsDirections) {
-  const auto of = [](const std::string& json) {
+  const auto parsed = [](const std::string& json) {
     return Material(Text(R"(, "directions": )" + json)).directions;
   };
-  EXPECT_TRUE(std::holds_alternative<AllDirections>(of("\"all\"")));
-  const auto ranges = std::get<DirectionRanges>(of(R"({"theta_o": [30, 60]})"));
+  EXPECT_TRUE(std::holds_alternative<AllDirections>(parsed("\"all\"")));
+  const auto ranges = std::get<DirectionRanges>(parsed(R"({"theta_o": [30, 60]})"));
   EXPECT_EQ(ranges.theta_i.min, 0);
   EXPECT_DOUBLE_EQ(ranges.theta_i.max, kPi / 2);
   EXPECT_DOUBLE_EQ(ranges.theta_o.min, kPi / 6);
@@ -81,7 +81,7 @@ TEST(SceneFile, ReadsDirections) {
   // In the plane of incidence, on the side of the mirror direction: theta_h is half the difference
   // of the angles, theta_d half their sum.
   const auto list =
-      std::get<DirectionList>(of(R"({"list": [{"theta_i": 20, "theta_o": 50, "phi": 180}]})"));
+      std::get<DirectionList>(parsed(R"({"list": [{"theta_i": 20, "theta_o": 50, "phi": 180}]})"));
   ASSERT_EQ(list.directions.size(), 1U);
   EXPECT_NEAR(list.directions[0].theta_h, DegreesToRadians(15), 1e-12);
   EXPECT_NEAR(list.directions[0].theta_d, DegreesToRadians(35), 1e-12);

@@ -73,22 +73,24 @@ TEST_P(SolverArguments, OptionsOutOfTheirRange) {
     change(&options);
     return ErrorFrom(start, options);
   };
-  EXPECT_THAT(error([](SolverOptions* to) { to->max_iterations = -1; }),
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->max_iterations = -1; }),
               HasSubstr("max_iterations"));
-  EXPECT_THAT(error([](SolverOptions* to) { to->max_seconds = -1; }), HasSubstr("max_seconds"));
-  EXPECT_THAT(error([](SolverOptions* to) { to->max_seconds = kNaN; }), HasSubstr("max_seconds"));
-  EXPECT_THAT(error([](SolverOptions* to) { to->relative_decrease_tolerance = kNaN; }),
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->max_seconds = -1; }),
+              HasSubstr("max_seconds"));
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->max_seconds = kNaN; }),
+              HasSubstr("max_seconds"));
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->relative_decrease_tolerance = kNaN; }),
               HasSubstr("relative_decrease_tolerance"));
   for (const double bad : {-1.0, kNaN}) {
-    EXPECT_THAT(error([&](SolverOptions* to) { to->optimality_tolerance = bad; }),
+    EXPECT_THAT(error([&](SolverOptions* changed) { changed->optimality_tolerance = bad; }),
                 HasSubstr("optimality_tolerance"));
   }
   for (const double bad : {-1.0, kNaN, kInfinity}) {
-    EXPECT_THAT(error([&](SolverOptions* to) { to->g_filter_sigma = bad; }),
+    EXPECT_THAT(error([&](SolverOptions* changed) { changed->g_filter_sigma = bad; }),
                 HasSubstr("g_filter_sigma"));
   }
-  EXPECT_THAT(error([](SolverOptions* to) { to->memory = -1; }), HasSubstr("memory"));
-  EXPECT_THAT(error([](SolverOptions* to) { to->starts = 0; }), HasSubstr("starts"));
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->memory = -1; }), HasSubstr("memory"));
+  EXPECT_THAT(error([](SolverOptions* changed) { changed->starts = 0; }), HasSubstr("starts"));
 }
 
 std::vector<std::string> SolverNames() {

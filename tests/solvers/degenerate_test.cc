@@ -68,8 +68,8 @@ class Degenerate : public testing::TestWithParam<std::string> {};
 TEST_P(Degenerate, LeavesAModelThatIsNoWorse) {
   std::vector<NamedSpec> specs = {{"0 lobes", ModelSpec::SharedFactors(0, kGrid)},
                                   {"1 lobe", ModelSpec::SharedFactors(1, kGrid)}};
-  for (const NamedSpec& of : TestSpecs(kGrid)) {
-    if (of.name == "D shared by all" || of.name == "nothing shared") specs.push_back(of);
+  for (const NamedSpec& named : TestSpecs(kGrid)) {
+    if (named.name == "D shared by all" || named.name == "nothing shared") specs.push_back(named);
   }
   int solved = 0;
   const std::vector<NamedSamples> all_samples = TestSamples();
@@ -97,8 +97,8 @@ TEST_P(Degenerate, LeavesAModelThatIsNoWorse) {
         EXPECT_LE(summary.final_objective, objective.Value(start)) << what;
         EXPECT_EQ(summary.final_objective, objective.Value(model)) << what;
         EXPECT_LE(summary.iterations, 8) << what;
-        for (const StartResult& of : summary.starts) {
-          EXPECT_TRUE(std::isfinite(of.objective)) << what << ", " << of.name;
+        for (const StartResult& tried : summary.starts) {
+          EXPECT_TRUE(std::isfinite(tried.objective)) << what << ", " << tried.name;
         }
         ASSERT_TRUE(summary.diagnosis) << what;
         EXPECT_TRUE(std::isfinite(summary.diagnosis->optimality)) << what;

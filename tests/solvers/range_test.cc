@@ -38,16 +38,16 @@ BrdfSamples Scaled(BrdfSamples samples, double factor) {
 const BrdfSamples& Measured() {
   static const BrdfSamples samples = [] {
     const FactorModel model = RandomModel(ModelSpec::SharedFactors(1, kGrid), 1);
-    BrdfSamples of = ValidSamples(TableOf(model, kGrid));
+    BrdfSamples samples = ValidSamples(TableOf(model, kGrid));
     Random random(1);
     double largest = 0;
-    for (Rgb& rho : of.rho) {
+    for (Rgb& rho : samples.rho) {
       for (double& x : rho) {
         x *= random.LogNormal(0.05);
         largest = std::max(largest, x);
       }
     }
-    return Scaled(std::move(of), 1 / largest);
+    return Scaled(std::move(samples), 1 / largest);
   }();
   return samples;
 }

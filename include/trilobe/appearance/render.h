@@ -55,8 +55,8 @@ inline Cosines CosinesOver(const SurfacePoint& point, const Direction& light) {
 }
 
 // The azimuth of a direction over a point, from its x towards its y.
-inline double PhiOver(const SurfacePoint& point, const Direction& to) {
-  return std::atan2(Dot(to, point.y), Dot(to, point.x));
+inline double PhiOver(const SurfacePoint& point, const Direction& direction) {
+  return std::atan2(Dot(direction, point.y), Dot(direction, point.x));
 }
 
 // The same for any kind of angles and of light. `incident(k, l)` is what falls on view.points[k] as

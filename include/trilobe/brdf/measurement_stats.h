@@ -30,7 +30,7 @@ struct BinCounts {
 BinCounts CountBins(const BrdfTable& table);
 
 // "12 of 20 bins valid".
-std::string ValidText(const BinCounts& counts, const std::string& of);
+std::string ValidText(const BinCounts& counts, const std::string& whole);
 
 // What part of the bins above the surface is valid, for each cell of 1 degree x 1 degree of
 // (theta_i, theta_o), [90][90], theta_o fastest; NaN where a cell holds no such bin's centre.

@@ -36,7 +36,7 @@ double ProjectedIntegral(const Axis& axis, std::span<const double> D);
 
 // Makes the parameters of `to` that no data touch those of `from`, a model of the same spec.
 void CopyUnobservedParameters(std::span<const double> coverage, const FactorModel& from,
-                              FactorModel* to);
+                              FactorModel* target);
 
 // True for the table entries that no data touch, in the order of parameters().
 std::vector<bool> UnobservedParameters(std::span<const double> coverage);

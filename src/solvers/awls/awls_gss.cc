@@ -123,10 +123,10 @@ double GoldenSection(const std::function<double(double)>& f) {
   return at_x <= at_y ? x : y;
 }
 
-FactorModel Between(const FactorModel& from, const FactorModel& to, double t) {
+FactorModel Between(const FactorModel& from, const FactorModel& end, double t) {
   FactorModel result = from;
   for (size_t k = 0; k < result.parameters().size(); ++k) {
-    result.parameters()[k] += t * (to.parameters()[k] - from.parameters()[k]);
+    result.parameters()[k] += t * (end.parameters()[k] - from.parameters()[k]);
   }
   return result;
 }

@@ -73,32 +73,34 @@ Positivity ChoosePositivity(CeresParameters::ActiveSet active_set, Run* run) {
 
 ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver linear_solver,
                                int num_threads) {
-  ceres::Solver::Options to;
-  to.trust_region_strategy_type =
+  ceres::Solver::Options ceres_options;
+  ceres_options.trust_region_strategy_type =
       options.trust_region == TrustRegion::kDogleg ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
-  to.linear_solver_type = ToCeres(linear_solver);
-  to.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  to.dense_linear_algebra_library_type = ceres::LAPACK;  // as fast as the BLAS that is installed
+  ceres_options.linear_solver_type = ToCeres(linear_solver);
+  ceres_options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  ceres_options.dense_linear_algebra_library_type =
+      ceres::LAPACK;  // as fast as the BLAS that is installed
   // Ceres would take no more, and say so on stderr.
   const int most_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  to.num_threads = std::min(num_threads, most_threads);
+  ceres_options.num_threads = std::min(num_threads, most_threads);
 
   // Scale can move between the factors, so J'J is singular, and only the damping makes its
   // factorisation succeed. It must stay above the rounding errors of J'J.
-  to.max_trust_region_radius = 1e10;
+  ceres_options.max_trust_region_radius = 1e10;
   // Only with bounds is there a line search. By bisection a trial costs one evaluation of the
   // residuals, not of the Jacobian. On synthetic plastic, aluminium and felt, 40 iterations with
   // it, and with Ceres' default of 1e4 for the initial radius, end no higher than with any other
   // choice.
-  to.line_search_interpolation_type = ceres::BISECTION;
+  ceres_options.line_search_interpolation_type = ceres::BISECTION;
 
   // Run decides when to stop.
-  to.max_num_iterations = options.max_iterations;
-  to.function_tolerance = to.gradient_tolerance = to.parameter_tolerance = 0;
+  ceres_options.max_num_iterations = options.max_iterations;
+  ceres_options.function_tolerance = ceres_options.gradient_tolerance =
+      ceres_options.parameter_tolerance = 0;
 
-  to.update_state_every_iteration = true;
-  to.logging_type = ceres::SILENT;
-  return to;
+  ceres_options.update_state_every_iteration = true;
+  ceres_options.logging_type = ceres::SILENT;
+  return ceres_options;
 }
 
 }  // namespace

@@ -48,15 +48,15 @@ Reduction::Reduction(const ModelSpec& spec, const TableLayout& layout) {
 }
 
 Reduction Reduction::BySharing(const ModelSpec& spec, const ModelSpec& fewer) {
-  const FactorModel from(spec), to(fewer);
+  const FactorModel full(spec), shared(fewer);
   // The number of `fewer` that each of `spec` becomes.
   std::vector<int> target(spec.num_parameters());
   for (int k = 0; k < kChannels * (1 + spec.lobes); ++k) target[k] = k;
   for (const Factor factor : kFactors) {
     for (int m = 0; m < spec.lobes; ++m) {
       for (int c = 0; c < kChannels; ++c) {
-        const int begin = from.TableOffset(factor, spec.table(factor, m, c));
-        const int target_begin = to.TableOffset(factor, fewer.table(factor, m, c));
+        const int begin = full.TableOffset(factor, spec.table(factor, m, c));
+        const int target_begin = shared.TableOffset(factor, fewer.table(factor, m, c));
         for (int k = 0; k < spec.table_size(factor); ++k) target[begin + k] = target_begin + k;
       }
     }
@@ -68,7 +68,7 @@ Reduction Reduction::BySharing(const ModelSpec& spec, const ModelSpec& fewer) {
     reduction.EndRow();
     if (int& source = reduction.source_[target[k]]; source < 0) source = k;
   }
-  reduction.parts_ = to.Parts();
+  reduction.parts_ = shared.Parts();
   return reduction;
 }
 
@@ -121,8 +121,8 @@ QuadraticModel Reduction::operator()(const QuadraticModel& at) const {
     const std::vector<double> row = Transpose({&at.H[k * n], n});  // of H B
     for (int i = begin_[k]; i < begin_[k + 1]; ++i) {
       const double weight = weight_[i];
-      double* const to = &reduced.H[column_[i] * m];
-      for (size_t j = 0; j < m; ++j) to[j] += weight * row[j];
+      double* const target = &reduced.H[column_[i] * m];
+      for (size_t j = 0; j < m; ++j) target[j] += weight * row[j];
       reduced.squared_lengths[column_[i]] += weight * weight * at.squared_lengths[k];
     }
   }

@@ -149,16 +149,16 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
       step.MoveTo(problem, metric, reduction.Restrict(at.model.parameters()));
       linearized = true;
     }
-    FactorModel to = at.model;
-    std::ranges::copy(reduction.Expand(step.Solve(lambda).x), to.parameters().begin());
-    const double error = ReflectanceOf(objective, to).Error();
-    const double lower = total(minimised.Value(to), error);
+    FactorModel stepped = at.model;
+    std::ranges::copy(reduction.Expand(step.Solve(lambda).x), stepped.parameters().begin());
+    const double error = ReflectanceOf(objective, stepped).Error();
+    const double lower = total(minimised.Value(stepped), error);
     if (!(lower < lowest)) {
       lambda *= kRise;
       continue;
     }
     const bool small = lower > (1 - kHardlyLower) * lowest;
-    at.model = std::move(to);
+    at.model = std::move(stepped);
     at.error_after = error;
     lowest = lower;
     lambda *= kFall;

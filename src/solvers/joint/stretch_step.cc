@@ -199,16 +199,17 @@ std::optional<FactorModel> StretchStepper::Step(double lambda, double max_step,
                                                 double follow) const {
   const Vector from = ExponentsOf(model_.spec()), step = ExponentStep(lambda);
   if (step.empty()) return std::nullopt;
-  Vector to = from;
+  Vector exponents = from;
   for (size_t k = 0; k < from.size(); ++k) {
     const double moved = from[k] + std::clamp(step[k], -max_step, max_step);
-    to[k] = std::clamp(std::round(100 * moved) / 100, -kMaxStretch, kMaxStretch);
+    exponents[k] = std::clamp(std::round(100 * moved) / 100, -kMaxStretch, kMaxStretch);
   }
-  if (to == from) return std::nullopt;
-  FactorModel model = WithStretches(model_, StretchesOf(to));
+  if (exponents == from) return std::nullopt;
+  FactorModel model = WithStretches(model_, StretchesOf(exponents));
   for (size_t a = 0; a < free_.size(); ++a) {
     double change = follows_[0][a];
-    for (size_t k = 0; k < from.size(); ++k) change += follows_[1 + k][a] * (to[k] - from[k]);
+    for (size_t k = 0; k < from.size(); ++k)
+      change += follows_[1 + k][a] * (exponents[k] - from[k]);
     double& x = model.parameters()[free_[a]];
     x = std::max(x - follow * change, 0.0);
   }

@@ -42,36 +42,37 @@ void JointRows::ReadRow(const FactorModel& model, const Pieces& G, int h, int d,
                         RowAccumulator* accumulator) const {
   const RowLayout& layout = *layout_;
   const ModelSpec& spec = layout.spec;
-  RowAccumulator& of = *accumulator;
+  RowAccumulator& sums = *accumulator;
   const int row = h * folded_.grid.theta_d + d;
   const int begin = folded_.row_begin[row], size = folded_.row_begin[row + 1] - begin;
   const int padded_size = (size + kBatch - 1) / kBatch * kBatch;
-  of.size = size;
-  of.padded_size = padded_size;
-  of.interval_i = &folded_.interval_i[begin];
-  of.interval_o = &folded_.interval_o[begin];
+  sums.size = size;
+  sums.padded_size = padded_size;
+  sums.interval_i = &folded_.interval_i[begin];
+  sums.interval_o = &folded_.interval_o[begin];
   const double *const t_i = &folded_.t_i[begin], *const t_o = &folded_.t_o[begin];
 
-  SplineWeights(size, layout.columns, spec.g_axis.size - 2, of.interval_i, t_i, of.B_i.data());
-  SplineWeights(size, layout.columns, spec.g_axis.size - 2, of.interval_o, t_o, of.B_o.data());
+  SplineWeights(size, layout.columns, spec.g_axis.size - 2, sums.interval_i, t_i, sums.B_i.data());
+  SplineWeights(size, layout.columns, spec.g_axis.size - 2, sums.interval_o, t_o, sums.B_o.data());
   for (size_t t = 0; t < G.size(); ++t) {
-    ReadTable(size, G[t].data(), of.interval_i, of.interval_o, t_i, t_o,
-              &folded_.inverse_cosines[begin], of.K[t].data(), of.H_i[t].data(), of.H_o[t].data());
+    ReadTable(size, G[t].data(), sums.interval_i, sums.interval_o, t_i, t_o,
+              &folded_.inverse_cosines[begin], sums.K[t].data(), sums.H_i[t].data(),
+              sums.H_o[t].data());
   }
   for (int c = 0; c < kChannels; ++c) {
     for (int m = 0; m < spec.lobes; ++m) {
-      LobeOfRow& lobe = of.lobes[c][m];
+      LobeOfRow& lobe = sums.lobes[c][m];
       const double s = model.s(m)[c], D = model.D(m, c)[h], F = model.F(m, c)[d];
       lobe.x = s * D * F;
       lobe.DF = D * F;
       lobe.sF = s * F;
       lobe.sD = s * D;
-      lobe.K = of.K[spec.table(Factor::kG, m, c)].data();
+      lobe.K = sums.K[spec.table(Factor::kG, m, c)].data();
     }
-    double *const w = of.w[c].data(), *const w_residual = of.w_residual[c].data();
+    double *const w = sums.w[c].data(), *const w_residual = sums.w_residual[c].data();
     std::copy_n(&folded_.weight[c][begin], size, w);
-    of.objective += WeighResiduals(size, model.d()[c], spec.lobes, of.lobes[c], w,
-                                   &folded_.rho[c][begin], w_residual);
+    sums.objective += WeighResiduals(size, model.d()[c], spec.lobes, sums.lobes[c], w,
+                                     &folded_.rho[c][begin], w_residual);
     std::fill(w + size, w + padded_size, 0.0);
     std::fill(w_residual + size, w_residual + padded_size, 0.0);
   }
@@ -81,34 +82,34 @@ void JointRows::ReadRow(const FactorModel& model, const Pieces& G, int h, int d,
 void JointRows::AddCrossProducts(Hessian hessian, int d, RowAccumulator* accumulator) const {
   const RowLayout& layout = *layout_;
   const ModelSpec& spec = layout.spec;
-  RowAccumulator& of = *accumulator;
+  RowAccumulator& sums = *accumulator;
   for (int t = 0; t < static_cast<int>(layout.tables.size()); ++t) {
     const RowLayout::OfTable& table = layout.tables[t];
-    double* const q = of.q_lines.data();
+    double* const q = sums.q_lines.data();
     for (int line = 0; line < table.lines(); ++line) {
-      std::fill_n(q + static_cast<size_t>(line) * layout.line_size, of.padded_size, 0.0);
+      std::fill_n(q + static_cast<size_t>(line) * layout.line_size, sums.padded_size, 0.0);
     }
     const auto channels = spec.channels(Factor::kG, t);
     for (int c = channels.begin; c < channels.end; ++c) {
       double X = 0;
       for (int m = 0; m < spec.lobes; ++m) {
-        LobeOfRow& lobe = of.lobes[c][m];
+        LobeOfRow& lobe = sums.lobes[c][m];
         lobe.served = spec.serves(Factor::kG, t, m, c);
         if (lobe.served) X += lobe.x;
         lobe.s_line = table.theta_h_line[RowLayout::s(m, c)];
         lobe.D_line = table.theta_h_line[layout.D(m, c)];
         lobe.F_line = table.theta_h_lines + table.theta_d_line[layout.F(m, c)];
       }
-      AddChannel(of.padded_size, X, of.w[c].data(), of.w_residual[c].data(), spec.lobes,
-                 of.lobes[c], hessian == Hessian::kNewton, table.theta_h_line[c],
+      AddChannel(sums.padded_size, X, sums.w[c].data(), sums.w_residual[c].data(), spec.lobes,
+                 sums.lobes[c], hessian == Hessian::kNewton, table.theta_h_line[c],
                  table.gradient_line, layout.line_size, q);
     }
-    Transpose(table.lines(), of.padded_size, layout.line_size, q, of.q.data());
-    AddCrossSums({of.size, of.interval_i, of.interval_o, of.B_i.data(), of.B_o.data(),
-                  of.H_i[t].data(), of.H_o[t].data()},
-                 table.theta_h_lines, table.theta_d_lines, of.q.data(),
-                 of.theta_h_G.data() + table.theta_h_begin,
-                 of.ThetaDG(layout, d) + table.theta_d_begin);
+    Transpose(table.lines(), sums.padded_size, layout.line_size, q, sums.q.data());
+    AddCrossSums({sums.size, sums.interval_i, sums.interval_o, sums.B_i.data(), sums.B_o.data(),
+                  sums.H_i[t].data(), sums.H_o[t].data()},
+                 table.theta_h_lines, table.theta_d_lines, sums.q.data(),
+                 sums.theta_h_G.data() + table.theta_h_begin,
+                 sums.ThetaDG(layout, d) + table.theta_d_begin);
   }
 }
 
@@ -190,7 +191,7 @@ void JointRows::TakeThetaH(const FactorModel& model, int h, RowAccumulator* accu
   const RowLayout& layout = *layout_;
   const ModelSpec& spec = layout.spec;
   const size_t n = result->gradient.size();
-  const auto move = [](double* from, double* to) { *to = std::exchange(*from, 0.0); };
+  const auto move = [](double* from, double* target) { *target = std::exchange(*from, 0.0); };
   for (int j = 0; j < spec.num_tables(Factor::kD); ++j) {
     const int of_D = layout.first_D + j;
     const size_t k = model.TableOffset(Factor::kD, j) + h;
@@ -216,10 +217,10 @@ void JointRows::TakeThetaH(const FactorModel& model, int h, RowAccumulator* accu
       const RowLayout::OfTable& table = layout.tables[t];
       if (table.theta_h_line[of_D] < 0) continue;
       double* sum = accumulator->theta_h_G.data() + table.theta_h_begin + table.theta_h_line[of_D];
-      double* const to = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
+      double* const target = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
       for (int node = -1; node <= spec.g_axis.size; ++node, sum += table.theta_h_lines) {
         const double value = std::exchange(*sum, 0.0);
-        if (node >= 0 && node < spec.g_axis.size) to[node] = value;
+        if (node >= 0 && node < spec.g_axis.size) target[node] = value;
       }
     }
   }
@@ -264,9 +265,9 @@ void JointRows::SetThetaD(const FactorModel& model, Hessian hessian, int d,
       if (table.theta_d_line[f] < 0) continue;
       const double* const sums =
           sum.ThetaDG(layout, d) + table.theta_d_begin + table.theta_d_line[f];
-      double* const to = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
+      double* const target = &row[model.TableOffset(Factor::kG, static_cast<int>(t))];
       for (int node = 0; node < layout.spec.g_axis.size; ++node) {
-        to[node] = sums[(1 + node) * table.theta_d_lines];
+        target[node] = sums[(1 + node) * table.theta_d_lines];
       }
     }
   }

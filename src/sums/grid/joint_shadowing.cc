@@ -97,16 +97,16 @@ struct PairOfSides {
   const Degree6 *GG_i, *GG_o;
 };
 TRILOBE_MULTIVERSION
-void AddPair(const SplineMoments& moments, const PairOfSides& of, size_t stride, double* io,
+void AddPair(const SplineMoments& moments, const PairOfSides& sides, size_t stride, double* io,
              double* oi, double* i, double* o) {
   const auto& moment = moments.second;
-  AddBlock(Contract(moment, *of.BG_u_o), *of.BG_t_i, stride, oi);
-  if (io != nullptr) AddBlock(*of.BG_u_i, Contract(moment, *of.BG_t_o), stride, io);
+  AddBlock(Contract(moment, *sides.BG_u_o), *sides.BG_t_i, stride, oi);
+  if (io != nullptr) AddBlock(*sides.BG_u_i, Contract(moment, *sides.BG_t_o), stride, io);
   for (int l = 0; l < kSecond; ++l) {
     double sum = 0;
     for (int k = 0; k < kSecond; ++k) {
-      i[k] += (*of.GG_o)[l] * moment[l][k];
-      sum += moment[l][k] * (*of.GG_i)[k];
+      i[k] += (*sides.GG_o)[l] * moment[l][k];
+      sum += moment[l][k] * (*sides.GG_i)[k];
     }
     o[l] += sum;
   }
@@ -196,8 +196,8 @@ JointShadowing::~JointShadowing() = default;
 std::vector<JointShadowing::Side> JointShadowing::MakeSides(const FactorModel& model) const {
   const int tables = spec_.num_tables(Factor::kG);
   std::vector<Side> sides(spec_.g_axis.size - 1);
-  const auto set = [](const Degree6& polynomial, int node, Degree6s* of) {
-    for (int k = 0; k < kSecond; ++k) of->term[k][node] = polynomial[k];
+  const auto set = [](const Degree6& polynomial, int node, Degree6s* products) {
+    for (int k = 0; k < kSecond; ++k) products->term[k][node] = polynomial[k];
   };
   for (int interval = 0; interval < spec_.g_axis.size - 1; ++interval) {
     Side& side = sides[interval];
@@ -227,54 +227,54 @@ void JointShadowing::SetMoments(const SplineCells::Cell& cell, const Pass& pass,
                                 Accumulator* accumulator) const {
   const size_t num_rows = static_cast<size_t>(samples_.grid.theta_h) * samples_.grid.theta_d;
   const int tables = static_cast<int>(pass.G.size());
-  Accumulator& of = *accumulator;
-  std::ranges::fill(of.moments, SplineMoments());
-  std::ranges::fill(of.residual_moments, SplineMoments());
+  Accumulator& sums = *accumulator;
+  std::ranges::fill(sums.moments, SplineMoments());
+  std::ranges::fill(sums.residual_moments, SplineMoments());
   const bool curvature = pass.hessian == Hessian::kNewton;
   for (int begin = cell.begin; begin < cell.end; begin += kChunk) {
     const int size = std::min(kChunk, cell.end - begin);
     const double *const t_i = &samples_.t_i[begin], *const t_o = &samples_.t_o[begin];
-    for (size_t p = 0; p < pairs_.size(); ++p) std::fill_n(&of.w_y_y[p * kChunk], size, 0.0);
-    for (int t = 0; t < tables; ++t) std::fill_n(&of.w_r_y[t * size_t{kChunk}], size, 0.0);
+    for (size_t p = 0; p < pairs_.size(); ++p) std::fill_n(&sums.w_y_y[p * kChunk], size, 0.0);
+    for (int t = 0; t < tables; ++t) std::fill_n(&sums.w_r_y[t * size_t{kChunk}], size, 0.0);
     for (int t = 0; t < tables && curvature; ++t) {
       MultiplyReadings(size, pass.G[t][cell.interval_i], pass.G[t][cell.interval_o], t_i, t_o,
-                       &of.GG[static_cast<size_t>(t) * kChunk]);
+                       &sums.GG[static_cast<size_t>(t) * kChunk]);
     }
     for (int c = 0; c < kChannels; ++c) {
       for (int m = 0; m < spec_.lobes; ++m) {
         const int first = first_lobe_[spec_.table(Factor::kG, m, c)][c];
-        if (first == m) std::fill_n(of.y[m], size, 0.0);
+        if (first == m) std::fill_n(sums.y[m], size, 0.0);
         AddAmplitude(size, &pass.amplitudes[(static_cast<size_t>(c) * spec_.lobes + m) * num_rows],
-                     &samples_.row[begin], &samples_.inverse_cosines[begin], of.y[first]);
+                     &samples_.row[begin], &samples_.inverse_cosines[begin], sums.y[first]);
       }
       if (curvature) {
         for (int n = 0; n < size; ++n) {
-          of.residual[n] = pass.model.d()[c] - samples_.rho[c][begin + n];
+          sums.residual[n] = pass.model.d()[c] - samples_.rho[c][begin + n];
         }
       }
       for (int t = 0; t < tables; ++t) {
         const int m = first_lobe_[t][c];
         if (m < 0) continue;
-        Multiply(size, &samples_.weight[c][begin], of.y[m], of.w_y[m]);
+        Multiply(size, &samples_.weight[c][begin], sums.y[m], sums.w_y[m]);
         if (curvature) {
-          AddProduct(size, of.y[m], &of.GG[static_cast<size_t>(t) * kChunk], of.residual);
+          AddProduct(size, sums.y[m], &sums.GG[static_cast<size_t>(t) * kChunk], sums.residual);
         }
       }
       for (size_t p = 0; p < pairs_.size(); ++p) {
         const int m = first_lobe_[pairs_[p].first][c], l = first_lobe_[pairs_[p].second][c];
-        if (m >= 0 && l >= 0) AddProduct(size, of.w_y[m], of.y[l], &of.w_y_y[p * kChunk]);
+        if (m >= 0 && l >= 0) AddProduct(size, sums.w_y[m], sums.y[l], &sums.w_y_y[p * kChunk]);
       }
       for (int t = 0; t < tables && curvature; ++t) {
         const int m = first_lobe_[t][c];
         if (m < 0) continue;
-        AddProduct(size, of.w_y[m], of.residual, &of.w_r_y[static_cast<size_t>(t) * kChunk]);
+        AddProduct(size, sums.w_y[m], sums.residual, &sums.w_r_y[static_cast<size_t>(t) * kChunk]);
       }
     }
-    AddSecondMoments(size, static_cast<int>(pairs_.size()), kChunk, of.w_y_y.data(), t_i, t_o,
-                     of.moments.data());
+    AddSecondMoments(size, static_cast<int>(pairs_.size()), kChunk, sums.w_y_y.data(), t_i, t_o,
+                     sums.moments.data());
     for (int t = 0; t < tables && curvature; ++t) {
-      AddFirstMoments(size, &of.w_r_y[static_cast<size_t>(t) * kChunk], t_i, t_o,
-                      &of.residual_moments[t]);
+      AddFirstMoments(size, &sums.w_r_y[static_cast<size_t>(t) * kChunk], t_i, t_o,
+                      &sums.residual_moments[t]);
     }
   }
 }

@@ -16,11 +16,11 @@ struct alignas(sizeof(Lanes4)) OfNodes {
 // The spline's weights of the four nodes.
 inline OfNodes<4> WeightsOfNodes(const CatmullRom& spline, int interval) {
   const auto weights = spline.WeightPolynomials(interval);
-  OfNodes<4> of;
+  OfNodes<4> transposed;
   for (int k = 0; k < 4; ++k) {
-    for (int a = 0; a < 4; ++a) of.term[k][a] = weights[a][k];
+    for (int a = 0; a < 4; ++a) transposed.term[k][a] = weights[a][k];
   }
-  return of;
+  return transposed;
 }
 
 }  // namespace trilobe

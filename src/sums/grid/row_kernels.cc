@@ -11,10 +11,10 @@ TRILOBE_MULTIVERSION
 void SplineWeights(int size, const std::array<OfNodes<4>, 3>& columns, int last_interval,
                    const int16_t* interval, const double* v, double* __restrict B) {
   for (int n = 0; n < size; ++n) {
-    const OfNodes<4>& of = columns[interval[n] == 0 ? 0 : interval[n] == last_interval ? 2 : 1];
+    const OfNodes<4>& terms = columns[interval[n] == 0 ? 0 : interval[n] == last_interval ? 2 : 1];
     const double t = 0.5 + v[n], u = 0.5 - v[n];
-    const Lanes4 weights = u * u * u * of.term[0] + u * u * t * of.term[1] +
-                           u * t * t * of.term[2] + t * t * t * of.term[3];
+    const Lanes4 weights = u * u * u * terms.term[0] + u * u * t * terms.term[1] +
+                           u * t * t * terms.term[2] + t * t * t * terms.term[3];
     std::memcpy(B + 4 * n, &weights, sizeof(weights));
   }
 }
@@ -97,11 +97,11 @@ void AddChannel(int size, double X, const double* __restrict w, const double* __
       std::memcpy(value, from + n, sizeof(*value));
     };
     const auto add = [&](int line, const Lanes8& value) {
-      double* const to = q + static_cast<size_t>(line) * line_size;
+      double* const target = q + static_cast<size_t>(line) * line_size;
       Lanes8 sum;
-      load(to, &sum);
+      load(target, &sum);
       sum += value;
-      std::memcpy(to + n, &sum, sizeof(sum));
+      std::memcpy(target + n, &sum, sizeof(sum));
     };
     Lanes8 X_w, residual, u;
     load(w, &X_w);
@@ -122,7 +122,7 @@ void AddChannel(int size, double X, const double* __restrict w, const double* __
 
 TRILOBE_MULTIVERSION
 void Transpose(int lines, int size, int line_size, const double* __restrict from,
-               double* __restrict to) {
+               double* __restrict target) {
   for (int line = 0; line < lines; line += 4) {
     for (int n = 0; n < size; n += 4) {
       const double* const tile = from + static_cast<size_t>(line) * line_size + n;
@@ -140,7 +140,8 @@ void Transpose(int lines, int size, int line_size, const double* __restrict from
                                 __builtin_shufflevector(ab_02, cd_02, 2, 3, 6, 7),
                                 __builtin_shufflevector(ab_13, cd_13, 2, 3, 6, 7)};
       for (int k = 0; k < 4; ++k) {
-        std::memcpy(to + static_cast<size_t>(n + k) * lines + line, &columns[k], sizeof(Lanes4));
+        std::memcpy(target + static_cast<size_t>(n + k) * lines + line, &columns[k],
+                    sizeof(Lanes4));
       }
     }
   }
@@ -160,12 +161,14 @@ template <typename Lanes>
       std::memcpy(at, &sum, sizeof(Lanes));
     }
   };
-  const RowOfNodes of = row;  // nothing below can change it
-  for (int n = 0; n < of.size; ++n, q += q_lines) {
+  const RowOfNodes nodes = row;  // nothing below can change it
+  for (int n = 0; n < nodes.size; ++n, q += q_lines) {
     Lanes q_n;
     std::memcpy(&q_n, q, sizeof(Lanes));
-    add(of.B_i + 4 * n, of.H_i[n] * q_n, sums + static_cast<size_t>(of.interval_i[n]) * lines);
-    add(of.B_o + 4 * n, of.H_o[n] * q_n, sums + static_cast<size_t>(of.interval_o[n]) * lines);
+    add(nodes.B_i + 4 * n, nodes.H_i[n] * q_n,
+        sums + static_cast<size_t>(nodes.interval_i[n]) * lines);
+    add(nodes.B_o + 4 * n, nodes.H_o[n] * q_n,
+        sums + static_cast<size_t>(nodes.interval_o[n]) * lines);
   }
 }
 

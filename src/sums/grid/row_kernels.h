@@ -52,7 +52,7 @@ void AddChannel(int size, double X, const double* w, const double* w_residual, i
                 int line_size, double* q);
 
 // to[sample][line] = from[line][sample], in tiles of four by four.
-void Transpose(int lines, int size, int line_size, const double* from, double* to);
+void Transpose(int lines, int size, int line_size, const double* from, double* target);
 
 // Where the samples of a row lie on the spline, and  z = B H  on both sides.
 struct RowOfNodes {

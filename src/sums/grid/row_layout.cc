@@ -38,7 +38,9 @@ RowLayout::RowLayout(const ModelSpec& of_model, int max_row)
       }
       return lines;
     };
-    const auto padded = [](int size, int to) { return (size + to - 1) / to * to; };
+    const auto padded = [](int size, int multiple) {
+      return (size + multiple - 1) / multiple * multiple;
+    };
     table.gradient_line = number(&table.theta_h_line);
     table.theta_h_lines = padded(table.gradient_line + 1, 8);
     table.theta_d_lines = padded(number(&table.theta_d_line), 4);

@@ -157,8 +157,8 @@ TEST_P(AwlsRelatives, PowersOfTwoScaleExactly) {
     for (double& x : plane) x = x < 0 ? x : x * kScale;
   }
   for (const auto& [name, spec] : TestSpecs(kGrid)) {
-    const auto solve = [&, &spec = spec](const BrdfTable& of) {
-      const Objective objective = MakeObjective(of, spec, "uniform");
+    const auto solve = [&, &spec = spec](const BrdfTable& table) {
+      const Objective objective = MakeObjective(table, spec, "uniform");
       FactorModel model = InitialModels().front().make(objective, 1);
       return MakeSolver(GetParam())->Solve(objective, Iterations(8), &model);
     };

@@ -52,30 +52,30 @@ void ExpectQuadratic(double decades, double next_decades, const std::string& wha
 }
 
 TEST(JointStepper, SquaresTheErrorOnceDampingHasGone) {
-  ForEachExactCase([](const ExactCase& of) {
+  ForEachExactCase([](const ExactCase& exact) {
     for (const auto trial : {JointStepper::Trial::kAsItIs, JointStepper::Trial::kProjected}) {
       for (const auto curvature :
            {JointStepper::Curvature::kGaussNewton, JointStepper::Curvature::kByProgress}) {
         PhaseSeconds phases;
-        JointStepper stepper(of.objective, curvature, trial, &phases);
+        JointStepper stepper(exact.objective, curvature, trial, &phases);
         for (int k = 0; k < 25; ++k) {  // good steps, that bring lambda down to its least
-          stepper.Restart(of.start);
-          EXPECT_TRUE(stepper.Step()) << of.name;
+          stepper.Restart(exact.start);
+          EXPECT_TRUE(stepper.Step()) << exact.name;
         }
-        stepper.Restart(of.start);
+        stepper.Restart(exact.start);
         int squared = 0;
         for (double before = 0; before < kFloorDecades;) {
-          const double now = of.Decades(stepper.E());
+          const double now = exact.Decades(stepper.E());
           if (before >= 5) {
-            ExpectQuadratic(before, now, of.name);
+            ExpectQuadratic(before, now, exact.name);
             ++squared;
           }
           before = now;
           if (!stepper.Step()) break;
-          EXPECT_EQ(stepper.E(), of.objective.Value(stepper.current())) << of.name;
+          EXPECT_EQ(stepper.E(), exact.objective.Value(stepper.current())) << exact.name;
         }
-        EXPECT_GE(squared, 2) << of.name;
-        EXPECT_GE(of.Decades(stepper.E()), kFloorDecades) << of.name;
+        EXPECT_GE(squared, 2) << exact.name;
+        EXPECT_GE(exact.Decades(stepper.E()), kFloorDecades) << exact.name;
       }
     }
   });
@@ -87,20 +87,20 @@ TEST(JointStepper, SquaresTheErrorOnceDampingHasGone) {
 // that is 9 times that of the step before. Directions with larger sigma, which vanish first, make
 // that less for a while: 4 times is asked for.
 TEST(JointSolvers, ReachAnExactFitFasterAndFaster) {
-  ForEachExactCase([](const ExactCase& of) {
+  ForEachExactCase([](const ExactCase& exact) {
     for (const char* const solver : {"newton", "varpro", "lm"}) {
-      const std::string what = of.name + ", " + solver;
-      FactorModel model = of.start;
+      const std::string what = exact.name + ", " + solver;
+      FactorModel model = exact.start;
       SolverOptions options;
       options.max_iterations = 20;
       options.relative_decrease_tolerance = 0;
       options.optimality_tolerance = 0;
       options.diagnose = false;
-      const SolverSummary summary = MakeSolver(solver)->Solve(of.objective, options, &model);
+      const SolverSummary summary = MakeSolver(solver)->Solve(exact.objective, options, &model);
       EXPECT_LE(summary.final_objective, 1e-20 * summary.initial_objective) << what;
       std::vector<double> decades;
       for (const IterationRecord& record : summary.trace) {
-        if (record.accepted) decades.push_back(of.Decades(record.objective));
+        if (record.accepted) decades.push_back(exact.Decades(record.objective));
       }
       int compared = 0;
       for (size_t k = 1; k + 1 < decades.size(); ++k) {

@@ -37,17 +37,17 @@ struct Case {
 TEST(NonnegativeStep, EndsWhereNothingWantsToMove) {
   constexpr double kLambda = 0.3;
   for (uint64_t seed = 1; seed <= 7; ++seed) {
-    const Case of(seed, seed <= 5 ? 60 : 300);
+    const Case problem(seed, seed <= 5 ? 60 : 300);
     NonnegativeStep step;
-    step.MoveTo(of.at, of.metric, of.x);
+    step.MoveTo(problem.at, problem.metric, problem.x);
     const NonnegativeStep::Result result = step.Solve(kLambda);
     EXPECT_GT(result.predicted_decrease, 0);
     int bound = 0;
-    for (size_t k = 0; k < of.size; ++k) {
-      double slope =
-          of.at.gradient[k] + kLambda * of.metric[k] * of.metric[k] * (result.x[k] - of.x[k]);
-      for (size_t l = 0; l < of.size; ++l) {
-        slope += of.at.H[k * of.size + l] * (result.x[l] - of.x[l]);
+    for (size_t k = 0; k < problem.size; ++k) {
+      double slope = problem.at.gradient[k] +
+                     kLambda * problem.metric[k] * problem.metric[k] * (result.x[k] - problem.x[k]);
+      for (size_t l = 0; l < problem.size; ++l) {
+        slope += problem.at.H[k * problem.size + l] * (result.x[l] - problem.x[l]);
       }
       if (result.x[k] > 0) {
         EXPECT_NEAR(slope, 0, 1e-9) << "seed " << seed << ", " << k;
@@ -61,13 +61,13 @@ TEST(NonnegativeStep, EndsWhereNothingWantsToMove) {
 }
 
 TEST(NonnegativeStep, SameBitsForAnyNumberOfThreads) {
-  const Case of(1, 300);
+  const Case problem(1, 300);
   NonnegativeStep one(1);
-  one.MoveTo(of.at, of.metric, of.x);
+  one.MoveTo(problem.at, problem.metric, problem.x);
   const NonnegativeStep::Result wanted = one.Solve(0.1);
   for (const int threads : {2, 3}) {
     NonnegativeStep step(threads);
-    step.MoveTo(of.at, of.metric, of.x);
+    step.MoveTo(problem.at, problem.metric, problem.x);
     const NonnegativeStep::Result is = step.Solve(0.1);
     EXPECT_EQ(is.x, wanted.x);
     EXPECT_EQ(is.predicted_decrease, wanted.predicted_decrease);
@@ -80,10 +80,10 @@ TEST(NonnegativeStep, TakesTheSameStepInAnyOrderOfElimination) {
   std::iota(order.rbegin(), order.rend(), 0);
   std::rotate(order.begin(), order.begin() + 7, order.end());
   for (uint64_t seed = 1; seed <= 5; ++seed) {
-    const Case of(seed, kSize);
+    const Case problem(seed, kSize);
     NonnegativeStep as_they_come, ordered(1, order);
-    as_they_come.MoveTo(of.at, of.metric, of.x);
-    ordered.MoveTo(of.at, of.metric, of.x);
+    as_they_come.MoveTo(problem.at, problem.metric, problem.x);
+    ordered.MoveTo(problem.at, problem.metric, problem.x);
     for (const double lambda : {1.0, 0.01}) {
       const NonnegativeStep::Result wanted = as_they_come.Solve(lambda), is = ordered.Solve(lambda);
       for (size_t k = 0; k < kSize; ++k) {
