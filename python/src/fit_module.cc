@@ -31,6 +31,7 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),
       .min_theta_d_deg = OptionOf<double>(options, "min_theta_d", "a number of degrees"),
       .extrapolated = OptionOf<bool>(options, "extrapolated", "True or False"),
+      .outliers = OptionOf<bool>(options, "outliers", "True or False"),
       .radiometry = OptionOf<std::string>(options, "radiometry", "a name")};
   CheckSourceOptions(source);
   return source;

@@ -183,6 +183,7 @@ def read(
     max_angle: float = 90,
     min_theta_d: float = -1,
     extrapolated: bool = False,
+    outliers: bool = False,
     radiometry: str = "brdf",
     threads: int = 0,
 ) -> Measurement:
@@ -198,6 +199,7 @@ def read(
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
             detector stood in its own light.
         extrapolated: of an RGL file, takes what its authors extrapolated, too.
+        outliers: takes the bins of a table that are far off those around them, too.
         radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
         threads: 0 for all cores.
 
@@ -212,6 +214,7 @@ def read(
         max_angle=max_angle,
         min_theta_d=min_theta_d,
         extrapolated=extrapolated,
+        outliers=outliers,
         radiometry=radiometry,
         threads=threads,
     )
@@ -258,6 +261,7 @@ def source_options(**given: Any) -> dict[str, Any]:
         "max_angle": 90.0,
         "min_theta_d": -1.0,
         "extrapolated": False,
+        "outliers": False,
         "radiometry": "brdf",
         "threads": 0,
         **given,

@@ -68,7 +68,8 @@ int RunConvert(std::span<const std::string> arguments) {
   CheckRendererFlags(FLAGS_out);
   const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
-  const SourceOptions options = SourceOptionsFromFlags();
+  SourceOptions options = SourceOptionsFromFlags();
+  options.outliers = true;  // what is copied stays as it is
   const Measurement measurement = MeasurementOf(source, out, options);
   TellNotes(measurement);
   const std::string written = WriteMeasurement(measurement, out, options.num_threads);

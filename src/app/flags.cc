@@ -35,6 +35,10 @@ DEFINE_double(min_theta_d, -1,
 DEFINE_bool(extrapolated, false,
             "of an RGL file, also take what its authors did not measure but extrapolated, and what "
             "lies beyond its last theta_i");
+DEFINE_bool(
+    outliers, false,
+    "also take the bins of a table that are more than 8 times darker or brighter than those "
+    "around them");
 DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
               "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
               "(docs/file-formats.md)");
@@ -88,14 +92,15 @@ SourceOptions SourceOptionsFromFlags() {
                            .max_angle_deg = FLAGS_max_angle,
                            .min_theta_d_deg = FLAGS_min_theta_d,
                            .extrapolated = FLAGS_extrapolated,
+                           .outliers = FLAGS_outliers,
                            .radiometry = FLAGS_radiometry};
   CheckSourceOptions(options);
   return options;
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",     "missing",     "corrupt",      "seed",
-          "max_angle", "min_theta_d", "extrapolated", "radiometry"};
+  return {"noise",       "missing",      "corrupt",  "seed",      "max_angle",
+          "min_theta_d", "extrapolated", "outliers", "radiometry"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -18,6 +18,7 @@ DECLARE_double(max_angle);
 DECLARE_double(min_theta_d);
 DECLARE_string(radiometry);
 DECLARE_bool(extrapolated);
+DECLARE_bool(outliers);
 DECLARE_string(weighting);
 DECLARE_string(out);
 

@@ -29,7 +29,8 @@ int RunSynth(std::span<const std::string> arguments) {
   const SynthMaterial& material = SynthSourceOf(source).material;
   const std::string out = RequiredMeasurementOut("synth");
   Inputs().CheckOutput(out);
-  const SourceOptions options = SourceOptionsFromFlags();
+  SourceOptions options = SourceOptionsFromFlags();
+  options.outliers = true;  // what was asked for is written
   WriteMeasurement(LoadMeasurement(source, options), out, options.num_threads);
   PrintLine("wrote " + out + ": " + material.description + ", noise " + Text(options.noise) +
             ", seed " + std::to_string(options.seed));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "brdf/counter_random.h"
+#include "brdf/outliers.h"
 #include "brdf/own_shadow.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
@@ -148,6 +149,22 @@ void LeaveOutOwnShadow(Measurement* measurement) {
        << measurement->counts.below_min_theta_d << " samples below "
        << static_cast<int>(shadow.theta_d_deg) << " deg are left out; --min_theta_d=0 takes them";
   measurement->notes.push_back(note.str());
+}
+
+void LeaveOutOutliers(int num_threads, Measurement* measurement) {
+  if (!NotNull(measurement, "the measurement").table) return;
+  constexpr int kFewest = 10, kOneIn = 5000;
+  BrdfTable& table = *measurement->table;
+  const std::vector<int> outliers = FindOutliers(table, num_threads);
+  const int valid = CountBins(table).valid, count = static_cast<int>(outliers.size());
+  if (count < kFewest || count < valid / kOneIn) return;
+  for (const int bin : outliers) {
+    for (auto& plane : table.stored) plane[bin] = -1;
+  }
+  measurement->notes.push_back(
+      std::to_string(count) + " of " + std::to_string(valid) +
+      " bins are more than 8 times darker or brighter than those around them, as dead readings and "
+      "glints are, and left out; --outliers takes them");
 }
 
 void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {

@@ -290,7 +290,8 @@ TEST(ConvertTest, MarksWhatWasNotMeasured) {
                                       "--out=" + (folder / "merl")};
     words.insert(words.end(), flags.begin(), flags.end());
     EXPECT_EQ(RunProgram(words).status, 0);
-    const json bins = json::parse(RunProgram({"info", folder / "merl", "--json"}).out)["bins"];
+    const json bins =
+        json::parse(RunProgram({"info", folder / "merl", "--json", "--outliers"}).out)["bins"];
     EXPECT_EQ(bins["valid"].get<int>() + bins["negative"].get<int>(), 1096216);
     return bins["valid"].get<int>();
   };

@@ -1,0 +1,151 @@
+#include "brdf/outliers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/test_util.h"
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/corruption/corruption.h"
+#include "trilobe/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr MerlGrid kGrid{.theta_h = 20, .theta_d = 16, .phi_d = 24};
+
+// All data, outliers too.
+Measurement Corrupted(const std::string& source, const std::string& corrupt) {
+  SourceOptions options;
+  options.corrupt = corrupt;
+  options.outliers = true;
+  return LoadMeasurement(source, options);
+}
+
+// A highlight that falls by up to `fall` times from one theta_h to the next.
+BrdfTable Highlight(double fall) {
+  BrdfTable table = MakeInvalidTable("test", kGrid);
+  const std::vector<bool> above = BinsAboveSurface(kGrid);
+  for (int bin = 0; bin < kGrid.size(); ++bin) {
+    if (!above[bin]) continue;
+    const int h = bin / (kGrid.theta_d * kGrid.phi_d);
+    for (int c = 0; c < kChannels; ++c) table.SetValue(c, bin, 0.1 + std::pow(fall, 6 - h));
+  }
+  return table;
+}
+
+double ShareOfOutliers(const BrdfTable& table) {
+  return static_cast<double>(FindOutliers(table, 1).size()) / CountBins(table).valid;
+}
+
+void Multiply(double factor, int bin, BrdfTable* table) {
+  for (auto& plane : table->stored) plane[bin] *= factor;
+}
+
+TEST(Outliers, SmoothDataHaveNone) {
+  for (const char* const name : {"plastic", "chrome", "felt", "foam", "rubber", "car-paint"}) {
+    const std::string source = "synth:" + std::string(name) + "@90x30x60";
+    const BrdfTable table = LoadSource(source);
+    EXPECT_LE(ShareOfOutliers(table), 1.0 / 5000) << name;  // a few at the horizon
+  }
+  EXPECT_THAT(FindOutliers(Highlight(50), 1), IsEmpty());
+  EXPECT_LE(ShareOfOutliers(TableOf(Corrupted("synth:plastic@40x40x40", "noise:0.2"))), 1e-4);
+}
+
+TEST(Outliers, SingleBinsAreFoundEverywhere) {
+  const BrdfTable smooth = Highlight(2);
+  const std::vector<bool> valid = ValidBins(smooth);
+  for (int bin = 0; bin < kGrid.size(); bin += 23) {
+    if (!valid[bin]) continue;
+    for (const double factor : {0.0, 1 / 40.0, 40.0}) {
+      BrdfTable table = smooth;
+      Multiply(factor, bin, &table);
+      EXPECT_THAT(FindOutliers(table, 1), ElementsAre(bin)) << factor;
+    }
+    BrdfTable table = smooth;
+    Multiply(2, bin, &table);
+    EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+  }
+}
+
+TEST(Outliers, ADarkRingIsNone) {
+  BrdfTable table = Highlight(1);
+  const std::vector<bool> valid = ValidBins(table);
+  const auto multiply = [&](double factor) {
+    for (int d = 0; d < kGrid.theta_d / 2; ++d) {
+      for (int p = 0; p < kGrid.phi_d; ++p) {
+        const int bin = kGrid.Index(9, d, p);
+        if (valid[bin]) Multiply(factor, bin, &table);
+      }
+    }
+  };
+  multiply(1e-3);
+  EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+}
+
+TEST(Outliers, AmongFewBinsToo) {
+  const std::string source = "synth:felt@60x60x60";
+  const BrdfTable clean = TableOf(Corrupted(source, "gaps:0.9"));
+  const BrdfTable zeros = TableOf(Corrupted(source, "gaps:0.9,zeros:0.05"));
+  EXPECT_LE(ShareOfOutliers(clean), 1e-3);
+  int all = 0;
+  for (int bin = 0; bin < clean.grid.size(); ++bin) {
+    all += zeros.stored[0][bin] == 0 && clean.stored[0][bin] > 0 ? 1 : 0;
+  }
+  int zeros_found = 0;
+  for (const int bin : FindOutliers(zeros, 1)) zeros_found += zeros.stored[0][bin] == 0 ? 1 : 0;
+  EXPECT_GE(zeros_found, 0.9 * all);
+}
+
+TEST(Outliers, BlackAndEmptyTablesHaveNone) {
+  BrdfTable table = Highlight(2);
+  for (auto& plane : table.stored) std::ranges::fill(plane, 0.0);
+  EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+  for (auto& plane : table.stored) std::ranges::fill(plane, -1.0);
+  EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+}
+
+TEST(Outliers, TheSameForAnyThreads) {
+  const BrdfTable table = TableOf(Corrupted("synth:plastic@40x40x40", "zeros:0.05"));
+  const std::vector<int> found = FindOutliers(table, 1);
+  EXPECT_FALSE(found.empty());
+  EXPECT_EQ(FindOutliers(table, 3), found);
+}
+
+TEST(Outliers, AreLeftOutOfASourceAndTold) {
+  const std::string source = "synth:plastic@40x40x40";
+  SourceOptions options;
+  options.corrupt = "outliers:0.05";
+  const Measurement left = LoadMeasurement(source, options);
+  const BinCounts clean = CountsOf(LoadMeasurement(source)), counts = CountsOf(left);
+  EXPECT_NEAR(counts.valid, 0.95 * clean.valid, 0.01 * clean.valid);
+  EXPECT_EQ(counts.negative, clean.valid - counts.valid);
+  ASSERT_EQ(left.notes.size(), 1);
+  EXPECT_THAT(left.notes.front(), HasSubstr("--outliers takes them"));
+  options.outliers = true;
+  const Measurement all = LoadMeasurement(source, options);
+  EXPECT_EQ(CountsOf(all).valid, clean.valid);
+  EXPECT_THAT(all.notes, IsEmpty());
+}
+
+TEST(Outliers, FewAreNotWorthANote) {
+  const std::string source = "synth:plastic@40x40x40";
+  Measurement measurement = LoadMeasurement(source);
+  Multiply(0, ValidSamples(*measurement.table).bins[20'000], &*measurement.table);
+  EXPECT_EQ(FindOutliers(*measurement.table, 1).size(), 1);
+  const int valid = CountsOf(measurement).valid;
+  LeaveOutOutliers(1, &measurement);
+  EXPECT_EQ(CountsOf(measurement).valid, valid);
+  EXPECT_THAT(measurement.notes, IsEmpty());
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
