@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What takes too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests under the
-# address and undefined-behaviour sanitizers, the thread sanitizer, all tests as other processors and another compiler
-# round, a newcomer's first hour in an inconvenient place, some hundred faults, and long fuzzing.
+# What takes too long for .ci/run: clang-tidy on everything, all combinations of choices, the longest tests and those of
+# the program under the address and undefined-behaviour sanitizers, the thread sanitizer, all tests as other processors
+# and another compiler round, a newcomer's first hour in an inconvenient place, some hundred faults, and long fuzzing.
 #   scripts/nightly.sh [TRIALS [RUNS [DATA]]]      faults to try (400), executions of each fuzzer (10000000), a
 #                                                  folder with the measured files of which docs have pictures
 set -euo pipefail
@@ -27,7 +27,7 @@ run_tests tsan
 step "Building a shared library with the address and undefined-behaviour sanitizers"
 configure asan-ubsan
 build asan-ubsan
-step "Running the longest tests with them"
+step "Running the tests with them, the longest and those of the program included"
 run_tests asan-ubsan-long
 
 step "Building the program and the tests"

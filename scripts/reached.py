@@ -27,7 +27,7 @@ CONCERNS_ALL = re.compile(
 CONCERNS_BUILD = re.compile(
     r"(^|/)(CMakeLists\.txt|CMakePresets\.json|rooms\.txt)$|\.cmake(\.in)?$")
 # What lands together is taken to have been written within so many; scripts/nightly.sh checks all.
-LANDING_HOURS = 8
+LANDING_HOURS = 3
 INCLUDE = re.compile(rb'^#include "([^"]+)"', re.MULTILINE)
 ANY_INCLUDE = re.compile(rb"^#include (\S+)", re.MULTILINE)
 
