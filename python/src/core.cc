@@ -17,6 +17,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/evaluate/bsdf.h"
 #include "trilobe/evaluate/read_model.h"
+#include "trilobe/materials/load_model.h"
 
 namespace nb = nanobind;
 
@@ -354,6 +356,14 @@ NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param):
       .def("axis", &AxisOf, nb::arg("factor"))
       .def("tables", &TablesOf, nb::arg("factor"))
       .def("unobserved", &UnobservedOf, nb::arg("factor"));
+  m.def("material_names", [] {
+    std::vector<std::string> names;
+    for (const std::string_view name : MaterialNames()) names.emplace_back(name);
+    return names;
+  });
+  m.def(
+      "material_text", [](const std::string& path) { return std::string(MaterialText(path)); },
+      nb::arg("path"));
   BindEvaluation<float>(&material);
   BindEvaluation<double>(&material);
 }

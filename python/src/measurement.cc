@@ -9,24 +9,23 @@
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "files/file.h"
 #include "fit_module.h"
 #include "owned_array.h"
 #include "reports/bin_counts.h"
 #include "system/stopwatch.h"
-#include "trilobe/appearance/node_reconstruction.h"
+#include "trilobe/brdf/node_brdf.h"
+#include "trilobe/brdf/tabulated_brdf.h"
+#include "trilobe/convert/convert.h"
 #include "trilobe/evaluate/read_model.h"
-#include "trilobe/formats/rgl_export.h"
+#include "trilobe/fit/as_measurement.h"
+#include "trilobe/formats/completed_measurement.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/formats/utia_file.h"
-#include "trilobe/lobes/reconstruct.h"
 #include "trilobe/synth/synth.h"
-#include "view/glsl_file.h"
 
 namespace nb = nanobind;
 
@@ -168,50 +167,100 @@ NumpyArray<uint8_t> ReasonsOfAll(const Measured& measured) {
   return OwnedArray(std::move(reasons), {count});
 }
 
+ConvertOptions ConvertOptionsOf(const nb::dict& options) {
+  const int threads = ThreadsOf(options);
+  return {.error = OptionOf<double>(options, "error", "a number"),
+          .spectral = OptionOf<bool>(options, "spectral", "True or False"),
+          .program = std::string("trilobe ").append(TRILOBE_VERSION),
+          .appearance = {.num_threads = threads},
+          .num_threads = threads};
+}
+
+// Lines that say what was written.
+using Lines = std::vector<std::string>;
+
 // What `trilobe convert` writes, of a model file's text or of a measurement.
-std::string WriteText(const std::string& path, const std::string& text) {
-  WriteFile(path, [&](std::ostream& out) { out << text; });
-  return path;
-}
-
-std::string ConvertModel(const nb::bytes& model_text, const std::string& path, double error,
-                         int num_threads) {
+Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const nb::dict& given) {
   const ModelFile file = ParseModel({model_text.c_str(), model_text.size()}, "the model");
+  const ConvertOptions options = ConvertOptionsOf(given);
   const nb::gil_scoped_release released;
-  const std::string ending = EndingOf(path);
-  if (ending == ".glsl") return WriteText(path, FormatGlsl(file, "the model").text);
-  if (ending == ".bsdf") {
-    if (!(error >= 0 && error <= 1)) throw Error("error must be from 0 to 1");
-    RglExportOptions options;
-    if (file.fit.max_angle > 0) options.max_theta = DegreesToRadians(file.fit.max_angle);
-    if (error > 0) options.max_error = error;
-    return WriteText(path, ExportRgl(file.model, options).bytes);
+  if (IsForRenderer(path)) return WriteForRenderer(file, "the model", path, options);
+  if (file.model.spec().anisotropic() && !WritableFormat(path).holds_anisotropic) {
+    throw Error(path +
+                ": an anisotropic model is written as .bin (UTIA's directions), .csv, "
+                ".bsdf, .glsl, .mtlx or .principled.json");
   }
-  Measurement measurement;
-  if (file.model.spec().anisotropic()) {
-    if (ending != ".bin" && ending != ".csv") {
-      throw Error(path +
-                  ": an anisotropic model is written as .bin (UTIA's directions), .csv, "
-                  ".bsdf or .glsl");
-    }
-    measurement = ReconstructAtNodes(file.model, "the model", kUtiaGrid);
-  } else {
-    measurement = {.source = "the model",
-                   .kind = "reconstruction",
-                   .table = Reconstruct(file.model, "the model", {}, num_threads)};
-  }
-  WriteMeasurement(measurement, path, num_threads);
-  return path;
+  const Measurement measurement =
+      AsMeasurement(file.model, "the model", options.num_threads, kUtiaGrid);
+  return {WriteMeasurement(measurement, path, options.num_threads)};
 }
 
-void CheckEnding(const std::string& path) {
-  const std::string ending = EndingOf(path);
-  for (const char* const known : {".binary", ".bin", ".csv", ".bsdf", ".glsl"}) {
-    if (ending == known) return;
+Lines ConvertMeasurement(const Measured& measured, const std::string& path, const nb::dict& given) {
+  const ConvertOptions options = ConvertOptionsOf(given);
+  const std::shared_ptr<const Measurement> data = measured.data;
+  const nb::gil_scoped_release released;
+  if (IsForRenderer(path)) return WriteForRenderer(*data, path, options);
+  return {WriteMeasurement(*data, path, options.num_threads)};
+}
+
+// A measurement as a function of all directions, and the ratios that it interpolates.
+struct Completed {
+  Completed(const nb::bytes& model_text, const Measured& measured, const nb::dict& options)
+      : data(measured.data) {
+    const ModelFile file = ParseModel({model_text.c_str(), model_text.size()}, "the model");
+    const int threads = ThreadsOf(options);
+    const nb::gil_scoped_release released;
+    completed = Complete(*data, file.model, threads);
   }
-  throw Error(path +
-              ": end the name in .binary (MERL layout), .bin (UTIA's), .csv, or of a model "
-              "in .bsdf (RGL tensor file) or .glsl");
+
+  std::shared_ptr<const Measurement> data;
+  CompletedMeasurement completed;
+};
+
+// How many bins there are over (theta_h, theta_d, phi_d), or nodes over (theta_i, phi_i, theta_o,
+// phi_o); none where it is the model.
+std::vector<int> ShapeOf(const Completed& self) {
+  if (self.completed.over_table) {
+    const MerlGrid& grid = self.data->table->grid;
+    return {grid.theta_h, grid.theta_d, grid.phi_d};
+  }
+  if (!self.completed.over_nodes) return {};
+  const HemisphereGrid& grid = self.completed.over_nodes->table().grid;
+  return {grid.thetas, grid.phis, grid.thetas, grid.phis};
+}
+
+NumpyArray<float> RatiosOf(const Completed& self) {
+  std::vector<float> ratios;
+  const auto add = [&](const Rgb& ratio) {
+    for (const double x : ratio) ratios.push_back(static_cast<float>(x));
+  };
+  if (self.completed.over_table) {
+    const int bins = self.data->table->grid.size();
+    for (int bin = 0; bin < bins; ++bin) add(self.completed.over_table->Value(bin));
+  } else if (self.completed.over_nodes) {
+    for (const Rgb& ratio : self.completed.over_nodes->values()) add(ratio);
+  }
+  const size_t places = ratios.size() / kChannels;
+  return OwnedArray(std::move(ratios), {places, size_t{kChannels}});
+}
+
+NumpyArray<double> EvalOf(const Completed& self, const Doubles& wi, const Doubles& wo) {
+  const size_t count = wi.shape(0);
+  if (wo.shape(0) != count || wi.shape(1) != 3 || wo.shape(1) != 3) {
+    throw Error("wi and wo must both have the shape (n, 3)");
+  }
+  const double *const i = wi.data(), *const o = wo.data();
+  std::vector<double> values;
+  {
+    const nb::gil_scoped_release released;
+    for (size_t k = 0; k < 3 * count; k += 3) {
+      const DirectionPair pair = {{i[k], i[k + 1], i[k + 2]}, {o[k], o[k + 1], o[k + 2]}};
+      const bool above = pair.wi[2] > 0 && pair.wo[2] > 0;
+      const Rgb rho = above ? self.completed.value(pair) : Rgb{};
+      values.insert(values.end(), rho.begin(), rho.end());
+    }
+  }
+  return OwnedArray(std::move(values), {count, size_t{3}});
 }
 
 }  // namespace
@@ -241,26 +290,16 @@ void BindMeasurement(nb::module_* module) {
   module->def("read", &Read, nb::arg("source"), nb::arg("options"));
   module->def("from_arrays", &FromArrays, nb::arg("wi"), nb::arg("wo"), nb::arg("rho"),
               nb::arg("source"), nb::arg("azimuths"), nb::arg("options"));
-  module->def(
-      "convert_model",
-      [](const nb::bytes& text, const std::string& path, double error, const nb::dict& options) {
-        CheckEnding(path);
-        return ConvertModel(text, path, error, ThreadsOf(options));
-      },
-      nb::arg("text"), nb::arg("path"), nb::arg("error"), nb::arg("options"));
-  module->def(
-      "convert_measurement",
-      [](const Measured& measured, const std::string& path, const nb::dict& options) {
-        CheckEnding(path);
-        const std::string ending = EndingOf(path);
-        if (ending == ".bsdf" || ending == ".glsl") {
-          throw Error(path + ": such a file is made of a model; fit the measurement first");
-        }
-        const int threads = ThreadsOf(options);
-        const nb::gil_scoped_release released;
-        return WriteMeasurement(*measured.data, path, threads);
-      },
-      nb::arg("measured"), nb::arg("path"), nb::arg("options"));
+  module->def("convert_model", &ConvertModel, nb::arg("text"), nb::arg("path"), nb::arg("options"));
+  module->def("convert_measurement", &ConvertMeasurement, nb::arg("measured"), nb::arg("path"),
+              nb::arg("options"));
+  nb::class_<Completed>(*module, "Completed", "A measurement as a function of all directions.")
+      .def(nb::init<const nb::bytes&, const Measured&, const nb::dict&>(), nb::arg("model"),
+           nb::arg("measured"), nb::arg("options"))
+      .def_prop_ro("shape", &ShapeOf)
+      .def_prop_ro("offset", [](const Completed& self) { return self.completed.offset; })
+      .def("ratios", &RatiosOf)
+      .def("eval", &EvalOf, nb::arg("wi"), nb::arg("wo"));
   module->def("synthetic_materials", [] {
     std::vector<std::string> names;
     for (const SynthMaterial& material : SynthMaterials()) names.push_back(material.name);

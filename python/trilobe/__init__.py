@@ -11,7 +11,7 @@ docs/python.md of the project has a tour, and the conventions. `trilobe.plot` dr
 is a BSDF for Mitsuba 3.
 """
 
-from trilobe._brdf import Brdf, Sample, load
+from trilobe._brdf import Brdf, Sample, load, materials
 from trilobe._core import Error
 from trilobe._fitting import (
     Result,
@@ -40,6 +40,7 @@ __all__ = [
     "fit_many",
     "initial_models",
     "load",
+    "materials",
     "read",
     "score",
     "solvers",

@@ -308,12 +308,16 @@ class Brdf:
 
 
 def load(path: str | os.PathLike[str]) -> Brdf:
-    """Reads a model file, or the model.json of a folder that `trilobe fit` has written.
+    """Reads a model file, the model.json of a folder that `trilobe fit` has written, or "material:NAME".
+
+    The latter are fitted models of measured materials that come with the package; `materials` names them.
 
     Raises:
-        Error: if there is no such file, or it is no model.
+        Error: if there is no such file or material, or it is no model.
     """
     name = _path_of(path)
+    if str(path).startswith("material:"):
+        return Brdf.from_json(_core.material_text(text_of_path(path)), text_of_path(path))
     try:
         if name.is_dir():
             name = name / "model.json"
@@ -326,6 +330,20 @@ def load(path: str | os.PathLike[str]) -> Brdf:
     except UnicodeDecodeError as error:
         raise Error(f"{_printable(name)} is no model file: it is not UTF-8 ({error.reason})") from None
     return Brdf.from_json(text, str(name))
+
+
+def materials() -> list[str]:
+    """What "material:NAME" may name: fitted models that come with the package (materials/README.md)."""
+    return list(_core.material_names())
+
+
+def model_of(value: Any) -> Brdf:
+    """A model, or what its file says."""
+    if isinstance(value, Brdf):
+        return value
+    if isinstance(value, (str, os.PathLike)):
+        return load(value)
+    raise Error("the model must be a trilobe.Brdf, the path of a model file, or material:NAME")
 
 
 def text_of_path(path: Any) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, text_of_path, write_text
+from trilobe._brdf import Brdf, model_of, text_of_path, write_text
 from trilobe._core import Error
 from trilobe._measurement import Measurement, fits, measurement_of
 
@@ -89,7 +89,7 @@ def fit(
     f_bins: int | None = None,
     nodes: Literal["given", "held_out"] = "given",
     init: str = "analytic",
-    start: Brdf | None = None,
+    start: Brdf | str | os.PathLike[str] | None = None,
     weighting: str = "appearance",
     prior: float | None = None,
     robust: float = 0,
@@ -115,7 +115,7 @@ def fit(
         f_bins: the bins of F.
         nodes: "held_out" chooses those of D and G by directions that are held out.
         init: a name of `initial_models()`.
-        start: a model to start from, whose form the fit then has.
+        start: a model to start from, or the file of one or material:NAME, whose form the fit then has.
         weighting: a name of `weightings()`, or "power:...".
         prior: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
@@ -138,8 +138,6 @@ def fit(
         pairs = array.reshape(-1, 2).tolist()
     if not isinstance(nodes, str) or nodes not in ("given", "held_out"):
         raise Error(f"unknown nodes {' '.join(repr(nodes).split())[:60]}; known: given, held_out")
-    if start is not None and not isinstance(start, Brdf):
-        raise Error("start must be a trilobe.Brdf")
     if start is not None and (lobes is not None or pairs or not isinstance(model, str) or model != "shared"):
         raise Error("start brings its own lobes and tables; leave out model, lobes and stretch")
     options = {
@@ -152,7 +150,7 @@ def fit(
         "f_bins": f_bins,
         "nodes_by_held_out": nodes == "held_out",
         "init": init,
-        "start": None if start is None else start.to_json().encode(),
+        "start": None if start is None else model_of(start).to_json().encode(),
         "weighting": weighting,
         "prior": prior,
         "robust": robust,
@@ -240,17 +238,16 @@ class _Bar:
 
 
 def score(
-    model: Brdf,
+    model: Brdf | str | os.PathLike[str],
     measurement: Measurement | str | os.PathLike[str],
     *,
     weighting: str = "appearance",
     threads: int = 0,
 ) -> dict[str, Any]:
     """Compares a model with a measurement; what `trilobe score --json` prints (docs/file-formats.md)."""
-    if not isinstance(model, Brdf):
-        raise Error("the model must be a trilobe.Brdf")
+    brdf = model_of(model)
     data = measurement_of(measurement)
-    text = fits().score(model.to_json().encode(), data._data, {"weighting": weighting, "threads": threads})
+    text = fits().score(brdf.to_json().encode(), data._data, {"weighting": weighting, "threads": threads})
     report: dict[str, Any] = json.loads(text)
     return report
 

@@ -231,24 +231,49 @@ def convert(
     path: str | os.PathLike[str],
     *,
     error: float = 0,
+    spectral: bool = False,
     threads: int = 0,
-) -> None:
+) -> list[str]:
     """Writes a model or a measurement in another format, which the ending of the path says.
 
-    ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples; of models alone, ".bsdf" is an RGL tensor file for
-    Mitsuba's `measured`, which is off the model by at most `error` in the median (0: 0.005, of an anisotropic
-    model 0.02), and ".glsl" a shader.
+    ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples. ".bsdf" is an RGL tensor file for renderers as
+    Mitsuba's `measured`, ".mtlx" and ".principled.json" are the nearest material of MaterialX and of Blender; for a
+    measurement a model is fitted for that, which takes seconds. ".glsl" is a shader, of models alone.
+
+    Args:
+        what: a model or a measurement, or the file of one, "material:NAME" or "synth:NAME".
+        path: the file to write.
+        error: of a ".bsdf" file, by how much it may be off in the median, 0 to 1; 0 for 0.005, of an anisotropic
+            model 0.02, and of a measurement as near as files of usual size come.
+        spectral: of a ".bsdf" file, spectra in place of RGB.
+        threads: 0 for all cores.
+
+    Returns:
+        The program's lines that say what was written, and how far off it is.
     """
     if not isinstance(what, (Brdf, Measurement)):
         name = text_of_path(what)
-        what = load(name) if name.endswith(".json") or os.path.isdir(name) else read(name)
-    options = {"threads": threads}
+        what = load(name) if is_model(name) else read(name)
+    options = {"error": error, "spectral": spectral, "threads": threads}
+    written = text_of_path(path)
     if isinstance(what, Brdf):
-        if not isinstance(error, (int, float)):
-            raise Error("error must be a number")
-        fits().convert_model(what.to_json().encode(), text_of_path(path), float(error), options)
-    else:
-        fits().convert_measurement(what._data, text_of_path(path), options)
+        return list(fits().convert_model(what.to_json().encode(), written, options))
+    return list(fits().convert_measurement(what._data, written, options))
+
+
+def is_model(name: str) -> bool:
+    """Whether a path is that of a model, by its name."""
+    return name.endswith(".json") or name.startswith("material:") or os.path.isdir(name)
+
+
+def completed(measurement: Measurement, model: Brdf, threads: int = 0) -> Any:
+    """A measurement as a function of all directions, f = (m + e) q - e, by help of a model m fitted to it.
+
+    `shape` has the numbers of bins over (theta_h, theta_d, phi_d) or of nodes over (theta_i, phi_i, theta_o, phi_o)
+    at which q is known, and none where the samples stand at no grid, and f is the model; `ratios()` is q there, (n, 3),
+    `offset` e [1/sr], and `eval(wi, wo)` f [1/sr], of unit vectors (n, 3).
+    """
+    return fits().Completed(model.to_json().encode(), measurement._data, {"threads": threads})
 
 
 def source_options(**given: Any) -> dict[str, Any]:

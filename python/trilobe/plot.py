@@ -5,13 +5,14 @@ Each function draws into `figure`, or a new one, and returns it; none of them sh
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import CHANNELS, Brdf
+from trilobe._brdf import CHANNELS, Brdf, model_of
 from trilobe._core import Error
 from trilobe._fitting import Result
 from trilobe._measurement import Measurement, fits, measurement_of
@@ -32,17 +33,12 @@ def _figure(figure: Any, size: tuple[float, float]) -> Any:
     return figure
 
 
-def _check_model(brdf: Any) -> None:
-    if not isinstance(brdf, Brdf):
-        raise Error("the model must be a trilobe.Brdf")
-
-
-def factors(brdf: Brdf, figure: Any = None) -> Any:
+def factors(model: Brdf | str | os.PathLike[str], figure: Any = None) -> Any:
     """D, F and G of a model over their angles; entries that no data touched are dotted.
 
     Of an anisotropic model D and G are maps, the angle from the normal upwards and the azimuth to the right.
     """
-    _check_model(brdf)
+    brdf = model_of(model)
     figure = _figure(figure, (11, 3.4) if not brdf.anisotropic else (11, 2.4 * max(brdf.lobes, 1)))
     if brdf.anisotropic and brdf.lobes > 0:
         return _polar_factors(brdf, figure)
@@ -97,13 +93,13 @@ def _polar_factors(brdf: Brdf, figure: Any) -> Any:
     return figure
 
 
-def slices(brdf: Brdf, measurement: Measurement | None = None, figure: Any = None) -> Any:
+def slices(model: Brdf | str | os.PathLike[str], measurement: Measurement | None = None, figure: Any = None) -> Any:
     """The BRDF in the plane of incidence over theta_o, for several theta_i; the light's side is below 0.
 
     Measured values are points: of a table those of the nearest bins, of scattered samples those within three
     degrees.
     """
-    _check_model(brdf)
+    brdf = model_of(model)
     figure = _figure(figure, (11, 3.4))
     theta = np.radians(np.linspace(-89, 89, 357))
     wo = np.stack([np.sin(theta), np.zeros_like(theta), np.cos(theta)], axis=-1)
@@ -151,13 +147,18 @@ def _srgb(linear: NDArray[Any]) -> NDArray[Any]:
 
 
 def spheres(
-    brdf: Brdf, measurement: Measurement | None = None, figure: Any = None, *, size: int = 192, threads: int = 0
+    model: Brdf | str | os.PathLike[str],
+    measurement: Measurement | None = None,
+    figure: Any = None,
+    *,
+    size: int = 192,
+    threads: int = 0,
 ) -> Any:
     """The model on a sphere under the program's sky, sun and lamps; beside its measurement where that is given.
 
     Beside a measurement, directions that were not measured are left out of both.
     """
-    _check_model(brdf)
+    brdf = model_of(model)
     module, text, options = fits(), brdf.to_json().encode(), {"size": size, "threads": threads}
     if measurement is None:
         image = module.render(text, options)

@@ -7,21 +7,21 @@
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "app/materials.h"
 #include "app/result_folder.h"
 #include "app/write_for_renderer.h"
 #include "files/file.h"
 #include "reports/print.h"
-#include "trilobe/appearance/node_reconstruction.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/measurement_stats.h"
+#include "trilobe/convert/convert.h"
 #include "trilobe/corruption/corruption.h"
+#include "trilobe/fit/as_measurement.h"
 #include "trilobe/formats/csv_file.h"
 #include "trilobe/formats/merl_file.h"
 #include "trilobe/formats/rgl_export.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/formats/utia_file.h"
-#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe {
@@ -32,19 +32,12 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
   RefuseForModel(source, {"noise", "extrapolated", "radiometry"});
   const FactorModel model = LoadModel(source).model;
-  Measurement measurement;
-  if (model.spec().anisotropic()) {
-    if (!WritableFormat(out).holds_anisotropic) {
-      throw Error("--out=" + out + ": " + source +
-                  " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "
-                  "for UTIA's directions, or in .csv");
-    }
-    measurement = ReconstructAtNodes(model, source, kUtiaGrid);
-  } else {
-    measurement = {.source = source,
-                   .kind = "reconstruction",
-                   .table = Reconstruct(model, source, {}, options.num_threads)};
+  if (model.spec().anisotropic() && !WritableFormat(out).holds_anisotropic) {
+    throw Error("--out=" + out + ": " + source +
+                " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "
+                "for UTIA's directions, or in .csv");
   }
+  Measurement measurement = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
   CorruptBy(options, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
@@ -102,10 +95,9 @@ Command ConvertCommand() {
           "Mitsuba 3 renders (`measured`), and with\n--spectral pbrt-v4: of a model, or of a "
           "measurement, to which a model is fitted for that, which takes\nseconds; its values are "
           "those measured, and the model's where nothing was. Of a model, to a FILE that ends in "
-          ".glsl it writes\nfunctions for shaders; to one that ends in .mtlx the nearest OpenPBR "
-          "of "
-          "MaterialX, and in .principled.json\nthat of Blender's Principled BSDF, with how near it "
-          "is. A FILE with another ending is an error.\n\nkinds of corruption "
+          ".glsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the nearest "
+          "OpenPBR of MaterialX, and in\n.principled.json that of Blender's Principled BSDF, with "
+          "how near it is. A FILE with another ending is an error.\n\nkinds of corruption "
           "(--corrupt=KIND:STRENGTH,...), x the strength, rho the BRDF, b = rho cos "
           "theta_i the signal:" +
           ListOfCorruptions(),

@@ -4,7 +4,6 @@
 
 #include "app/describe.h"
 #include "app/flags.h"
-#include "app/materials.h"
 #include "reports/albedo_table.h"
 #include "reports/light_report.h"
 #include "reports/print.h"
@@ -12,6 +11,7 @@
 #include "results/stretch_json.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/lobes/gauge.h"
+#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe {

@@ -6,16 +6,13 @@
 
 namespace trilobe {
 
-// Whether `path` ends as a file does that WriteForRenderer writes.
-bool IsForRenderer(const std::string& path);
-
-// The flags that are for such files alone; and an Error where one is given that is for others than
-// `path`.
+// The flags that are for files alone that WriteForRenderer writes; and an Error where one is given
+// that is for others than `path`.
 std::vector<std::string> RendererFlags();
 void CheckRendererFlags(const std::string& path);
 
-// Writes a model or a measurement to --out as a file that renderers read, by its ending, and says
-// on standard output what it is and how far off. Throws Error.
+// Writes a model or a measurement to --out as a file that renderers read (trilobe/convert), by its
+// ending, and says on standard output what it is and how far off. Throws Error.
 void WriteForRenderer(const std::string& source);
 
 }  // namespace trilobe

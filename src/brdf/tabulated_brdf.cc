@@ -56,8 +56,7 @@ TabulatedBrdf::TabulatedBrdf(const BrdfTable& table) : table_(table) {
 
 Rgb TabulatedBrdf::operator()(const DirectionPair& directions) const {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
-  const int bin = table_.grid.Bin(ToHalfDiff(directions));
-  return {Value(0, bin), Value(1, bin), Value(2, bin)};
+  return Value(table_.grid.Bin(ToHalfDiff(directions)));
 }
 
 Rgb TabulatedBrdf::Interpolate(const DirectionPair& directions) const {

@@ -9,8 +9,6 @@
 #include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/hemisphere_grid.h"
-#include "trilobe/brdf/node_brdf.h"
-#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/evaluate/prepared_model.h"
 #include "trilobe/system/parallel.h"
 
@@ -79,8 +77,10 @@ CompletedMeasurement CompleteTable(const BrdfTable& measured, const Prepared& mo
       for (int c = 0; c < kChannels; ++c) ratios.SetValue(c, bin, ratio[c]);
     }
   });
-  completed.value = [model, e, table = std::make_shared<const RatioTable>(std::move(ratios))](
-                        const DirectionPair& pair) {
+  const auto table = std::make_shared<const RatioTable>(std::move(ratios));
+  completed.offset = e;
+  completed.over_table = {table, &table->brdf};
+  completed.value = [model, e, table](const DirectionPair& pair) {
     return Times(table->brdf.Interpolate(pair), model->Value(pair.wi, pair.wo), e);
   };
   return completed;
@@ -121,8 +121,9 @@ CompletedMeasurement CompleteScattered(const Measurement& scattered, const Prepa
       ratios.present[index] = true;
     }
   }
-  completed.value = [model, e, brdf = std::make_shared<const NodeBrdf>(std::move(ratios))](
-                        const DirectionPair& pair) {
+  completed.offset = e;
+  completed.over_nodes = std::make_shared<const NodeBrdf>(std::move(ratios));
+  completed.value = [model, e, brdf = completed.over_nodes](const DirectionPair& pair) {
     return Times((*brdf)(ToSphericalAngles(pair)), model->Value(pair.wi, pair.wo), e);
   };
   return completed;

@@ -15,6 +15,7 @@
 #include "files/json_value.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
+#include "trilobe/materials/load_model.h"
 
 namespace trilobe {
 namespace {
@@ -267,11 +268,19 @@ std::string ReadSource(const Node& node, const std::string& scene_file) {
     }
     return source;
   }
+  if (IsMaterial(source)) {
+    try {
+      MaterialText(source);
+    } catch (const Error& error) {
+      node.Fail(error.what());
+    }
+    return source;
+  }
   source = Beside(scene_file, source);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(source, ignored)) {
     node.Fail("there is no file " + Quoted(source) +
-              "; give a path relative to the scene file, or synth:NAME");
+              "; give a path relative to the scene file, synth:NAME or material:NAME");
   }
   return source;
 }
@@ -316,7 +325,8 @@ Scene ParseScene(std::string_view text, const std::string& path) {
 std::vector<std::string> FilesOf(const Scene& scene) {
   std::vector<std::string> files = {scene.path};
   for (const SceneMaterial& material : scene.materials) {
-    if (!IsSynthetic(material.source)) files.push_back(material.source);
+    const std::string& source = material.source;
+    if (!IsSynthetic(source) && !IsMaterial(source)) files.push_back(source);
     const auto* const histogram = std::get_if<DirectionHistogram>(&material.directions);
     if (histogram != nullptr) files.push_back(histogram->source);
   }

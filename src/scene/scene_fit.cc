@@ -20,10 +20,13 @@
 #include "system/utc_time.h"
 #include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
+#include "trilobe/files/content.h"
+#include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/reconstruct.h"
+#include "trilobe/materials/load_model.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/system/parallel.h"
 
@@ -122,6 +125,11 @@ SceneScore ScoreOn(const Objective& objective, const FactorModel& model) {
   return {report.objective, report.psnr_db};
 }
 
+std::string BytesOfSource(const std::string& source) {
+  if (IsSynthetic(source)) return source;
+  return IsMaterial(source) ? std::string(MaterialText(source)) : ReadFile(source);
+}
+
 // One material, of which nothing is read more than once, or without need.
 class MaterialFitter {
  public:
@@ -129,8 +137,9 @@ class MaterialFitter {
       : material_(material),
         settings_(settings),
         num_threads_(num_threads),
-        bytes_(IsSynthetic(material.source) ? material.source : ReadFile(material.source)),
-        bytes_hash_(ContentHash(bytes_)) {}
+        bytes_(BytesOfSource(material.source)),
+        bytes_hash_(ContentHash(bytes_)),
+        is_model_(RecogniseContent(bytes_).kind == Content::Kind::kJson) {}
 
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
@@ -216,7 +225,14 @@ class MaterialFitter {
     return key.text();
   }
 
+  ModelFile GivenModel() const { return ParseModel(bytes_, material_.source); }
+
   Measurement Measured() const {
+    if (is_model_) {
+      // Finer than what is measured, lest nodes of D fall between.
+      constexpr HemisphereGrid kNodes = {.thetas = 12, .phis = 48};
+      return AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
+    }
     const SourceOptions options = {.noise = settings_.noise,
                                    .seed = settings_.seed,
                                    .num_threads = num_threads_,
@@ -258,6 +274,12 @@ class MaterialFitter {
   std::optional<FullFit> FitAnew() {
     const Stopwatch stopwatch;
     const Measurement& source = measured();
+    FullFit fit;
+    if (is_model_) {
+      fit.file = GivenModel();
+      fit.seconds = stopwatch.Seconds();
+      return fit;
+    }
     FitOptions options = Options();
     if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
       options.solver_options = [&](const ModelSpec& /*spec*/) {
@@ -270,7 +292,7 @@ class MaterialFitter {
     }
     FitResult result = trilobe::Fit(source, options);
     if (result.interrupted) return std::nullopt;
-    FullFit fit{.file = std::move(result.file)};
+    fit.file = std::move(result.file);
     fit.file.fit.source = material_.source;
     fit.file.fit.program = settings_.program;
     fit.file.fit.date = UtcNow();
@@ -389,6 +411,7 @@ class MaterialFitter {
   const int num_threads_;
   const std::string bytes_;
   const std::string bytes_hash_;
+  const bool is_model_;
   std::optional<Measurement> measured_;
 };
 

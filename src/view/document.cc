@@ -32,7 +32,7 @@ std::string DataElement(std::string_view id, std::string_view json) {
 
 std::string Shaders() {
   nlohmann::ordered_json json;
-  for (const WebFile& file : WebFiles()) {
+  for (const EmbeddedFile& file : WebFiles()) {
     if (file.name.ends_with(".glsl")) json[std::string(file.name)] = file.text;
   }
   return json.dump();

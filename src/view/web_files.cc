@@ -7,7 +7,7 @@
 namespace trilobe {
 
 std::string_view WebText(std::string_view name) {
-  for (const WebFile& file : WebFiles()) {
+  for (const EmbeddedFile& file : WebFiles()) {
     if (file.name == name) return file.text;
   }
   throw Error("the program was built without web/" + std::string(name));

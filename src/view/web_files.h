@@ -4,15 +4,14 @@
 #include <span>
 #include <string_view>
 
+#include "files/embedded_file.h"
+
 namespace trilobe {
 
-// A file of web/, as it was when the program was built (cmake/TrilobeEmbed.cmake).
-struct WebFile {
-  std::string_view name, text;
-};
-std::span<const WebFile> WebFiles();
+// The files of web/.
+std::span<const EmbeddedFile> WebFiles();
 
-// Its text. Throws Error where there is none of this name.
+// The text of one. Throws Error where there is none of this name.
 std::string_view WebText(std::string_view name);
 
 }  // namespace trilobe

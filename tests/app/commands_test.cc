@@ -365,14 +365,14 @@ TEST(ConvertTest, WritesStandardMaterials) {
   if (!kSanitized) {
     EXPECT_THAT(Contents(folder / "x.png"), testing::StartsWith("\x89PNG"));
   }
+  // Of a measurement, to a model of it.
   const ProgramResult blender =
-      RunProgram({"convert", folder / "model.json", "--out=" + (folder / "x.principled.json")});
+      RunProgram({"convert", "synth:felt@20x20x40", "--out=" + (folder / "x.principled.json")});
   EXPECT_EQ(blender.status, 0) << blender.err;
+  EXPECT_THAT(blender.out, ContainsRegex("fitted synth:felt.*\nwrote .*Principled BSDF"));
   const json principled = json::parse(Contents(folder / "x.principled.json"));
   EXPECT_LT(principled["inputs"]["Metallic"], 0.2);
 
-  ExpectError(RunProgram({"convert", "synth:felt", "--out=" + (folder / "y.mtlx")}),
-              "is a measurement, and trilobe writes .mtlx files of models; fit it first");
   ExpectError(RunProgram({"convert", folder / "none.json", "--out=" + (folder / "y.mtlx")}),
               "cannot read '" + (folder / "none.json") + "'");
   ExpectError(RunProgram({"convert", "synth:none", "--out=" + (folder / "y.glsl")}),

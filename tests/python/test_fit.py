@@ -136,8 +136,20 @@ def test_converts(fitted, plastic, tmp_path):
     np.testing.assert_allclose(again.rho[again.valid][::999], fitted.model.eval(wi, wo), rtol=0.2, atol=1e-3)
     trilobe.convert(plastic, tmp_path / "b.csv")
     assert trilobe.read(tmp_path / "b.csv").counts["valid"] == plastic.counts["valid"]
-    trilobe.convert(anisotropic(), tmp_path / "c.bin")
+    told = trilobe.convert(plastic, tmp_path / "d.bsdf", error=0.2)
+    assert told[0].startswith("fitted ") and told[1].endswith("for one of a hundred directions")
+    assert trilobe.read(tmp_path / "d.bsdf").kind.startswith("RGL")
+    trilobe.convert("material:linen", tmp_path / "c.bin")
     assert trilobe.read(tmp_path / "c.bin").anisotropic
+
+
+def test_takes_the_materials_that_come_along(plastic):
+    assert len(trilobe.materials()) > 20
+    brdf = trilobe.load("material:paper_white")
+    assert brdf == trilobe.load(pathlib.Path(__file__).parents[2] / "materials/paper_white.json")
+    assert trilobe.score("material:paper_white", plastic)["verdict"]
+    with pytest.raises(trilobe.Error, match="did you mean 'material:linen'"):
+        trilobe.load("material:linnen")
 
 
 def test_lists():
@@ -173,7 +185,7 @@ BAD = [
     (lambda: isotropic().unobserved(np.ones((2, 2))), "there is no factor array"),
     (lambda: trilobe.fit(SMALL, weighting="light"), "light"),
     (lambda: trilobe.fit(SMALL, init="there"), "there"),
-    (lambda: trilobe.fit(SMALL, start=3), "start must be"),
+    (lambda: trilobe.fit(SMALL, start=3), "must be a trilobe.Brdf"),
     (lambda: trilobe.fit(SMALL, prior=1), "prior"),
     (lambda: trilobe.fit(None), "a path must be"),
     (lambda: trilobe.Measurement([[0, 0, 1]], [[0, 0, 1]], [[1, 1]]), r"rho has the shape \(1, 2\)"),
@@ -181,8 +193,10 @@ BAD = [
     (lambda: trilobe.fit(trilobe.Measurement(np.empty((0, 3)), np.empty((0, 3)), [])), "valid"),
     (lambda: trilobe.Measurement("x", [[0, 0, 1]], [1.0]), "wi has the dtype"),
     (lambda: trilobe.score(None, SMALL), "must be a trilobe.Brdf"),
-    (lambda: trilobe.convert(isotropic(), "x.png"), "end the name in"),
-    (lambda: trilobe.convert(SMALL, "x.zip"), "end the name in"),
+    (lambda: trilobe.convert(isotropic(), "x.png"), "writes no '.png'"),
+    (lambda: trilobe.convert(SMALL, "x.zip"), "writes no '.zip'"),
+    (lambda: trilobe.convert(SMALL, "x.glsl"), "fit it first"),
+    (lambda: trilobe.convert(SMALL, "x.bsdf", error=2), "error must be from 0 to 1"),
     (lambda: trilobe.convert(anisotropic(), "x.binary"), "anisotropic"),
     (lambda: trilobe.fit_many([], "out"), "there is no source"),
     (lambda: trilobe.fit_many(3, "out"), "a list of paths"),

@@ -14,6 +14,7 @@ mi = pytest.importorskip("mitsuba")
 import drjit as dr  # noqa: E402
 
 import trilobe.mitsuba as plugin  # noqa: E402
+from trilobe._measurement import completed  # noqa: E402
 
 
 def has_llvm():
@@ -127,6 +128,77 @@ def test_chi2_over_half_vectors(make):
     assert min(p) > 0.01 / len(tests), dict(zip(tests, p))
 
 
+# Tables of bins, and of nodes; an error of the fit, so that what is interpolated is not 1.
+MEASURED = {"table": ("synth:copper@20x20x40", isotropic), "nodes": ("synth:shot_silk@5x12", anisotropic)}
+
+
+@needs_llvm
+@pytest.mark.parametrize("kind", MEASURED)
+def test_measured_is_what_was_measured(kind, tmp_path):
+    mi.set_variant("llvm_ad_rgb")
+    source, model = MEASURED[kind]
+    model().save(tmp_path / "model.json")
+    bsdf = mi.load_dict({"type": "trilobe_measured", "filename": source, "model": str(tmp_path / "model.json")})
+    measurement = trilobe.read(source)
+    wi, wo, rho = (x[measurement.valid][::97] for x in (measurement.wi, measurement.wo, measurement.rho))
+    value = np.array(bsdf.eval(mi.BSDFContext(), at(wi), vectors(wo))).T / wo[:, 2:]
+    # At nodes that stand at the horizon nothing is to be seen.
+    seen = np.minimum(wi[:, 2], wo[:, 2]) > 0.05
+    np.testing.assert_allclose(value[seen], rho[seen], rtol=2e-3, atol=1e-3 * rho.mean())
+    # Between them it is what C++ interpolates, which `convert` writes.
+    wi, wo = directions(5000, 1), directions(5000, 2)
+    value = np.array(bsdf.eval(mi.BSDFContext(), at(wi), vectors(wo))).T
+    wanted = completed(measurement, model()).eval(wi, wo) * wo[:, 2:]
+    np.testing.assert_allclose(value, wanted, rtol=2e-3, atol=1e-4)
+    assert np.abs(wanted - model().eval_cos(wi, wo)).max() > 0.1 * wanted.mean()
+    if kind == "table":
+        assert half_vector_chi2(bsdf, 0.8) > 0.01
+
+
+@needs_llvm
+def test_measured_is_fitted_where_no_model_is_given():
+    mi.set_variant("llvm_ad_rgb")
+    bsdf = mi.load_dict({"type": "trilobe_measured", "filename": "synth:copper@20x20x40"})
+    wi = directions(20000, 3)
+    random = np.random.default_rng(4).random((3, len(wi))).astype(np.float32)
+    drawn, weight = bsdf.sample(mi.BSDFContext(), at(wi), mi.Float(random[0]), mi.Point2f(random[1:]))
+    value, pdf = bsdf.eval_pdf(mi.BSDFContext(), at(wi), drawn.wo)
+    np.testing.assert_allclose(np.array(value), np.array(weight) * np.array(pdf), rtol=1e-3, atol=1e-5)
+    assert np.quantile(np.array(weight), 0.999) < 3
+
+
+@needs_llvm
+def test_draws_by_another_model():
+    mi.set_variant("llvm_ad_rgb")
+    wi = directions(1000, 3)
+    random = np.random.default_rng(4).random((3, len(wi))).astype(np.float32)
+    context = mi.BSDFContext()
+
+    def drawn_by(name, **more):
+        bsdf = mi.load_dict({"type": "trilobe", "filename": f"material:{name}", **more})
+        drawn, weight = bsdf.sample(context, at(wi), mi.Float(random[0]), mi.Point2f(random[1:]))
+        value = np.array(bsdf.eval(context, at(wi), drawn.wo))
+        np.testing.assert_allclose(value, np.array(weight) * np.array(drawn.pdf), rtol=1e-3, atol=1e-5)
+        return np.array(drawn.wo)
+
+    own, other = drawn_by("paper_white"), drawn_by("satin_purple")
+    assert np.abs(own - other).max() > 0.1
+    np.testing.assert_array_equal(drawn_by("paper_white", sampling="material:satin_purple"), other)
+
+
+def test_scalar_measured_is_what_was_measured(tmp_path):
+    mi.set_variant("scalar_rgb")
+    isotropic().save(tmp_path / "model.json")
+    source = MEASURED["table"][0]
+    bsdf = mi.load_dict({"type": "trilobe_measured", "filename": source, "model": str(tmp_path / "model.json")})
+    made = completed(trilobe.read(source), isotropic())
+    si = mi.SurfaceInteraction3f()
+    for wi, wo in zip(directions(5, 6), directions(5, 7)):
+        si.wi = mi.Vector3f(*map(float, wi))
+        value = np.array(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(*map(float, wo))))
+        np.testing.assert_allclose(value, made.eval(wi[None], wo[None])[0] * wo[2], rtol=1e-3, atol=1e-5)
+
+
 def wrong_density_is_found(bsdf):
     """A test that can fail: a density that is off by 5 % where half vectors lean."""
     pdf = type(bsdf).pdf
@@ -238,6 +310,9 @@ def test_follows_what_is_changed():
     ({"type": "trilobe"}, "needs either filename"),
     ({"type": "trilobe", "filename": "/no/such.json"}, "cannot read"),
     ({"type": "trilobe", "json": "{}"}, "the BSDF's json"),
+    ({"type": "trilobe", "filename": "material:linnen"}, "did you mean"),
+    ({"type": "trilobe_measured"}, "needs filename"),
+    ({"type": "trilobe_measured", "filename": "synth:nothing"}, "nothing"),
 ])
 def test_says_in_a_line_what_is_wrong(material, told):
     mi.set_variant("scalar_rgb")

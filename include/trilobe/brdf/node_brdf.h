@@ -67,6 +67,8 @@ class NodeBrdf {
   explicit NodeBrdf(NodeTable table);
 
   const NodeTable& table() const { return table_; }
+  // Of all pairs, whether they had a value or not. [nodes()][nodes()]
+  const std::vector<Rgb>& values() const { return filled_; }
 
   // BRDF [1/sr] of two directions above the surface.
   Rgb operator()(const SphericalAngles& at) const;

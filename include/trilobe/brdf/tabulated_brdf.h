@@ -26,6 +26,9 @@ class TabulatedBrdf {
   // Of two directions above the surface. Throws Error as CheckAngles does.
   Rgb Interpolate(const HalfDiffAngles& angles) const;
 
+  // Of a bin, or the valid one that stands for it.
+  Rgb Value(int bin) const { return {Value(0, bin), Value(1, bin), Value(2, bin)}; }
+
  private:
   double Value(int channel, int bin) const { return table_.Value(channel, nearest_valid_[bin]); }
 

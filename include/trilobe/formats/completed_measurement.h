@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "trilobe/brdf/measurement.h"
+#include "trilobe/brdf/node_brdf.h"
+#include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/directions.h"
 #include "trilobe/model/factor_model.h"
@@ -25,6 +27,10 @@ using PairBrdf = std::function<Rgb(const DirectionPair&)>;
 struct CompletedMeasurement {
   PairBrdf value;
   bool interpolated = true;  // false: it is the model
+  double offset = 0;         // e [1/sr]
+  // q over the bins of a table, or over the nodes of a grid; one of them, where it is interpolated.
+  std::shared_ptr<const TabulatedBrdf> over_table = nullptr;
+  std::shared_ptr<const NodeBrdf> over_nodes = nullptr;
 
   // Measured places, distributed by the cosines of both directions as far as they go, to judge
   // whatever is to say the same, with what was measured there, not black.

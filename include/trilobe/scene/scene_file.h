@@ -40,8 +40,9 @@ struct SceneReductions {
 
 // A material with the scene's defaults filled in.
 struct SceneMaterial {
-  std::string name;    // unique, and fit to be the name of a file
-  std::string source;  // for LoadSource: a path that exists, or synth:NAME
+  std::string name;  // unique, and fit to be the name of a file
+  std::string
+      source;  // a path that exists, of a measurement or of a model, synth: or material:NAME
   SceneDirections directions;
   SceneChannels channels = SceneChannels::kRgb;
   SceneBudget budget;

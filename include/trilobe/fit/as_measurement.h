@@ -1,0 +1,20 @@
+#ifndef TRILOBE_FIT_AS_MEASUREMENT_H_
+#define TRILOBE_FIT_AS_MEASUREMENT_H_
+
+#include <string>
+
+#include "trilobe/brdf/measurement.h"
+#include "trilobe/brdf/node_brdf.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// A model where it might have been measured: an isotropic one at all bins of MERL's grid, with both
+// directions above the surface, an anisotropic one at all pairs of nodes of `grid`. `source` is
+// what messages call it.
+Measurement AsMeasurement(const FactorModel& model, const std::string& source, int num_threads,
+                          const HemisphereGrid& grid);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_AS_MEASUREMENT_H_

@@ -1,0 +1,16 @@
+#include "trilobe/fit/as_measurement.h"
+
+#include "trilobe/appearance/node_reconstruction.h"
+#include "trilobe/lobes/reconstruct.h"
+
+namespace trilobe {
+
+Measurement AsMeasurement(const FactorModel& model, const std::string& source, int num_threads,
+                          const HemisphereGrid& grid) {
+  if (model.spec().anisotropic()) return ReconstructAtNodes(model, source, grid);
+  return {.source = source,
+          .kind = "reconstruction",
+          .table = Reconstruct(model, source, {}, num_threads)};
+}
+
+}  // namespace trilobe
