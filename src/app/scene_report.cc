@@ -56,6 +56,13 @@ const SceneMaterial& MaterialOf(const SceneRun& run, const MaterialFit& fit) {
   return *std::ranges::find(run.scene.materials, fit.name, &SceneMaterial::name);
 }
 
+// "1.2 %", or of a model that is exact, that it was.
+std::string RiseText(const MaterialFit& fit) {
+  constexpr double kMost = 1e6;
+  const double rise = RelativeRise(fit.full, fit.pruned);
+  return rise > kMost ? "from 0" : Text(100 * rise, 3) + " %";
+}
+
 void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
   const SceneMaterial& material = MaterialOf(run, fit);
   out << "\n"
@@ -142,8 +149,7 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
     out << name(fit.name) << Right(std::to_string(fit.file.model.spec().lobes), 6)
         << Right(std::to_string(fit.num_parameters), 9)
         << Right(std::to_string(fit.full_parameters), 9)
-        << Right(std::to_string(BytesOf(fit.num_parameters)), 9)
-        << Right(Text(100 * RelativeRise(fit.full, fit.pruned), 3) + " %", 12)
+        << Right(std::to_string(BytesOf(fit.num_parameters)), 9) << Right(RiseText(fit), 12)
         << Right(Text(PsnrFall(fit.full.psnr_db, fit.pruned.psnr_db), 3) + " dB", 15)
         << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
         << (fit.prune_from_cache ? "  from the cache"

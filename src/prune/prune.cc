@@ -25,6 +25,7 @@ constexpr double kDear = 0.5;
 // Towards a limit of the error: so often, and by this factor, the rise of E that is allowed grows.
 constexpr int kStretches = 4;
 constexpr double kStretch = 3;
+constexpr double kLittleMore = 1.25;
 
 // The first shape that changes no parameter.
 void ShareWhatIsEqual(Pruning* pruning) {
@@ -111,18 +112,26 @@ bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pr
   return pruning->Decide(what, std::move(next), taken, why);
 }
 
-// True where the error alone limits, and less than half of what it may grow is spent, in decibels.
+// Whether less than half of what the error may grow is spent, where it is limited.
 bool SparesError(const Pruning& pruning) {
-  if (!pruning.limits_error() || pruning.search_limit() >= pruning.limit()) return false;
-  return pruning.ErrorOf(pruning.state()) < std::sqrt(pruning.full_error() * pruning.max_error());
+  // Half of the budget: of decibels, or of an error that is seen.
+  const double half = pruning.options().error
+                          ? (pruning.full_error() + pruning.max_error()) / 2
+                          : std::sqrt(pruning.full_error() * pruning.max_error());
+  return pruning.ErrorOf(pruning.state()) < half;
 }
 
 // Shape and nodes.
 void ThinWithin(double limit, Pruning* pruning) {
-  pruning->set_search_limit(std::max(limit, pruning->state().E));
+  // Of an error that is seen, E tells little: a few nodes more are tried in any case.
+  const double least = pruning->options().error ? kLittleMore : 1;
+  pruning->set_search_limit(
+      std::min(pruning->limit(), std::max(limit, least * pruning->state().E)));
   ChooseShape(pruning);
   ThinTables(pruning);
+  if (!pruning->limits_error()) return;
   for (int round = 0; round < kStretches && SparesError(*pruning); ++round) {
+    if (pruning->search_limit() >= pruning->limit()) return;
     pruning->set_search_limit(
         std::min(pruning->limit(),
                  pruning->E_full() + kStretch * (pruning->search_limit() - pruning->E_full())));
@@ -143,7 +152,9 @@ void SpendBudget(Pruning* pruning) {
     PruneState before = state;
     if (!TryLobes(WithOneLobeLess(state.model), wanted, pruning)) break;
     last_lobe = pruning->decisions().size() - 1;
-    dear = state.E - pruning->E_full() > kDear * (wanted - pruning->E_full());
+    dear = pruning->options().error
+               ? !SparesError(*pruning)
+               : state.E - pruning->E_full() > kDear * (wanted - pruning->E_full());
     with_one_more = std::move(before);
   }
   ThinWithin(limit, pruning);

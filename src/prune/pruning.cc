@@ -19,6 +19,8 @@ constexpr double kRounding = 1e-12;  // of E
 
 // Of E of a black model: so little that nothing can be relative to it.
 constexpr double kPracticallyZero = 1e-9;
+// Of the same: what a good fit of a measurement comes to.
+constexpr double kGoodFit = 1e-4;
 
 // The measure of PSNR that is 0 where a model is right.
 double ErrorByPsnr(const PruneState& state) {
@@ -57,7 +59,10 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
     full_error_ = ErrorOf(state_);
     max_error_ = options.max_error;
     const double growth = full_error_ > 0 ? max_error_ / full_error_ : kInfinity;
-    search_limit_ = std::min({limit_, growth * growth * E_full_, data.MeasuredEnergy()});
+    search_limit_ = growth * growth * E_full_;
+    // Of an exact model no multiple says anything: then the E of a good fit is where to begin.
+    if (Exact(E_full_)) search_limit_ = std::max(search_limit_, kGoodFit * data.MeasuredEnergy());
+    search_limit_ = std::min({limit_, search_limit_, data.MeasuredEnergy()});
   } else if (std::isfinite(options.max_psnr_drop_db)) {
     error_ = ErrorByPsnr;
     const double growth = std::pow(10, options.max_psnr_drop_db / 20);
@@ -66,7 +71,7 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
     search_limit_ = std::min(limit_, growth * growth * E_full_);
   }
   const bool relative = !options.error && options.max_relative_rise > 0;
-  if (relative && E_full_ <= kPracticallyZero * data.MeasuredEnergy()) {
+  if (relative && Exact(E_full_)) {
     std::ostringstream why;
     why << std::setprecision(2) << "E of the full model is practically 0, "
         << (data.MeasuredEnergy() > 0 ? E_full_ / data.MeasuredEnergy() : 0)
@@ -104,6 +109,8 @@ const QuadraticModel& Pruning::Linearized() {
   return quadratic_;
 }
 
+bool Pruning::Exact(double E) const { return E <= kPracticallyZero * data_.MeasuredEnergy(); }
+
 bool Pruning::may_rise() const { return search_limit_ > E_full_ * (1 + kRounding); }
 
 bool Pruning::Keeps(const PruneState& state) const {
@@ -115,12 +122,12 @@ bool Pruning::Keeps(const PruneState& state) const {
 std::string Pruning::Against(double E, bool within) const {
   std::ostringstream out;
   out.precision(3);
-  if (E_full_ > 0) {
+  if (!Exact(E_full_)) {
     const double rise = 100 * (E / E_full_ - 1);
     out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
         << " the full model's";
   } else {
-    out << "E is " << E << ", and of the full model 0";
+    out << "E is " << E << ", and of the full model practically 0";
   }
   if (!by_parameters_) out << "; " << (within ? "within" : "beyond") << " the budget";
   return out.str();

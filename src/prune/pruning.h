@@ -65,6 +65,8 @@ class Pruning {
   // True where the budget is one of parameters, and E is to be low; else E has a limit.
   bool by_parameters() const { return by_parameters_; }
   double E_full() const { return E_full_; }
+  // Whether E is 0 but for rounding, so that nothing can be relative to it.
+  bool Exact(double E) const;
   bool may_rise() const;  // by more than rounding
   double limit() const { return limit_; }
   // Where E is to go, limit() or less: by a limit of the error that is known only roughly.

@@ -14,6 +14,7 @@
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
 #include "trilobe/formats/merl_file.h"
+#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -88,7 +89,31 @@ TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
   }
 }
 
+<<<<<<< HEAD
 // What a prior says between them does not count.
+=======
+// What a guide says between them does not count.
+TEST(Scene, AModelIsItsOwnFit) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder, R"({
+    "format": "trilobe-scene", "version": 1,
+    "directions": {"theta_i": [0, 10], "theta_o": [0, 10]},
+    "leave_out": {"lobes": false, "colour": false, "shadowing": false, "tables": false},
+    "materials": [{"name": "paper", "source": "material:paper_white"}]
+  })");
+  const ProgramResult fit =
+      RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + (folder / "x")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  const FactorModel model = ReadModel(folder / "x/paper.json").model;
+  const FactorModel given = LoadModel("material:paper_white").model;
+  EXPECT_TRUE(std::ranges::equal(model.d(), given.d()));
+  EXPECT_EQ(model.spec(), given.spec());
+  MakeScene(folder, R"({"format": "trilobe-scene", "version": 1,
+                        "materials": [{"name": "x", "source": "material:paper_whit"}]})");
+  EXPECT_THAT(RunProgram({"plan", scene}).err, HasSubstr("did you mean 'material:paper_white'?"));
+}
+
+>>>>>>> 78f342b (A budget of what is seen is spent on nodes, too; scenes of models are tested)
 TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
   const TemporaryFolder folder;
   const std::string source = FewSamples(folder, "plastic@30x30x60");
