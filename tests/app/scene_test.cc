@@ -89,10 +89,6 @@ TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
   }
 }
 
-<<<<<<< HEAD
-// What a prior says between them does not count.
-=======
-// What a guide says between them does not count.
 TEST(Scene, AModelIsItsOwnFit) {
   const TemporaryFolder folder;
   const std::string scene = MakeScene(folder, R"({
@@ -113,7 +109,7 @@ TEST(Scene, AModelIsItsOwnFit) {
   EXPECT_THAT(RunProgram({"plan", scene}).err, HasSubstr("did you mean 'material:paper_white'?"));
 }
 
->>>>>>> 78f342b (A budget of what is seen is spent on nodes, too; scenes of models are tested)
+// What a prior says between them does not count.
 TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
   const TemporaryFolder folder;
   const std::string source = FewSamples(folder, "plastic@30x30x60");
