@@ -26,6 +26,7 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .noise = OptionOf<double>(options, "noise", "a number"),
       .missing = OptionOf<double>(options, "missing", "a number"),
       .corrupt = OptionOf<std::string>(options, "corrupt", "a text"),
+      .cosine = OptionOf<double>(options, "cosine", "a number"),
       .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
       .num_threads = ThreadsOf(options),
       .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),

@@ -179,6 +179,7 @@ def read(
     noise: float = 0,
     missing: float = 0,
     corrupt: str = "",
+    cosine: float = 0,
     seed: int = 1,
     max_angle: float = 90,
     min_theta_d: float = -1,
@@ -194,6 +195,7 @@ def read(
         noise: relative noise of a synthetic material, 0 to 1.
         missing: the share of the samples that is left out at random.
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
+        cosine: takes cos theta_i to this power out of it.
         seed: of whatever is random.
         max_angle: theta_i and theta_o beyond it are left out [degrees].
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
@@ -210,6 +212,7 @@ def read(
         noise=noise,
         missing=missing,
         corrupt=corrupt,
+        cosine=cosine,
         seed=seed,
         max_angle=max_angle,
         min_theta_d=min_theta_d,
@@ -282,6 +285,7 @@ def source_options(**given: Any) -> dict[str, Any]:
         "noise": 0.0,
         "missing": 0.0,
         "corrupt": "",
+        "cosine": 0.0,
         "seed": 1,
         "max_angle": 90.0,
         "min_theta_d": -1.0,

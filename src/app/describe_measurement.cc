@@ -10,6 +10,7 @@
 #include "app/describe.h"
 #include "app/flags.h"
 #include "app/result_folder.h"
+#include "brdf/symptoms.h"
 #include "files/file.h"
 #include "reports/albedo_table.h"
 #include "reports/bin_counts.h"
@@ -97,6 +98,8 @@ void DescribeTable(const Measurement& measurement) {
           [&](const DirectionPair& pair) { return brdf.Measured(pair); });
     }
   }
+  std::vector<std::string> notes = measurement.notes;
+  for (const std::string& symptom : SymptomsOf(table)) notes.push_back(symptom);
   const std::string picture = PicturePath();
   if (!picture.empty()) {
     MakeDirectories(FLAGS_out);
@@ -116,7 +119,8 @@ void DescribeTable(const Measurement& measurement) {
                  {"max", range.max},
                  {"exchange_error", ToJson(exchange)},
                  {"reciprocity_error", reciprocity ? ToJson(*reciprocity) : Json()},
-                 {"albedo", albedo ? ToJson(*albedo) : Json()}};
+                 {"albedo", albedo ? ToJson(*albedo) : Json()},
+                 {"notes", notes}};
     PrintJson(json);
     return;
   }
@@ -143,6 +147,7 @@ void DescribeTable(const Measurement& measurement) {
         bins.extrapolated + bins.beyond_nodes + bins.beyond_max_angle + bins.below_min_theta_d == 0;
     Print(*albedo, whole ? "directional albedo" : "directional albedo of what was measured");
   }
+  for (const std::string& note : notes) PrintLine("note", note);
 }
 
 // Which values an angle has among the samples.

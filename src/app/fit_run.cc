@@ -11,6 +11,7 @@
 #include "app/interrupt.h"
 #include "app/program.h"
 #include "app/view_page.h"
+#include "brdf/symptoms.h"
 #include "files/file.h"
 #include "reports/fit_details.h"
 #include "reports/print.h"
@@ -124,6 +125,10 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   }
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
+  if (measured.table) {
+    for (const std::string& symptom : SymptomsOf(*measured.table))
+      measured.notes.push_back(symptom);
+  }
   TellNotes(measured);
   report.data_notes = measured.notes;
   report.bins = CountsOf(measured);

@@ -26,6 +26,11 @@ DEFINE_double(missing, 0,
 DEFINE_string(corrupt, "",
               "do to the measurement what instruments do, by --seed: KIND:STRENGTH,..., as "
               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
+DEFINE_double(
+    cosine, 0,
+    "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "
+    "to 2: 1 where it has a cosine too many, -1 where it has one too few; `trilobe info` "
+    "tells");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
 DEFINE_double(min_theta_d, -1,
@@ -87,6 +92,7 @@ SourceOptions SourceOptionsFromFlags() {
   SourceOptions options = {.noise = FLAGS_noise,
                            .missing = FLAGS_missing,
                            .corrupt = FLAGS_corrupt,
+                           .cosine = FLAGS_cosine,
                            .seed = static_cast<uint64_t>(FLAGS_seed),
                            .num_threads = ThreadsFromFlags(),
                            .max_angle_deg = FLAGS_max_angle,
@@ -99,8 +105,8 @@ SourceOptions SourceOptionsFromFlags() {
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",       "missing",      "corrupt",  "seed",      "max_angle",
-          "min_theta_d", "extrapolated", "outliers", "radiometry"};
+  return {"noise",     "missing",     "corrupt",      "cosine",   "seed",
+          "max_angle", "min_theta_d", "extrapolated", "outliers", "radiometry"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -14,6 +14,7 @@ DECLARE_int64(seed);
 DECLARE_double(noise);
 DECLARE_double(missing);
 DECLARE_string(corrupt);
+DECLARE_double(cosine);
 DECLARE_double(max_angle);
 DECLARE_double(min_theta_d);
 DECLARE_string(radiometry);

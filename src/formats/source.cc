@@ -102,7 +102,12 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
 }  // namespace
 
 void CorruptBy(const SourceOptions& options, Measurement* measurement) {
-  Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
+  std::vector<Corruption> corruptions = ParseCorruptions(options.corrupt);
+  if (options.cosine != 0) {
+    corruptions.push_back(
+        {.kind = &FindNamed("kind", "cosine", CorruptionKinds()), .strength = -options.cosine});
+  }
+  Corrupt(corruptions, options.seed, options.num_threads, measurement);
 }
 
 void CheckSourceOptions(const SourceOptions& options) {
@@ -116,6 +121,8 @@ void CheckSourceOptions(const SourceOptions& options) {
               "in degrees from 0 to below 90, or -1 to go by the data");
   FindNamed("radiometry", options.radiometry, UtiaRadiometries());
   ParseCorruptions(options.corrupt);
+  CheckNumber("--cosine", options.cosine, options.cosine >= -2 && options.cosine <= 2,
+              "from -2 to 2");
 }
 
 const std::vector<MeasurementFormat>& MeasurementFormats() {

@@ -1,0 +1,63 @@
+#ifndef TRILOBE_BRDF_SYMPTOMS_H_
+#define TRILOBE_BRDF_SYMPTOMS_H_
+
+#include <string>
+#include <vector>
+
+#include "trilobe/brdf/brdf_table.h"
+
+namespace trilobe {
+
+// What the values of a table tell of its measurement, each with the limits beyond which it is told;
+// docs/robustness.md says how often that is right.
+
+// Were values multiplied by cos^k theta_i, log(rho / rho with wi and wo exchanged) would be
+// k log(cos theta_i / cos theta_o): k is the median of the ratio of the two, over pairs whose
+// cosines differ by a factor of 1.5 or more.
+struct CosineSymptom {
+  double exponent = 0;
+  // Medians of |log(rho / rho exchanged)| over these pairs, as it is and with k = 1 or -1, the
+  // nearer one, divided out.
+  double error = 0, error_without = 0;
+  bool IsOneTooMany() const { return IsFar() && exponent > 0.65; }
+  bool IsOneTooFew() const { return IsFar() && exponent < -0.65; }
+
+ private:
+  bool IsFar() const { return error_without < error / 2; }
+};
+CosineSymptom CosineOf(const BrdfTable& table);
+
+// How many values have the largest signal, rho cos theta_i, of their channel, or the largest rho,
+// to 1e-9: where a detector was saturated there is a plateau.
+struct PlateauSymptom {
+  int values = 0;
+  bool IsThere() const { return values >= 10; }
+};
+PlateauSymptom PlateauOf(const BrdfTable& table);
+
+// The share of the darker half of the signals above 0 that have another one within 1e-9, the green
+// of every third row, one order of the directions: a quantised measurement has few different ones.
+struct QuantizationSymptom {
+  double share = 0;
+  bool IsThere() const { return share > 0.1; }
+};
+QuantizationSymptom QuantizationOf(const BrdfTable& table);
+
+// By how much the middle of the highlight is off theta_h = 0, towards wi [deg]: the median over
+// theta_d from 10 to 60 degrees of the centroid of what is above half of the largest value within
+// theta_h = 15 degrees, where that is three times as bright as the rim; and how far its quartiles
+// are apart.
+struct TiltSymptom {
+  double degrees = 0, spread = 0;
+  bool IsThere() const {
+    return (degrees > 0.4 || degrees < -0.4) && 2 * spread < (degrees < 0 ? -degrees : degrees);
+  }
+};
+TiltSymptom TiltOf(const BrdfTable& table);
+
+// A sentence each; empty where nothing looks wrong.
+std::vector<std::string> SymptomsOf(const BrdfTable& table);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_BRDF_SYMPTOMS_H_

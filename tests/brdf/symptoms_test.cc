@@ -1,0 +1,92 @@
+#include "brdf/symptoms.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "trilobe/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+BrdfTable Corrupted(const std::string& corrupt, const std::string& material = "aluminium") {
+  SourceOptions options;
+  options.corrupt = corrupt;
+  return LoadSource("synth:" + material + "@60x30x60", options);
+}
+
+TEST(Symptoms, CleanDataHaveNone) {
+  for (const char* const name : {"plastic", "aluminium", "chrome", "felt", "foam", "rubber"}) {
+    EXPECT_THAT(SymptomsOf(Corrupted("", name)), IsEmpty()) << name;
+  }
+}
+
+TEST(Symptoms, WhatDoesNotLookLikeOneIsNotTold) {
+  for (const char* const corrupt : {"noise:0.2", "gaps:0.9", "zeros:0.05", "outliers:0.05",
+                                    "stray:0.1", "crosstalk:0.1", "beyond:60", "aperture:3"}) {
+    EXPECT_THAT(SymptomsOf(Corrupted(corrupt)), IsEmpty()) << corrupt;
+  }
+}
+
+TEST(Symptoms, ACosineIsToldAndCanBeTakenOut) {
+  for (const int k : {1, -1}) {
+    const std::string x = std::to_string(k);
+    const CosineSymptom symptom = CosineOf(Corrupted("noise:0.05,cosine:" + x));
+    EXPECT_NEAR(symptom.exponent, k, 0.05);
+    EXPECT_EQ(symptom.IsOneTooMany(), k == 1);
+    EXPECT_EQ(symptom.IsOneTooFew(), k == -1);
+    EXPECT_LT(symptom.error_without, 0.1);
+    EXPECT_THAT(SymptomsOf(Corrupted("cosine:" + x)),
+                ElementsAre(HasSubstr("; --cosine=" + x + " corrects that")));
+    SourceOptions options;
+    options.corrupt = "cosine:" + x;
+    options.cosine = k;
+    EXPECT_THAT(SymptomsOf(LoadSource("synth:aluminium@60x30x60", options)), IsEmpty());
+  }
+  EXPECT_FALSE(CosineOf(Corrupted("nonreciprocal:0.3")).IsOneTooMany());
+}
+
+TEST(Symptoms, APlateauIsTold) {
+  EXPECT_LE(PlateauOf(Corrupted("")).values, 4);
+  EXPECT_GT(PlateauOf(Corrupted("clip:0.01")).values, 100);
+  EXPECT_THAT(SymptomsOf(Corrupted("clip:0.01")), ElementsAre(HasSubstr("saturated")));
+}
+
+TEST(Symptoms, FewLevelsAreTold) {
+  EXPECT_LT(QuantizationOf(Corrupted("")).share, 0.05);
+  for (const char* const corrupt : {"quantize:10", "brackets:8"}) {
+    EXPECT_THAT(SymptomsOf(Corrupted(corrupt)), testing::Contains(HasSubstr("few levels")))
+        << corrupt;
+  }
+}
+
+TEST(Symptoms, ATiltIsToldByItsAngle) {
+  EXPECT_NEAR(TiltOf(Corrupted("")).degrees, 0, 0.05);
+  EXPECT_NEAR(TiltOf(Corrupted("tilt:1")).degrees, 1, 0.2);
+  // The half vector turns by half of what the detector's arm is off.
+  EXPECT_NEAR(TiltOf(Corrupted("origin:4")).degrees, 2, 0.4);
+  EXPECT_THAT(SymptomsOf(Corrupted("tilt:1")), ElementsAre(HasSubstr("tilted")));
+}
+
+TEST(Symptoms, AShadowIsTold) {
+  EXPECT_THAT(SymptomsOf(Corrupted("shadow:12")),
+              ElementsAre(HasSubstr("a detector stands in its own light; --min_theta_d=")));
+}
+
+TEST(Symptoms, BlackAndSmallTablesHaveNone) {
+  BrdfTable black = Corrupted("");
+  for (auto& plane : black.stored) {
+    for (double& x : plane) x = x > 0 ? 0 : x;
+  }
+  EXPECT_THAT(SymptomsOf(black), IsEmpty());
+  EXPECT_THAT(SymptomsOf(LoadSource("synth:plastic@4x4x4")), IsEmpty());
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
