@@ -10,6 +10,7 @@
 #define TRILOBE_FOR_EACH_SOLVER(X) \
   X(Auto)                          \
   X(Multistart)                    \
+  X(Continuation)                  \
   X(Awls)                          \
   X(AwlsBlock)                     \
   X(AwlsAccelerated)               \

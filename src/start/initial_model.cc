@@ -45,6 +45,22 @@ Rgb Quantile(const std::vector<WeightedSample>& samples, double fraction) {
   return result;
 }
 
+// MeanReflectance, a channel, of the samples that are looked at.
+Rgb MeanColor(const Objective& objective) {
+  const BrdfSamples& samples = objective.samples();
+  const int stride = std::max(1, samples.size() / kSamplesLookedAt) | 1;
+  double light = 0;
+  Rgb mean{};
+  for (int j = 0; j < samples.size(); j += stride) {
+    const Cosines cosines = samples.CosinesOf(j);
+    const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
+    light += through;
+    for (int c = 0; c < kChannels; ++c) mean[c] += through * samples.rho[j][c];
+  }
+  for (double& channel : mean) channel = light > 0 ? channel / light : 0;
+  return mean;
+}
+
 using Table = std::vector<double>;
 
 void SetTable(Factor factor, int lobe, const Table& values, FactorModel* model) {
@@ -137,10 +153,9 @@ Table SchlickFresnel(int bins) {
   return F;
 }
 
-// A model whose lobes have these distributions, Smith's G and Schlick's F; d and s from the data.
-FactorModel FromDistributions(const Objective& objective, const std::vector<Table>& D) {
-  const ModelSpec& spec = objective.spec();
-  const std::vector<WeightedSample> samples = Selection(objective);
+// A model whose lobes have these distributions, Smith's G and Schlick's F; d from the data; s is 0.
+FactorModel WithoutWeights(const std::vector<WeightedSample>& samples, const ModelSpec& spec,
+                           const std::vector<Table>& D) {
   FactorModel model(spec);
   std::ranges::copy(Quantile(samples, 0.1), model.d().begin());
   for (int m = 0; m < spec.lobes; ++m) {
@@ -148,15 +163,25 @@ FactorModel FromDistributions(const Objective& objective, const std::vector<Tabl
     SetTable(Factor::kF, m, SchlickFresnel(spec.f_axis.size), &model);
     SetTable(Factor::kG, m, SmithShadowing(spec, D[m]), &model);
   }
+  return model;
+}
+
+// The same with s from the data.
+FactorModel FromDistributions(const Objective& objective, const std::vector<Table>& D) {
+  const std::vector<WeightedSample> samples = Selection(objective);
+  FactorModel model = WithoutWeights(samples, objective.spec(), D);
   SetSpecularWeights(samples, &model);
   return model;
 }
 
-// Roughnesses of `lobes` lobes, spread evenly in the logarithm from narrow to wide.
-double SpreadRoughness(int lobe, int lobes) {
-  constexpr double kNarrow = 0.04, kWide = 0.5;
-  const double t = lobes == 1 ? 0.5 : lobe / (lobes - 1.0);
-  return kNarrow * std::pow(kWide / kNarrow, t);
+// GGX, a lobe, with roughnesses spread evenly in the logarithm from `narrow` to `wide`.
+std::vector<Table> SpreadDistributions(const ModelSpec& spec, double narrow, double wide) {
+  std::vector<Table> D;
+  for (int m = 0; m < spec.lobes; ++m) {
+    const double t = spec.lobes == 1 ? 0.5 : m / (spec.lobes - 1.0);
+    D.push_back(GgxDistribution(spec.d_axis, narrow * std::pow(wide / narrow, t)));
+  }
+  return D;
 }
 
 FactorModel ConstantModel(const Objective& objective, uint64_t /*seed*/) {
@@ -173,12 +198,7 @@ FactorModel ConstantModel(const Objective& objective, uint64_t /*seed*/) {
 }
 
 FactorModel AnalyticModel(const Objective& objective, uint64_t /*seed*/) {
-  const ModelSpec& spec = objective.spec();
-  std::vector<Table> D;
-  for (int m = 0; m < spec.lobes; ++m) {
-    D.push_back(GgxDistribution(spec.d_axis, SpreadRoughness(m, spec.lobes)));
-  }
-  return FromDistributions(objective, D);
+  return FromDistributions(objective, SpreadDistributions(objective.spec(), 0.04, 0.5));
 }
 
 int Nearest(const Stencil& stencil) {
@@ -346,6 +366,18 @@ FactorModel RandomModel(const Objective& objective, uint64_t seed) {
 }
 
 }  // namespace
+
+FactorModel SpreadModel(const Objective& objective, double narrow, double wide) {
+  constexpr double kReflected = 1.2;  // with F = 1 and G = 1; some half with these as they are
+  const ModelSpec& spec = objective.spec();
+  FactorModel model =
+      WithoutWeights(Selection(objective), spec, SpreadDistributions(spec, narrow, wide));
+  const Rgb mean = MeanColor(objective);
+  for (int m = 0; m < spec.lobes; ++m) {
+    for (int c = 0; c < kChannels; ++c) model.s(m)[c] = kReflected * kPi / 4 * mean[c];
+  }
+  return model;
+}
 
 const std::vector<InitialModel>& InitialModels() {
   static const std::vector<InitialModel> models = {

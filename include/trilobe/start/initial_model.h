@@ -26,6 +26,10 @@ const std::vector<InitialModel>& InitialModels();
 // Throws Error that lists the known names.
 const InitialModel& FindInitialModel(std::string_view name);
 
+// A starting point for continuation: GGX, a lobe, with roughnesses spread evenly in the logarithm
+// from `narrow` to `wide`, all of which reflect the same part of the mean of what was measured.
+FactorModel SpreadModel(const Objective& objective, double narrow, double wide);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_START_INITIAL_MODEL_H_

@@ -1,0 +1,34 @@
+#ifndef TRILOBE_SOLVERS_MULTISTART_SMOOTH_STARTS_H_
+#define TRILOBE_SOLVERS_MULTISTART_SMOOTH_STARTS_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "trilobe/base/stop_check.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// Where continuation on few of the samples has led from several starts, and what all samples say.
+struct SoftenedStart {
+  std::string name;
+  FactorModel model;
+  double E = 0;  // on all samples
+};
+
+// Two at a time, from wide and narrow lobes; and if E is not the same there, from lobes between,
+// and from the given model. Best first. Times go to *phases, summed over what runs side by side.
+// The same bits for any number of threads. `on_pair` sees the best after each two.
+std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const FactorModel& given,
+                                        const StopCheck& stop, PhaseSeconds* phases,
+                                        const std::function<void(const SoftenedStart&)>& on_pair);
+
+// How many have E of the first one, within 0.5 %, itself among them.
+int CountAgreeing(const std::vector<SoftenedStart>& starts);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_MULTISTART_SMOOTH_STARTS_H_

@@ -1,0 +1,151 @@
+#include "solvers/smooth/log_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "algebra/cholesky.h"
+#include "trilobe/objective/weighting.h"
+#include "trilobe/solvers/run.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kInitialDamping = 1e-3;  // against the diagonal of H
+constexpr double kMinDamping = 1e-7, kMaxDamping = 1e8;
+constexpr double kMaxFall = 1.0 / 3;  // of the damping after one step
+constexpr double kMinGain = 1e-4;
+// No parameter changes by more than a factor of e^1.5 in one step.
+constexpr double kMaxMove = 1.5;
+constexpr double kFloor = 1e-6;  // zeros become that, of the largest of their kind
+
+}  // namespace
+
+LogStepper::LogStepper(const Objective& objective, PhaseSeconds* phases)
+    : objective_(objective),
+      phases_(phases),
+      equations_(objective),
+      roughness_(objective.spec(), objective.coverage()),
+      energy_(objective.MeasuredEnergy()),
+      current_(objective.spec()),
+      damping_(kInitialDamping) {}
+
+void LogStepper::Restart(const FactorModel& model) {
+  current_ = model;
+  const std::span<double> x = current_.parameters();
+  for (const auto [begin, size] : current_.Parts()) {
+    const auto part = x.subspan(begin, size);
+    const double least = kFloor * std::ranges::max(part);
+    for (double& value : part) value = std::max(value, least);
+  }
+  const std::vector<double>& coverage = objective_.coverage();
+  moves_.assign(x.size(), false);
+  for (size_t k = 0; k < x.size(); ++k) {
+    if (!(coverage[k] > 0)) x[k] = model.parameters()[k];
+    moves_[k] = coverage[k] > 0 && x[k] > 0;
+  }
+  y_ = Logarithms(current_);
+  const ScopedTimer timer(&phases_->evaluating);
+  E_ = objective_.Value(current_);
+  roughness_value_ = roughness_(y_);
+  linearized_ = false;
+  damping_ = kInitialDamping;
+  growth_ = 2;
+}
+
+std::vector<double> LogStepper::Logarithms(const FactorModel& model) const {
+  const std::span<const double> x = model.parameters();
+  std::vector<double> y(x.size(), 0.0);
+  // Roughness asks for no d or s.
+  for (size_t k = model.TableOffset(Factor::kD, 0); k < x.size(); ++k) {
+    if (moves_[k]) y[k] = std::log(x[k]);
+  }
+  return y;
+}
+
+void LogStepper::set_stiffness(double lambda) {
+  stiffness_ = lambda;
+  growth_ = 2;
+  linearized_ = false;
+}
+
+void LogStepper::Linearize() {
+  if (linearized_) return;
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    equations_.Evaluate(current_, Hessian::kGaussNewton, &at_);
+  }
+  const ScopedTimer timer(&phases_->linear_algebra);
+  const std::span<const double> x = current_.parameters();
+  const size_t n = x.size();
+  for (size_t k = 0; k < n; ++k) {
+    const double x_k = moves_[k] ? x[k] : 0;
+    at_.gradient[k] *= x_k;
+    double* const row = &at_.H[k * n];
+    for (size_t l = 0; l < n; ++l) row[l] *= x_k * (moves_[l] ? x[l] : 0);
+    row[k] += std::max(0.0, at_.gradient[k]);
+  }
+  roughness_.AddTo(stiffness_ * energy_, y_, &at_);
+  linearized_ = true;
+}
+
+bool LogStepper::Step() {
+  Linearize();
+  const size_t n = y_.size();
+  std::vector<double> step(n);
+  double decrease = 0;  // of (E + penalty) / 2 that the quadratic model predicts
+  {
+    const ScopedTimer timer(&phases_->linear_algebra);
+    while (true) {
+      factor_ = at_.H;
+      for (size_t k = 0; k < n; ++k) {
+        double& diagonal = factor_[k * n + k];
+        diagonal = moves_[k] && diagonal > 0 ? (1 + damping_) * diagonal : 1;
+        step[k] = moves_[k] ? -at_.gradient[k] : 0;
+      }
+      if (FactorCholesky(static_cast<int>(n), factor_.data(), objective_.num_threads())) break;
+      damping_ *= 10;
+      if (exhausted()) return false;
+    }
+    SolveLower(static_cast<int>(n), factor_.data(), 1, step.data());
+    SolveLowerTransposed(static_cast<int>(n), factor_.data(), step.data());
+    for (double& move : step) move = std::clamp(move, -kMaxMove, kMaxMove);
+    for (size_t k = 0; k < n; ++k) {
+      double H_step = 0;
+      const double* const row = &at_.H[k * n];
+      for (size_t l = 0; l < n; ++l) H_step += row[l] * step[l];
+      decrease -= step[k] * (at_.gradient[k] + H_step / 2);
+    }
+  }
+  FactorModel trial = current_;
+  for (size_t k = 0; k < n; ++k) {
+    if (moves_[k]) trial.parameters()[k] *= std::exp(step[k]);
+  }
+  std::vector<double> y = Logarithms(trial);
+  double E = 0;
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    E = objective_.Value(trial);
+  }
+  const double roughness = roughness_(y);
+  const double before = minimised(), after = E + stiffness_ * energy_ * roughness;
+  const double gain = (before - after) / (2 * decrease);
+  if (!(after < before && (gain > kMinGain || !(decrease > 0)))) {
+    damping_ *= growth_;
+    growth_ *= 2;
+    return false;
+  }
+  const double f = 2 * std::clamp(gain, 0.0, 1.0) - 1;
+  damping_ = std::max(kMinDamping, damping_ * std::max(kMaxFall, 1 - f * f * f));
+  growth_ = 2;
+  current_ = std::move(trial);
+  y_ = std::move(y);
+  E_ = E;
+  roughness_value_ = roughness;
+  linearized_ = false;
+  return true;
+}
+
+bool LogStepper::exhausted() const { return !(damping_ < kMaxDamping); }
+
+}  // namespace trilobe

@@ -1,0 +1,66 @@
+#ifndef TRILOBE_SOLVERS_SMOOTH_LOG_STEPPER_H_
+#define TRILOBE_SOLVERS_SMOOTH_LOG_STEPPER_H_
+
+#include <vector>
+
+#include "solvers/smooth/roughness.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/objective/objective.h"
+#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/sums/normal_equations.h"
+
+namespace trilobe {
+
+// Damped Gauss-Newton steps in the logarithms y of all parameters, which lower
+//   E + lambda E0 R(y),  E0 = Objective::MeasuredEnergy(),  R = Roughness,
+// one trial step at a time. With x = exp(y),
+//   g_y = x g_x,   H_y = diag(x) J'J diag(x) + diag(max(0, x g_x)):
+// the last term, the part of the second derivative that logarithms bring in, is left out where it
+// would make H indefinite. No parameter can become 0, but nothing keeps it from coming near.
+class LogStepper {
+ public:
+  // Times go to *phases.
+  LogStepper(const Objective& objective, PhaseSeconds* phases);
+
+  // Goes on from another point, whose zeros, which no factor can move, are lifted to a little of
+  // the largest of their kind.
+  void Restart(const FactorModel& model);
+
+  void set_stiffness(double lambda);
+
+  // Tries one step; false if it did not lower E + lambda E0 R, so that the point stayed where it
+  // was.
+  bool Step();
+  // No damping leads lower.
+  bool exhausted() const;
+
+  const FactorModel& current() const { return current_; }
+  double E() const { return E_; }
+  double penalty() const { return stiffness_ * energy_ * roughness_value_; }  // lambda E0 R
+  double minimised() const { return E_ + penalty(); }
+  double stiffness() const { return stiffness_; }  // lambda
+
+ private:
+  void Linearize();
+  std::vector<double> Logarithms(const FactorModel& model) const;
+
+  const Objective& objective_;
+  PhaseSeconds* const phases_;
+  NormalEquations equations_;
+  const Roughness roughness_;
+  const double energy_;  // E0
+  double stiffness_ = 0;
+  FactorModel current_;
+  std::vector<double> y_;    // of the tables of current_; 0 for what does not move
+  std::vector<bool> moves_;  // observed, and above 0
+  double E_ = 0, roughness_value_ = 0;
+  bool linearized_ = false;
+  QuadraticModel at_;           // of E + penalty at current_, in y
+  std::vector<double> factor_;  // scratch: A, and its Cholesky factor
+  double damping_, growth_ = 2;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_SMOOTH_LOG_STEPPER_H_
