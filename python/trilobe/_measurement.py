@@ -201,7 +201,7 @@ def read(
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
             detector stood in its own light.
         extrapolated: of an RGL file, takes what its authors extrapolated, too.
-        outliers: takes the bins of a table that are far off those around them, too.
+        outliers: takes samples that are far off those around them, too.
         radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
         threads: 0 for all cores.
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -152,19 +154,28 @@ void LeaveOutOwnShadow(Measurement* measurement) {
 }
 
 void LeaveOutOutliers(int num_threads, Measurement* measurement) {
-  if (!NotNull(measurement, "the measurement").table) return;
-  constexpr int kFewest = 10, kOneIn = 5000;
-  BrdfTable& table = *measurement->table;
-  const std::vector<int> outliers = FindOutliers(table, num_threads);
-  const int valid = CountBins(table).valid, count = static_cast<int>(outliers.size());
-  if (count < kFewest || count < valid / kOneIn) return;
-  for (const int bin : outliers) {
-    for (auto& plane : table.stored) plane[bin] = -1;
+  const int valid = CountsOf(NotNull(measurement, "the measurement")).valid;
+  if (valid == 0 || measurement->anisotropic) return;
+  constexpr int kFewest = 10;
+  const int one_in = measurement->table ? 5000 : 500;
+  const BrdfSamples samples = SamplesOf(*measurement);
+  const std::vector<int> outliers = FindOutliers(samples, num_threads);
+  const int count = static_cast<int>(outliers.size());
+  if (count < kFewest || count < valid / one_in) return;
+  if (measurement->table) {
+    for (const int j : outliers) {
+      for (auto& plane : measurement->table->stored) plane[samples.bins[j]] = -1;
+    }
+  } else {
+    std::vector<int> all(samples.size()), kept;
+    std::iota(all.begin(), all.end(), 0);
+    std::ranges::set_difference(all, outliers, std::back_inserter(kept));
+    Keep(kept, &BinCounts::negative, measurement);
   }
   measurement->notes.push_back(
       std::to_string(count) + " of " + std::to_string(valid) +
-      " bins are more than 8 times darker or brighter than those around them, as dead readings and "
-      "glints are, and left out; --outliers takes them");
+      " samples are more than 8 times darker or brighter than those around them, as dead readings "
+      "and glints are, and left out; --outliers takes them");
 }
 
 void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {

@@ -1,8 +1,8 @@
 #include "brdf/outliers.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
+#include <numeric>
 
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/merl_grid.h"
@@ -14,7 +14,6 @@ namespace {
 constexpr double kFarOff = 8;     // times brighter or darker
 constexpr int kFewestAround = 9;  // bins that tell what surrounds one
 constexpr int kWidestReach = 8;   // bins of theta_d to each side, where they are few
-constexpr double kNotValid = -1;  // in the place of the value of a bin
 
 struct Count {
   int bins = 0, brighter = 0, darker = 0;
@@ -28,30 +27,36 @@ struct Count {
   bool FarOff() const { return 2 * brighter > bins || 2 * darker > bins; }
 };
 
+// The samples by the bins of their grid, in which scattered ones lie as well.
 class Surroundings {
  public:
-  Surroundings(const BrdfTable& table, int num_threads)
-      : grid_(table.grid), mean_(grid_.size(), kNotValid), lines_(grid_.size()) {
-    const std::vector<bool> valid = ValidBins(table);
+  Surroundings(const BrdfSamples& samples, int num_threads)
+      : grid_(samples.grid), begin_(grid_.size() + 1, 0), bins_(samples.size()) {
+    for (int j = 0; j < samples.size(); ++j) {
+      bins_[j] = samples.on_grid() ? samples.bins[j] : grid_.Bin(samples.angles[j]);
+      ++begin_[bins_[j] + 1];
+    }
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    values_.resize(samples.size());
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
+    for (int j = 0; j < samples.size(); ++j) values_[next[bins_[j]]++] = Mean(samples.rho[j]);
+    lines_.resize(grid_.size());
     ParallelFor(grid_.theta_h, num_threads, [&](int h) {
-      for (int bin = grid_.Index(h, 0, 0); bin < grid_.Index(h + 1, 0, 0); ++bin) {
-        if (!valid[bin]) continue;
-        mean_[bin] = Mean({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
-      }
       for (int bin = grid_.Index(h, 0, 0); bin < grid_.Index(h + 1, 0, 0); ++bin) {
         Line& line = lines_[bin];
         ForEachInLine(bin / grid_.phi_d, bin % grid_.phi_d, 1, [&](double x) {
           line.least = std::min(line.least, x);
           line.most = std::max(line.most, x);
-          ++line.bins;
+          ++line.samples;
         });
       }
     });
   }
 
-  bool IsOutlier(int h, int d, int p) const {
-    const double own = mean_[grid_.Index(h, d, p)];
-    if (own == kNotValid || IsLikeAllAround(h, d, p, own)) return false;
+  bool IsOutlier(int sample, double own) const {
+    const int row = bins_[sample] / grid_.phi_d, p = bins_[sample] % grid_.phi_d;
+    const int h = row / grid_.theta_d, d = row % grid_.theta_d;
+    if (IsLikeAllAround(h, d, p, own)) return false;
     for (int reach = 1; reach <= kWidestReach; reach *= 2) {
       Count all, same_h, same_d;
       ForEachRow(h, d, reach, [&](int i, int j) {
@@ -72,19 +77,19 @@ class Surroundings {
   // Of the five bins about one in its row.
   struct Line {
     double least = std::numeric_limits<double>::infinity(), most = 0;
-    int bins = 0;
+    int samples = 0;
   };
 
-  // What is true of nearly all bins, and soon known.
+  // What is true of nearly all samples, and soon known.
   bool IsLikeAllAround(int h, int d, int p, double own) const {
     Line around;
     ForEachRow(h, d, 1, [&](int i, int j) {
       const Line& line = lines_[grid_.Index(i, j, p)];
       around.least = std::min(around.least, line.least);
       around.most = std::max(around.most, line.most);
-      around.bins += line.bins;
+      around.samples += line.samples;
     });
-    return around.bins >= kFewestAround && around.most <= own * kFarOff &&
+    return around.samples >= kFewestAround && around.most <= own * kFarOff &&
            around.least >= own / kFarOff;
   }
 
@@ -97,40 +102,41 @@ class Surroundings {
     }
   }
 
-  // The valid bins of a row about phi_d bin `p`; 180 degrees further on it begins again, each bin
+  // The samples of a row about phi_d bin `p`; 180 degrees further on it begins again, each bin
   // being there once.
   template <typename Work>
   void ForEachInLine(int row, int p, int reach, const Work& work) const {
-    const double* const values = mean_.data() + row * grid_.phi_d;
-    const int bins = std::min(4 * reach + 1, grid_.phi_d);
-    for (int k = 0, at = p - bins / 2; k < bins; ++k, ++at) {
-      const double x = values[at < 0              ? at + grid_.phi_d
-                              : at >= grid_.phi_d ? at - grid_.phi_d
-                                                  : at];
-      if (x != kNotValid) work(x);
-    }
+    const int bins = std::min(4 * reach + 1, grid_.phi_d), phis = grid_.phi_d;
+    const int first = p - bins / 2, end = first + bins;
+    const auto in_row = [&](int from, int last) {
+      for (int k = begin_[row * phis + from]; k < begin_[row * phis + last]; ++k) work(values_[k]);
+    };
+    if (first < 0) in_row(first + phis, phis);
+    in_row(std::max(first, 0), std::min(end, phis));
+    if (end > phis) in_row(0, end - phis);
   }
 
   const MerlGrid grid_;
-  std::vector<double> mean_;
-  std::vector<Line> lines_;
+  std::vector<int> begin_;      // of the samples of a bin, among the values
+  std::vector<int> bins_;       // of the samples
+  std::vector<double> values_;  // means over the channels, by bins
+  std::vector<Line> lines_;     // by bins
 };
 
 }  // namespace
 
-std::vector<int> FindOutliers(const BrdfTable& table, int num_threads) {
-  const MerlGrid& grid = table.grid;
-  const Surroundings surroundings(table, num_threads);
-  std::vector<std::vector<int>> found(grid.theta_h);
-  ParallelFor(grid.theta_h, num_threads, [&](int h) {
-    for (int d = 0; d < grid.theta_d; ++d) {
-      for (int p = 0; p < grid.phi_d; ++p) {
-        if (surroundings.IsOutlier(h, d, p)) found[h].push_back(grid.Index(h, d, p));
-      }
+std::vector<int> FindOutliers(const BrdfSamples& samples, int num_threads) {
+  const Surroundings surroundings(samples, num_threads);
+  constexpr int kBlock = 1 << 13;
+  std::vector<std::vector<int>> found((samples.size() + kBlock - 1) / kBlock);
+  if (found.empty()) return {};
+  ParallelFor(static_cast<int>(found.size()), num_threads, [&](int block) {
+    for (int j = block * kBlock; j < std::min(samples.size(), (block + 1) * kBlock); ++j) {
+      if (surroundings.IsOutlier(j, Mean(samples.rho[j]))) found[block].push_back(j);
     }
   });
   std::vector<int> all;
-  for (const std::vector<int>& row : found) all.insert(all.end(), row.begin(), row.end());
+  for (const std::vector<int>& block : found) all.insert(all.end(), block.begin(), block.end());
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/brdf/measurement.h"
 #include "trilobe/corruption/corruption.h"
 #include "trilobe/formats/source.h"
@@ -42,8 +43,16 @@ BrdfTable Highlight(double fall) {
   return table;
 }
 
+// The bins of the outliers.
+std::vector<int> BinsOf(const BrdfTable& table, int num_threads) {
+  const BrdfSamples samples = ValidSamples(table);
+  std::vector<int> bins = FindOutliers(samples, num_threads);
+  for (int& j : bins) j = samples.bins[j];
+  return bins;
+}
+
 double ShareOfOutliers(const BrdfTable& table) {
-  return static_cast<double>(FindOutliers(table, 1).size()) / CountBins(table).valid;
+  return static_cast<double>(BinsOf(table, 1).size()) / CountBins(table).valid;
 }
 
 void Multiply(double factor, int bin, BrdfTable* table) {
@@ -56,7 +65,7 @@ TEST(Outliers, SmoothDataHaveNone) {
     const BrdfTable table = LoadSource(source);
     EXPECT_LE(ShareOfOutliers(table), 1.0 / 5000) << name;  // a few at the horizon
   }
-  EXPECT_THAT(FindOutliers(Highlight(50), 1), IsEmpty());
+  EXPECT_THAT(BinsOf(Highlight(50), 1), IsEmpty());
   EXPECT_LE(ShareOfOutliers(TableOf(Corrupted("synth:plastic@40x40x40", "noise:0.2"))), 1e-4);
 }
 
@@ -68,11 +77,11 @@ TEST(Outliers, SingleBinsAreFoundEverywhere) {
     for (const double factor : {0.0, 1 / 40.0, 40.0}) {
       BrdfTable table = smooth;
       Multiply(factor, bin, &table);
-      EXPECT_THAT(FindOutliers(table, 1), ElementsAre(bin)) << factor;
+      EXPECT_THAT(BinsOf(table, 1), ElementsAre(bin)) << factor;
     }
     BrdfTable table = smooth;
     Multiply(2, bin, &table);
-    EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+    EXPECT_THAT(BinsOf(table, 1), IsEmpty());
   }
 }
 
@@ -88,7 +97,7 @@ TEST(Outliers, ADarkRingIsNone) {
     }
   };
   multiply(1e-3);
-  EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+  EXPECT_THAT(BinsOf(table, 1), IsEmpty());
 }
 
 TEST(Outliers, AmongFewBinsToo) {
@@ -101,23 +110,22 @@ TEST(Outliers, AmongFewBinsToo) {
     all += zeros.stored[0][bin] == 0 && clean.stored[0][bin] > 0 ? 1 : 0;
   }
   int zeros_found = 0;
-  for (const int bin : FindOutliers(zeros, 1)) zeros_found += zeros.stored[0][bin] == 0 ? 1 : 0;
+  for (const int bin : BinsOf(zeros, 1)) zeros_found += zeros.stored[0][bin] == 0 ? 1 : 0;
   EXPECT_GE(zeros_found, 0.9 * all);
 }
 
 TEST(Outliers, BlackAndEmptyTablesHaveNone) {
   BrdfTable table = Highlight(2);
   for (auto& plane : table.stored) std::ranges::fill(plane, 0.0);
-  EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
-  for (auto& plane : table.stored) std::ranges::fill(plane, -1.0);
-  EXPECT_THAT(FindOutliers(table, 1), IsEmpty());
+  EXPECT_THAT(BinsOf(table, 1), IsEmpty());
+  EXPECT_THAT(FindOutliers(BrdfSamples{"test", kGrid, {}, {}, {}}, 1), IsEmpty());
 }
 
 TEST(Outliers, TheSameForAnyThreads) {
   const BrdfTable table = TableOf(Corrupted("synth:plastic@40x40x40", "zeros:0.05"));
-  const std::vector<int> found = FindOutliers(table, 1);
+  const std::vector<int> found = BinsOf(table, 1);
   EXPECT_FALSE(found.empty());
-  EXPECT_EQ(FindOutliers(table, 3), found);
+  EXPECT_EQ(BinsOf(table, 3), found);
 }
 
 TEST(Outliers, AreLeftOutOfASourceAndTold) {
@@ -136,11 +144,29 @@ TEST(Outliers, AreLeftOutOfASourceAndTold) {
   EXPECT_THAT(all.notes, IsEmpty());
 }
 
+TEST(Outliers, ScatteredSamplesHaveSome) {
+  const Measurement few = Corrupted("synth:plastic@60x60x60", "gaps:0.5");
+  const BrdfSamples on_grid = ValidSamples(*few.table);
+  SampleCollector collector("test", "scattered samples");
+  for (int j = 0; j < on_grid.size(); ++j) {
+    const DirectionPair pair = ToDirections(on_grid.Angles(j));
+    collector.Add(ToSphericalAngles(pair), j % 20 == 0 ? Rgb{} : on_grid.rho[j]);
+  }
+  Measurement measurement = collector.Take();
+  const int all = measurement.counts.valid;
+  LeaveOutOutliers(2, &measurement);
+  EXPECT_NEAR(measurement.counts.valid, 0.95 * all, 0.002 * all);
+  EXPECT_EQ(measurement.counts.valid, measurement.samples.size());
+  EXPECT_EQ(measurement.counts.negative, all - measurement.counts.valid);
+  EXPECT_LE(std::ranges::count(measurement.samples.rho, Rgb{}), 5);  // at the horizon
+  EXPECT_THAT(measurement.notes, testing::SizeIs(1));
+}
+
 TEST(Outliers, FewAreNotWorthANote) {
   const std::string source = "synth:plastic@40x40x40";
   Measurement measurement = LoadMeasurement(source);
   Multiply(0, ValidSamples(*measurement.table).bins[20'000], &*measurement.table);
-  EXPECT_EQ(FindOutliers(*measurement.table, 1).size(), 1);
+  EXPECT_EQ(BinsOf(*measurement.table, 1).size(), 1);
   const int valid = CountsOf(measurement).valid;
   LeaveOutOutliers(1, &measurement);
   EXPECT_EQ(CountsOf(measurement).valid, valid);

@@ -68,9 +68,10 @@ void LimitThetaD(double min_theta_d, Measurement* measurement);
 // (OwnShadow), with a note that says so.
 void LeaveOutOwnShadow(Measurement* measurement);
 
-// Marks the bins of a table as lost that are far off what surrounds them (FindOutliers), with a
-// note that says so, where they are 10 or more, and one in 5000 of the valid ones or more: some
-// clean materials have fewer. Changes nothing of scattered samples.
+// Leaves out the samples that are far off what surrounds them (FindOutliers), as if they were lost,
+// with a note that says so, where they are 10 or more, and one in 5000 of the valid ones of a table
+// or one in 500 of scattered ones: some clean materials have fewer. Changes nothing where azimuths
+// matter.
 void LeaveOutOutliers(int num_threads, Measurement* measurement);
 
 // Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had

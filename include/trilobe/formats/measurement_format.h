@@ -24,8 +24,8 @@ struct SourceOptions {
   // theta_d below it does not; -1: as far as a detector stood in its own light, by scattered
   // samples.
   double min_theta_d_deg = -1;
-  bool extrapolated = false;  // what the authors of a file made up counts as measured
-  bool outliers = false;      // bins of a table that are far off those around them count as well
+  bool extrapolated = false;        // what the authors of a file made up counts as measured
+  bool outliers = false;            // samples that are far off those around them count as well
   std::string radiometry = "brdf";  // of UtiaRadiometries()
 };
 
