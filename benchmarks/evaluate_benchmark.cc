@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "benchmarks/ggx.h"
+#include "evaluate/ndf_sampler.h"
 #include "trilobe/evaluate/bsdf.h"
-#include "trilobe/evaluate/ndf_sampler.h"
 #include "trilobe/math/angles.h"
 #include "trilobe/model/factor_model.h"
 

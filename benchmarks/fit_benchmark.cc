@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "files/file.h"
-#include "trilobe/formats/merl_file.h"
+#include "formats/merl_file.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/registry/solvers.h"

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "objective/sample_reader.h"
+#include "objective/batch_evaluator.h"
 #include "solvers/awls/make_sweep.h"
 #include "solvers/awls/sample_sweep.h"
 #include "sums/sample_equations.h"

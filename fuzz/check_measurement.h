@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "trilobe/brdf/anisotropy.h"
+#include "brdf/anisotropy.h"
 #include "trilobe/brdf/measurement.h"
 
 namespace trilobe {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "formats/merl_file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/formats/merl_file.h"
 
 namespace {
 

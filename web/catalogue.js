@@ -9,7 +9,7 @@ const ORDERS = [
   ['PSNR, worst first', f => f.psnr_db],
   ['PSNR, best first', f => -f.psnr_db],
   ['ΔE, largest first', f => -f.delta_e],
-  ['size, smallest first', f => f.numbers],
+  ['size, smallest first', f => f.parameters],
   ['anisotropic first', f => -f.anisotropic],
   ['time, longest first', f => -f.seconds],
   ['name', null],

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "appearance/picture_data.h"
 #include "experiments/program.h"
 #include "files/file.h"
 #include "files/little_endian.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/node_brdf.h"
 #include "trilobe/formats/source.h"

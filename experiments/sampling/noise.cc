@@ -14,15 +14,15 @@
 
 #include "appearance/color.h"
 #include "benchmarks/ggx.h"
+#include "evaluate/ndf_sampler.h"
 #include "experiments/program.h"
 #include "experiments/sampling/environment_sampler.h"
 #include "files/file.h"
+#include "pictures/image_file.h"
 #include "system/stopwatch.h"
 #include "trilobe/appearance/environment.h"
 #include "trilobe/evaluate/bsdf.h"
-#include "trilobe/evaluate/ndf_sampler.h"
 #include "trilobe/evaluate/read_model.h"
-#include "trilobe/pictures/image_file.h"
 
 DEFINE_int32(size, 64, "pixels across the sphere");
 DEFINE_string(samples, "16,64,256", "samples a pixel, of each sampler");

@@ -15,8 +15,8 @@
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/reference_problem.h"
 #include "files/file.h"
+#include "lobes/gauge.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 

@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "fit_module.h"
+#include "formats/completed_measurement.h"
+#include "formats/utia_file.h"
 #include "owned_array.h"
 #include "reports/bin_counts.h"
 #include "system/stopwatch.h"
@@ -22,9 +24,7 @@
 #include "trilobe/convert/convert.h"
 #include "trilobe/evaluate/read_model.h"
 #include "trilobe/fit/as_measurement.h"
-#include "trilobe/formats/completed_measurement.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/formats/utia_file.h"
 #include "trilobe/synth/synth.h"
 
 namespace nb = nanobind;

@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "appearance/picture_data.h"
 #include "appearance/seen_samples.h"
 #include "fit_module.h"
 #include "owned_array.h"
 #include "reports/score_report.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/evaluate/read_model.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/objective/weighting.h"

@@ -16,10 +16,10 @@
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
 #include "files/json_value.h"
+#include "pictures/plots.h"
 #include "reports/print.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/printable.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

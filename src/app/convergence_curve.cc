@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "files/file.h"
-#include "trilobe/lobes/with_axes.h"
+#include "lobes/with_axes.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe {

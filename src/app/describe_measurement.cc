@@ -10,19 +10,19 @@
 #include "app/describe.h"
 #include "app/flags.h"
 #include "app/result_folder.h"
+#include "brdf/anisotropy.h"
 #include "brdf/symptoms.h"
 #include "files/file.h"
+#include "formats/rgl_file.h"
+#include "formats/utia_file.h"
+#include "pictures/plots.h"
 #include "reports/albedo_table.h"
 #include "reports/bin_counts.h"
 #include "reports/print.h"
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/anisotropy.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/formats/rgl_file.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/formats/utia_file.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

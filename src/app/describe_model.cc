@@ -4,13 +4,13 @@
 
 #include "app/describe.h"
 #include "app/flags.h"
+#include "lobes/gauge.h"
 #include "reports/albedo_table.h"
 #include "reports/light_report.h"
 #include "reports/print.h"
 #include "reports/stretch_report.h"
 #include "results/stretch_json.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 

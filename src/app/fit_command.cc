@@ -27,11 +27,11 @@
 #include "reports/fit_report.h"
 #include "reports/fit_summary.h"
 #include "reports/print.h"
+#include "scene/fit_cache.h"
 #include "trilobe/base/error.h"
 #include "trilobe/materials/load_model.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/results/model_file.h"
-#include "trilobe/scene/fit_cache.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"
 

@@ -51,7 +51,7 @@ std::string Figure(const FitOutcome& outcome) {
          << EscapedMarkup(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
          << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
          << Text(100 * outcome.mean_color_error, 2) << " %, " << outcome.num_parameters
-         << " numbers</figcaption></figure>\n";
+         << " parameters</figcaption></figure>\n";
   return figure.str();
 }
 
@@ -76,7 +76,7 @@ std::string StateName(FitOutcome::State state) {
 std::string FitsCsv(std::span<const FitOutcome> outcomes) {
   std::ostringstream csv;
   csv.imbue(std::locale::classic());
-  csv << "name,source,state,verdict,psnr_db,mean_delta_e,mean_color_error,objective,numbers,"
+  csv << "name,source,state,verdict,psnr_db,mean_delta_e,mean_color_error,objective,parameters,"
          "seconds,error\n"
       << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (const FitOutcome& outcome : outcomes) {
@@ -107,7 +107,7 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
     json.push_back({{"name", Printable(outcome.name)},
                     {"psnr_db", std::min(outcome.psnr_db, 1e3)},
                     {"delta_e", outcome.mean_delta_e},
-                    {"numbers", outcome.num_parameters},
+                    {"parameters", outcome.num_parameters},
                     {"seconds", outcome.seconds},
                     {"anisotropic", outcome.anisotropic ? 1 : 0}});
   }

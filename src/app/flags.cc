@@ -8,9 +8,9 @@
 #include <thread>
 #include <utility>
 
+#include "formats/utia_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/formats/utia_file.h"
 #include "trilobe/objective/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");

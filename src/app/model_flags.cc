@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "app/flags.h"
+#include "appearance/picture_data.h"
 #include "files/text_lines.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 
 DEFINE_string(

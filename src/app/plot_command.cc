@@ -10,10 +10,10 @@
 #include "app/inputs.h"
 #include "app/result_folder.h"
 #include "files/file.h"
+#include "pictures/plots.h"
 #include "reports/print.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/materials/load_model.h"
-#include "trilobe/pictures/plots.h"
 #include "trilobe/results/model_file.h"
 #include "trilobe/results/trace_file.h"
 

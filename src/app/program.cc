@@ -4,8 +4,8 @@
 #include <gflags/gflags.h>
 
 #include "files/file.h"
+#include "scene/fit_cache.h"
 #include "trilobe/base/error.h"
-#include "trilobe/scene/fit_cache.h"
 
 namespace trilobe {
 namespace {

@@ -100,8 +100,8 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
     decisions.push_back({{"what", decision.what},
                          {"taken", decision.taken},
                          {"why", decision.why},
-                         {"numbers_before", decision.parameters_before},
-                         {"numbers_after", decision.parameters_after},
+                         {"parameters_before", decision.parameters_before},
+                         {"parameters_after", decision.parameters_after},
                          {"objective_before", decision.E_before},
                          {"objective_after", decision.E_after}});
   }

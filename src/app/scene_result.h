@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/scene/material_fit.h"
-#include "trilobe/scene/scene_file.h"
+#include "scene/material_fit.h"
+#include "scene/scene_file.h"
 
 namespace trilobe {
 

@@ -9,6 +9,7 @@
 #include "app/inputs.h"
 #include "app/result_folder.h"
 #include "appearance/seen_samples.h"
+#include "pictures/plots.h"
 #include "reports/appearance_report.h"
 #include "reports/print.h"
 #include "reports/score_report.h"
@@ -18,7 +19,6 @@
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/materials/load_model.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/pictures/plots.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe {

@@ -1,11 +1,11 @@
 #include "app/view_page.h"
 
 #include "app/fit_name.h"
+#include "appearance/picture_data.h"
 #include "appearance/sample_table.h"
 #include "appearance/verdict.h"
 #include "trilobe/appearance/environment.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/picture_data.h"
 #include "view/page.h"
 
 namespace trilobe {

@@ -1,4 +1,4 @@
-#include "trilobe/appearance/node_reconstruction.h"
+#include "appearance/node_reconstruction.h"
 
 #include <algorithm>
 #include <cmath>

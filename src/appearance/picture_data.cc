@@ -1,4 +1,4 @@
-#include "trilobe/appearance/picture_data.h"
+#include "appearance/picture_data.h"
 
 #include <algorithm>
 #include <cmath>

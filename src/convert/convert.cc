@@ -6,12 +6,12 @@
 
 #include "convert/standard_file.h"
 #include "files/file.h"
+#include "formats/completed_measurement.h"
+#include "formats/rgl_export.h"
 #include "reports/print.h"
 #include "system/stopwatch.h"
 #include "trilobe/base/error.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/formats/completed_measurement.h"
-#include "trilobe/formats/rgl_export.h"
 #include "trilobe/math/angles.h"
 #include "view/glsl_file.h"
 

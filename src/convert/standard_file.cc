@@ -3,21 +3,21 @@
 #include <filesystem>
 #include <ostream>
 
+#include "appearance/picture_data.h"
 #include "appearance/verdict.h"
 #include "files/file.h"
+#include "formats/utia_file.h"
+#include "pictures/plots.h"
 #include "reports/print.h"
 #include "standard/material_files.h"
 #include "standard/nearest_open_pbr.h"
 #include "standard/open_pbr.h"
 #include "system/stopwatch.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/fit/as_measurement.h"
-#include "trilobe/formats/utia_file.h"
 #include "trilobe/geometry/directions.h"
 #include "trilobe/math/angles.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -1,6 +1,6 @@
 #include "trilobe/fit/as_measurement.h"
 
-#include "trilobe/appearance/node_reconstruction.h"
+#include "appearance/node_reconstruction.h"
 #include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe {

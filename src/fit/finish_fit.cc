@@ -4,12 +4,12 @@
 #include <utility>
 #include <vector>
 
+#include "objective/canonical_form.h"
+#include "objective/robust.h"
 #include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/reflectance.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/objective/canonical_form.h"
-#include "trilobe/objective/robust.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"

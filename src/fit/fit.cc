@@ -3,16 +3,16 @@
 #include <cmath>
 #include <utility>
 
+#include "appearance/picture_data.h"
 #include "appearance/seen_samples.h"
+#include "brdf/anisotropy.h"
+#include "lobes/gauge.h"
+#include "objective/canonical_form.h"
 #include "system/stopwatch.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/brdf/anisotropy.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/reconstruct.h"
-#include "trilobe/objective/canonical_form.h"
 #include "trilobe/registry/solvers.h"
 
 namespace trilobe {

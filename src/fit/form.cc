@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "trilobe/appearance/picture_data.h"
+#include "appearance/picture_data.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {

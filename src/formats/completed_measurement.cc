@@ -1,12 +1,12 @@
-#include "trilobe/formats/completed_measurement.h"
+#include "formats/completed_measurement.h"
 
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
+#include "appearance/picture_data.h"
 #include "brdf/counter_random.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/hemisphere_grid.h"
 #include "trilobe/evaluate/prepared_model.h"

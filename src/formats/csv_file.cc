@@ -1,4 +1,4 @@
-#include "trilobe/formats/csv_file.h"
+#include "formats/csv_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "trilobe/formats/merl_file.h"
+#include "formats/merl_file.h"
 
 #include <algorithm>
 #include <array>

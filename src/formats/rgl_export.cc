@@ -1,4 +1,4 @@
-#include "trilobe/formats/rgl_export.h"
+#include "formats/rgl_export.h"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +13,11 @@
 
 #include "brdf/counter_random.h"
 #include "formats/bilinear_warp.h"
+#include "formats/rgl_file.h"
 #include "formats/smooth_spectrum.h"
 #include "formats/tensor_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/evaluate/bsdf.h"
-#include "trilobe/formats/rgl_file.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/formats/rgl_file.h"
+#include "formats/rgl_file.h"
 
 #include <algorithm>
 #include <array>

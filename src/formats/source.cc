@@ -5,11 +5,11 @@
 #include "base/named.h"
 #include "files/file.h"
 #include "files/text_lines.h"
+#include "formats/utia_file.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/corruption/corruption.h"
 #include "trilobe/files/content.h"
-#include "trilobe/formats/utia_file.h"
 #include "trilobe/synth/synth.h"
 
 // The formats of the library, in the order in which they are asked whether a file is theirs. NAME

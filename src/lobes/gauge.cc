@@ -1,15 +1,15 @@
-#include "trilobe/lobes/gauge.h"
+#include "lobes/gauge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
 
+#include "lobes/continuation.h"
+#include "lobes/lobes.h"
 #include "trilobe/base/check.h"
 #include "trilobe/geometry/channels.h"
-#include "trilobe/lobes/continuation.h"
 #include "trilobe/lobes/lobe_light.h"
-#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

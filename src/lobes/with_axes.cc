@@ -1,4 +1,4 @@
-#include "trilobe/lobes/with_axes.h"
+#include "lobes/with_axes.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "trilobe/objective/canonical_form.h"
+#include "objective/canonical_form.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/objective/robust.h"
+#include "objective/robust.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "trilobe/pictures/image_file.h"
+#include "pictures/image_file.h"
 
 #include <array>
 #include <cmath>

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "pictures/gnuplot.h"
-#include "trilobe/lobes/gauge.h"
+#include "pictures/plots.h"
 #include "trilobe/lobes/lobe_light.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "pictures/gnuplot.h"
+#include "pictures/plots.h"
 #include "trilobe/brdf/measurement_stats.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pictures/gnuplot.h"
-#include "trilobe/pictures/plots.h"
+#include "pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "appearance/color.h"
 #include "pictures/gnuplot.h"
-#include "trilobe/pictures/image_file.h"
+#include "pictures/image_file.h"
 
 namespace trilobe {
 namespace {

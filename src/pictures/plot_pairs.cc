@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/utia_file.h"
 #include "pictures/gnuplot.h"
-#include "trilobe/formats/utia_file.h"
-#include "trilobe/pictures/plots.h"
+#include "pictures/plots.h"
 
 namespace trilobe {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pictures/gnuplot.h"
-#include "trilobe/pictures/plots.h"
+#include "pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -1,7 +1,7 @@
 #include <utility>
 
 #include "pictures/plot_pair.h"
-#include "trilobe/pictures/plots.h"
+#include "pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "pictures/gnuplot.h"
+#include "pictures/plots.h"
 #include "trilobe/base/error.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "pictures/gnuplot.h"
+#include "pictures/plots.h"
 #include "trilobe/base/error.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/pictures/plots.h"
+#include "pictures/plots.h"
 
 #include <algorithm>
 #include <filesystem>

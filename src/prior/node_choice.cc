@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "lobes/with_axes.h"
 #include "system/stopwatch.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/geometry/directions.h"
-#include "trilobe/lobes/with_axes.h"
 #include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"

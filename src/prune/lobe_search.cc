@@ -3,10 +3,10 @@
 #include <optional>
 #include <utility>
 
+#include "lobes/lobes.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/multistart/start_elimination.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "objective/canonical_form.h"
 #include "prune/model_forms.h"
+#include "prune/prune.h"
 #include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/joint_step.h"
@@ -20,9 +22,7 @@
 #include "trilobe/base/error.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/lobes/reconstruct.h"
-#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/prune/prune.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lobes/lobes.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/prune/prune.h"
+#include "prune/prune.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/gauge.h"
+#include "lobes/lobes.h"
 #include "prune/lobe_search.h"
 #include "prune/needed_layout.h"
 #include "prune/prune_tables.h"
 #include "prune/pruning.h"
 #include "prune/shapes.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/lobes/gauge.h"
-#include "trilobe/lobes/lobes.h"
 
 namespace trilobe {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/with_axes.h"
 #include "prune/lobe_search.h"
+#include "prune/prune.h"
 #include "prune/pruning.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/lobes/with_axes.h"
-#include "trilobe/prune/prune.h"
 #include "trilobe/start/initial_model.h"
 
 namespace trilobe {

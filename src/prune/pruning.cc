@@ -5,9 +5,9 @@
 #include <iomanip>
 #include <sstream>
 
+#include "lobes/gauge.h"
+#include "objective/canonical_form.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/gauge.h"
-#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/sums/normal_equations.h"

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "prune/needed_layout.h"
-#include "trilobe/lobes/gauge.h"
+#include "prune/prune_options.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/objective/quadratic_model.h"
-#include "trilobe/prune/prune_options.h"
 
 namespace trilobe {
 

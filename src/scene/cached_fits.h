@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "trilobe/scene/fit_cache.h"
-#include "trilobe/scene/material_fit.h"
+#include "scene/fit_cache.h"
+#include "scene/material_fit.h"
 
 // Fits as entries of the cache, in JSON.
 namespace trilobe {

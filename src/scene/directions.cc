@@ -1,4 +1,4 @@
-#include "trilobe/scene/directions.h"
+#include "scene/directions.h"
 
 #include <algorithm>
 #include <cmath>

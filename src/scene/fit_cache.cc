@@ -1,4 +1,4 @@
-#include "trilobe/scene/fit_cache.h"
+#include "scene/fit_cache.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

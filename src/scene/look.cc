@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "scene/directions.h"
 #include "scene/luminance.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/base/error.h"
-#include "trilobe/scene/directions.h"
 
 namespace trilobe {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <optional>
 
+#include "appearance/picture_data.h"
+#include "scene/scene_file.h"
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/brdf/measurement.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/scene/scene_file.h"
 
 namespace trilobe {
 

@@ -1,4 +1,4 @@
-#include "trilobe/scene/scene_fit.h"
+#include "scene/scene_fit.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,22 +9,22 @@
 #include <utility>
 #include <variant>
 
+#include "appearance/picture_data.h"
 #include "appearance/seen_samples.h"
 #include "appearance/verdict.h"
 #include "files/file.h"
+#include "lobes/gauge.h"
 #include "prune/prune_anisotropic.h"
 #include "scene/cached_fits.h"
 #include "scene/look.h"
 #include "scene/luminance.h"
 #include "system/stopwatch.h"
 #include "system/utc_time.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 #include "trilobe/files/content.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/materials/load_model.h"
 #include "trilobe/registry/solvers.h"

@@ -1,4 +1,4 @@
-#include "trilobe/solvers/diagnosis.h"
+#include "solvers/diagnosis.h"
 
 #include <Eigen/Core>
 #include <algorithm>

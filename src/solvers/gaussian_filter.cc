@@ -1,4 +1,4 @@
-#include "trilobe/solvers/gaussian_filter.h"
+#include "solvers/gaussian_filter.h"
 
 #include <algorithm>
 #include <cmath>

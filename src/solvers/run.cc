@@ -6,10 +6,10 @@
 #include <tuple>
 #include <utility>
 
+#include "solvers/diagnosis.h"
+#include "solvers/gaussian_filter.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
-#include "trilobe/solvers/diagnosis.h"
-#include "trilobe/solvers/gaussian_filter.h"
 
 namespace trilobe {
 namespace {

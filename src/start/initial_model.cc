@@ -6,10 +6,10 @@
 #include <span>
 
 #include "base/named.h"
+#include "lobes/gauge.h"
+#include "lobes/with_axes.h"
+#include "objective/canonical_form.h"
 #include "solvers/awls/awls.h"
-#include "trilobe/lobes/gauge.h"
-#include "trilobe/lobes/with_axes.h"
-#include "trilobe/objective/canonical_form.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "formats/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
 #include "tests/paths.h"
-#include "trilobe/formats/merl_file.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
-#include "trilobe/formats/merl_file.h"
 #include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 

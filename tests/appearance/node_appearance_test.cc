@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "appearance/picture_data.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
 

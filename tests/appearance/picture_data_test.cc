@@ -1,4 +1,4 @@
-#include "trilobe/appearance/picture_data.h"
+#include "appearance/picture_data.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <string>
 
+#include "appearance/node_reconstruction.h"
+#include "formats/csv_file.h"
 #include "tests/test_directory.h"
-#include "trilobe/appearance/node_reconstruction.h"
-#include "trilobe/formats/csv_file.h"
 #include "trilobe/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

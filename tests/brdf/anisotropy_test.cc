@@ -1,4 +1,4 @@
-#include "trilobe/brdf/anisotropy.h"
+#include "brdf/anisotropy.h"
 
 #include <gtest/gtest.h>
 

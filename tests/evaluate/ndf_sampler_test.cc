@@ -1,4 +1,4 @@
-#include "trilobe/evaluate/ndf_sampler.h"
+#include "evaluate/ndf_sampler.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
+#include "pictures/image_file.h"
 #include "tests/test_directory.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/pictures/image_file.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "appearance/node_reconstruction.h"
+#include "appearance/picture_data.h"
+#include "brdf/anisotropy.h"
+#include "formats/merl_file.h"
+#include "formats/utia_file.h"
+#include "pictures/image_file.h"
+#include "pictures/plots.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/appearance/node_reconstruction.h"
-#include "trilobe/appearance/picture_data.h"
-#include "trilobe/brdf/anisotropy.h"
-#include "trilobe/formats/merl_file.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/formats/utia_file.h"
-#include "trilobe/pictures/image_file.h"
-#include "trilobe/pictures/plots.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/formats/completed_measurement.h"
+#include "formats/completed_measurement.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "formats/csv_file.h"
 #include "tests/evaluate/materials.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/formats/csv_file.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/lobes/reconstruct.h"
 

@@ -1,4 +1,4 @@
-#include "trilobe/formats/csv_file.h"
+#include "formats/csv_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "trilobe/formats/rgl_export.h"
+#include "formats/rgl_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "formats/completed_measurement.h"
+#include "formats/rgl_file.h"
 #include "formats/tensor_file.h"
 #include "tests/evaluate/materials.h"
 #include "tests/paths.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
 #include "trilobe/evaluate/read_model.h"
-#include "trilobe/formats/completed_measurement.h"
-#include "trilobe/formats/rgl_file.h"
 #include "trilobe/lobes/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "files/file.h"
+#include "formats/rgl_file.h"
 #include "tests/formats/tensor_bytes.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
 #include "trilobe/brdf/measurement_stats.h"
-#include "trilobe/formats/rgl_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "formats/merl_file.h"
+#include "formats/rgl_file.h"
 #include "tests/formats/tensor_bytes.h"
 #include "tests/test_directory.h"
 #include "trilobe/brdf/measurement_stats.h"
-#include "trilobe/formats/merl_file.h"
-#include "trilobe/formats/rgl_file.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -1,4 +1,4 @@
-#include "trilobe/formats/utia_file.h"
+#include "formats/utia_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

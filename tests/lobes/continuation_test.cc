@@ -1,4 +1,4 @@
-#include "trilobe/lobes/continuation.h"
+#include "lobes/continuation.h"
 
 #include <gtest/gtest.h>
 

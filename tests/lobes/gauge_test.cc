@@ -1,4 +1,4 @@
-#include "trilobe/lobes/gauge.h"
+#include "lobes/gauge.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "lobes/lobes.h"
 #include "tests/test_util.h"
 #include "trilobe/lobes/lobe_light.h"
-#include "trilobe/lobes/lobes.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/objective/objective.h"
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobes/gauge.h"
 #include "tests/test_util.h"
 #include "trilobe/brdf/albedo.h"
-#include "trilobe/lobes/gauge.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,4 +1,4 @@
-#include "trilobe/lobes/lobes.h"
+#include "lobes/lobes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

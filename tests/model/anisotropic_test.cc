@@ -7,12 +7,12 @@
 #include <set>
 #include <vector>
 
+#include "lobes/gauge.h"
+#include "lobes/lobes.h"
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/lobe_light.h"
-#include "trilobe/lobes/lobes.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/objective/objective.h"
 

@@ -8,7 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/continuation.h"
+#include "lobes/gauge.h"
 #include "lobes/unclamped_model.h"
+#include "objective/canonical_form.h"
 #include "objective/parameter_blocks.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
@@ -16,12 +19,9 @@
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/brdf/node_brdf.h"
 #include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/lobes/continuation.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/lobe_light.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/objective/canonical_form.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -13,10 +13,10 @@
 #include <limits>
 
 #include "files/file.h"
+#include "pictures/plots.h"
 #include "system/stopwatch.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/pictures/plots.h"
 #include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/with_axes.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/lobes/reconstruct.h"
-#include "trilobe/lobes/with_axes.h"
 #include "trilobe/prior/reach.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"

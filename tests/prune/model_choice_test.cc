@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/results/model_file.h"

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "lobes/with_axes.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/node_brdf.h"
 #include "trilobe/lobes/reconstruct.h"
-#include "trilobe/lobes/with_axes.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 

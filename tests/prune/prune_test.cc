@@ -1,4 +1,4 @@
-#include "trilobe/prune/prune.h"
+#include "prune/prune.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"

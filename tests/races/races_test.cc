@@ -7,12 +7,12 @@
 #include <thread>
 #include <vector>
 
+#include "scene/scene_fit.h"
 #include "solvers/joint/data_edge.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/registry/solvers.h"
-#include "trilobe/scene/scene_fit.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"
 

@@ -1,4 +1,4 @@
-#include "trilobe/scene/directions.h"
+#include "scene/directions.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

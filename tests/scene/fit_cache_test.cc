@@ -1,4 +1,4 @@
-#include "trilobe/scene/fit_cache.h"
+#include "scene/fit_cache.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/directions.h"
 #include "tests/test_util.h"
 #include "trilobe/registry/solvers.h"
-#include "trilobe/scene/directions.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"
 #include "trilobe/synth/synth.h"

@@ -1,4 +1,4 @@
-#include "trilobe/scene/scene_file.h"
+#include "scene/scene_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "trilobe/scene/scene_fit.h"
+#include "scene/scene_fit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

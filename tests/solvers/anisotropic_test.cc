@@ -6,12 +6,12 @@
 #include <cmath>
 #include <string>
 
+#include "solvers/diagnosis.h"
 #include "tests/model/anisotropic_samples.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/registry/solvers.h"
-#include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"
 #include "trilobe/sums/normal_equations.h"

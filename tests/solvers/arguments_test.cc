@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/diagnosis.h"
+#include "solvers/gaussian_filter.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/reflectance.h"
 #include "tests/solvers/solver_kinds.h"
@@ -16,8 +18,6 @@
 #include "trilobe/prior/node_choice.h"
 #include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/registry/solvers.h"
-#include "trilobe/solvers/diagnosis.h"
-#include "trilobe/solvers/gaussian_filter.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/sums/normal_equations.h"

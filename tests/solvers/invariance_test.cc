@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "tests/base/no_threads.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"
 #include "trilobe/synth/synth.h"

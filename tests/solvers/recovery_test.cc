@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "lobes/gauge.h"
 #include "tests/test_util.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 

@@ -8,8 +8,8 @@
 #include <span>
 
 #include "algebra/element_step.h"
+#include "lobes/gauge.h"
 #include "solvers/awls/make_sweep.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

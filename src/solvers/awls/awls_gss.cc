@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "solvers/gaussian_filter.h"
 #include "sums/grid/cell_sums.h"
 #include "trilobe/base/error.h"
 #include "trilobe/objective/folded_grid.h"
 #include "trilobe/objective/spline_cells.h"
-#include "trilobe/solvers/gaussian_filter.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

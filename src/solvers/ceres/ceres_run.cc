@@ -12,7 +12,7 @@
 
 #include "algebra/element_step.h"
 #include "algebra/openblas.h"
-#include "trilobe/lobes/gauge.h"
+#include "lobes/gauge.h"
 
 namespace trilobe {
 namespace {

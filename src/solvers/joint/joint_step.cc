@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "solvers/awls/make_sweep.h"
+#include "solvers/diagnosis.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/solvers/diagnosis.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

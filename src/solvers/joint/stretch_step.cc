@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "algebra/cholesky.h"
+#include "lobes/lobes.h"
 #include "objective/sample_derivatives.h"
-#include "trilobe/lobes/lobes.h"
 #include "trilobe/sums/normal_equations.h"
 #include "trilobe/system/parallel.h"
 

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/gauge.h"
+#include "lobes/lobes.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/multistart/start_elimination.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/lobes/gauge.h"
-#include "trilobe/lobes/lobes.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/start/initial_model.h"
 

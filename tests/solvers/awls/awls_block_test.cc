@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "sums/grid/cell_sums.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/start/initial_model.h"

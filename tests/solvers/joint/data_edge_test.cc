@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/lobes/reconstruct.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <vector>
 
+#include "objective/canonical_form.h"
 #include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/lobes/reconstruct.h"
-#include "trilobe/objective/canonical_form.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

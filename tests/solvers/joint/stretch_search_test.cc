@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobes/lobes.h"
 #include "solvers/joint/stretch_step.h"
 #include "tests/test_util.h"
-#include "trilobe/lobes/lobes.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"

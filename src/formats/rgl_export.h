@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "trilobe/formats/completed_measurement.h"
+#include "formats/completed_measurement.h"
 #include "trilobe/math/angles.h"
 #include "trilobe/model/factor_model.h"
 

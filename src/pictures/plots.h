@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "appearance/picture_data.h"
 #include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/picture_data.h"
 #include "trilobe/brdf/brdf_table.h"
 #include "trilobe/brdf/measurement.h"
 #include "trilobe/objective/iteration_record.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/scene/directions.h"
+#include "scene/directions.h"
 
 namespace trilobe {
 

@@ -1,7 +1,7 @@
 #ifndef TRILOBE_OBJECTIVE_CANONICAL_FORM_H_
 #define TRILOBE_OBJECTIVE_CANONICAL_FORM_H_
 
-#include "trilobe/lobes/gauge.h"
+#include "lobes/gauge.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "scene/material_fit.h"
+#include "scene/scene_file.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/scene/material_fit.h"
-#include "trilobe/scene/scene_file.h"
 
 namespace trilobe {
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "prune/prune.h"
+#include "scene/fit_cache.h"
 #include "trilobe/appearance/appearance.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/objective/score.h"
-#include "trilobe/prune/prune.h"
 #include "trilobe/results/model_file.h"
-#include "trilobe/scene/fit_cache.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -1,9 +1,9 @@
 #ifndef TRILOBE_PRUNE_PRUNE_H_
 #define TRILOBE_PRUNE_PRUNE_H_
 
+#include "prune/prune_options.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
-#include "trilobe/prune/prune_options.h"
 
 namespace trilobe {
 
