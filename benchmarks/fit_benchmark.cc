@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "files/file.h"
 #include "formats/merl_file.h"
+#include "input/read_file.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/registry/solvers.h"

@@ -14,6 +14,7 @@
 #include "experiments/program.h"
 #include "files/file.h"
 #include "files/little_endian.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/node_brdf.h"
 #include "trilobe/formats/source.h"

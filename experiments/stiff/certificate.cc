@@ -10,6 +10,7 @@
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
 #include "files/file.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/start/initial_model.h"
 

@@ -15,7 +15,7 @@
 #include "app/scene_report.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
-#include "files/json_value.h"
+#include "input/json_value.h"
 #include "pictures/plots.h"
 #include "reports/print.h"
 #include "trilobe/base/error.h"

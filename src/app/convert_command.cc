@@ -9,7 +9,6 @@
 #include "app/inputs.h"
 #include "app/result_folder.h"
 #include "app/write_for_renderer.h"
-#include "files/file.h"
 #include "formats/csv_file.h"
 #include "formats/merl_file.h"
 #include "formats/rgl_export.h"
@@ -21,7 +20,6 @@
 #include "trilobe/corruption/corruption.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe {
@@ -31,7 +29,7 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
   RefuseForModel(source, {"noise", "extrapolated", "radiometry"});
-  const FactorModel model = LoadModel(source).model;
+  const FactorModel model = ModelOfSource(source).model;
   if (model.spec().anisotropic() && !WritableFormat(out).holds_anisotropic) {
     throw Error("--out=" + out + ": " + source +
                 " is an anisotropic model, which MERL layout cannot hold; end the name in .bin, "

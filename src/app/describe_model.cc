@@ -4,6 +4,7 @@
 
 #include "app/describe.h"
 #include "app/flags.h"
+#include "app/inputs.h"
 #include "lobes/gauge.h"
 #include "reports/albedo_table.h"
 #include "reports/light_report.h"
@@ -11,7 +12,6 @@
 #include "reports/stretch_report.h"
 #include "results/stretch_json.h"
 #include "trilobe/appearance/material.h"
-#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 
 namespace trilobe {
@@ -71,7 +71,7 @@ Rgb ToRgb(std::span<const double> values) { return {values[0], values[1], values
 }  // namespace
 
 void DescribeModel(const std::string& path) {
-  const ModelFile file = LoadModel(path);
+  const ModelFile file = ModelOfSource(path);
   const FactorModel& model = file.model;
   const ModelSpec& spec = model.spec();
   const FitInfo& fit = file.fit;

@@ -15,13 +15,14 @@
 #include "app/fit_name.h"
 #include "app/fit_run.h"
 #include "app/flags.h"
+#include "app/inputs.h"
 #include "app/interrupt.h"
 #include "app/model_flags.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
-#include "files/file.h"
+#include "input/read_file.h"
 #include "pictures/gnuplot.h"
 #include "reports/fit_details.h"
 #include "reports/fit_report.h"
@@ -81,7 +82,7 @@ std::string Joined(const std::vector<std::string>& words) {
 }
 
 FactorModel StartFromFile() {
-  FactorModel model = LoadModel(FLAGS_init).model;
+  FactorModel model = ModelOfSource(FLAGS_init).model;
   if (ModelIsGiven()) {
     throw Error(FLAGS_init +
                 " brings its own lobes and tables; leave out --model, --lobes, --stretch, "

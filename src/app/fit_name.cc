@@ -2,7 +2,6 @@
 
 #include <filesystem>
 
-#include "files/file.h"
 #include "trilobe/formats/source.h"
 
 namespace trilobe {

@@ -18,6 +18,7 @@
 #include "files/file.h"
 #include "formats/merl_file.h"
 #include "formats/utia_file.h"
+#include "input/read_file.h"
 #include "lobes/gauge.h"
 #include "lobes/with_axes.h"
 #include "objective/canonical_form.h"

@@ -18,6 +18,11 @@ bool IsModelFile(const std::string& path) {
   return RecogniseFile(path).kind == Content::Kind::kJson;
 }
 
+ModelFile ModelOfSource(const std::string& path) {
+  if (!IsMaterial(path)) CheckMayBeJson(RecogniseFile(path), path + ": not a model file");
+  return LoadModel(path);
+}
+
 void RefuseMaterial(const std::string& source) {
   if (!IsMaterial(source)) return;
   throw Error(source + ": this is a model; give the file of a measurement, or synth:NAME");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "trilobe/brdf/measurement.h"
+#include "trilobe/evaluate/read_model.h"
 #include "trilobe/formats/source.h"
 
 namespace trilobe {
@@ -11,6 +12,10 @@ namespace trilobe {
 // True of material:NAME, and if the file can be read and begins like a JSON object, as model files
 // do and no measurement does.
 bool IsModelFile(const std::string& path);
+
+// The model that an argument MODEL stands for: LoadModel, and of a file that holds something else
+// the Error says what that is.
+ModelFile ModelOfSource(const std::string& path);
 
 // Throws Error for material:NAME, which is a model where a measurement is asked for.
 void RefuseMaterial(const std::string& source);

@@ -13,7 +13,6 @@
 #include "pictures/plots.h"
 #include "reports/print.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 #include "trilobe/results/trace_file.h"
 
@@ -31,7 +30,7 @@ int RunPlot(std::span<const std::string> arguments) {
     inputs.CheckOutput(folder + "/" + name);
   }
   if (arguments.size() == 1) RefuseForModel(arguments[0], MeasurementFlags());
-  const ModelFile file = LoadModel(arguments[0]);
+  const ModelFile file = ModelOfSource(arguments[0]);
   std::optional<Measurement> measured;
   PictureData data;
   if (arguments.size() > 1) {

@@ -3,7 +3,7 @@
 #include <dlfcn.h>
 #include <gflags/gflags.h>
 
-#include "files/file.h"
+#include "input/read_file.h"
 #include "scene/fit_cache.h"
 #include "trilobe/base/error.h"
 

@@ -17,7 +17,6 @@
 #include "trilobe/brdf/tabulated_brdf.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/lobes/reconstruct.h"
-#include "trilobe/materials/load_model.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/results/model_file.h"
 
@@ -89,7 +88,7 @@ int RunScore(std::span<const std::string> arguments) {
   FactorModel model;
   std::optional<BrdfTable> other;
   if (IsModelFile(arguments[0])) {
-    model = LoadModel(arguments[0]).model;
+    model = ModelOfSource(arguments[0]).model;
   } else {
     other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }

@@ -18,7 +18,6 @@
 #include "reports/print.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/materials/load_model.h"
 #include "trilobe/results/model_file.h"
 #include "trilobe/results/trace_file.h"
 
@@ -67,7 +66,7 @@ int RunView(std::span<const std::string> arguments) {
   for (const std::string& file : {FLAGS_trace, FLAGS_probe}) read.push_back(file);
   Inputs(read).CheckOutput(path);
   if (arguments.size() == 1) RefuseForModel(arguments[0], MeasurementFlags());
-  const ModelFile model = LoadModel(arguments[0]);
+  const ModelFile model = ModelOfSource(arguments[0]);
   std::vector<IterationRecord> trace;
   if (!FLAGS_trace.empty()) trace = ReadTrace(FLAGS_trace);
   std::optional<Measurement> measured;

@@ -15,7 +15,6 @@
 #include "trilobe/base/error.h"
 #include "trilobe/convert/convert.h"
 #include "trilobe/formats/source.h"
-#include "trilobe/materials/load_model.h"
 
 DEFINE_double(error, 0,
               "of a .bsdf file: how far it may be off the model or the measurement, relative, in "
@@ -83,7 +82,7 @@ void WriteForRenderer(const std::string& source) {
     RefuseForModel(source, MeasurementFlags());
     CheckOut(source);
     const ConvertOptions options = OptionsFromFlags(source);
-    lines = WriteForRenderer(LoadModel(source), source, out, options);
+    lines = WriteForRenderer(ModelOfSource(source), source, out, options);
   } else {
     CheckOut(source);
     const ConvertOptions options = OptionsFromFlags(source);

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "evaluate/model_format.h"
-#include "files/json_value.h"
+#include "input/json_value.h"
 #include "trilobe/base/error.h"
 #include "trilobe/model/stretch.h"
 

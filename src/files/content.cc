@@ -9,6 +9,7 @@
 
 #include "base/utf8.h"
 #include "files/text_lines.h"
+#include "trilobe/base/error.h"
 
 namespace trilobe {
 namespace {
@@ -165,6 +166,13 @@ Content RecogniseFile(const std::string& path) {
   std::array<char, 256> begin{};
   file.read(begin.data(), begin.size());
   return RecogniseContent({begin.data(), static_cast<size_t>(file.gcount())});
+}
+
+void CheckMayBeJson(const Content& content, const std::string& what) {
+  if (content.kind != Content::Kind::kJson && content.kind != Content::Kind::kText &&
+      content.kind != Content::Kind::kUnknown) {
+    throw Error(what + ": this is " + content.name);
+  }
 }
 
 }  // namespace trilobe

@@ -19,43 +19,15 @@
 #include <utility>
 #include <vector>
 
+#include "input/descriptor.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
 namespace {
 
-// Far above any file that this library knows (a MERL file has 35 MB), far below what would exhaust
-// a machine.
-constexpr off_t kMaxFileSize = off_t{1} << 30;
-
-[[noreturn]] void FailToRead(const std::string& path, const std::string& reason) {
-  throw Error("cannot read '" + path + "': " + reason);
-}
-
 [[noreturn]] void FailToWrite(const std::string& path, const std::string& reason) {
   throw Error("cannot write '" + path + "': " + reason);
 }
-
-// An open file, closed when it goes out of scope.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-
-  int get() const { return fd_; }
-  bool ok() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
 
 // False with errno set if not all bytes could be written.
 bool WriteAll(int fd, std::string_view bytes) {
@@ -66,19 +38,6 @@ bool WriteAll(int fd, std::string_view bytes) {
     bytes.remove_prefix(static_cast<size_t>(written));
   }
   return true;
-}
-
-// Bytes read, fewer than `size` only at the end of the file; -1 with errno set on failure.
-ssize_t ReadAll(int fd, char* data, size_t size) {
-  size_t done = 0;
-  while (done < size) {
-    const ssize_t count = read(fd, data + done, size - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return -1;
-    if (count == 0) break;
-    done += static_cast<size_t>(count);
-  }
-  return static_cast<ssize_t>(done);
 }
 
 // Why no file can be made at `path`, by errno.
@@ -189,28 +148,6 @@ std::string EndingOf(const std::string& path) {
   std::ranges::transform(ending, ending.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending;
-}
-
-std::string ReadFile(const std::string& path) {
-  // O_NONBLOCK keeps the call from waiting for a writer when the path is a named pipe.
-  Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  struct stat status {};
-  if (!file.ok() || fstat(file.get(), &status) != 0) FailToRead(path, std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) FailToRead(path, "it is a directory; give the name of a file");
-  if (!S_ISREG(status.st_mode)) FailToRead(path, "it is not a regular file");
-  if (status.st_size > kMaxFileSize) {
-    FailToRead(path, "it has " + std::to_string(status.st_size) +
-                         " bytes, more than any measurement or model (at most 1 GiB)");
-  }
-  std::string bytes(static_cast<size_t>(status.st_size), '\0');
-  const ssize_t count = ReadAll(file.get(), bytes.data(), bytes.size());
-  char beyond = 0;
-  const ssize_t excess = count < 0 ? -1 : ReadAll(file.get(), &beyond, 1);
-  if (excess < 0) FailToRead(path, std::strerror(errno));
-  if (count < status.st_size || excess > 0) {
-    FailToRead(path, "its length changed while it was read; try again when it is complete");
-  }
-  return bytes;
 }
 
 // The content is collected in memory first, so that a failing `write` touches no file, and every

@@ -13,9 +13,6 @@ std::string RandomDigits();
 // The ending of a file's name in lower case, as ".csv"; "" if it has none.
 std::string EndingOf(const std::string& path);
 
-// The bytes of a file. Throws Error: missing, a directory, unreadable, changed while read.
-std::string ReadFile(const std::string& path);
-
 // Writes a whole file or nothing: `write` fills a temporary file beside `path`, which is renamed
 // over it once every byte is on it. On any failure (also of `write` itself) the temporary file is
 // removed, an earlier file at `path` is left as it was, and Error says why ("No space left on

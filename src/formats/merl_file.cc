@@ -7,6 +7,7 @@
 
 #include "files/file.h"
 #include "files/little_endian.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/measurement_stats.h"
 #include "trilobe/files/content.h"

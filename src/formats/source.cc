@@ -6,6 +6,7 @@
 #include "files/file.h"
 #include "files/text_lines.h"
 #include "formats/utia_file.h"
+#include "input/read_file.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/corruption/corruption.h"

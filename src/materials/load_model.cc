@@ -45,7 +45,8 @@ ModelFile LoadModel(const std::string& path) {
                 ": this is a measurement; a model is a model.json that `trilobe fit` "
                 "wrote, or material:NAME");
   }
-  return IsMaterial(path) ? ParseModel(MaterialText(path), path) : ReadModel(path);
+  if (IsMaterial(path)) return ParseModel(MaterialText(path), path);
+  return ReadModel(path);
 }
 
 }  // namespace trilobe

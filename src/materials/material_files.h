@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "files/embedded_file.h"
+#include "input/embedded_file.h"
 
 namespace trilobe {
 

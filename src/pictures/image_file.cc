@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "files/file.h"
+#include "input/read_file.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 #include "trilobe/files/content.h"

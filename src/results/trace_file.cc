@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "files/file.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {

@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "files/file.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {

@@ -11,9 +11,10 @@
 #include <utility>
 
 #include "base/nearest_name.h"
-#include "files/file.h"
-#include "files/json_value.h"
+#include "input/json_value.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
+#include "trilobe/files/content.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/materials/load_model.h"
 
@@ -334,6 +335,7 @@ std::vector<std::string> FilesOf(const Scene& scene) {
 }
 
 Scene ReadScene(const std::string& path) {
+  CheckMayBeJson(RecogniseFile(path), NotAScene(path));
   return ParseScene(ReadJsonText(path, NotAScene(path)), path);
 }
 

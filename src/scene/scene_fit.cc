@@ -12,7 +12,7 @@
 #include "appearance/picture_data.h"
 #include "appearance/seen_samples.h"
 #include "appearance/verdict.h"
-#include "files/file.h"
+#include "input/read_file.h"
 #include "lobes/gauge.h"
 #include "prune/prune_anisotropic.h"
 #include "scene/cached_fits.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "files/embedded_file.h"
+#include "input/embedded_file.h"
 
 namespace trilobe {
 

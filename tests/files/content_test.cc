@@ -92,7 +92,7 @@ TEST(Content, IsNamedByEveryReader) {
   EXPECT_THAT(source_error("\x89HDF\r\n\x1a\n"), StartsWith("f: this is an HDF5 file; "));
   EXPECT_THAT(source_error("#?RADIANCE\n"), StartsWith("f: this is a Radiance picture; "));
   const auto model_error = [](const std::string& bytes) {
-    return ErrorOf([&] { ParseModel(bytes, "f"); });
+    return ErrorOf([&] { CheckMayBeJson(RecogniseContent(bytes), "f: not a model file"); });
   };
   EXPECT_EQ(model_error(as_utf16),
             "f: not a model file: this is a JSON file in UTF-16; save it as UTF-8");
@@ -111,8 +111,8 @@ TEST(Content, OfALargeFileIsNamed) {
   const std::string path =
       directory.Make("a.binary", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12));
   std::filesystem::resize_file(path, 34992012);
-  EXPECT_EQ(ErrorOf([&] { ReadModel(path); }),
-            path + ": not a model file: this is a MERL measurement");
+  EXPECT_EQ(ErrorOf([&] { CheckMayBeJson(RecogniseFile(path), path); }),
+            path + ": this is a MERL measurement");
 }
 
 TEST(Content, OfAPipeIsNotWaitedFor) {

@@ -19,6 +19,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "input/read_file.h"
 #include "tests/test_directory.h"
 #include "trilobe/base/error.h"
 

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "files/file.h"
 #include "formats/spectrum.h"
+#include "input/read_file.h"
 #include "tests/formats/tensor_bytes.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "files/file.h"
 #include "formats/rgl_file.h"
+#include "input/read_file.h"
 #include "tests/formats/tensor_bytes.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <limits>
 
-#include "files/file.h"
+#include "input/read_file.h"
 #include "pictures/plots.h"
 #include "system/stopwatch.h"
 #include "trilobe/base/error.h"

@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 
-#include "files/file.h"
 #include "tests/test_directory.h"
 
 // Another decoder of PNG than the encoder's own.

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "files/json_value.h"
+#include "input/json_value.h"
 #include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

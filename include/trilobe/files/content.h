@@ -38,6 +38,9 @@ Content RecogniseContent(std::string_view bytes);
 // The same for a file by its beginning alone; kUnknown where it is none that can be read.
 Content RecogniseFile(const std::string& path);
 
+// Throws Error "WHAT: this is a PNG picture" for content that is known, and is no JSON text.
+void CheckMayBeJson(const Content& content, const std::string& what);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_FILES_CONTENT_H_

@@ -1,4 +1,4 @@
-#include "files/json_value.h"
+#include "input/json_value.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,9 +7,8 @@
 #include <system_error>
 
 #include "base/utf8.h"
-#include "files/file.h"
+#include "input/read_file.h"
 #include "trilobe/base/error.h"
-#include "trilobe/files/content.h"
 
 namespace trilobe {
 namespace {
@@ -33,13 +32,6 @@ void AppendUtf8(uint32_t code, std::string* text) {
     tail(12);
     tail(6);
     tail(0);
-  }
-}
-
-void CheckContent(const Content& content, const std::string& what) {
-  if (content.kind != Content::Kind::kJson && content.kind != Content::Kind::kText &&
-      content.kind != Content::Kind::kUnknown) {
-    throw Error(what + ": this is " + content.name);
   }
 }
 
@@ -239,7 +231,6 @@ class JsonParser {
 };
 
 JsonValue JsonValue::Parse(std::string_view text, const std::string& what) {
-  CheckContent(RecogniseContent(text), what);
   CheckSize(text.size(), what);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   // Each value but the first comes after one of these.
@@ -274,7 +265,6 @@ const JsonValue* JsonValue::Find(std::string_view key) const {
 }
 
 std::string ReadJsonText(const std::string& path, const std::string& what) {
-  CheckContent(RecogniseFile(path), what);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (!error) CheckSize(size, what);

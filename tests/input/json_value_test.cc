@@ -1,4 +1,4 @@
-#include "files/json_value.h"
+#include "input/json_value.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_FILES_EMBEDDED_FILE_H_
-#define TRILOBE_FILES_EMBEDDED_FILE_H_
+#ifndef TRILOBE_INPUT_EMBEDDED_FILE_H_
+#define TRILOBE_INPUT_EMBEDDED_FILE_H_
 
 #include <string_view>
 
@@ -12,4 +12,4 @@ struct EmbeddedFile {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FILES_EMBEDDED_FILE_H_
+#endif  // TRILOBE_INPUT_EMBEDDED_FILE_H_

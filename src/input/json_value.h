@@ -1,5 +1,5 @@
-#ifndef TRILOBE_FILES_JSON_VALUE_H_
-#define TRILOBE_FILES_JSON_VALUE_H_
+#ifndef TRILOBE_INPUT_JSON_VALUE_H_
+#define TRILOBE_INPUT_JSON_VALUE_H_
 
 #include <cstddef>
 #include <string>
@@ -59,4 +59,4 @@ std::string ReadJsonText(const std::string& path, const std::string& what);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FILES_JSON_VALUE_H_
+#endif  // TRILOBE_INPUT_JSON_VALUE_H_
