@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <sstream>
 #include <string>
 
+#include "base/text.h"
 #include "geometry/grid_cosines.h"
 #include "trilobe/base/error.h"
 
@@ -92,12 +92,6 @@ bool AreValid(std::span<const double> values) {
   return least == 0 && zero == 0;
 }
 
-std::string ToText(double x) {
-  std::ostringstream text;
-  text << x;
-  return text.str();
-}
-
 }  // namespace
 
 void CheckSamples(const BrdfSamples& samples) {
@@ -113,11 +107,11 @@ void CheckSamples(const BrdfSamples& samples) {
                      AreValid(samples.multiplicity);
   for (int j = 0; j < samples.size() && !valid; ++j) {
     for (const double rho : samples.rho[j]) {
-      if (!IsValid(rho)) FailAt(samples, j, "is " + ToText(rho) + "/sr; it must be 0 or more");
+      if (!IsValid(rho)) FailAt(samples, j, "is " + Text(rho, 6) + "/sr; it must be 0 or more");
     }
     if (!IsValid(samples.Multiplicity(j))) {
       FailAt(samples, j,
-             "counts " + ToText(samples.multiplicity[j]) + " times; it must be 0 or more");
+             "counts " + Text(samples.multiplicity[j], 6) + " times; it must be 0 or more");
     }
   }
 }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <sstream>
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "formats/bilinear_warp.h"
 #include "formats/rgl_mask.h"
 #include "formats/spectrum.h"
@@ -34,12 +34,6 @@ struct RglBrdf::Tables {
 
 namespace {
 
-std::string Text(double x) {
-  std::ostringstream text;
-  text << x;
-  return text.str();
-}
-
 // They are float32, so that 90 degrees may be a little more than kPi / 2.
 constexpr double kRounding = 1e-4;
 
@@ -49,14 +43,14 @@ std::vector<double> ReadAngles(const TensorFile& file, const char* name, double 
   for (size_t k = 0; k < angles.size(); ++k) {
     const auto fail = [&](const std::string& expected) {
       file.Fail(name,
-                "has " + Text(angles[k]) + " as entry " + std::to_string(k) + "; " + expected);
+                "has " + Text(angles[k], 6) + " as entry " + std::to_string(k) + "; " + expected);
     };
     if (!(angles[k] >= min - kRounding && angles[k] <= max + kRounding)) {
-      fail("angles are in radians, from " + Text(min) + " to " + Text(max));
+      fail("angles are in radians, from " + Text(min, 6) + " to " + Text(max, 6));
     }
     angles[k] = std::max(angles[k], min);  // no direction has a theta below 0
     if (k > 0 && angles[k] <= angles[k - 1]) {
-      fail("it must be above the entry before it, " + Text(angles[k - 1]));
+      fail("it must be above the entry before it, " + Text(angles[k - 1], 6));
     }
   }
   return angles;

@@ -1,21 +1,11 @@
 #include "reports/print.h"
 
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "trilobe/base/printable.h"
 
 namespace trilobe {
-
-std::string Text(double x, int digits) {
-  if (std::isinf(x)) return x > 0 ? "infinite" : "-infinite";
-  std::array<char, 64> buffer;
-  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, x);
-  return buffer.data();
-}
 
 double PsnrFall(double before, double after) { return before == after ? 0 : before - after; }
 

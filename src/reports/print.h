@@ -4,13 +4,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "base/text.h"
 #include "trilobe/brdf/measurement.h"
 #include "trilobe/geometry/channels.h"
 
 namespace trilobe {
-
-// "0.01235", "1.235e+06", "infinite": four significant digits unless told otherwise.
-std::string Text(double x, int digits = 4);
 
 // By how much a PSNR falls [dB]: 0 where both are infinite, as those of exact fits are.
 double PsnrFall(double before, double after);

@@ -2,17 +2,10 @@
 
 #include <algorithm>
 
+#include "appearance/color.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
-namespace {
-
-double Luminance(std::span<const double> rgb) {
-  return kLuminance[0] * rgb[0] + kLuminance[1] * rgb[1] + kLuminance[2] * rgb[2];
-}
-
-}  // namespace
-
 BrdfSamples LuminanceOf(BrdfSamples samples) {
   for (Rgb& rho : samples.rho) rho.fill(Luminance(rho));
   return samples;
@@ -25,7 +18,7 @@ FactorModel LuminanceOf(const FactorModel& model) {
   }
   spec.F = {.per_lobe = true, .per_channel = false};
   FactorModel grey(spec);
-  std::ranges::fill(grey.d(), Luminance(model.d()));
+  std::ranges::fill(grey.d(), Luminance({model.d()[0], model.d()[1], model.d()[2]}));
   for (int m = 0; m < spec.lobes; ++m) {
     std::ranges::fill(grey.s(m), 1.0);
     const std::span<double> F = grey.table(Factor::kF, m);

@@ -7,9 +7,6 @@
 
 namespace trilobe {
 
-// Relative luminance of linear RGB with the primaries of ITU-R BT.709.
-inline constexpr Rgb kLuminance = {0.2126, 0.7152, 0.0722};
-
 // The samples in grey: all three channels are the luminance.
 BrdfSamples LuminanceOf(BrdfSamples samples);
 

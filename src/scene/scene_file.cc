@@ -7,10 +7,10 @@
 #include <initializer_list>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/text.h"
 #include "input/json_value.h"
 #include "input/read_file.h"
 #include "trilobe/base/error.h"
@@ -26,12 +26,6 @@ constexpr int kVersion = 1;
 constexpr size_t kMaxNameSize = 100;
 
 std::string Quoted(const std::string& text) { return "'" + text + "'"; }
-
-std::string Text(double x) {
-  std::ostringstream text;
-  text << x;
-  return text.str();
-}
 
 // A key as a JSON pointer has it (RFC 6901).
 std::string Escaped(std::string_view key) {
@@ -99,8 +93,8 @@ class Node {
     CheckType(Type::kNumber, "a number, " + meaning);
     const double value = json_.number();
     if (!(min <= value && value <= max)) {
-      Fail("must be " + meaning + ", from " + Text(min) +
-           (std::isfinite(max) ? " to " + Text(max) : " up") + ", not " +
+      Fail("must be " + meaning + ", from " + Text(min, 6) +
+           (std::isfinite(max) ? " to " + Text(max, 6) : " up") + ", not " +
            std::string(json_.number_text()));
     }
     return value;

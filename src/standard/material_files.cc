@@ -3,28 +3,19 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <locale>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "base/markup.h"
+#include "base/text.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe {
 namespace {
 
-std::string Number(double x) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(4);
-  text << x;
-  return text.str();
-}
-
-std::string Text(const Rgb& rgb) {
-  return Number(rgb[0]) + ", " + Number(rgb[1]) + ", " + Number(rgb[2]);
+std::string ColorText(const Rgb& rgb) {
+  return Text(rgb[0]) + ", " + Text(rgb[1]) + ", " + Text(rgb[2]);
 }
 
 double Rounded(double x) { return std::round(x * 1e4) / 1e4; }
@@ -83,7 +74,7 @@ std::string FormatMaterialX(const OpenPbr& material, const MaterialNotes& notes)
     out += Vector("tangent", name + "_tangent", Input("space", "string", "world"));
     out += Vector("rotate3d", name + "_turned",
                   Linked("in", "vector3", name + "_tangent") +
-                      Input("amount", "float", Number(RadiansToDegrees(material.turn))) +
+                      Input("amount", "float", Text(RadiansToDegrees(material.turn))) +
                       Linked("axis", "vector3", name + "_normal"));
   }
   out += "  " +
@@ -92,18 +83,18 @@ std::string FormatMaterialX(const OpenPbr& material, const MaterialNotes& notes)
                                   {"doc", notes.made + "; " + notes.error + "; " + notes.lost}}) +
          ">\n";
   out += Input("base_weight", "float", "1");
-  out += Input("base_color", "color3", Text(material.base_color));
-  out += Input("base_diffuse_roughness", "float", Number(material.base_diffuse_roughness));
-  out += Input("base_metalness", "float", Number(material.base_metalness));
+  out += Input("base_color", "color3", ColorText(material.base_color));
+  out += Input("base_diffuse_roughness", "float", Text(material.base_diffuse_roughness));
+  out += Input("base_metalness", "float", Text(material.base_metalness));
   out += Input("specular_weight", "float", "1");
-  out += Input("specular_color", "color3", Text(material.specular_color));
-  out += Input("specular_roughness", "float", Number(material.specular_roughness));
-  out += Input("specular_ior", "float", Number(material.specular_ior));
-  out += Input("specular_roughness_anisotropy", "float",
-               Number(material.specular_roughness_anisotropy));
-  out += Input("coat_weight", "float", Number(material.coat_weight));
-  out += Input("coat_roughness", "float", Number(material.coat_roughness));
-  out += Input("coat_ior", "float", Number(material.coat_ior));
+  out += Input("specular_color", "color3", ColorText(material.specular_color));
+  out += Input("specular_roughness", "float", Text(material.specular_roughness));
+  out += Input("specular_ior", "float", Text(material.specular_ior));
+  out +=
+      Input("specular_roughness_anisotropy", "float", Text(material.specular_roughness_anisotropy));
+  out += Input("coat_weight", "float", Text(material.coat_weight));
+  out += Input("coat_roughness", "float", Text(material.coat_roughness));
+  out += Input("coat_ior", "float", Text(material.coat_ior));
   out += Input("coat_darkening", "float", "0");
   if (turned) out += Linked("geometry_tangent", "vector3", name + "_turned");
   out += "  </open_pbr_surface>\n";
