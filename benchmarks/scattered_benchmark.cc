@@ -21,7 +21,7 @@
 #include "objective/batch_evaluator.h"
 #include "solvers/awls/make_sweep.h"
 #include "solvers/awls/sample_sweep.h"
-#include "sums/sample_equations.h"
+#include "sums/scattered_equations.h"
 #include "trilobe/formats/source.h"
 #include "trilobe/geometry/directions.h"
 #include "trilobe/objective/folded_samples.h"
@@ -170,7 +170,8 @@ void BM_AnisotropicValue(benchmark::State& state) {
 
 void BM_AnisotropicEquations(benchmark::State& state) {
   const FactorModel model = AnisotropicModel();
-  SampleEquations equations(AnisotropicSamples(), model.spec(), static_cast<int>(state.range(0)));
+  ScatteredEquations equations(AnisotropicSamples(), model.spec(),
+                               static_cast<int>(state.range(0)));
   QuadraticModel result;
   for (auto _ : state) equations.Evaluate(model, Hessian::kGaussNewton, &result);
 }

@@ -66,6 +66,9 @@ scripts/check_pip.sh
 step "Making the pictures of the pages"
 scripts/check_pictures.py ${3:+--data="$3"}
 
+step "Adding a made-up subcommand, format, form, solver and weighting, by the files that the page names"
+scripts/check_what_to_touch.py --build
+
 step "Fuzzing each reader"
 scripts/fuzz_long.sh "" "${2:-10000000}"
 

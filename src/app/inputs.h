@@ -4,8 +4,8 @@
 #include <string>
 
 #include "trilobe/brdf/measurement.h"
-#include "trilobe/evaluate/read_model.h"
 #include "trilobe/formats/source.h"
+#include "trilobe/results/model_file.h"
 
 namespace trilobe {
 
