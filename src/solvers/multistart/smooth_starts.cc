@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "lobes/gauge.h"
 #include "solvers/smooth/softening.h"
 #include "solvers/smooth/thinned_for_starts.h"
-#include "trilobe/lobes/gauge.h"
 #include "trilobe/start/initial_model.h"
 #include "trilobe/system/parallel.h"
 
