@@ -60,7 +60,7 @@ step "Testing pages and shaders in a browser"
 scripts/check_pages.sh
 
 step "Testing the Python package, with some hundred thousand calls by arguments of any kind, and installing it"
-TRILOBE_FUZZ_CALLS=20000 scripts/check_python.sh
+TRILOBE_LONG_TESTS=1 TRILOBE_FUZZ_CALLS=20000 scripts/check_python.sh
 scripts/check_pip.sh
 
 step "Making the pictures of the pages"

@@ -13,7 +13,8 @@ from trilobe._brdf import text_of_path
 from trilobe._core import Error
 
 
-def _program(given: Any) -> str:
+def find_program(given: Any) -> str:
+    """The `trilobe` that was given, or the one beside this Python, or on the PATH."""
     if given is not None:
         return text_of_path(given)
     beside = os.path.join(os.path.dirname(sys.executable), "trilobe")
@@ -36,7 +37,7 @@ def run(sources: list[str], out: str, workers: int, program: Any, flags: dict[st
     if not sources:
         raise Error("there is no source to fit")
     # Two sources are a batch; of one, the batch is asked for as the first part of one.
-    command = [_program(program), "fit", *sources, f"--out={out}", f"--threads={workers}"]
+    command = [find_program(program), "fit", *sources, f"--out={out}", f"--threads={workers}"]
     command += ["--shard=1/1"] if len(sources) == 1 else []
     command += [_flag(name, value) for name, value in flags.items()]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

@@ -1,0 +1,116 @@
+"""`trilobe-need`: what is counted is what the picture is made of, and the whole goes from a scene to a page."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trilobe
+
+mi = pytest.importorskip("mitsuba")
+pytest.importorskip("flip_evaluator")
+import drjit as dr  # noqa: E402
+
+from trilobe import need  # noqa: E402
+
+try:
+    mi.set_variant("llvm_ad_rgb")
+    dr.eval(mi.Float([1, 2]) + 1)
+except Exception:
+    pytest.skip("no LLVM; install libllvm19, set DRJIT_LIBLLVM_PATH", allow_module_level=True)
+
+import trilobe.mitsuba  # noqa: E402, F401
+from trilobe._need_count import Counter  # noqa: E402
+
+# A sphere under a lamp far up to the right, and a mirror of it; the camera looks down.
+SCENE = """<scene version="3.0.0">
+  <default name="lamp" value="0.5"/>
+  <integrator type="path"><integer name="max_depth" value="3"/></integrator>
+  <sensor type="perspective"><float name="fov" value="2"/>
+    <transform name="to_world"><lookat origin="0, 0, 50" target="0, 0, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="16"/>
+      <rfilter type="box"/></film></sensor>
+  <emitter type="directional"><vector name="direction" x="-$lamp" y="0" z="-0.866"/>
+    <rgb name="irradiance" value="3"/></emitter>
+  <bsdf type="twosided" id="plate"><bsdf type="trilobe_measured">
+    <string name="filename" value="synth:felt@20x20x40"/></bsdf></bsdf>
+  <bsdf type="trilobe" id="unseen"><string name="filename" value="material:paper_white"/></bsdf>
+  <shape type="rectangle"><transform name="to_world"><scale value="2"/></transform><ref id="plate"/></shape>
+  <shape type="sphere"><point name="center" x="0" y="0" z="90"/><float name="radius" value="0.1"/><ref id="unseen"/>
+  </shape>
+</scene>
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "scene.xml"
+    path.write_text(SCENE)
+    return path
+
+
+def test_counts_where_the_light_comes_from(scene, tmp_path):
+    file = need.SceneFile(scene, {})
+    assert [material.name for material in file.materials] == ["plate", "unseen"]
+    for material in file.materials:
+        material.full = trilobe.load("material:paper_white")
+        material.full.save(tmp_path / f"{material.name}.json")
+    file.materials[0].measurement = trilobe.read(file.materials[0].source)
+    bsdfs = {material.name: need._bsdf(material, "measured", tmp_path / "none") for material in file.materials}
+    bsdfs["plate"]["model"] = str(tmp_path / "plate.json")
+    bsdfs["unseen"]["filename"] = str(tmp_path / "unseen.json")
+    loaded = file.load(bsdfs)
+    counter = Counter(loaded, file.sides(loaded), [material.grid for material in file.materials], 3)
+    picture = counter.picture(16, seed=1)
+    # A picture as Mitsuba's own integrator has it: f cos theta_i E, E 3 across the beam.
+    wanted = np.array(mi.render(loaded, spp=16)).mean(axis=(0, 1))
+    np.testing.assert_allclose(picture.mean(axis=(0, 1)), wanted, rtol=0.02)
+    plate, unseen = counter.count(picture, 16, seed=2)
+    assert plate.bins.shape == (20, 20, 40) and unseen.bins.sum() == 0
+    assert plate.bins.sum() == pytest.approx(1)
+    # Lit at 30 degrees and seen from above, within a degree: half vectors lean by 15, and theta_d is as much.
+    theta_h, theta_d = int(np.sqrt(15 / 90) * 20), int(15 / 90 * 20)
+    assert plate.bins[theta_h - 1 : theta_h + 2, theta_d - 1 : theta_d + 2].sum() > 0.999
+    assert plate.pairs[:2, 29:31].sum() > 0.999
+
+
+@pytest.mark.skipif("TRILOBE_LONG_TESTS" not in os.environ, reason="takes ten seconds; TRILOBE_LONG_TESTS=1 runs it")
+def test_goes_from_a_scene_to_a_page(scene, tmp_path, capsys):
+    program = shutil.which("trilobe") or Path(__file__).parents[2] / "build/release/bin/trilobe"
+    out = tmp_path / "need"
+    status = need.main([
+        str(scene), f"--out={out}", "--spp=4", "--count-spp=4", "--delta-e=8", "--moved", "lamp=1.6",
+        f"--program={program}", "--max_iterations=2", "--nocache"])
+    assert status == 0, capsys.readouterr().err
+    report = json.loads((out / "need.json").read_text())
+    plate, unseen = report["materials"]
+    assert plate["share"] == pytest.approx(1) and unseen["share"] == 0
+    assert plate["samples"]["used"] < 0.2 * plate["samples"]["valid"]
+    assert plate["parameters"]["pruned"] < 0.5 * plate["parameters"]["full"]
+    assert trilobe.load(out / "pruned/plate.json").lobes <= 3
+    assert report["differences"]["pruned"]["flip"] < 0.05
+    text = (out / "index.html").read_text()
+    for name in ("measured", "full", "pruned_flip", "moved_pruned"):
+        assert f'src="{name}.png"' in text and (out / f"{name}.png").stat().st_size > 100
+
+
+def test_says_in_a_line_what_is_wrong(scene, tmp_path, capsys):
+    def told(*arguments):
+        assert need.main([*map(str, arguments)]) == 1
+        error = capsys.readouterr().err
+        assert error.startswith("trilobe-need: error: ") and error.count("\n") == 1
+        return error
+
+    out = f"--out={tmp_path / 'x'}"
+    assert "cannot read" in told(tmp_path / "none.xml", out)
+    assert "give NAME=VALUE" in told(scene, out, "--moved", "lamp")
+    assert "no compiled variant" in told(scene, out, "--variant=scalar_rgb")
+    assert "are no numbers" in told(scene, out, "--delta-e=much")
+    scene.write_text("<scene version='3.0.0'><emitter type='constant'/></scene>")
+    assert "no BSDF of the type trilobe" in told(scene, out)
+    scene.write_text(SCENE.replace('type="twosided"', 'type="normalmap"').replace("<bsdf type=\"trilobe_m", """
+      <texture name="normalmap" type="checkerboard"/><bsdf type="trilobe_m"""))
+    assert "inside a 'normalmap' cannot be counted" in told(scene, out)
