@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -157,19 +155,26 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
   const int valid = CountsOf(NotNull(measurement, "the measurement")).valid;
   if (valid == 0 || measurement->anisotropic) return;
   constexpr int kFewest = 10;
-  const int one_in = measurement->table ? 5000 : 500;
+  constexpr double kLeastLight = 2e-5;
+  const int least = measurement->table ? kFewest : std::max(kFewest, valid / 500);
   const BrdfSamples samples = SamplesOf(*measurement);
-  const std::vector<int> outliers = FindOutliers(samples, num_threads);
+  const std::vector<Outlier> outliers = FindOutliers(samples, num_threads);
   const int count = static_cast<int>(outliers.size());
-  if (count < kFewest || count < valid / one_in) return;
+  if (count < least || LightOf(outliers, samples) < kLeastLight) return;
   if (measurement->table) {
-    for (const int j : outliers) {
+    for (const auto& [j, median] : outliers) {
       for (auto& plane : measurement->table->stored) plane[samples.bins[j]] = -1;
     }
   } else {
-    std::vector<int> all(samples.size()), kept;
-    std::iota(all.begin(), all.end(), 0);
-    std::ranges::set_difference(all, outliers, std::back_inserter(kept));
+    std::vector<int> kept;
+    auto next = outliers.begin();
+    for (int j = 0; j < samples.size(); ++j) {
+      if (next != outliers.end() && next->sample == j) {
+        ++next;
+      } else {
+        kept.push_back(j);
+      }
+    }
     Keep(kept, &BinCounts::negative, measurement);
   }
   measurement->notes.push_back(

@@ -1,8 +1,11 @@
 #include "brdf/outliers.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/merl_grid.h"
@@ -53,10 +56,11 @@ class Surroundings {
     });
   }
 
-  bool IsOutlier(int sample, double own) const {
+  // The median around a sample of this value, if it is far off that.
+  std::optional<double> FarOffMedian(int sample, double own) const {
     const int row = bins_[sample] / grid_.phi_d, p = bins_[sample] % grid_.phi_d;
     const int h = row / grid_.theta_d, d = row % grid_.theta_d;
-    if (IsLikeAllAround(h, d, p, own)) return false;
+    if (IsLikeAllAround(h, d, p, own)) return std::nullopt;
     for (int reach = 1; reach <= kWidestReach; reach *= 2) {
       Count all, same_h, same_d;
       ForEachRow(h, d, reach, [&](int i, int j) {
@@ -67,10 +71,11 @@ class Surroundings {
         });
       });
       if (!all.Tells()) continue;
-      return all.FarOff() && (!same_h.Tells() || same_h.FarOff()) &&
-             (!same_d.Tells() || same_d.FarOff());
+      const bool far_off = all.FarOff() && (!same_h.Tells() || same_h.FarOff()) &&
+                           (!same_d.Tells() || same_d.FarOff());
+      return far_off ? std::optional(MedianAround(h, d, p, reach)) : std::nullopt;
     }
-    return false;
+    return std::nullopt;
   }
 
  private:
@@ -79,6 +84,16 @@ class Surroundings {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     int samples = 0;
   };
+
+  double MedianAround(int h, int d, int p, int reach) const {
+    std::vector<double> values;
+    ForEachRow(h, d, reach, [&](int i, int j) {
+      ForEachInLine(grid_.theta_d * i + j, p, reach, [&](double x) { values.push_back(x); });
+    });
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  }
 
   // What is true of nearly all samples, and soon known.
   bool IsLikeAllAround(int h, int d, int p, double own) const {
@@ -125,19 +140,35 @@ class Surroundings {
 
 }  // namespace
 
-std::vector<int> FindOutliers(const BrdfSamples& samples, int num_threads) {
+std::vector<Outlier> FindOutliers(const BrdfSamples& samples, int num_threads) {
   const Surroundings surroundings(samples, num_threads);
   constexpr int kBlock = 1 << 13;
-  std::vector<std::vector<int>> found((samples.size() + kBlock - 1) / kBlock);
+  std::vector<std::vector<Outlier>> found((samples.size() + kBlock - 1) / kBlock);
   if (found.empty()) return {};
   ParallelFor(static_cast<int>(found.size()), num_threads, [&](int block) {
     for (int j = block * kBlock; j < std::min(samples.size(), (block + 1) * kBlock); ++j) {
-      if (surroundings.IsOutlier(j, Mean(samples.rho[j]))) found[block].push_back(j);
+      const auto median = surroundings.FarOffMedian(j, Mean(samples.rho[j]));
+      if (median) found[block].push_back({.sample = j, .median = *median});
     }
   });
-  std::vector<int> all;
-  for (const std::vector<int>& block : found) all.insert(all.end(), block.begin(), block.end());
+  std::vector<Outlier> all;
+  for (const std::vector<Outlier>& block : found) all.insert(all.end(), block.begin(), block.end());
   return all;
+}
+
+double LightOf(const std::vector<Outlier>& outliers, const BrdfSamples& samples) {
+  double off = 0, all = 0;
+  const auto weight = [&](int j) {
+    const Cosines cosines = samples.CosinesOf(j);
+    return samples.SolidAngle(j) * cosines.i * cosines.o;
+  };
+  for (int j = 0; j < samples.size(); ++j) all += weight(j) * Mean(samples.rho[j]);
+  for (const auto& [j, median] : outliers) {
+    const double own = Mean(samples.rho[j]);
+    off += weight(j) * std::abs(own - median);
+    all -= weight(j) * (own - median);
+  }
+  return all > 0 ? off / all : 0;
 }
 
 }  // namespace trilobe

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -46,8 +48,10 @@ BrdfTable Highlight(double fall) {
 // The bins of the outliers.
 std::vector<int> BinsOf(const BrdfTable& table, int num_threads) {
   const BrdfSamples samples = ValidSamples(table);
-  std::vector<int> bins = FindOutliers(samples, num_threads);
-  for (int& j : bins) j = samples.bins[j];
+  std::vector<int> bins;
+  for (const Outlier& outlier : FindOutliers(samples, num_threads)) {
+    bins.push_back(samples.bins[outlier.sample]);
+  }
   return bins;
 }
 
@@ -62,8 +66,9 @@ void Multiply(double factor, int bin, BrdfTable* table) {
 TEST(Outliers, SmoothDataHaveNone) {
   for (const char* const name : {"plastic", "chrome", "felt", "foam", "rubber", "car-paint"}) {
     const std::string source = "synth:" + std::string(name) + "@90x30x60";
-    const BrdfTable table = LoadSource(source);
-    EXPECT_LE(ShareOfOutliers(table), 1.0 / 5000) << name;  // a few at the horizon
+    const Measurement measurement = LoadMeasurement(source);
+    EXPECT_EQ(CountsOf(measurement).negative, 0) << name;  // a few at the horizon stay
+    EXPECT_THAT(measurement.notes, IsEmpty()) << name;
   }
   EXPECT_THAT(BinsOf(Highlight(50), 1), IsEmpty());
   EXPECT_LE(ShareOfOutliers(TableOf(Corrupted("synth:plastic@40x40x40", "noise:0.2"))), 1e-4);
@@ -162,15 +167,52 @@ TEST(Outliers, ScatteredSamplesHaveSome) {
   EXPECT_THAT(measurement.notes, testing::SizeIs(1));
 }
 
-TEST(Outliers, FewAreNotWorthANote) {
-  const std::string source = "synth:plastic@40x40x40";
-  Measurement measurement = LoadMeasurement(source);
-  Multiply(0, ValidSamples(*measurement.table).bins[20'000], &*measurement.table);
-  EXPECT_EQ(BinsOf(*measurement.table, 1).size(), 1);
-  const int valid = CountsOf(measurement).valid;
-  LeaveOutOutliers(1, &measurement);
-  EXPECT_EQ(CountsOf(measurement).valid, valid);
-  EXPECT_THAT(measurement.notes, IsEmpty());
+TEST(Outliers, TheirLightIsWhatTheyAreOffBy) {
+  const BrdfSamples smooth = ValidSamples(Highlight(1));
+  for (const double factor : {0.0, 100.0}) {
+    BrdfSamples samples = smooth;
+    double off = 0, all = 0;
+    for (int j = 0; j < samples.size(); ++j) {
+      const Cosines cosines = samples.CosinesOf(j);
+      const double light = samples.SolidAngle(j) * cosines.i * cosines.o * Mean(samples.rho[j]);
+      all += light;
+      if (j % 200 != 100) continue;
+      for (double& x : samples.rho[j]) x *= factor;
+      off += light * std::abs(factor - 1);
+    }
+    const std::vector<Outlier> outliers = FindOutliers(samples, 1);
+    for (const Outlier& outlier : outliers) {
+      EXPECT_EQ(outlier.sample % 200, 100);
+      EXPECT_NEAR(outlier.median, Mean(smooth.rho[outlier.sample]), 1e-12);
+    }
+    EXPECT_NEAR(LightOf(outliers, samples), off / all, 1e-9 * off / all);
+  }
+  EXPECT_EQ(LightOf({}, smooth), 0);
+}
+
+TEST(Outliers, FewAndDarkOnesStay) {
+  const Measurement smooth = LoadMeasurement("synth:plastic@40x40x40");
+  const BrdfSamples samples = SamplesOf(smooth);
+  // Of the brightest samples, and of those that reflect the least light.
+  std::vector<int> by_light(samples.size());
+  std::iota(by_light.begin(), by_light.end(), 0);
+  std::ranges::stable_sort(by_light, std::less(), [&](int j) {
+    const Cosines cosines = samples.CosinesOf(j);
+    return samples.SolidAngle(j) * cosines.i * cosines.o * Mean(samples.rho[j]);
+  });
+  const auto left_out = [&](int first, int count, int step) {
+    Measurement measurement = smooth;
+    for (int k = first; k < first + count * step; k += step) {
+      Multiply(0, samples.bins[by_light[k]], &*measurement.table);
+    }
+    LeaveOutOutliers(1, &measurement);
+    EXPECT_EQ(measurement.notes.empty(), CountsOf(measurement).negative == 0);
+    return CountsOf(measurement).negative;
+  };
+  const int last = samples.size() - 1;
+  EXPECT_EQ(left_out(last - 900, 9, 100), 0);     // few
+  EXPECT_GE(left_out(last - 3000, 30, 100), 20);  // bright
+  EXPECT_EQ(left_out(100, 12, 10), 0);            // dark
 }
 
 }  // namespace
