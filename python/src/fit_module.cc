@@ -27,6 +27,7 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .missing = OptionOf<double>(options, "missing", "a number"),
       .corrupt = OptionOf<std::string>(options, "corrupt", "a text"),
       .cosine = OptionOf<double>(options, "cosine", "a number"),
+      .tilt_deg = OptionOf<double>(options, "tilt", "a number of degrees"),
       .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
       .num_threads = ThreadsOf(options),
       .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),

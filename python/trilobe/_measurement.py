@@ -180,6 +180,7 @@ def read(
     missing: float = 0,
     corrupt: str = "",
     cosine: float = 0,
+    tilt: float = 0,
     seed: int = 1,
     max_angle: float = 90,
     min_theta_d: float = -1,
@@ -196,6 +197,7 @@ def read(
         missing: the share of the samples that is left out at random.
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
         cosine: takes cos theta_i to this power out of it.
+        tilt: takes out by how much the sample leant towards azimuth 0 [degrees].
         seed: of whatever is random.
         max_angle: theta_i and theta_o beyond it are left out [degrees].
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the
@@ -213,6 +215,7 @@ def read(
         missing=missing,
         corrupt=corrupt,
         cosine=cosine,
+        tilt=tilt,
         seed=seed,
         max_angle=max_angle,
         min_theta_d=min_theta_d,
@@ -286,6 +289,7 @@ def source_options(**given: Any) -> dict[str, Any]:
         "missing": 0.0,
         "corrupt": "",
         "cosine": 0.0,
+        "tilt": 0.0,
         "seed": 1,
         "max_angle": 90.0,
         "min_theta_d": -1.0,

@@ -31,6 +31,9 @@ DEFINE_double(
     "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "
     "to 2: 1 where it has a cosine too many, -1 where it has one too few; `trilobe info` "
     "tells");
+DEFINE_double(tilt, 0,
+              "correct a measurement whose sample leant by so many degrees towards azimuth 0, from "
+              "which the light of a table comes, from -30 to 30; `trilobe info` tells");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
 DEFINE_double(min_theta_d, -1,
@@ -93,6 +96,7 @@ SourceOptions SourceOptionsFromFlags() {
                            .missing = FLAGS_missing,
                            .corrupt = FLAGS_corrupt,
                            .cosine = FLAGS_cosine,
+                           .tilt_deg = FLAGS_tilt,
                            .seed = static_cast<uint64_t>(FLAGS_seed),
                            .num_threads = ThreadsFromFlags(),
                            .max_angle_deg = FLAGS_max_angle,
@@ -105,7 +109,7 @@ SourceOptions SourceOptionsFromFlags() {
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",     "missing",     "corrupt",      "cosine",   "seed",
+  return {"noise",     "missing",     "corrupt",      "tilt",     "cosine",    "seed",
           "max_angle", "min_theta_d", "extrapolated", "outliers", "radiometry"};
 }
 

@@ -224,7 +224,8 @@ std::vector<std::string> SymptomsOf(const BrdfTable& table) {
   if (const TiltSymptom tilt = TiltOf(table); tilt.IsThere()) {
     tell("the highlight is ", std::abs(tilt.degrees),
          " deg off the mirror direction, as where a sample is tilted by that, or the zero of an "
-         "angle twice as far off");
+         "angle twice as far off; --tilt=",
+         tilt.degrees, " corrects the former");
   }
   if (const OwnShadow shadow = ShadowOf(table); shadow.theta_d_deg > 0) {
     tell("the highlight is ", std::round(shadow.darker),

@@ -51,7 +51,7 @@ const std::vector<CorruptionKind>& CorruptionKinds() {
        "theta_o",
        LoseSide},
       {"clip", "share", 0, 1, 0, "b at most the value that a share x of b exceeds", Clip},
-      {"tilt", "deg", 0, 30, 0,
+      {"tilt", "deg", -30, 30, 0,
        "the normal leans by x towards azimuth 0, from which the light of a table comes", Tilt},
       {"origin", "deg", -30, 30, 0, "theta_o is x off, in the plane of azimuth 0", ShiftOrigin},
       {"aperture", "deg", 0, 30, 0, "mean over 19 points of a disc of diameter x about wo",

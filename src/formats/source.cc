@@ -104,10 +104,14 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
 
 void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   std::vector<Corruption> corruptions = ParseCorruptions(options.corrupt);
-  if (options.cosine != 0) {
+  // What undoes a corruption is the same, the other way round.
+  const auto undo = [&](const char* kind, double strength) {
+    if (strength == 0) return;
     corruptions.push_back(
-        {.kind = &FindNamed("kind", "cosine", CorruptionKinds()), .strength = -options.cosine});
-  }
+        {.kind = &FindNamed("kind", kind, CorruptionKinds()), .strength = -strength});
+  };
+  undo("tilt", options.tilt_deg);
+  undo("cosine", options.cosine);
   Corrupt(corruptions, options.seed, options.num_threads, measurement);
 }
 
@@ -122,6 +126,8 @@ void CheckSourceOptions(const SourceOptions& options) {
               "in degrees from 0 to below 90, or -1 to go by the data");
   FindNamed("radiometry", options.radiometry, UtiaRadiometries());
   ParseCorruptions(options.corrupt);
+  CheckNumber("--tilt", options.tilt_deg, options.tilt_deg >= -30 && options.tilt_deg <= 30,
+              "in degrees from -30 to 30");
   CheckNumber("--cosine", options.cosine, options.cosine >= -2 && options.cosine <= 2,
               "from -2 to 2");
 }

@@ -71,7 +71,11 @@ TEST(Symptoms, ATiltIsToldByItsAngle) {
   EXPECT_NEAR(TiltOf(Corrupted("tilt:1")).degrees, 1, 0.2);
   // The half vector turns by half of what the detector's arm is off.
   EXPECT_NEAR(TiltOf(Corrupted("origin:4")).degrees, 2, 0.4);
-  EXPECT_THAT(SymptomsOf(Corrupted("tilt:1")), ElementsAre(HasSubstr("tilted")));
+  EXPECT_THAT(SymptomsOf(Corrupted("tilt:1")), ElementsAre(HasSubstr("is tilted")));
+  SourceOptions options;
+  options.corrupt = "tilt:1";
+  options.tilt_deg = 1;
+  EXPECT_NEAR(TiltOf(LoadSource("synth:aluminium@60x30x60", options)).degrees, 0, 0.1);
 }
 
 TEST(Symptoms, AShadowIsTold) {

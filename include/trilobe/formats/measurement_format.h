@@ -18,6 +18,7 @@ struct SourceOptions {
   double missing = 0.0;      // share of the bins or samples that is left out at random, 0 up to 1
   std::string corrupt = {};  // ParseCorruptions: what happens to what was measured, by `seed`
   double cosine = 0;         // exponent of the cos theta_i that is taken out of what was measured
+  double tilt_deg = 0;       // by which the sample leant towards azimuth 0, which is taken out
   uint64_t seed = 1;
   int num_threads = 1;
   double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured; above 0

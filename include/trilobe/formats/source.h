@@ -40,7 +40,8 @@ Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
 BrdfTable ParseSource(std::string_view bytes, const std::string& source,
                       const SourceOptions& options = {});
 
-// What these do before: corrupts what was read, and takes a cosine out of it, by the options.
+// What these do before: corrupts what was read, and takes a tilt and a cosine out of it, by the
+// options.
 void CorruptBy(const SourceOptions& options, Measurement* measurement);
 
 // What these do last: decides, by the options, which bins or samples that were read count as
