@@ -209,6 +209,8 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
   }
   fit.robust = OptionOf<double>(options, "robust", "a number");
   if (!(fit.robust >= 0 && fit.robust <= 1e6)) throw Error("robust must be from 0 to 1e6");
+  fit.smoothness = OptionOf<double>(options, "smoothness", "a number");
+  if (!(fit.smoothness >= 0 && fit.smoothness <= 1)) throw Error("smoothness must be from 0 to 1");
   const int numbers = OptionOf<int>(options, "max_parameters", "an integer");
   if (numbers < 1) throw Error("max_parameters must be at least 1");
   if (OptionOf<std::string>(options, "model", "a name") == "auto") fit.max_parameters = numbers;

@@ -93,6 +93,7 @@ def fit(
     weighting: str = "appearance",
     prior: float | None = None,
     robust: float = 0,
+    smoothness: float = 0,
     match_reflectance: bool = True,
     max_parameters: int = 822,
     seed: int = 1,
@@ -119,6 +120,7 @@ def fit(
         weighting: a name of `weightings()`, or "power:...".
         prior: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
+        smoothness: by which share E may rise for the smoothest tables; 0.005 costs nothing that is seen.
         match_reflectance: whether the light that is reflected is mended after the fit.
         max_parameters: of model="auto", how many the model may store.
         seed: of whatever is random.
@@ -154,6 +156,7 @@ def fit(
         "weighting": weighting,
         "prior": prior,
         "robust": robust,
+        "smoothness": smoothness,
         "match_reflectance": match_reflectance,
         "max_parameters": max_parameters,
         "seed": seed,

@@ -9,6 +9,7 @@
 #include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/reflectance.h"
+#include "solvers/smooth/smoothest.h"
 #include "trilobe/appearance/material.h"
 #include "trilobe/objective/score.h"
 #include "trilobe/registry/solvers.h"
@@ -134,6 +135,15 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   if (options.prior != nullptr) {
     overshoot = CorrectOvershoot(*options.prior, options.stop, &solved, &model);
   }
+  std::optional<FinishedFit::Smoothed> smoothed;
+  if (options.smoothness > 0 && !options.stop()) {
+    std::optional<SmoothedModel> smoothest =
+        Smoothest(solved, model, options.smoothness, options.stop);
+    if (smoothest) {
+      model = std::move(smoothest->model);
+      smoothed = {.rise = smoothest->rise, .stiffness = smoothest->stiffness};
+    }
+  }
   if (!options.stop()) {
     const double before = solved.data().Value(model);
     if (TieEntriesAtDataEdge(solved, &model, options.stop) && before > 0) {
@@ -141,8 +151,11 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     }
   }
   Canonicalize(objective, &model);
-  FinishedFit fit{
-      .objective = objective, .model = std::move(model), .overshoot = overshoot, .tied = tied};
+  FinishedFit fit{.objective = objective,
+                  .model = std::move(model),
+                  .overshoot = overshoot,
+                  .smoothed = smoothed,
+                  .tied = tied};
   std::optional<Looks> looks;
   if (measured != nullptr) looks.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();

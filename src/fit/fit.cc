@@ -70,6 +70,8 @@ bool HasEnded(StopReason reason) {
 FitOptions Checked(FitOptions options) {
   CheckNumber("robust", options.robust, options.robust >= 0 && std::isfinite(options.robust),
               "finite and 0 or more");
+  CheckNumber("smoothness", options.smoothness, options.smoothness >= 0 && options.smoothness <= 1,
+              "from 0 to 1");
   CheckNumber("max_parameters", options.max_parameters, options.max_parameters >= 0, "0 or more");
   CheckNumThreads(options.num_threads);
   const auto complete = [&options, by_default = FitOptions()](const auto member) {
@@ -179,6 +181,7 @@ class Fitting {
   void Finish(const Objective& solved, const SyntheticPrior* prior, FactorModel model,
               FitResult* fit) const {
     FinishOptions finish{
+        .smoothness = options_.smoothness,
         .robust = options_.robust,
         .max_parameters = options_.max_parameters,
         .prior = prior,
@@ -193,8 +196,9 @@ class Fitting {
     } else {
       fit->objective = finished.objective;
     }
-    fit->finished = {finished.overshoot, finished.tied, std::move(finished.candidates),
-                     finished.chosen, finished.matched};
+    fit->finished = {finished.overshoot, finished.smoothed,
+                     finished.tied,      std::move(finished.candidates),
+                     finished.chosen,    finished.matched};
     fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
     fit->file.layout = std::move(finished.layout);
     const ModelSpec& spec = fit->model().spec();

@@ -119,6 +119,10 @@ std::string Describe(const FitReport::Finished& finished) {
         "samples, and was drawn to the prior there; E " +
         Text(finished.overshoot->E_before) + " -> " + Text(finished.overshoot->E_after) + "\n";
   }
+  if (finished.smoothed) {
+    text += "smooth       the smoothest tables for an E that rose by " +
+            Text(100 * finished.smoothed->rise, 3) + " %\n";
+  }
   if (finished.tied) {
     // A fit that was stopped early gains more from the steps of the refit than tying costs.
     text += "data edge    entries read by few samples follow from their neighbours; E " +
@@ -193,6 +197,10 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
                                   ? Json{{"objective_before", report.finished.overshoot->E_before},
                                          {"objective_after", report.finished.overshoot->E_after}}
                                   : Json()},
+      {"smoothed", report.finished.smoothed
+                       ? Json{{"objective_rise", report.finished.smoothed->rise},
+                              {"stiffness", report.finished.smoothed->stiffness}}
+                       : Json()},
       {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
       {"threads", fit.threads},
       {"options",

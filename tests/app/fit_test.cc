@@ -516,6 +516,8 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--model=auto", "--max_parameters=-5"}, "--max_parameters must be at least 1"},
       {{"--robust=-1"}, "--robust must be from 0 to 1e6"},
       {{"--robust=nan"}, "--robust must be from 0 to 1e6"},
+      {{"--smoothness=2"}, "--smoothness must be from 0 to 1"},
+      {{"--smoothness=nan"}, "--smoothness must be from 0 to 1"},
       {{"--robust=inf"}, "--robust must be from 0 to 1e6"},
       {{"--model=independent", "--lobes=2"}, "--lobes"},
       {{"--lobes=-1"}, "lobes is -1"},

@@ -56,6 +56,25 @@ TEST(Fit, TellsOfItsModelAndHowFarItIs) {
   EXPECT_EQ(Parameters(fit), Parameters(Fit(measured, options)));
 }
 
+// After a solver that has come to the end, so that E cannot but rise.
+TEST(Fit, IsAsSmoothAsAsked) {
+  const Measurement measured = LoadMeasurement("synth:plastic@20x20x40");
+  FitOptions options = Quick();
+  options.solver = "varpro";
+  options.solver_options = [](const ModelSpec& /*spec*/) {
+    return SolverOptions{.diagnose = false};
+  };
+  options.match_reflectance = false;
+  const FitResult least = Fit(measured, options);
+  EXPECT_FALSE(least.finished.smoothed);
+  options.smoothness = 0.01;
+  const FitResult smooth = Fit(measured, options);
+  ASSERT_TRUE(smooth.finished.smoothed);
+  EXPECT_LE(smooth.finished.smoothed->rise, 0.01);
+  EXPECT_NEAR(smooth.score.objective, (1 + smooth.finished.smoothed->rise) * least.score.objective,
+              1e-9 * least.score.objective);
+}
+
 TEST(Fit, ChecksItsOptions) {
   const Measurement measured = LoadMeasurement("synth:plastic@20x20x40");
   FitOptions options = Quick();

@@ -19,6 +19,8 @@ namespace trilobe {
 // What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
 // no budget of parameters unless it has begun to choose.
 struct FinishOptions {
+  // Above 0: the smoothest model whose E is at most that share higher takes its place (Smoothest).
+  double smoothness = 0;
   double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
   int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)
   const SyntheticPrior* prior = nullptr;  // that the objective has (CorrectOvershoot)
@@ -33,6 +35,12 @@ struct FinishedFit {
   std::optional<TableLayout> layout = std::nullopt;
   // Nothing where the fit did not overshoot between the samples (CorrectOvershoot).
   std::optional<CorrectedOvershoot> overshoot = std::nullopt;
+  // Nothing if it was not done, or found no smoother model.
+  struct Smoothed {
+    double rise = 0;       // of E, as a fraction
+    double stiffness = 0;  // lambda (Smoothest)
+  };
+  std::optional<Smoothed> smoothed = std::nullopt;
   // By how much tying entries at the edge of the data raised E, as a fraction; nothing if it was
   // not done (TieEntriesAtDataEdge). After a robust fit E, here and of candidates, is that of the
   // reweighted samples.

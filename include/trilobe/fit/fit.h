@@ -51,7 +51,8 @@ struct FitOptions {
   // Of scattered samples, SyntheticPriorOptions::weight, or 0 for no prior; where it is not given,
   // 1, and with kAnisotropic 0.
   std::optional<double> prior = {};
-  double robust = 0;       // FinishOptions, as the next two
+  double smoothness = 0;  // FinishOptions, as the next three
+  double robust = 0;
   int max_parameters = 0;  // above 0: --model=auto, of a table
   bool match_reflectance = true;
   bool compare = true;  // makes `appearance`, `left_out`, `reach` and `light` of the result, too
@@ -98,6 +99,7 @@ struct FitResult {
   // What came after the solver (FinishedFit).
   struct Finished {
     std::optional<CorrectedOvershoot> overshoot = {};
+    std::optional<FinishedFit::Smoothed> smoothed = {};
     std::optional<double> tied = {};
     std::vector<ModelCandidate> candidates = {};
     int chosen = -1;

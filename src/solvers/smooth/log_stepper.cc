@@ -17,7 +17,9 @@ constexpr double kMaxFall = 1.0 / 3;  // of the damping after one step
 constexpr double kMinGain = 1e-4;
 // No parameter changes by more than a factor of e^1.5 in one step.
 constexpr double kMaxMove = 1.5;
-constexpr double kFloor = 1e-6;  // zeros become that, of the largest of their kind
+// Zeros become as much of the largest of their kind, or else what moves the residuals by as much of
+// their length.
+constexpr double kFloor = 1e-6, kHarmless = 1e-4;
 
 }  // namespace
 
@@ -32,16 +34,11 @@ LogStepper::LogStepper(const Objective& objective, PhaseSeconds* phases)
 
 void LogStepper::Restart(const FactorModel& model) {
   current_ = model;
+  LiftZeros();
   const std::span<double> x = current_.parameters();
-  for (const auto [begin, size] : current_.Parts()) {
-    const auto part = x.subspan(begin, size);
-    const double least = kFloor * std::ranges::max(part);
-    for (double& value : part) value = std::max(value, least);
-  }
   const std::vector<double>& coverage = objective_.coverage();
   moves_.assign(x.size(), false);
   for (size_t k = 0; k < x.size(); ++k) {
-    if (!(coverage[k] > 0)) x[k] = model.parameters()[k];
     moves_[k] = coverage[k] > 0 && x[k] > 0;
   }
   y_ = Logarithms(current_);
@@ -51,6 +48,30 @@ void LogStepper::Restart(const FactorModel& model) {
   linearized_ = false;
   damping_ = kInitialDamping;
   growth_ = 2;
+}
+
+void LogStepper::LiftZeros() {
+  const std::span<double> x = current_.parameters();
+  std::vector<double> least(x.size());
+  for (const auto [begin, size] : current_.Parts()) {
+    const double largest = std::ranges::max(x.subspan(begin, size));
+    std::fill_n(least.begin() + begin, size, kFloor * largest);
+  }
+  const std::vector<double>& coverage = objective_.coverage();
+  const auto is_low = [&](size_t k) { return coverage[k] > 0 && x[k] < least[k]; };
+  std::vector<size_t> low;
+  for (size_t k = 0; k < x.size(); ++k) {
+    if (is_low(k)) low.push_back(k);
+  }
+  if (low.empty()) return;
+  {
+    const ScopedTimer timer(&phases_->evaluating);
+    equations_.Evaluate(current_, Hessian::kGaussNewton, &at_);
+  }
+  for (const size_t k : low) {
+    const double harmless = kHarmless * std::sqrt(at_.objective / at_.squared_lengths[k]);
+    x[k] = std::max(x[k], at_.squared_lengths[k] > 0 ? std::min(least[k], harmless) : least[k]);
+  }
 }
 
 std::vector<double> LogStepper::Logarithms(const FactorModel& model) const {

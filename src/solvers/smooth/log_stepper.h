@@ -23,8 +23,8 @@ class LogStepper {
   // Times go to *phases.
   LogStepper(const Objective& objective, PhaseSeconds* phases);
 
-  // Goes on from another point, whose zeros, which no factor can move, are lifted to a little of
-  // the largest of their kind.
+  // Goes on from another point, whose zeros, which no factor can move, are lifted as far as does
+  // little to E.
   void Restart(const FactorModel& model);
 
   void set_stiffness(double lambda);
@@ -37,11 +37,13 @@ class LogStepper {
 
   const FactorModel& current() const { return current_; }
   double E() const { return E_; }
+  double roughness() const { return roughness_value_; }
   double penalty() const { return stiffness_ * energy_ * roughness_value_; }  // lambda E0 R
   double minimised() const { return E_ + penalty(); }
   double stiffness() const { return stiffness_; }  // lambda
 
  private:
+  void LiftZeros();
   void Linearize();
   std::vector<double> Logarithms(const FactorModel& model) const;
 

@@ -58,7 +58,7 @@ TEST(LogStepper, EachStepLowersWhatIsMinimised) {
   ExpectEachStepLowers(anisotropic, RandomModel(polar, 2), "anisotropic");
 }
 
-TEST(LogStepper, NoDampingLeadsBelowAMinimum) {
+TEST(LogStepper, ComesToAnExactFit) {
   const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
   const FactorModel truth = RandomModel(spec, 5, 0.7);
   const Objective objective = MakeObjective(TableOf(truth, kGrid), spec);
