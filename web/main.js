@@ -185,7 +185,7 @@ function frame(now) {
       renderer.show(panels, {wipe: state.wipe, stops: state.exposure, mark: point?.at ?? null});
       dirty = false;
     }
-    if (chartsDirty) drawCharts();
+    if (chartsDirty && renderer.shown) drawCharts();  // after the first picture, which people wait for
   } catch (error) {
     tell(error.message);
     throw error;

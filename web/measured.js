@@ -50,13 +50,21 @@ export function bytesOf(base64) {
 
 // Where nothing is valid, the value of the nearest that is: along phi_d, which wraps around, else theta_d, else theta_h.
 function fillFromNearest(rgb, valid, [nh, nd, np]) {
-  const known = Uint8Array.from(valid);
+  const known = Uint8Array.from(valid), longest = Math.max(nh, nd, np);
+  const from = new Int32Array(longest), distance = new Int32Array(longest);
   const fill = (first, count, stride, cyclic) => {
-    const from = new Int32Array(count).fill(-1), distance = new Int32Array(count).fill(1 << 20);
-    for (let i = 0; i < count; ++i) if (known[first + i * stride]) [from[i], distance[i]] = [i, 0];
+    let found = 0;
+    for (let i = 0; i < count; ++i) found += known[first + i * stride];
+    if (found === 0 || found === count) return;
+    for (let i = 0; i < count; ++i) {
+      from[i] = known[first + i * stride] ? i : -1;
+      distance[i] = from[i] < 0 ? 1 << 20 : 0;
+    }
     const steps = cyclic ? 2 * count : count;
     const carry = (a, b) => {
-      if (distance[a] + 1 < distance[b]) [distance[b], from[b]] = [distance[a] + 1, from[a]];
+      if (distance[a] + 1 >= distance[b]) return;
+      distance[b] = distance[a] + 1;
+      from[b] = from[a];
     };
     for (let i = 1; i < steps; ++i) carry((i - 1) % count, i % count);
     for (let i = steps - 1; i > 0; --i) carry(i % count, (i - 1) % count);

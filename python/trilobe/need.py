@@ -349,10 +349,13 @@ def need(path: Path, out: Path, options: Options, tell: Any = print) -> dict[str
         for kind in ("full", "pruned"):
             differences[f"moved_{kind}"] = difference(away["measured"].linear, away[kind].linear, white)
             tell(f"moved, {kind}: FLIP {differences[f'moved_{kind}'].flip:.4f}")
-    for name, picture in pictures.items():
-        _write_png(out / f"{name}.png", shown(picture.linear, white))
-    for name, apart in differences.items():
-        _write_png(out / f"{name}_flip.png", apart.map)
+    images = {name: shown(picture.linear, white) for name, picture in pictures.items()}
+    images.update({f"{name}_flip": apart.map for name, apart in differences.items()})
+    rows = [[images[prefix + name] for name in ("measured", "pruned", "pruned_flip")]
+            for prefix in ("", "moved_") if prefix + "measured" in images]
+    images["overview"] = np.concatenate([np.concatenate(row, axis=1) for row in rows])
+    for name, image in images.items():
+        _write_png(out / f"{name}.png", image)
     report = _report(path, options, file.materials, counts, plan, tries, pictures, differences)
     write_text(out / "need.json", json.dumps(report, indent=1) + "\n")
     write_text(out / "index.html", page(report))
@@ -378,14 +381,13 @@ def _report(
     rows = []
     for material, count in zip(materials, counts):
         entry = planned.get(material.name)
-        parts = [material.full.d.size, material.full.s.size, *(getattr(material.full, name).size for name in "DFG")]
         row: dict[str, Any] = {
             "name": material.name, "source": material.source, "share": float(count.bins.sum()),
-            "measured_bytes": material.bytes, "parameters": {"full": int(sum(parts)), "pruned": 0},
+            "measured_bytes": material.bytes, "parameters": {"full": 0, "pruned": 0},
             "seconds": {"full": material.fit_seconds, "pruned": 0.0},
         }
         if entry is not None:
-            row["parameters"]["pruned"] = entry["parameters"]["pruned"]
+            row["parameters"] = entry["parameters"]
             row["seconds"]["pruned"] = entry["seconds"]["fit"] + entry["seconds"]["prune"]
             row["samples"] = entry["samples"]
             row["verdict"] = entry["verdict"]

@@ -13,7 +13,11 @@ namespace {
 
 using gflags::CommandLineFlagInfo;
 
-bool IsHelp(std::string_view word) { return word == "--help" || word == "-help" || word == "-h"; }
+// With a value, too, which gflags would take for the list of all flags of all libraries.
+bool IsHelp(std::string_view word) {
+  return word == "-h" || word.substr(0, word.find('=')) == "--help" ||
+         word.substr(0, word.find('=')) == "-help";
+}
 
 bool IsBool(const std::string& name) {
   CommandLineFlagInfo info;

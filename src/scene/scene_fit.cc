@@ -377,7 +377,9 @@ class MaterialFitter {
     fit.data_notes = measured().notes;
     fit.valid_samples = CountsOf(measured()).valid;
     fit.used_samples = objective.samples().size();
-    fit.full_parameters = full->file.model.spec().num_parameters();
+    const ModelSpec& full_spec = full->file.model.spec();
+    fit.full_parameters = full->file.layout ? full->file.layout->num_parameters(full_spec)
+                                            : full_spec.num_parameters();
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);

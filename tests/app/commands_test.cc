@@ -63,7 +63,7 @@ TEST(HelpTest, ListsCommandsAndTheFlagsOfEach) {
 TEST(HelpTest, IsTheSameInEveryPlaceAndNotThatOfGflags) {
   const std::string all = RunProgram({"help"}).out;
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{}, {"--help"}, {"-help"}, {"-h"}}) {
+       {std::vector<std::string>{}, {"--help"}, {"-help"}, {"-h"}, {"--help=1"}}) {
     const ProgramResult result = RunProgram(words);
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.out, all);
