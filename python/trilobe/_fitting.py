@@ -120,7 +120,7 @@ def fit(
         weighting: a name of `weightings()`, or "power:...".
         prior: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
-        smoothness: by which share E may rise for the smoothest tables; 0.005 costs nothing that is seen.
+        smoothness: by which share E may rise for the smoothest tables; 0.005 costs little that is seen.
         match_reflectance: whether the light that is reflected is mended after the fit.
         max_parameters: of model="auto", how many the model may store.
         seed: of whatever is random.

@@ -48,7 +48,7 @@ DEFINE_double(
 DEFINE_double(
     smoothness, 0,
     "let E rise by this share at the end for tables as smooth as that allows: lobes that are told "
-    "apart, without holes; 0.005 costs nothing that is seen, 0 is the least E");
+    "apart, without holes; 0.005 costs little that is seen, 0 is the least E");
 DEFINE_bool(match_reflectance, true,
             "of a table: where a fit that has converged reflects more or less light than was "
             "measured, by more than 1 %, let E rise a little to mend that, as far as neither the "
