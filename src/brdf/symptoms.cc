@@ -84,27 +84,35 @@ PlateauSymptom PlateauOf(const BrdfTable& table) {
   const GridCosines cosines(table.grid);
   struct Largest {
     double value = 0;
-    int count = 0;
-    void Add(double x) {
+    int count = 0, rows = 0, last_row = -1;
+    void Add(double x, int row) {
       if (x > value * (1 + kEqual)) *this = {.value = x};
-      count += x > value * (1 - kEqual) ? 1 : 0;
+      if (!(x > value * (1 - kEqual))) return;
+      ++count;
+      rows += row != last_row ? 1 : 0;
+      last_row = row;
     }
   };
+  PlateauSymptom symptom;
   std::array<Largest, kChannels> rho, signals;
   for (int bin = 0; bin < table.grid.size(); ++bin) {
     if (!valid[bin]) continue;
+    ++symptom.valid;
     const double cos_i = cosines(bin).i;
+    const int row = bin / table.grid.phi_d;
     for (int c = 0; c < kChannels; ++c) {
       const double value = table.Value(c, bin);
       if (value < rho[c].value / 2 && value * cos_i < signals[c].value / 2) continue;
-      rho[c].Add(value);
-      signals[c].Add(value * cos_i);
+      rho[c].Add(value, row);
+      signals[c].Add(value * cos_i, row);
     }
   }
-  PlateauSymptom symptom;
   for (int c = 0; c < kChannels; ++c) {
-    if (!(rho[c].value > 0)) continue;
-    symptom.values = std::max({symptom.values, rho[c].count, signals[c].count});
+    for (const Largest& largest : {rho[c], signals[c]}) {
+      if (!(largest.value > 0) || largest.count <= symptom.values) continue;
+      symptom.values = largest.count;
+      symptom.rows = largest.rows;
+    }
   }
   return symptom;
 }

@@ -28,10 +28,12 @@ struct CosineSymptom {
 CosineSymptom CosineOf(const BrdfTable& table);
 
 // How many values have the largest signal, rho cos theta_i, of their channel, or the largest rho,
-// to 1e-9: where a detector was saturated there is a plateau.
+// to 1e-9, and of how many rows of one theta_h and theta_d: where a detector was saturated there is
+// a plateau. One row may be constant without that, as of a BRDF of theta_h and theta_d only, and so
+// may be more than half of a table, as of a matt one.
 struct PlateauSymptom {
-  int values = 0;
-  bool IsThere() const { return values >= 10; }
+  int values = 0, rows = 0, valid = 0;
+  bool IsThere() const { return values >= 10 && rows >= 2 && values <= valid / 2; }
 };
 PlateauSymptom PlateauOf(const BrdfTable& table);
 

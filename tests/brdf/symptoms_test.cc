@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,15 @@ TEST(Symptoms, APlateauIsTold) {
   EXPECT_LE(PlateauOf(Corrupted("")).values, 4);
   EXPECT_GT(PlateauOf(Corrupted("clip:0.01")).values, 100);
   EXPECT_THAT(SymptomsOf(Corrupted("clip:0.01")), ElementsAre(HasSubstr("saturated")));
+}
+
+TEST(Symptoms, AConstantRowOrTableIsNoPlateau) {
+  for (const char* const source : {"synth:copper@45x45x90", "synth:copper@90x90x180"}) {
+    EXPECT_THAT(SymptomsOf(LoadSource(source)), IsEmpty()) << source;
+  }
+  BrdfTable constant = LoadSource("synth:copper@20x20x40");
+  for (auto& plane : constant.stored) std::ranges::fill(plane, 0.2);
+  EXPECT_FALSE(PlateauOf(constant).IsThere());
 }
 
 TEST(Symptoms, FewLevelsAreTold) {
