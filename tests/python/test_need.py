@@ -45,6 +45,12 @@ SCENE = """<scene version="3.0.0">
 """
 
 
+@pytest.fixture(autouse=True)
+def variant():
+    """Other tests of the same run choose others."""
+    mi.set_variant("llvm_ad_rgb")
+
+
 @pytest.fixture
 def scene(tmp_path):
     path = tmp_path / "scene.xml"
