@@ -211,7 +211,9 @@ def test_says_in_a_line_what_is_wrong(ask, told):
 
 
 LONG = """
+import signal
 import trilobe
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever a script in the background passes on
 result = trilobe.fit("synth:plastic", solver="awls", max_iterations=1000, tolerance=0, progress=True)
 assert result.interrupted and result.report["interrupted"], result.report["stop_reason"]
 assert result.model.lobes == 3
