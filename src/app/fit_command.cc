@@ -135,6 +135,10 @@ FitSettings SettingsFromFlags() {
   if (!(FLAGS_smoothness >= 0 && FLAGS_smoothness <= 1)) {
     throw Error("--smoothness must be from 0 to 1");
   }
+  if (ChoosesModel() && FLAGS_smoothness > 0) {
+    throw Error(
+        "--smoothness is for a form that is given: tables that --model=auto chooses are thinned");
+  }
   if (FLAGS_max_parameters < 1) throw Error("--max_parameters must be at least 1");
   if (!ChoosesModel() && !IsDefault("max_parameters")) {
     throw Error("--max_parameters goes with --model=auto");

@@ -123,6 +123,26 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
   }
 }
 
+// By the whole share or, where that does harm, by part of it.
+void SmoothOut(const Objective& solved, const FinishOptions& options, Looks* looks,
+               FinishedFit* fit) {
+  constexpr double kParts[] = {1, 0.25};
+  std::optional<NoHarm> no_harm;
+  for (const double part : kParts) {
+    std::optional<SmoothedModel> smoothest =
+        Smoothest(solved, fit->model, part * options.smoothness, options.stop);
+    if (!smoothest) return;
+    Canonicalize(solved, &smoothest->model);
+    if (looks != nullptr) {
+      if (!no_harm) no_harm.emplace(fit->objective, fit->model, looks);
+      if (!(*no_harm)(smoothest->model)) continue;
+    }
+    fit->smoothed = {.rise = smoothest->rise, .stiffness = smoothest->stiffness};
+    fit->model = std::move(smoothest->model);
+    return;
+  }
+}
+
 }  // namespace
 
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
@@ -135,15 +155,6 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   if (options.prior != nullptr) {
     overshoot = CorrectOvershoot(*options.prior, options.stop, &solved, &model);
   }
-  std::optional<FinishedFit::Smoothed> smoothed;
-  if (options.smoothness > 0 && !options.stop()) {
-    std::optional<SmoothedModel> smoothest =
-        Smoothest(solved, model, options.smoothness, options.stop);
-    if (smoothest) {
-      model = std::move(smoothest->model);
-      smoothed = {.rise = smoothest->rise, .stiffness = smoothest->stiffness};
-    }
-  }
   if (!options.stop()) {
     const double before = solved.data().Value(model);
     if (TieEntriesAtDataEdge(solved, &model, options.stop) && before > 0) {
@@ -151,11 +162,8 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     }
   }
   Canonicalize(objective, &model);
-  FinishedFit fit{.objective = objective,
-                  .model = std::move(model),
-                  .overshoot = overshoot,
-                  .smoothed = smoothed,
-                  .tied = tied};
+  FinishedFit fit{
+      .objective = objective, .model = std::move(model), .overshoot = overshoot, .tied = tied};
   std::optional<Looks> looks;
   if (measured != nullptr) looks.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();
@@ -185,6 +193,10 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
             ? fit.objective
             : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
     MatchReflectanceOf(weighed, options.stop, &*looks, &fit);
+  }
+  // Tables of a form that was chosen are thinned.
+  if (options.smoothness > 0 && options.max_parameters == 0 && !options.stop()) {
+    SmoothOut(solved, options, looks ? &*looks : nullptr, &fit);
   }
   return fit;
 }

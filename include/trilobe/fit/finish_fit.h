@@ -19,7 +19,8 @@ namespace trilobe {
 // What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
 // no budget of parameters unless it has begun to choose.
 struct FinishOptions {
-  // Above 0: the smoothest model whose E is at most that share higher takes its place (Smoothest).
+  // Above 0: at the end the smoothest model whose E is at most that share higher takes the place of
+  // what was found (Smoothest), if it does no harm. Not of a form that max_parameters chooses.
   double smoothness = 0;
   double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
   int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -95,15 +96,16 @@ Light LightOf(const Objective& objective, const FactorModel& model, Slopes slope
   return light;
 }
 
-// Adds price / 2 |fitted - measured|^2 / |measured|^2 to a problem in the stored parameters.
-void AddPrice(double price, const Light& light, const Reduction& reduction, QuadraticModel* at) {
-  const Reflectance& reflectance = light.reflectance;
-  const Rgb& measured = reflectance.measured;
-  const double of_squares = price / std::pow(std::hypot(measured[0], measured[1], measured[2]), 2);
-  const auto n = static_cast<size_t>(reduction.size());
+// Adds price |fitted - target|^2 / |target|^2 to a problem in parameters of which `slope_of` makes
+// slopes, of those in all.
+template <typename SlopeOf>
+void AddPrice(double price, const Rgb& target, const Light& light, const SlopeOf& slope_of,
+              QuadraticModel* at) {
+  const double of_squares = price / std::pow(std::hypot(target[0], target[1], target[2]), 2);
+  const size_t n = at->gradient.size();
   for (int c = 0; c < kChannels; ++c) {
-    const std::vector<double> slope = reduction.Transpose(light.slope[c]);
-    const double off = reflectance.fitted[c] - measured[c];
+    const std::vector<double> slope = slope_of(light.slope[c]);
+    const double off = light.reflectance.fitted[c] - target[c];
     for (size_t a = 0; a < n; ++a) {
       if (slope[a] == 0) continue;
       at->gradient[a] += of_squares * off * slope[a];
@@ -119,6 +121,21 @@ double Reflectance::Error() const { return RelativeDistance(fitted, measured); }
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) {
   CheckSameSpec(model.spec(), objective.spec());
   return LightOf(objective, model, Slopes::kNone).reflectance;
+}
+
+ReflectancePrice::ReflectancePrice(const Objective& objective, const FactorModel& model,
+                                   double price)
+    : objective_(objective), target_(ReflectanceOf(objective, model).fitted), price_(price) {}
+
+double ReflectancePrice::operator()(const FactorModel& model) const {
+  return price_ * std::pow(RelativeDistance(ReflectanceOf(objective_, model).fitted, target_), 2);
+}
+
+void ReflectancePrice::AddTo(const FactorModel& model, QuadraticModel* at) const {
+  if (target_ == Rgb{}) return;
+  const Light light = LightOf(objective_, model, Slopes::kAll);
+  at->objective += price_ * std::pow(RelativeDistance(light.reflectance.fitted, target_), 2);
+  AddPrice(price_, target_, light, std::identity(), at);
 }
 
 std::optional<MatchedModel> MatchReflectance(const Objective& objective, const Objective& minimised,
@@ -145,7 +162,10 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
       equations.Evaluate(at.model, Hessian::kGaussNewton, &problem);
       problem = reduction(problem);
       const std::vector<double> metric = DampingMetric(reduction.parts(), problem.squared_lengths);
-      AddPrice(price * E0, LightOf(objective, at.model, Slopes::kAll), reduction, &problem);
+      const Light light = LightOf(objective, at.model, Slopes::kAll);
+      AddPrice(
+          price * E0, light.reflectance.measured, light,
+          [&](const std::vector<double>& slope) { return reduction.Transpose(slope); }, &problem);
       step.MoveTo(problem, metric, reduction.Restrict(at.model.parameters()));
       linearized = true;
     }

@@ -8,6 +8,7 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/table_layout.h"
 #include "trilobe/objective/objective.h"
+#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 
@@ -25,6 +26,23 @@ struct Reflectance {
   bool IsOff() const { return Error() > 0.01; }
 };
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model);
+
+// price |fitted - target|^2 / |target|^2, to be minimised beside E, so that steps that care for
+// something else keep the light. Holds a reference to the objective.
+class ReflectancePrice {
+ public:
+  // The target: what `model` reflects.
+  ReflectancePrice(const Objective& objective, const FactorModel& model, double price);
+
+  double operator()(const FactorModel& model) const;
+  // Makes E + that of E, to second order around a model, in all its parameters. Gauss-Newton.
+  void AddTo(const FactorModel& model, QuadraticModel* at) const;
+
+ private:
+  const Objective& objective_;
+  const Rgb target_;
+  const double price_;
+};
 
 // E of values relative to what was measured hardly sees the light of a narrow highlight: a fit that
 // cannot follow it ends near the geometric mean of what it should be, and the whole surface is

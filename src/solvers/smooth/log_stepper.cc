@@ -44,6 +44,7 @@ void LogStepper::Restart(const FactorModel& model) {
   y_ = Logarithms(current_);
   const ScopedTimer timer(&phases_->evaluating);
   E_ = objective_.Value(current_);
+  light_ = PriceOf(current_);
   roughness_value_ = roughness_(y_);
   linearized_ = false;
   damping_ = kInitialDamping;
@@ -74,6 +75,10 @@ void LogStepper::LiftZeros() {
   }
 }
 
+double LogStepper::PriceOf(const FactorModel& model) const {
+  return price_ != nullptr ? (*price_)(model) : 0;
+}
+
 std::vector<double> LogStepper::Logarithms(const FactorModel& model) const {
   const std::span<const double> x = model.parameters();
   std::vector<double> y(x.size(), 0.0);
@@ -95,6 +100,7 @@ void LogStepper::Linearize() {
   {
     const ScopedTimer timer(&phases_->evaluating);
     equations_.Evaluate(current_, Hessian::kGaussNewton, &at_);
+    if (price_ != nullptr) price_->AddTo(current_, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
   const std::span<const double> x = current_.parameters();
@@ -143,13 +149,14 @@ bool LogStepper::Step() {
     if (moves_[k]) trial.parameters()[k] *= std::exp(step[k]);
   }
   std::vector<double> y = Logarithms(trial);
-  double E = 0;
+  double E = 0, light = 0;
   {
     const ScopedTimer timer(&phases_->evaluating);
     E = objective_.Value(trial);
+    light = PriceOf(trial);
   }
   const double roughness = roughness_(y);
-  const double before = minimised(), after = E + stiffness_ * energy_ * roughness;
+  const double before = minimised(), after = E + stiffness_ * energy_ * roughness + light;
   const double gain = (before - after) / (2 * decrease);
   if (!(after < before && (gain > kMinGain || !(decrease > 0)))) {
     damping_ *= growth_;
@@ -162,6 +169,7 @@ bool LogStepper::Step() {
   current_ = std::move(trial);
   y_ = std::move(y);
   E_ = E;
+  light_ = light;
   roughness_value_ = roughness;
   linearized_ = false;
   return true;

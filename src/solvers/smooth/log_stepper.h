@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "solvers/joint/reflectance.h"
 #include "solvers/smooth/roughness.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
@@ -13,8 +14,8 @@
 namespace trilobe {
 
 // Damped Gauss-Newton steps in the logarithms y of all parameters, which lower
-//   E + lambda E0 R(y),  E0 = Objective::MeasuredEnergy(),  R = Roughness,
-// one trial step at a time. With x = exp(y),
+//   E + lambda E0 R(y) + a price of light,  E0 = Objective::MeasuredEnergy(),  R = Roughness,
+// the latter none by default, one trial step at a time. With x = exp(y),
 //   g_y = x g_x,   H_y = diag(x) J'J diag(x) + diag(max(0, x g_x)):
 // the last term, the part of the second derivative that logarithms bring in, is left out where it
 // would make H indefinite. No parameter can become 0, but nothing keeps it from coming near.
@@ -28,9 +29,11 @@ class LogStepper {
   void Restart(const FactorModel& model);
 
   void set_stiffness(double lambda);
+  // From the next Restart on. Outlives the stepper; null: none.
+  void set_price(const ReflectancePrice* price) { price_ = price; }
 
-  // Tries one step; false if it did not lower E + lambda E0 R, so that the point stayed where it
-  // was.
+  // Tries one step; false if it did not lower what is minimised, so that the point stayed where
+  // it was.
   bool Step();
   // No damping leads lower.
   bool exhausted() const;
@@ -39,11 +42,12 @@ class LogStepper {
   double E() const { return E_; }
   double roughness() const { return roughness_value_; }
   double penalty() const { return stiffness_ * energy_ * roughness_value_; }  // lambda E0 R
-  double minimised() const { return E_ + penalty(); }
+  double minimised() const { return E_ + penalty() + light_; }
   double stiffness() const { return stiffness_; }  // lambda
 
  private:
   void LiftZeros();
+  double PriceOf(const FactorModel& model) const;
   void Linearize();
   std::vector<double> Logarithms(const FactorModel& model) const;
 
@@ -53,10 +57,11 @@ class LogStepper {
   const Roughness roughness_;
   const double energy_;  // E0
   double stiffness_ = 0;
+  const ReflectancePrice* price_ = nullptr;
   FactorModel current_;
   std::vector<double> y_;    // of the tables of current_; 0 for what does not move
   std::vector<bool> moves_;  // observed, and above 0
-  double E_ = 0, roughness_value_ = 0;
+  double E_ = 0, roughness_value_ = 0, light_ = 0;  // light_: what the price makes of it
   bool linearized_ = false;
   QuadraticModel at_;           // of E + penalty at current_, in y
   std::vector<double> factor_;  // scratch: A, and its Cholesky factor

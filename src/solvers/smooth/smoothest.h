@@ -17,8 +17,9 @@ struct SmoothedModel {
 
 // Of all models whose E is at most (1 + share) times that of `model`, about the smoothest
 // (Roughness) that steps from there lead to: E + lambda E0 R is lowered, lambda such that E rises
-// by as much. Along flat valleys of E, where data do not choose, smoothness does. Nothing where no
-// smoother model was found, and where E is 0.
+// by as much, and light is held where it is. Along flat valleys of E, where data do not choose,
+// smoothness does. Nothing where no smoother model was found, and where E
+// is 0.
 std::optional<SmoothedModel> Smoothest(const Objective& objective, const FactorModel& model,
                                        double share, const StopCheck& stop);
 
