@@ -147,6 +147,7 @@ class SceneFile:
             props.set_id(f"trilobe-need {number}")
             for key, value in properties.items():
                 props[key] = value
+        mi.file_resolver().prepend(str(self._path.resolve().parent))  # meshes lie beside the scene
         made = mi.parser.instantiate(mi.parser.ParserConfig(mi.variant()), state)
         return made[0] if isinstance(made, list) else made
 

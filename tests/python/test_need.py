@@ -58,6 +58,15 @@ def scene(tmp_path):
     return path
 
 
+@pytest.mark.parametrize("name", ["room", "backlit", "cloth"])
+def test_loads_the_scenes_that_come_along_from_any_folder(name, tmp_path, monkeypatch):
+    path = Path(__file__).resolve().parents[2] / "scenes" / f"{name}.xml"
+    monkeypatch.chdir(tmp_path)
+    file = need.SceneFile(path, {})
+    loaded = file.load({material.name: {"type": "trilobe", "filename": material.source} for material in file.materials})
+    assert len(file.sides(loaded)) == len(file.materials)
+
+
 def test_counts_where_the_light_comes_from(scene, tmp_path):
     file = need.SceneFile(scene, {})
     assert [material.name for material in file.materials] == ["plate", "unseen"]
