@@ -36,9 +36,9 @@ class Tidy(unittest.TestCase):
             for path in files if path.endswith(".cc")]))
         return root
 
-    def tidy(self, root):
+    def tidy(self, root, *seconds):
         """Whether all is well, and how many files were looked at."""
-        done = subprocess.run([root / "scripts/tidy.py", root / "build/tidy", ""],
+        done = subprocess.run([root / "scripts/tidy.py", root / "build/tidy", "", *seconds],
                               capture_output=True, text=True,
                               env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
         self.assertEqual(done.stderr, "")
@@ -54,6 +54,12 @@ class Tidy(unittest.TestCase):
         (root / "src/c.cc").write_text("int* q = 0;  // NOLINT\n")
         self.assertEqual(self.tidy(root), (True, 1))
         self.assertEqual(self.tidy(root), (True, 0))
+
+    def test_begins_with_no_file_when_time_is_over_and_says_so(self):
+        root = self.repository("one", {"src/b.h": "", "src/c.cc": BAD})
+        self.assertEqual(self.tidy(root, "0"), (True, 0))
+        self.assertIn("; 1 are left to scripts/nightly.sh", self.found)
+        self.assertEqual(self.tidy(root, "600"), (False, 1))
 
     def test_another_checkout_has_what_one_has_seen(self):
         files = {"src/a.cc": GOOD, "src/b.h": ""}
