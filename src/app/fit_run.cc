@@ -127,8 +127,9 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
   if (measured.table) {
-    for (const std::string& symptom : SymptomsOf(*measured.table))
+    for (const std::string& symptom : SymptomsOf(*measured.table)) {
       measured.notes.push_back(symptom);
+    }
   }
   TellNotes(measured);
   report.data_notes = measured.notes;

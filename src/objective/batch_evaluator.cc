@@ -200,8 +200,9 @@ void BatchEvaluator::SetModel(const FactorModel& model) {
     for (int t = 0; t < spec_.num_tables(factor); ++t) {
       const std::span<const double> table = model.table(factor, t);
       std::vector<double>& target = tables_[LookupOf(factor, t)];
-      for (size_t k = 0; k < table.size(); ++k)
+      for (size_t k = 0; k < table.size(); ++k) {
         target[k * layout.size + layout.of_table[t]] = table[k];
+      }
     }
   }
   for (int c = 0; c < kChannels; ++c) {

@@ -228,10 +228,12 @@ void ThinTables(Pruning* pruning) {
   what << "nodes of";
   for (const Factor factor : kFactors) {
     size_t nodes_before = 0, nodes_after = 0;
-    for (const auto& nodes : before.layout.nodes[static_cast<int>(factor)])
+    for (const auto& nodes : before.layout.nodes[static_cast<int>(factor)]) {
       nodes_before += nodes.size();
-    for (const auto& nodes : after.layout.nodes[static_cast<int>(factor)])
+    }
+    for (const auto& nodes : after.layout.nodes[static_cast<int>(factor)]) {
       nodes_after += nodes.size();
+    }
     what << (factor == Factor::kD ? " " : ", ") << FactorName(factor) << " from " << nodes_before
          << " to " << nodes_after;
   }

@@ -310,8 +310,9 @@ TRILOBE_ALWAYS_INLINE double AddBatch(const SumJob& job, int begin, int end,
         slopes.slope = slope;
       }
       for (int c = 0; c < kChannels; ++c) {
-        for (int b = 0; b < lanes; ++b)
+        for (int b = 0; b < lanes; ++b) {
           slopes.w_slope[c * lanes + b] = w[c] * slopes.slope[c * lanes + b];
+        }
       }
     }
     if (kNewton) SetSecondDerivatives<kOneVector>(job, at);

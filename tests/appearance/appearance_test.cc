@@ -135,8 +135,9 @@ TEST(CompareSpheres, NinetyFivePercentOfThePixelsStayBelow) {
   double largest = 0;
   for (int k = 0; k < 100; ++k) {
     fitted.radiance[(k * 37) % 100] = {0.35 + 0.001 * k, 0.35, 0.35};
-    if (k == 94)
+    if (k == 94) {
       largest = LabDifference(ToLab({0.35 + 0.001 * k, 0.35, 0.35}), ToLab({0.35, 0.35, 0.35}));
+    }
   }
   EXPECT_NEAR(CompareSpheres(measured, fitted).delta_e_95, largest, 1e-9);
 }

@@ -84,8 +84,9 @@ TEST(CornellFile, ReadsPublishedMeasurements) {
     // The mirror direction, at the far side, is the brightest of 50 degrees.
     int brightest = -1;
     for (int j = 0; j < measurement.samples.size(); ++j) {
-      if (std::abs(measurement.samples.directions[j].theta_i - DegreesToRadians(50)) > 1e-4)
+      if (std::abs(measurement.samples.directions[j].theta_i - DegreesToRadians(50)) > 1e-4) {
         continue;
+      }
       if (brightest < 0 || measurement.samples.rho[j][1] > measurement.samples.rho[brightest][1]) {
         brightest = j;
       }

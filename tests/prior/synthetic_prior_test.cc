@@ -139,8 +139,9 @@ TEST(SyntheticPrior, KeepsAFitOfFewScatteredSamplesTame) {
   std::vector<int> numbers(all.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   std::mt19937 random(1);
-  for (int j = 0; j < kFew; ++j)
+  for (int j = 0; j < kFew; ++j) {
     std::swap(numbers[j], numbers[j + random() % (numbers.size() - j)]);
+  }
   const std::vector<int> few(numbers.begin(), numbers.begin() + kFew);
   const std::vector<int> others(numbers.begin() + kFew, numbers.end());
   const BrdfSamples data = Selected(all, few), held_out = Selected(all, others);

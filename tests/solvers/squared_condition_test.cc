@@ -38,8 +38,9 @@ FactorModel NearlyEqualLobes(double difference) {
   FactorModel model = RandomModel(ModelSpec::SharedFactors(2, kGrid), 1, 0.3);
   Random random(2);
   const auto copy = [&](std::span<const double> from, std::span<double> target) {
-    for (size_t k = 0; k < target.size(); ++k)
+    for (size_t k = 0; k < target.size(); ++k) {
       target[k] = from[k] * (1 + difference * random.Normal());
+    }
   };
   copy(model.s(0), model.s(1));
   for (const Factor factor : {Factor::kD, Factor::kG}) {

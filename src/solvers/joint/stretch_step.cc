@@ -208,8 +208,9 @@ std::optional<FactorModel> StretchStepper::Step(double lambda, double max_step,
   FactorModel model = WithStretches(model_, StretchesOf(exponents));
   for (size_t a = 0; a < free_.size(); ++a) {
     double change = follows_[0][a];
-    for (size_t k = 0; k < from.size(); ++k)
+    for (size_t k = 0; k < from.size(); ++k) {
       change += follows_[1 + k][a] * (exponents[k] - from[k]);
+    }
     double& x = model.parameters()[free_[a]];
     x = std::max(x - follow * change, 0.0);
   }

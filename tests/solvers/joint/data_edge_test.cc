@@ -30,13 +30,15 @@ BrdfTable Measured(int lobes, double max_degrees, double noise = 0.01) {
     std::ranges::fill(model.s(m), 1 + m);
     const auto D = model.table(Factor::kD, m), G = model.table(Factor::kG, m);
     for (int k = 0; k < spec.d_axis.size; ++k) D[k] = std::exp(-std::pow(k / (3.0 + 4 * m), 2));
-    for (int k = 0; k < spec.g_axis.size; ++k)
+    for (int k = 0; k < spec.g_axis.size; ++k) {
       G[k] = std::cos((k + 0.5) / spec.g_axis.size * (0.5 + m));
+    }
   }
   for (int t = 0; t < spec.num_tables(Factor::kF); ++t) {
     const auto F = model.table(Factor::kF, t);
-    for (int k = 0; k < spec.f_axis.size; ++k)
+    for (int k = 0; k < spec.f_axis.size; ++k) {
       F[k] = 0.2 + std::pow((k + 0.5) / spec.f_axis.size, 5);
+    }
   }
   BrdfTable table = TableOf(model, kGrid);
   Random random(1);
