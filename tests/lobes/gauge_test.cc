@@ -184,25 +184,24 @@ TEST(Gauge, UnobservedBinsAreFilledFromTheirNeighbours) {
     EXPECT_DOUBLE_EQ(D[5], (D[3] + 2 * D[6]) / 3);
     std::vector<double> observed = {D[2], D[3], D[6], D[7]};
     std::ranges::sort(observed);
-    for (const int k : {8, 9}) {  // or less, where more would be reflected there (Continuation) {
+    for (const int k : {8, 9}) {  // or less, where more would be reflected there (Continuation)
       EXPECT_LE(D[k], observed[2] * (1 + 1e-12));
+      EXPECT_GT(D[k], 0);
     }
-    EXPECT_GT(D[k], 0);
   }
-}
-const auto F = model.table(Factor::kF, 0);
-EXPECT_DOUBLE_EQ(F[3], (F[2] + F[4]) / 2);
-std::vector<double> last_F = {F[2], F[4], F[5], F[6], F[7]};
-std::ranges::sort(last_F);
-EXPECT_DOUBLE_EQ(F[8], last_F[2]);
-const auto G = model.table(Factor::kG, 1);
-ASSERT_TRUE(unobserved[model.TableOffset(Factor::kG, 1) + 8]);
-// G / cos theta goes on as it is.
-const CatmullRom spline(spec.g_axis.size);
-std::vector<double> last_G;
-for (int k = 3; k < 8; ++k) last_G.push_back(G[k] / std::cos(spline.NodeAngle(k)));
-std::ranges::sort(last_G);
-EXPECT_DOUBLE_EQ(G[8] / std::cos(spline.NodeAngle(8)), last_G[2]);
+  const auto F = model.table(Factor::kF, 0);
+  EXPECT_DOUBLE_EQ(F[3], (F[2] + F[4]) / 2);
+  std::vector<double> last_F = {F[2], F[4], F[5], F[6], F[7]};
+  std::ranges::sort(last_F);
+  EXPECT_DOUBLE_EQ(F[8], last_F[2]);
+  const auto G = model.table(Factor::kG, 1);
+  ASSERT_TRUE(unobserved[model.TableOffset(Factor::kG, 1) + 8]);
+  // G / cos theta goes on as it is.
+  const CatmullRom spline(spec.g_axis.size);
+  std::vector<double> last_G;
+  for (int k = 3; k < 8; ++k) last_G.push_back(G[k] / std::cos(spline.NodeAngle(k)));
+  std::ranges::sort(last_G);
+  EXPECT_DOUBLE_EQ(G[8] / std::cos(spline.NodeAngle(8)), last_G[2]);
 }
 
 // Lobes and tables that have vanished keep their (lack of) value, without a division by 0.
