@@ -104,7 +104,7 @@ void AddPrice(double price, const Rgb& target, const Light& light, const SlopeOf
   const double of_squares = price / std::pow(std::hypot(target[0], target[1], target[2]), 2);
   const size_t n = at->gradient.size();
   for (int c = 0; c < kChannels; ++c) {
-    const std::vector<double> slope = slope_of(light.slope[c]);
+    const std::vector<double>& slope = slope_of(light.slope[c]);
     const double off = light.reflectance.fitted[c] - target[c];
     for (size_t a = 0; a < n; ++a) {
       if (slope[a] == 0) continue;
