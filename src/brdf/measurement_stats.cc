@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <vector>
 
 #include "geometry/grid_cosines.h"
+#include "math/quantile.h"
 #include "trilobe/base/check.h"
 #include "trilobe/system/parallel.h"
 
@@ -20,11 +20,7 @@ double RelativeDifference(double a, double b) {
 }
 
 double Percentile(std::vector<double>* values, double fraction) {
-  if (values->empty()) return 0;
-  const auto nth = values->begin() +
-                   static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values->size() - 1));
-  std::ranges::nth_element(*values, nth);
-  return *nth;
+  return values->empty() ? 0 : Quantile(values, fraction);
 }
 
 PairError Summarize(std::vector<double> differences) {

@@ -9,6 +9,7 @@
 
 #include "brdf/own_shadow.h"
 #include "geometry/grid_cosines.h"
+#include "math/quantile.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/geometry/channels.h"
 
@@ -16,13 +17,6 @@ namespace trilobe {
 namespace {
 
 constexpr double kEqual = 1e-9;  // relative
-
-double Quantile(std::vector<double>* values, double share) {
-  const auto at = values->begin() +
-                  static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size() - 1));
-  std::ranges::nth_element(*values, at);
-  return *at;
-}
 
 double MeanOfBin(const BrdfTable& table, int bin) {
   return Mean({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});

@@ -16,9 +16,6 @@
 namespace trilobe {
 namespace {
 
-// As many samples a parameter tell the minima apart; with fewer, work that every (theta_h, theta_d)
-// takes, however few its samples, rules the time.
-constexpr StartElimination::Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
 // Where a step costs more by its parameters than by its samples, fewer do.
 constexpr StartElimination::Thinning kThinnedMore{.samples_per_parameter = 6, .max_stride = 24};
 constexpr StartElimination::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
@@ -168,8 +165,9 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
                               .objective = better ? stepper->E() : run->best_objective()});
   };
   {
-    StartElimination elimination(objective,
-                                 objective.spec().anisotropic() ? kThinnedMore : kThinned, stop);
+    StartElimination elimination(
+        objective, objective.spec().anisotropic() ? kThinnedMore : StartElimination::kThinned,
+        stop);
     Starts starts(objective, given, run->options().seed, &elimination, stop);
     for (const Round& round : rounds) {
       starts.EnterUpTo(round.starts);

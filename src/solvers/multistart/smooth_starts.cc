@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "lobes/gauge.h"
+#include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
-#include "solvers/smooth/thinned_for_starts.h"
 #include "trilobe/start/initial_model.h"
 #include "trilobe/system/parallel.h"
 
@@ -43,7 +43,9 @@ std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const Factor
                                         const StopCheck& stop, PhaseSeconds* phases,
                                         const std::function<void(const SoftenedStart&)>& on_pair) {
   constexpr int kPair = 2;
-  const Objective few = ThinnedForStarts(objective);
+  const int stride = StartElimination::StrideFor(objective, StartElimination::kThinned);
+  const Objective few(Thinned(objective.samples(), stride), objective.spec(), objective.weighting(),
+                      /*num_threads=*/1);
   std::vector<SoftenedStart> starts;
   for (int first = 0; first <= kNumSpreads; first += kPair) {
     std::optional<SoftenedStart> pair[kPair];

@@ -15,14 +15,14 @@ namespace {
 // A step that lowers E by less than this fraction ends a candidate's fit.
 constexpr double kSmallDecrease = 1e-5;
 
-int StrideFor(const Objective& objective, const StartElimination::Thinning& thinning) {
+}  // namespace
+
+int StartElimination::StrideFor(const Objective& objective, const Thinning& thinning) {
   // Folded samples are half as many.
   const int fold = objective.samples().on_grid() ? 2 : 1;
   const int wanted = fold * thinning.samples_per_parameter * objective.spec().num_parameters();
   return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
 }
-
-}  // namespace
 
 class StartElimination::Candidate {
  public:

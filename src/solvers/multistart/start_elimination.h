@@ -28,6 +28,11 @@ class StartElimination {
   struct Thinning {
     int samples_per_parameter, max_stride;
   };
+  // As many samples a parameter tell the minima apart; with fewer, work that every
+  // (theta_h, theta_d) takes, however few its samples, rules the time.
+  static constexpr Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
+  // Every how many samples are looked at.
+  static int StrideFor(const Objective& objective, const Thinning& thinning);
 
   // `stop` may be asked from several threads.
   StartElimination(const Objective& objective, const Thinning& thinning, StopCheck stop);
