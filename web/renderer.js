@@ -32,6 +32,7 @@ void main() {
 export const OBJECTS = ['sphere', 'knot', 'cloth', 'flat'];
 const MODES = {fitted: 0, measured: 1, wipe: 2, difference: 3};
 const FRAME_MS = 30;
+const MOVING_MS = 18;  // for a material under a lamp that moves; half the pixels across where all take longer
 
 export class Renderer {
   constructor(canvas, shaderText) {
@@ -353,8 +354,9 @@ export class Renderer {
     if (!this.progress) {
       // The most pixels that one frame can do.
       let first = 0;
-      while (!exposing && first + 1 < levels.length && costOf(levels[first + 1]) < this.rate * (lamp ? 0.06 : FRAME_MS / 1000)) ++first;
-      if (lamp && !this.moving) first = levels.length - 1;
+      const seconds = (lamp ? MOVING_MS * sides.length : FRAME_MS) / 1000;
+      while (!exposing && first + 1 < levels.length && costOf(levels[first + 1]) < this.rate * seconds) ++first;
+      if (lamp) first = Math.max(first, levels.length - (this.moving ? 2 : 1), 0);
       this.progress = {level: first, side: 0, cell: 0};
     }
     const {progress} = this, level = levels[progress.level];

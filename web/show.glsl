@@ -50,8 +50,12 @@ void main() {
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(size)))) continue;
     if (texelFetch(normals, pixel, 0).w == 0.0) continue;
     weights += weight;
+#if SHOWN != 1
     a += weight * texelFetch(fitted, pixel, 0);
+#endif
+#if SHOWN != 0
     b += weight * texelFetch(measured, pixel, 0);
+#endif
   }
 #endif
   float cover = weights;
