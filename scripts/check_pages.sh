@@ -19,5 +19,6 @@ if ! "$venv/bin/python" -c 'import numpy, PIL, playwright, pytest' 2>/dev/null; 
   fi
 fi
 
-"$venv/bin/ruff" check --quiet --config python/ruff.toml tests/web scripts/page_picture.py scripts/page_speed.py scripts/gallery.py materials/make
+"$venv/bin/ruff" check --quiet --config python/ruff.toml tests/web scripts/page_picture.py scripts/page_speed.py scripts/gallery.py \
+  scripts/diagrams scripts/draw_diagrams.py scripts/draw_fits.py scripts/shrink.py materials/make
 "$venv/bin/python" -m pytest -q -p no:cacheprovider "$@" tests/web

@@ -8,7 +8,7 @@ the folder where it runs:
     ![What was measured](images/measured.png)
 
 "made nightly by" marks one that takes long. Where a picture stands on several pages, one of them
-has the comment. Measured files that a command names are looked for in the folder of --data; without
+has the comment. Pictures of the same command are made by running it once. Measured files that a command names are looked for in the folder of --data; without
 them the picture is not checked, and a line says so. What experiments publish is not looked at.
 """
 
@@ -77,22 +77,28 @@ def difference(one: pathlib.Path, other: pathlib.Path) -> str:
     return f"{100 * share:.2g} % of the pixels differ" if share > SHARE else ""
 
 
-def make(how: Made, picture: pathlib.Path, data: pathlib.Path | None,
-         path: str) -> tuple[bytes, str]:
-    """The picture that the command makes, or why there is none."""
+def make(how: Made, names: list[str], data: pathlib.Path | None,
+         path: str) -> dict[str, tuple[bytes, str]]:
+    """The pictures that the command makes, or why there is none."""
     with tempfile.TemporaryDirectory() as folder:
         for name in set(MEASURED.findall(how.command)) - set(WRITTEN.findall(how.command)):
             found = next(iter(sorted(data.rglob(name))), None) if data else None
             if found is None:
-                return b"", f"not checked: {picture.name} ({name} is not in the folder of --data)"
+                return {picture: (b"", f"not checked: {picture} ({name} is not in the folder of "
+                                  "--data)") for picture in names}
             (pathlib.Path(folder) / name).symlink_to(found.resolve())
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", how.command], cwd=folder,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               env={**os.environ, "PATH": path}, check=False)
-        result = pathlib.Path(folder) / picture.name
-        if done.returncode != 0 or not result.is_file():
-            return b"", f"{how.page}: `{how.command}` makes no {picture.name}:\n{done.stdout}"
-        return result.read_bytes(), ""
+        results = {}
+        for picture in names:
+            result = pathlib.Path(folder) / picture
+            if done.returncode != 0 or not result.is_file():
+                results[picture] = (b"", f"{how.page}: `{how.command}` makes no {picture}:\n"
+                                    f"{done.stdout}")
+            else:
+                results[picture] = (result.read_bytes(), "")
+        return results
 
 
 def main() -> int:
@@ -110,12 +116,15 @@ def main() -> int:
     path = ":".join([*(str(root / folder) for folder in commands), os.environ["PATH"]])
 
     made, wrong = pictures(root)
-    for picture, how in sorted(made.items()):
-        if options.quick and how.nightly:
-            continue
-        if options.pictures and picture.name not in options.pictures:
-            continue
-        new, reason = make(how, picture, options.data, path)
+    looked_at = {picture: how for picture, how in sorted(made.items())
+                 if not (options.quick and how.nightly)
+                 and (not options.pictures or picture.name in options.pictures)}
+    results: dict[str, dict[str, tuple[bytes, str]]] = {}
+    for picture, how in looked_at.items():
+        if how.command not in results:
+            names = [one.name for one, by in looked_at.items() if by.command == how.command]
+            results[how.command] = make(how, names, options.data, path)
+        new, reason = results[how.command][picture.name]
         if not new:
             print(reason, flush=True)
             if not reason.startswith("not checked"):

@@ -100,9 +100,9 @@ let panels = [], dirty = true, chartsDirty = true;
 
 function layout() {
   const picture = byId('picture'), canvas = byId('canvas'), width = picture.clientWidth;
-  const scale = Math.min(window.devicePixelRatio || 1, 2), caption = 46, gap = 14;
+  const scale = Math.min(window.devicePixelRatio || 1, 2), gap = 14;
   const modes = state.view === 'side' ? ['measured', 'fitted', 'difference'] : [state.view];
-  const columns = modes.length === 1 ? 1 : width < 620 ? 2 : 3;
+  const columns = modes.length === 1 ? 1 : width < 620 ? 2 : 3, caption = columns === 2 ? 62 : 46;  // one more line
   const size = Math.floor(Math.min((width - gap * (columns + 1)) / columns, modes.length === 1 ? 560 : 620,
                                    Math.max(window.innerHeight * 0.58, 220)));
   const rows = Math.ceil(modes.length / columns), height = rows * (size + caption + gap) + gap / 2;
@@ -132,7 +132,7 @@ function captionOf(mode) {
   if (mode === 'measured') return ['Measured', samples];
   if (mode === 'fitted') return [`Fitted${edited}`, model_];
   if (mode === 'wipe') return [`Measured | Fitted${edited}`, 'move the line below the picture, or drag it'];
-  return ['Where they differ', seen ? `ΔE ${short(seen.mean)} in the mean${seen.partial ? ', with light from unmeasured directions' : seen.mean < 1 ? ': not seen' : ''}` : 'to the eye'];
+  return ['Where they differ', seen ? `ΔE ${short(seen.mean)} ${seen.partial ? 'with unmeasured light' : seen.mean < 1 ? 'in the mean: not seen' : 'in the mean'}` : 'to the eye'];
 }
 
 // CIELAB differences of what is shown, in the mean and below which 95 % stay.

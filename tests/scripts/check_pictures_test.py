@@ -89,6 +89,16 @@ class CheckPictures(unittest.TestCase):
         self.assertFalse(self.check())
         self.assertIn("b.png is not what", self.output)
 
+    def test_a_command_of_several_pictures_runs_once(self):
+        (self.root / "docs/images/b.png").write_bytes(png())
+        (self.root / "make").write_text(
+            f"echo run >> {self.root}/runs; cp {self.root}/made.png a.png; cp a.png b.png")
+        self.page(f"made by: bash {self.root}/make")
+        page = (self.root / "README.md").read_text()
+        (self.root / "README.md").write_text(page + "\n" + page.replace("a.png", "b.png"))
+        self.assertTrue(self.check(), self.output)
+        self.assertEqual((self.root / "runs").read_text(), "run\n")
+
     def test_measured_files_come_from_a_folder(self):
         self.page("made by: cp steel.bsdf a.png")
         self.assertTrue(self.check())
