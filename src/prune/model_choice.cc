@@ -12,6 +12,7 @@
 #include "objective/canonical_form.h"
 #include "prune/model_forms.h"
 #include "prune/prune.h"
+#include "prune/thinned_objective.h"
 #include "prune/unmeasured_prior.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/joint_step.h"
@@ -44,22 +45,9 @@ int LeastStored(const ModelSpec& spec) {
   return layout.num_parameters(spec);
 }
 
-// So many samples for each parameter, more at angles that few have: an entry that is read by none
-// of those left could be anything, and for all samples the model would be far off.
-Objective Thinned(const Objective& objective, int samples_per_parameter, int max_stride) {
-  constexpr int kLeast = 16;  // samples a place, as many times as there are for each parameter
-  const int wanted = samples_per_parameter * objective.spec().num_parameters();
-  const int stride = std::clamp(objective.samples().size() / wanted, 1, max_stride);
-  if (stride == 1) return objective;
-  return {ThinnedByPlace(objective.samples(), stride, kLeast * samples_per_parameter),
-          objective.spec(), objective.weighting(), objective.num_threads()};
+Objective Thinned(const Objective& objective, const SampleThinning& thinning) {
+  return ThinnedObjective(objective, objective.spec().num_parameters(), thinning);
 }
-
-// So many that what a model makes of them is nearly what it makes of all.
-Objective Some(const Objective& objective) { return Thinned(objective, 100, 24); }
-
-// So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
-Objective Few(const Objective& objective) { return Thinned(objective, 32, 72); }
 
 // Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
 // read may be anything.
@@ -132,8 +120,8 @@ class ModelSearch {
         fitted_(fitted),
         options_(options),
         all_(objective),
-        some_(Some(objective)),
-        few_(Few(objective)),
+        some_(Thinned(objective, kSomeSamples)),
+        few_(Thinned(objective, kFewSamples)),
         prior_(objective, fitted),
         some_with_prior_(prior_.With(some_.own())),
         few_with_prior_(prior_.With(few_.own())) {}

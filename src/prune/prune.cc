@@ -27,6 +27,9 @@ constexpr int kStretches = 4;
 constexpr double kStretch = 3;
 constexpr double kLittleMore = 1.25;
 
+// Of E, which no picture shows.
+constexpr double kLittleUnseen = 0.02;
+
 // The first shape that changes no parameter.
 void ShareWhatIsEqual(Pruning* pruning) {
   const PruneState& state = pruning->state();
@@ -64,9 +67,8 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
   }
   if (pruning->options().sharing) ShareWhatIsEqual(pruning);
   PruneState next = pruning->state();
-  const TableLayout needed = NeededLayout(next.model, next.objective->coverage(),
-                                          pruning->may_thin(), /*drop_equal=*/true);
-  for (int f = 0; f < 3; ++f) next.layout.nodes[f] = needed.nodes[f];
+  next.layout = NeededLayout(next.model, next.layout, next.objective->coverage(),
+                             pruning->may_thin(), /*drop_equal=*/true);
   if (next.num_parameters() == pruning->state().num_parameters()) return;
   ExpandStored(next.layout, &next.model);
   next.E = next.data->Value(next.model);
@@ -74,20 +76,58 @@ void LeaveOutWhatIsFree(Pruning* pruning) {
                   true, "they change no value");
 }
 
+// Where a fit of lobes begins, and what is stored of it.
+struct LobeStart {
+  FactorModel model;
+  TableLayout layout;
+};
+
+std::vector<LobeStart> LobeStarts(std::vector<FactorModel> models) {
+  std::vector<LobeStart> starts;
+  for (FactorModel& model : models) {
+    TableLayout all = TableLayout::Full(model.spec());
+    starts.push_back({std::move(model), std::move(all)});
+  }
+  return starts;
+}
+
+// Of a model that came thinned on the nodes that it has.
+std::vector<LobeStart> WithOneLobeLess(const Pruning& pruning) {
+  const PruneState& state = pruning.state();
+  std::vector<LobeStart> starts = LobeStarts(WithOneLobeLess(state.model));
+  if (!pruning.options().layout || state.lobes() < 2) return starts;
+  std::vector<TableLayout> layouts = LayoutsWithOneLobeLess(state.spec(), state.layout);
+  for (size_t k = 0; k < starts.size(); ++k) {
+    starts[k].layout = std::move(layouts[k]);
+    ExpandStored(starts[k].layout, &starts[k].model);
+  }
+  return starts;
+}
+
 // The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
-PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Pruning& pruning) {
+PruneState FitLobes(std::vector<LobeStart> starts, double wanted, const Pruning& pruning) {
+  FitGoal goal{.E = pruning.ForFits(wanted)};
+  // Where E only leads to what is seen, the last of it is not worth its time.
+  if (pruning.options().error) goal.least_gain = kLittleUnseen;
   PruneState best{};
   while (!starts.empty() && !(best.objective != nullptr && pruning.options().stop())) {
-    const ModelSpec spec = starts.front().spec();
+    const ModelSpec spec = starts.front().model.spec();
     const auto others =
         std::stable_partition(starts.begin(), starts.end(),
-                              [&](const FactorModel& start) { return start.spec() == spec; });
-    const std::vector<FactorModel> alike(starts.begin(), others);
+                              [&](const LobeStart& start) { return start.model.spec() == spec; });
+    std::vector<FactorModel> models;
+    std::vector<TableLayout> layouts;
+    for (auto start = starts.begin(); start != others; ++start) {
+      models.push_back(std::move(start->model));
+      layouts.push_back(std::move(start->layout));
+    }
     starts.erase(starts.begin(), others);
+    const bool thinned = layouts.front() != TableLayout::Full(spec);
     PruneState next = pruning.StateFor(spec);
-    FittedModel fitted =
-        FitFrom(alike, *next.objective, pruning.ForFits(wanted), pruning.options().stop);
+    FittedModel fitted = FitFrom(models, *next.objective, goal, pruning.options().stop,
+                                 thinned ? std::span(layouts) : std::span<TableLayout>());
     next.model = std::move(fitted.model);
+    next.layout = std::move(layouts[fitted.start]);
     next.E = fitted.E;
     if (best.objective == nullptr || !(best.E <= next.E)) best = std::move(next);
   }
@@ -95,13 +135,13 @@ PruneState FitLobes(std::vector<FactorModel> starts, double wanted, const Prunin
 }
 
 // Tries the next number of lobes; true if it was taken.
-bool TryLobes(const std::vector<FactorModel>& starts, double wanted, Pruning* pruning) {
+bool TryLobes(std::vector<LobeStart> starts, double wanted, Pruning* pruning) {
   const PruneState& state = pruning->state();
-  PruneState next = FitLobes(starts, wanted, *pruning);
+  PruneState next = FitLobes(std::move(starts), wanted, *pruning);
   const int lobes = next.model.spec().lobes;
   NormalizeScale(next.objective->coverage(), &next.model);
-  next.layout = NeededLayout(next.model, next.objective->coverage(), pruning->may_thin(),
-                             /*drop_equal=*/true);
+  next.layout = NeededLayout(next.model, next.layout, next.objective->coverage(),
+                             pruning->may_thin(), /*drop_equal=*/true);
   ExpandStored(next.layout, &next.model);
   next.E = next.data->Value(next.model);
   if (pruning->options().stop()) return false;
@@ -150,7 +190,7 @@ void SpendBudget(Pruning* pruning) {
   size_t last_lobe = 0;
   while (pruning->options().lobes && state.lobes() > 0) {
     PruneState before = state;
-    if (!TryLobes(WithOneLobeLess(state.model), wanted, pruning)) break;
+    if (!TryLobes(WithOneLobeLess(*pruning), wanted, pruning)) break;
     last_lobe = pruning->decisions().size() - 1;
     dear = pruning->options().error
                ? !SparesError(*pruning)
@@ -174,8 +214,8 @@ void SpendBudget(Pruning* pruning) {
 void AddLobes(Pruning* pruning) {
   const PruneState& state = pruning->state();
   while (!pruning->Keeps(state) && state.lobes() < pruning->options().max_lobes) {
-    const std::vector<FactorModel> starts = WithOneLobeMore(state.model);
-    if (starts.empty() || !TryLobes(starts, pruning->search_limit(), pruning)) break;
+    std::vector<LobeStart> starts = LobeStarts(WithOneLobeMore(state.model));
+    if (starts.empty() || !TryLobes(std::move(starts), pruning->search_limit(), pruning)) break;
   }
   if (!pruning->Keeps(state)) {
     pruning->Record("nothing else left out", state, false,
@@ -192,8 +232,8 @@ void MeetParameters(Pruning* pruning) {
   const PruneState& state = pruning->state();
   while (state.num_parameters() <= pruning->options().max_parameters &&
          state.lobes() < pruning->options().max_lobes) {
-    const std::vector<FactorModel> starts = WithOneLobeMore(state.model);
-    if (starts.empty() || !TryLobes(starts, 0, pruning)) break;
+    std::vector<LobeStart> starts = LobeStarts(WithOneLobeMore(state.model));
+    if (starts.empty() || !TryLobes(std::move(starts), 0, pruning)) break;
   }
   if (state.num_parameters() <= pruning->options().max_parameters) return;
   PruneState lobes_kept = state;
@@ -207,7 +247,7 @@ void MeetParameters(Pruning* pruning) {
       pruning->GoOnFrom(std::move(best));
       pruning->Withdraw(decided, pruning->decisions().size(), "with more lobes it ends lower");
     };
-    if (!TryLobes(WithOneLobeLess(state.model), met ? best.E : kInfinity, pruning)) {
+    if (!TryLobes(WithOneLobeLess(*pruning), met ? best.E : kInfinity, pruning)) {
       back_to_best();
       break;
     }

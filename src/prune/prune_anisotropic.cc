@@ -149,7 +149,7 @@ class AnisotropicPruning {
   PruneState Fit(const Candidate& candidate) const {
     const ModelSpec& spec = candidate.starts.front().spec();
     const FittedModel fitted =
-        FitFrom(candidate.starts, Objective(with_prior_, spec), Wanted(), options_.stop);
+        FitFrom(candidate.starts, Objective(with_prior_, spec), {.E = Wanted()}, options_.stop);
     return pruning_.MakeState(spec, fitted.model);
   }
 
@@ -191,7 +191,7 @@ class AnisotropicPruning {
     if (state().num_parameters() <= max_parameters) {
       const ModelSpec& spec = state().spec();
       const FittedModel fitted =
-          FitFrom({state().model}, Objective(with_prior_, spec), kInfinity, options_.stop);
+          FitFrom({state().model}, Objective(with_prior_, spec), {.E = kInfinity}, options_.stop);
       PruneState next = pruning_.MakeState(spec, fitted.model);
       const bool lower = next.E < state().E;
       pruning_.Decide("fitted again", std::move(next), lower && !stopped(), "");
@@ -205,6 +205,7 @@ class AnisotropicPruning {
   // Where E with the prior is to go for that of the measured ones to go where it may.
   double Wanted() const {
     if (pruning_.by_parameters()) return 0;  // nothing can be given up: a few steps tell enough
+    if (pruning_.Exact(pruning_.E_full())) return pruning_.search_limit();
     return pruning_.E_full() > 0 ? E_with_prior_ * pruning_.search_limit() / pruning_.E_full() : 0;
   }
 

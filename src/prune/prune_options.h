@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct PruneOptions {
   // A budget in stored parameters instead: what is wanted is the lowest E that so many reach, and
   // the limits above do not count. A byte budget is 8 times as many.
   int max_parameters = std::numeric_limits<int>::max();
+
+  // Which parameters of the full model are stored already, of which more may be left out; null:
+  // all. For isotropic models only.
+  std::optional<TableLayout> layout = std::nullopt;
 
   // What may be left out; what must not stays as it is.
   bool lobes = true;

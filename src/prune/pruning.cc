@@ -49,6 +49,10 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
         "a budget must be a number, and at least one number must be left to store: check "
         "max_relative_rise, max_psnr_drop_db, max_error and max_parameters");
   }
+  if (options.layout) {
+    state_.layout = *options.layout;
+    ExpandStored(state_.layout, &state_.model);
+  }
   if (by_parameters_) return;
   limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
   if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(data));

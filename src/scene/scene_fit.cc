@@ -15,6 +15,7 @@
 #include "input/read_file.h"
 #include "lobes/gauge.h"
 #include "prune/prune_anisotropic.h"
+#include "prune/thinned_objective.h"
 #include "scene/cached_fits.h"
 #include "scene/look.h"
 #include "scene/luminance.h"
@@ -209,7 +210,7 @@ class MaterialFitter {
 
   std::string PruneKey() const {
     Key key = FitKey("scene");
-    key.Add("then", "prune 5");
+    key.Add("then", "prune 6");
     key.Add("unit", static_cast<int>(material_.budget.unit));
     key.Add("amount", material_.budget.amount);
     if (material_.budget.of_look()) {
@@ -307,6 +308,18 @@ class MaterialFitter {
                : Prune(problem.data, problem.solved(), model, options);
   }
 
+  static int StoredParameters(const FullFit& fit) {
+    const ModelSpec& spec = fit.file.model.spec();
+    return fit.file.layout ? fit.file.layout->num_parameters(spec) : spec.num_parameters();
+  }
+
+  // Where a picture judges, E says only where to look next: some of the samples are enough for
+  // that.
+  static FitProblem Guide(const FitProblem& problem, const FullFit& fit) {
+    if (problem.with_prior || problem.data.spec().anisotropic()) return problem;
+    return {.data = ThinnedObjective(problem.data, StoredParameters(fit), kFewSamples)};
+  }
+
   // The search looks at a quarter of the pixels; that the budget is kept on all of them is seen
   // afterwards, and the search repeated with a little less where it is not.
   PrunedModel PruneByLook(const Look& look, const FitProblem& problem, const FactorModel& model,
@@ -367,7 +380,8 @@ class MaterialFitter {
     const bool by_look = material_.budget.of_look();
     std::unique_ptr<Look> look;
     if (by_look) look = std::make_unique<Look>(material_, measured(), Appearance());
-    PrunedModel pruned = by_look ? PruneByLook(*look, problem, model, prune_options)
+    if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
+    PrunedModel pruned = by_look ? PruneByLook(*look, Guide(problem, *full), model, prune_options)
                                  : PruneWithin(problem, model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
@@ -377,9 +391,7 @@ class MaterialFitter {
     fit.data_notes = measured().notes;
     fit.valid_samples = CountsOf(measured()).valid;
     fit.used_samples = objective.samples().size();
-    const ModelSpec& full_spec = full->file.model.spec();
-    fit.full_parameters = full->file.layout ? full->file.layout->num_parameters(full_spec)
-                                            : full_spec.num_parameters();
+    fit.full_parameters = StoredParameters(*full);
     fit.full = ScoreOn(objective, full->file.model);
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);

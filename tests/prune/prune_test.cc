@@ -118,6 +118,31 @@ TEST(Prune, ThreeDistinctLobesStayThree) {
   ExpectConsistent(fit, pruned);
 }
 
+// What is stored of a model that comes thinned is all that its pruning knows.
+TEST(Prune, GoesOnFromWhatIsStored) {
+  const Fit fit = MakeFit(Material(2, false));
+  const PrunedModel once = Prune(fit.objective, fit.model, {.max_relative_rise = 0.01});
+  ASSERT_GT(once.model.spec().lobes, 1);
+  const Objective objective(fit.objective, once.model.spec());
+  PruneOptions options{.max_relative_rise = 0, .layout = once.layout};
+  const PrunedModel same = Prune(objective, once.model, options);
+  EXPECT_EQ(same.num_parameters, once.num_parameters);
+  EXPECT_NEAR(same.E, once.E, 1e-12 * once.E);
+  // As a model with fewer lobes, too: each of its tables of D has nodes of one or two of these.
+  options.max_relative_rise = 1e6;
+  options.colour = options.shadowing = false;
+  const PrunedModel further = Prune(objective, once.model, options);
+  EXPECT_LT(further.model.spec().lobes, once.model.spec().lobes);
+  std::vector<int> before;
+  for (const auto& nodes : once.layout.nodes[static_cast<int>(Factor::kD)]) {
+    before.insert(before.end(), nodes.begin(), nodes.end());
+  }
+  for (const auto& nodes : further.layout.nodes[static_cast<int>(Factor::kD)]) {
+    EXPECT_THAT(before, testing::IsSupersetOf(nodes));
+  }
+  ExpectConsistent(fit, further);
+}
+
 TEST(Prune, AGreyOneKeepsOneChannel) {
   const Fit fit = MakeFit(Material(2, true));
   const PrunedModel pruned = Prune(fit.objective, fit.model, kGenerous);

@@ -26,10 +26,12 @@ int StartElimination::StrideFor(const Objective& objective, const Thinning& thin
 
 class StartElimination::Candidate {
  public:
-  Candidate(std::string name, MakeStart make_start, Sweeps sweeps, const Objective* objective)
+  Candidate(std::string name, MakeStart make_start, Sweeps sweeps, const Reduction* reduction,
+            const Objective* objective)
       : name_(std::move(name)),
         make_start_(std::move(make_start)),
         sweeps_(sweeps),
+        reduction_(reduction),
         objective_(objective) {}
 
   // Goes on with other samples.
@@ -45,8 +47,10 @@ class StartElimination::Candidate {
     if (make_start_) Start(stop);
     if (!model_ || tries_ >= tries || stop()) return;
     if (!stepper_) {
-      stepper_ = std::make_unique<JointStepper>(*objective_, JointStepper::Curvature::kByProgress,
-                                                JointStepper::Trial::kProjected, &phases_);
+      stepper_ = std::make_unique<JointStepper>(
+          *objective_, JointStepper::Curvature::kByProgress,
+          reduction_ == nullptr ? JointStepper::Trial::kProjected : JointStepper::Trial::kAsItIs,
+          &phases_, reduction_);
       stepper_->Restart(*model_);
     }
     while (tries_ < tries && !converged_ && !stop()) {
@@ -101,6 +105,7 @@ class StartElimination::Candidate {
   const std::string name_;
   MakeStart make_start_;  // until it has been asked
   const Sweeps sweeps_;
+  const Reduction* const reduction_;  // null: none
   const Objective* objective_;
   std::optional<FactorModel> model_;
   double E_ = 0;
@@ -132,9 +137,10 @@ void StartElimination::ThinLess() {
 
 StartElimination::~StartElimination() = default;
 
-void StartElimination::Enter(std::string name, MakeStart make_start, Sweeps sweeps) {
-  candidates_.push_back(
-      std::make_unique<Candidate>(std::move(name), std::move(make_start), sweeps, thinned_.get()));
+void StartElimination::Enter(std::string name, MakeStart make_start, Sweeps sweeps,
+                             const Reduction* reduction) {
+  candidates_.push_back(std::make_unique<Candidate>(std::move(name), std::move(make_start), sweeps,
+                                                    reduction, thinned_.get()));
 }
 
 void StartElimination::Advance(int tries) {

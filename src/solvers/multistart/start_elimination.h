@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/joint/reduction.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
@@ -49,7 +50,9 @@ class StartElimination {
     int count = 5;
     bool in_blocks = true;
   };
-  void Enter(std::string name, MakeStart make_start, Sweeps sweeps);
+  // With a reduction, which must outlive this, a start is one of its points, and so are all steps.
+  void Enter(std::string name, MakeStart make_start, Sweeps sweeps,
+             const Reduction* reduction = nullptr);
   void Enter(std::string name, MakeStart make_start) {
     Enter(std::move(name), std::move(make_start), Sweeps());
   }
