@@ -100,9 +100,9 @@ def saturated(folder: Folder) -> Any:
         if max(values) < 1:
             below.append(line)
     shown = []
-    for name, kept in (("flat", flat), ("below", below)):
+    for name, kept, flags in (("flat", flat, []), ("below", below, ["--prior=0"])):
         (folder / f"{name}.csv").write_text("\n".join(kept) + "\n")
-        fit(folder, f"{name}.csv", name)
+        fit(folder, f"{name}.csv", name, *flags)
         shown.append((spheres(folder, name, whole), score(folder, name, whole)))
     return row_of([("the copper", shown[0][0][0]), (f"cut off at 1/sr, fitted: {shown[0][1]:.1f} dB", shown[0][0][1]),
                    (f"without these samples: {shown[1][1]:.1f} dB", shown[1][0][1])], 3)
