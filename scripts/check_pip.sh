@@ -9,11 +9,11 @@ trap 'rm -rf "$folder"' EXIT
 
 # install NAME ARGUMENT...: into an environment of that name.
 install() {
-  local name=$1 started=$EPOCHSECONDS
+  local name=$1
+  local TIMEFORMAT="pip install of $name: %0R s, %0U s of processor time"
   shift
   /usr/bin/python3 -m venv "$folder/$name"
-  "$folder/$name/bin/pip" install --quiet --disable-pip-version-check . "$@"
-  echo "pip install of $name: $((EPOCHSECONDS - started)) s"
+  time "$folder/$name/bin/pip" install --quiet --disable-pip-version-check . "$@"
 }
 
 install evaluates --config-settings=cmake.define.TRILOBE_BUILD_LIBRARY=OFF
@@ -25,3 +25,5 @@ all/bin/trilobe help >all.txt
 evaluates/bin/python -c 'import trilobe; print(trilobe.load("brighter.json").eval([0, 0, 1], [0, 0, 1]))'
 if evaluates/bin/python -c 'import trilobe; trilobe.solvers()' 2>evaluates.txt; then exit 1; fi
 grep -q "this package only evaluates models" evaluates.txt
+if all/bin/trilobe-need scene.xml --out=need 2>need.txt; then exit 1; fi
+grep -q "pip install 'trilobe\[need\]'" need.txt

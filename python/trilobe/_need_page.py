@@ -17,6 +17,31 @@ img { width: 100%; image-rendering: auto } figcaption { font-size: 13px }
 _TITLES = {"measured": "as given", "full": "full models", "pruned": "pruned models"}
 
 
+def totals(rows: list[dict[str, Any]], render_seconds: dict[str, float]) -> dict[str, Any]:
+    """Of all materials; those that are never read have no samples."""
+    samples = [row["samples"] for row in rows if "samples" in row]
+    kinds = ("full", "pruned")
+    parameters = {kind: sum(row["parameters"][kind] for row in rows) for kind in kinds}
+    return {
+        "parameters": parameters,
+        "bytes": {kind: 8 * parameters[kind] for kind in kinds},
+        "samples": {kind: sum(counts[kind] for counts in samples) for kind in ("valid", "used")},
+        "fit_seconds": {kind: sum(row["seconds"][kind] for row in rows) for kind in kinds},
+        "render_seconds": {kind: render_seconds[kind] for kind in kinds},
+    }
+
+
+def left_text(totals: dict[str, Any]) -> str:
+    """What is left, of what, and what it took."""
+    parameters, samples, fitted, rendered = (
+        totals[key] for key in ("parameters", "samples", "fit_seconds", "render_seconds"))
+    share = 100 * samples["used"] / max(samples["valid"], 1)
+    return (
+        f"{parameters['pruned']} of {parameters['full']} parameters are left, {totals['bytes']['pruned']} bytes, of "
+        f"{share:.0f} % of the data; fitted in {fitted['full']:.1f} s, pruned in {fitted['pruned']:.1f} s; rendered in "
+        f"{rendered['full']:.1f} s by full models, in {rendered['pruned']:.1f} s by pruned ones")
+
+
 def _figure(image: str, caption: str) -> str:
     return f'<figure><img src="{image}" alt="{escape(caption)}"><figcaption>{escape(caption)}</figcaption></figure>'
 
@@ -52,14 +77,12 @@ def _materials(report: dict[str, Any]) -> str:
 
 def page(report: dict[str, Any]) -> str:
     """The text of index.html."""
-    rows = report["materials"]
-    full, pruned = (sum(row["parameters"][kind] for row in rows) for kind in ("full", "pruned"))
     tried = ", ".join(
         f"{entry['mean_delta_e']:g}: {entry['parameters']} parameters, FLIP {entry['flip']:.4f}"
         for entry in report["tries"])
     parts = [
         f"<h1>What {escape(report['scene'])} needs</h1>",
-        f"<p>{full} parameters of full models, {pruned} of pruned ones. Budgets tried, the mean ΔE of a sphere of each "
+        f"<p>{escape(left_text(report['totals']))}. Budgets tried, the mean ΔE of a sphere of each "
         f"material as the scene sees it: {escape(tried)}.</p>",
         _row(report, ""),
     ]

@@ -25,6 +25,7 @@ from trilobe._brdf import Brdf, load, write_text
 from trilobe._core import Error
 from trilobe._fitting import fit
 from trilobe._measurement import Measurement, is_model, read
+from trilobe._need_page import left_text, page, totals
 
 _MERL = (90, 90, 180)
 _COVERAGE = 0.999  # of what is read; the directions of the rest are not used
@@ -305,7 +306,6 @@ def _write_png(path: Path, srgb: NDArray[np.float32]) -> None:
 def need(path: Path, out: Path, options: Options, tell: Any = print) -> dict[str, Any]:
     """Does it all, and returns what `need.json` has."""
     from trilobe._need_count import Counter
-    from trilobe._need_page import page
 
     for folder in (out, out / "full", out / "pruned"):
         folder.mkdir(parents=True, exist_ok=True)
@@ -360,6 +360,7 @@ def need(path: Path, out: Path, options: Options, tell: Any = print) -> dict[str
     report = _report(path, options, file.materials, counts, plan, tries, pictures, differences)
     write_text(out / "need.json", json.dumps(report, indent=1) + "\n")
     write_text(out / "index.html", page(report))
+    tell(left_text(report["totals"]))
     return report
 
 
@@ -393,10 +394,12 @@ def _report(
             row["samples"] = entry["samples"]
             row["verdict"] = entry["verdict"]
         rows.append(row)
+    seconds = {name: picture.seconds for name, picture in pictures.items()}
     return {
+        "totals": totals(rows, seconds),
         "scene": str(path), "parameters": options.parameters, "moved": options.moved, "spp": options.spp,
         "materials": rows, "tries": tries,
-        "pictures": {name: {"seconds": picture.seconds} for name, picture in pictures.items()},
+        "pictures": {name: {"seconds": value} for name, value in seconds.items()},
         "differences": {name: {"flip": d.flip, "delta_e": d.delta_e} for name, d in differences.items()},
     }
 

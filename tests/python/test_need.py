@@ -106,6 +106,9 @@ def test_goes_from_a_scene_to_a_page(scene, tmp_path, capsys):
     assert plate["samples"]["used"] < 0.2 * plate["samples"]["valid"]
     assert plate["parameters"]["pruned"] < 0.5 * plate["parameters"]["full"]
     assert trilobe.load(out / "pruned/plate.json").lobes <= 3
+    assert report["totals"]["samples"] == plate["samples"]
+    left = plate["parameters"]["pruned"]
+    assert f"{left} of {plate['parameters']['full']} parameters are left, {8 * left} bytes" in capsys.readouterr().out
     assert report["differences"]["pruned"]["flip"] < 0.05
     text = (out / "index.html").read_text()
     for name in ("measured", "full", "pruned_flip", "moved_pruned"):
