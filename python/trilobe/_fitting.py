@@ -93,7 +93,7 @@ def fit(
     weighting: str = "appearance",
     prior: float | None = None,
     robust: float = 0,
-    smoothness: float = 0,
+    smoothness: float = 0.005,
     match_reflectance: bool = True,
     max_parameters: int = 822,
     seed: int = 1,
@@ -120,7 +120,7 @@ def fit(
         weighting: a name of `weightings()`, or "power:...".
         prior: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
-        smoothness: by which share E may rise for the smoothest tables; 0.005 costs little that is seen.
+        smoothness: by which share E may rise for the smoothest tables, where that is not seen; 0: the least E.
         match_reflectance: whether the light that is reflected is mended after the fit.
         max_parameters: of model="auto", how many the model may store.
         seed: of whatever is random.

@@ -30,6 +30,7 @@
 #include "reports/print.h"
 #include "scene/fit_cache.h"
 #include "trilobe/base/error.h"
+#include "trilobe/fit/fit.h"
 #include "trilobe/materials/load_model.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/results/model_file.h"
@@ -46,9 +47,9 @@ DEFINE_double(
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
     "by reweighting; 0 for none");
 DEFINE_double(
-    smoothness, 0,
-    "let E rise by this share at the end for tables as smooth as that allows: lobes that are told "
-    "apart, without holes; 0.005 costs little that is seen, 0 is the least E");
+    smoothness, trilobe::FitOptions().smoothness,
+    "let E rise by this share at the end for tables as smooth as that allows, where that is not "
+    "seen: lobes that are told apart, without holes; 0 is the least E");
 DEFINE_bool(match_reflectance, true,
             "of a table: where a fit that has converged reflects more or less light than was "
             "measured, by more than 1 %, let E rise a little to mend that, as far as neither the "
@@ -135,7 +136,7 @@ FitSettings SettingsFromFlags() {
   if (!(FLAGS_smoothness >= 0 && FLAGS_smoothness <= 1)) {
     throw Error("--smoothness must be from 0 to 1");
   }
-  if (ChoosesModel() && FLAGS_smoothness > 0) {
+  if (ChoosesModel() && !IsDefault("smoothness") && FLAGS_smoothness > 0) {
     throw Error(
         "--smoothness is for a form that is given: tables that --model=auto chooses are thinned");
   }

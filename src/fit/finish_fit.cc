@@ -123,24 +123,20 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
   }
 }
 
-// By the whole share or, where that does harm, by part of it.
+// As far as the share allows and does no harm.
 void SmoothOut(const Objective& solved, const FinishOptions& options, Looks* looks,
                FinishedFit* fit) {
-  constexpr double kParts[] = {1, 0.25};
   std::optional<NoHarm> no_harm;
-  for (const double part : kParts) {
-    std::optional<SmoothedModel> smoothest =
-        Smoothest(solved, fit->model, part * options.smoothness, options.stop);
-    if (!smoothest) return;
-    Canonicalize(solved, &smoothest->model);
-    if (looks != nullptr) {
-      if (!no_harm) no_harm.emplace(fit->objective, fit->model, looks);
-      if (!(*no_harm)(smoothest->model)) continue;
-    }
-    fit->smoothed = {.rise = smoothest->rise, .stiffness = smoothest->stiffness};
-    fit->model = std::move(smoothest->model);
-    return;
-  }
+  const auto is_harmless = [&](const FactorModel& smooth) {
+    if (looks == nullptr) return true;
+    if (!no_harm) no_harm.emplace(fit->objective, fit->model, looks);
+    return (*no_harm)(smooth);
+  };
+  std::optional<SmoothedModel> smoothest =
+      Smoothest(solved, fit->model, options.smoothness, is_harmless, options.stop);
+  if (!smoothest) return;
+  fit->smoothed = {.rise = smoothest->rise, .stiffness = smoothest->stiffness};
+  fit->model = std::move(smoothest->model);
 }
 
 }  // namespace

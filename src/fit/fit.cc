@@ -180,13 +180,14 @@ class Fitting {
 
   void Finish(const Objective& solved, const SyntheticPrior* prior, FactorModel model,
               FitResult* fit) const {
+    // One that was stopped early gains more by going on.
+    const bool has_ended = HasEnded(fit->summary.stop_reason);
     FinishOptions finish{
-        .smoothness = options_.smoothness,
+        .smoothness = has_ended ? options_.smoothness : 0,
         .robust = options_.robust,
         .max_parameters = options_.max_parameters,
         .prior = prior,
-        // One that was stopped early gains more by going on.
-        .match_reflectance = options_.match_reflectance && HasEnded(fit->summary.stop_reason),
+        .match_reflectance = options_.match_reflectance && has_ended,
         .appearance = Appearance(),
         .stop = options_.stop};
     FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);

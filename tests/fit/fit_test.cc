@@ -65,6 +65,7 @@ TEST(Fit, IsAsSmoothAsAsked) {
     return SolverOptions{.diagnose = false};
   };
   options.match_reflectance = false;
+  options.smoothness = 0;
   const FitResult least = Fit(measured, options);
   EXPECT_FALSE(least.finished.smoothed);
   options.smoothness = 0.01;

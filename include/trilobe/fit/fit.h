@@ -51,7 +51,7 @@ struct FitOptions {
   // Of scattered samples, SyntheticPriorOptions::weight, or 0 for no prior; where it is not given,
   // 1, and with kAnisotropic 0.
   std::optional<double> prior = {};
-  double smoothness = 0;  // FinishOptions, as the next three
+  double smoothness = 0.005;  // FinishOptions, as the next three
   double robust = 0;
   int max_parameters = 0;  // above 0: --model=auto, of a table
   bool match_reflectance = true;

@@ -17,17 +17,17 @@ constexpr double kMaxFall = 1.0 / 3;  // of the damping after one step
 constexpr double kMinGain = 1e-4;
 // No parameter changes by more than a factor of e^1.5 in one step.
 constexpr double kMaxMove = 1.5;
-// Zeros become as much of the largest of their kind, or else what moves the residuals by as much of
-// their length.
-constexpr double kFloor = 1e-6, kHarmless = 1e-4;
+// What is below this share of the largest of its kind is lifted as a zero is; and by what moves the
+// residuals by this share of their length at most.
+constexpr double kFloor = 1e-6, kHarmless = 1e-2;
 
 }  // namespace
 
-LogStepper::LogStepper(const Objective& objective, PhaseSeconds* phases)
+LogStepper::LogStepper(const Objective& objective, PhaseSeconds* phases, double slope)
     : objective_(objective),
       phases_(phases),
       equations_(objective),
-      roughness_(objective.spec(), objective.coverage()),
+      roughness_(objective.spec(), objective.coverage(), slope),
       energy_(objective.MeasuredEnergy()),
       current_(objective.spec()),
       damping_(kInitialDamping) {}
@@ -53,25 +53,31 @@ void LogStepper::Restart(const FactorModel& model) {
 
 void LogStepper::LiftZeros() {
   const std::span<double> x = current_.parameters();
-  std::vector<double> least(x.size());
-  for (const auto [begin, size] : current_.Parts()) {
-    const double largest = std::ranges::max(x.subspan(begin, size));
-    std::fill_n(least.begin() + begin, size, kFloor * largest);
-  }
   const std::vector<double>& coverage = objective_.coverage();
-  const auto is_low = [&](size_t k) { return coverage[k] > 0 && x[k] < least[k]; };
-  std::vector<size_t> low;
-  for (size_t k = 0; k < x.size(); ++k) {
-    if (is_low(k)) low.push_back(k);
+  std::vector<int> low;
+  std::vector<double> y(x.size(), 0.0), least;
+  for (const auto [begin, size] : current_.Parts()) {
+    const double floor = kFloor * std::ranges::max(x.subspan(begin, size));
+    for (int k = begin; k < begin + size; ++k) {
+      if (!(coverage[k] > 0) || !(floor > 0)) continue;
+      y[k] = std::log(std::max(x[k], floor));
+      if (x[k] >= floor) continue;
+      low.push_back(k);
+      least.push_back(floor);
+    }
   }
   if (low.empty()) return;
   {
     const ScopedTimer timer(&phases_->evaluating);
     equations_.Evaluate(current_, Hessian::kGaussNewton, &at_);
   }
-  for (const size_t k : low) {
-    const double harmless = kHarmless * std::sqrt(at_.objective / at_.squared_lengths[k]);
-    x[k] = std::max(x[k], at_.squared_lengths[k] > 0 ? std::min(least[k], harmless) : least[k]);
+  const std::optional<std::vector<double>> smooth = roughness_.Interpolated(low, y);
+  for (size_t j = 0; j < low.size(); ++j) {
+    const int k = low[j];
+    const double wanted = smooth ? std::exp((*smooth)[j]) : least[j];
+    const double length = at_.squared_lengths[k];
+    const double harmless = length > 0 ? kHarmless * std::sqrt(at_.objective / length) : least[j];
+    x[k] = std::max(x[k], std::min(wanted, harmless));
   }
 }
 

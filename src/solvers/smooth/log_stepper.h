@@ -21,11 +21,11 @@ namespace trilobe {
 // would make H indefinite. No parameter can become 0, but nothing keeps it from coming near.
 class LogStepper {
  public:
-  // Times go to *phases.
-  LogStepper(const Objective& objective, PhaseSeconds* phases);
+  // `slope`: Roughness. Times go to *phases.
+  LogStepper(const Objective& objective, PhaseSeconds* phases, double slope = 0);
 
-  // Goes on from another point, whose zeros, which no factor can move, are lifted as far as does
-  // little to E.
+  // Goes on from another point, whose zeros, which no factor can move, are lifted to what is
+  // smoothest beside their neighbours or, if that is less, as far as does little to E.
   void Restart(const FactorModel& model);
 
   void set_stiffness(double lambda);

@@ -1,7 +1,9 @@
 #include "solvers/smooth/roughness.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "algebra/cholesky.h"
 #include "trilobe/math/angles.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/factor_model.h"
@@ -18,7 +20,8 @@ double Place(Factor factor, double theta) {
 
 }  // namespace
 
-Roughness::Roughness(const ModelSpec& spec, std::span<const double> coverage) {
+Roughness::Roughness(const ModelSpec& spec, std::span<const double> coverage, double slope)
+    : slope_(slope) {
   const FactorModel model(spec);
   std::vector<int> line;
   std::vector<double> places;
@@ -56,6 +59,13 @@ void Roughness::AddLine(std::span<const int> parameters, std::span<const double>
   const int n = static_cast<int>(parameters.size());
   if (n < 3) return;
   const bool closed = period > 0;
+  for (int k = 0; slope_ > 0 && k < (closed ? n : n - 1); ++k) {
+    const int after = (k + 1) % n;
+    const double h = places[after] - places[k] + (after == 0 ? period : 0);
+    const double weight = std::sqrt(slope_ * share / h);
+    differences_.push_back(
+        {{parameters[k], parameters[after], parameters[k]}, {-weight, weight, 0}});
+  }
   for (int k = closed ? 0 : 1; k < (closed ? n : n - 1); ++k) {
     const int before = (k + n - 1) % n, after = (k + 1) % n;
     const double h1 = places[k] - places[before] + (k == 0 ? period : 0);
@@ -91,6 +101,32 @@ void Roughness::AddTo(double factor, std::span<const double> log_parameters,
       }
     }
   }
+}
+
+std::optional<std::vector<double>> Roughness::Interpolated(
+    std::span<const int> parameters, std::span<const double> log_parameters) const {
+  std::vector<int> place(log_parameters.size(), -1);
+  const size_t n = parameters.size();
+  for (size_t k = 0; k < n; ++k) place[parameters[k]] = static_cast<int>(k);
+  std::vector<double> H(n * n, 0.0), change(n, 0.0);
+  for (const Difference& difference : differences_) {
+    const double value = difference(log_parameters);
+    for (int a = 0; a < 3; ++a) {
+      const int k = place[difference.parameter[a]];
+      if (k < 0) continue;
+      change[k] -= difference.weight[a] * value;
+      for (int b = 0; b < 3; ++b) {
+        const int l = place[difference.parameter[b]];
+        if (l >= 0) H[k * n + l] += difference.weight[a] * difference.weight[b];
+      }
+    }
+  }
+  const int size = static_cast<int>(n);
+  if (!FactorCholesky(size, H.data(), 1)) return std::nullopt;
+  SolveLower(size, H.data(), 1, change.data());
+  SolveLowerTransposed(size, H.data(), change.data());
+  for (size_t k = 0; k < n; ++k) change[k] += log_parameters[parameters[k]];
+  return change;
 }
 
 }  // namespace trilobe

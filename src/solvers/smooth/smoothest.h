@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SOLVERS_SMOOTH_SMOOTHEST_H_
 #define TRILOBE_SOLVERS_SMOOTH_SMOOTHEST_H_
 
+#include <functional>
 #include <optional>
 
 #include "trilobe/base/stop_check.h"
@@ -15,13 +16,16 @@ struct SmoothedModel {
   double stiffness = 0;  // lambda that leads there
 };
 
-// Of all models whose E is at most (1 + share) times that of `model`, about the smoothest
-// (Roughness) that steps from there lead to: E + lambda E0 R is lowered, lambda such that E rises
-// by as much, and light is held where it is. Along flat valleys of E, where data do not choose,
-// smoothness does. Nothing where no smoother model was found, and where E
-// is 0.
+// Of all models whose E is at most (1 + share) times that of `model`, or of the least E that is met
+// on the way, about the smoothest (Roughness, with a small price of a steady fall, which two tables
+// may otherwise exchange) that steps from there lead to: E + lambda E0 R is lowered with a lambda
+// that grows until E rises by as much, and light is held where it is. Along flat valleys of E,
+// where data do not choose, smoothness does. Of the models on that way, in canonical form, the
+// smoothest that is `acceptable`; nothing where none is, and where E is 0.
 std::optional<SmoothedModel> Smoothest(const Objective& objective, const FactorModel& model,
-                                       double share, const StopCheck& stop);
+                                       double share,
+                                       const std::function<bool(const FactorModel&)>& acceptable,
+                                       const StopCheck& stop);
 
 }  // namespace trilobe
 

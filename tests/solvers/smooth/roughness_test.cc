@@ -76,6 +76,57 @@ TEST(Roughness, ReachesAcrossEntriesWithoutData) {
   EXPECT_GT(roughness(y), 0);
 }
 
+// On the paper's grid the price of a fall is the sum of squared first differences.
+TEST(Roughness, MayPriceASteadyFall) {
+  for (const Factor factor : kFactors) {
+    const ModelSpec spec = ModelSpec::SharedFactors(1);
+    const std::vector<double> y = Logarithms(spec, factor, [](double t) { return 3 - 5 * t; });
+    const int first = FactorModel(spec).TableOffset(factor, 0);
+    double sum = 0;
+    for (int k = first; k + 1 < first + spec.table_size(factor); ++k) {
+      sum += std::pow(y[k + 1] - y[k], 2);
+    }
+    EXPECT_NEAR(Roughness(spec, Everything(spec), 0.1)(y), 0.1 * sum, 1e-6 * sum)
+        << FactorName(factor);
+  }
+  const ModelSpec polar = ModelSpec::AnisotropicFor(1, 16, 1.3);
+  std::vector<double> y(polar.num_parameters(), 2.0);
+  EXPECT_NEAR(Roughness(polar, Everything(polar), 0.1)(y), 0, 1e-20);
+  y[FactorModel(polar).TableOffset(Factor::kD, 0)] = 3;  // also around the azimuths
+  EXPECT_GT(Roughness(polar, Everything(polar), 0.1)(y),
+            Roughness(polar, Everything(polar))(y) * (1 + 1e-6));
+}
+
+TEST(Roughness, InterpolatesWhereItIsLeast) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  const int F = FactorModel(spec).TableOffset(Factor::kF, 0), end = F + spec.table_size(Factor::kF);
+  const std::vector<double> line = Logarithms(spec, Factor::kF, [](double t) { return 3 - 5 * t; });
+  std::vector<double> y = line;
+  const std::vector<int> holes = {F + 2, F + 3, end - 1};
+  for (const int k : holes) y[k] = -14;
+  const auto whole = Roughness(spec, Everything(spec)).Interpolated(holes, y);
+  ASSERT_TRUE(whole);
+  for (size_t k = 0; k < holes.size(); ++k) EXPECT_NEAR((*whole)[k], line[holes[k]], 1e-9);
+
+  // With a price of falls, no other values have less.
+  const Roughness roughness(spec, Everything(spec), 0.1);
+  const auto level = roughness.Interpolated(holes, y);
+  ASSERT_TRUE(level);
+  for (size_t k = 0; k < holes.size(); ++k) y[holes[k]] = (*level)[k];
+  const double least = roughness(y);
+  for (const int k : holes) {
+    for (const double move : {-1e-3, 1e-3}) {
+      y[k] += move;
+      EXPECT_GT(roughness(y), least);
+      y[k] -= move;
+    }
+  }
+
+  std::vector<int> all(spec.table_size(Factor::kF));
+  std::iota(all.begin(), all.end(), F);
+  EXPECT_FALSE(Roughness(spec, Everything(spec)).Interpolated(all, y)) << "nothing holds them";
+}
+
 // E + f R to second order, of which R is all.
 TEST(Roughness, HasTheDerivativesThatItSays) {
   for (const ModelSpec& spec :
