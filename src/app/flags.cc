@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/text.h"
 #include "formats/utia_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
@@ -74,8 +75,9 @@ std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& fl
 
 std::string FlagHelp(const std::string& flag) {
   const auto info = gflags::GetCommandLineFlagInfoOrDie(flag.c_str());
-  return "  --" + flag + "=" + (info.default_value.empty() ? "..." : info.default_value) +
-         "\n      " + info.description + "\n";
+  std::string value = info.default_value.empty() ? "..." : info.default_value;
+  if (info.type == "double") value = Text(std::stod(value));  // gflags gives 17 digits
+  return "  --" + flag + "=" + value + "\n      " + info.description + "\n";
 }
 
 int ThreadsFromFlags() {
