@@ -377,6 +377,9 @@ class MaterialFitter {
     const Objective& objective = problem.data;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;
+    // No lobe more says what a model is better than it does: what its sphere is off is that of
+    // bins.
+    if (is_model_) prune_options.max_lobes = 0;
     const bool by_look = material_.budget.of_look();
     std::unique_ptr<Look> look;
     if (by_look) look = std::make_unique<Look>(material_, measured(), Appearance());

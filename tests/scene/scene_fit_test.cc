@@ -108,6 +108,20 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
               testing::HasSubstr("samples on no grid make no picture"));
 }
 
+// Its sphere is off by what the bins of its narrow highlight are, which no fit mends.
+TEST(FitMaterial, NeverAddsToAModel) {
+  SceneFitSettings settings = Settings();
+  settings.appearance = {.lights = 6, .size = 48};
+  SceneMaterial material = Material("");
+  material.source = "material:chm_orange";
+  material.budget = {SceneBudget::Unit::kMeanDeltaE, 1e-6};
+  const auto fit = FitMaterial(material, settings, 1);
+  ASSERT_TRUE(fit);
+  EXPECT_GT(*fit->full.mean_delta_e, 1e-6);
+  EXPECT_LE(fit->num_parameters, fit->full_parameters);
+  EXPECT_EQ(fit->file.model.spec().lobes, 3);
+}
+
 // 1 % of next to nothing.
 TEST(FitMaterial, SaysThatAFractionOfAnExactFitBuysNothing) {
   SceneFitSettings settings = Settings();
