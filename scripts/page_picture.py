@@ -10,6 +10,8 @@ import argparse
 import pathlib
 import sys
 
+SEEN_IMAGES = ("[...document.images].filter(i => i.getBoundingClientRect().top < innerHeight)"
+               ".every(i => i.complete && i.naturalWidth > 0)")
 SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
 
@@ -42,6 +44,7 @@ def main() -> int:
             x, y = map(float, options.point.split(","))
             page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
             page.wait_for_timeout(300)
+        page.wait_for_function(SEEN_IMAGES)  # which load as they come into sight
         page.screenshot(path=options.picture)
         browser.close()
     return 0

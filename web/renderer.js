@@ -31,6 +31,7 @@ void main() {
 }`;
 export const OBJECTS = ['sphere', 'knot', 'cloth', 'flat'];
 const MODES = {fitted: 0, measured: 1, wipe: 2, difference: 3};
+const COARSEST = 16;  // pixels across of the first picture, or up to twice as many
 const FRAME_MS = 30;
 const MOVING_MS = 18;  // for a material under a lamp that moves; half the pixels across where all take longer
 
@@ -195,7 +196,7 @@ export class Renderer {
     }
     this.size = size;
     this.levels = [];
-    for (let s = size; s >= 32; s = Math.round(s / 2)) this.levels.unshift(this.makeLevel(s));
+    for (let s = size; s >= COARSEST; s = Math.round(s / 2)) this.levels.unshift(this.makeLevel(s));
     this.shown = null;
     this.restart();
   }
@@ -317,13 +318,13 @@ export class Renderer {
   }
 
   // Both pictures get the exposure that takes the mean luminance of the measured one to 0.35, under the environment, of
-  // what was measured alone. Where that is not all, only the coarsest picture tells it, as it is drawn once more for it.
+  // what was measured alone. Where that is not all, only the two coarsest tell it, as they are drawn once more for it.
   expose(level) {
     let numbers = this.numbersOf(level, this.measured ? 1 : 0);
     if (this.measured) {
       const all = this.numbersOf(level, 0);
       const covered = numbers.every((x, k) => k % 4 !== 3 || x >= 0.9999 * all[k]);
-      if (!covered && level !== this.levels[0] && this.exposure > 0) return;
+      if (!covered && this.levels.indexOf(level) > 1 && this.exposure > 0) return;
       if (!covered) {
         const side = level.sides[1];
         this.addLight(level, 1, 0, this.numCells, null, true);
