@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 namespace nb = nanobind;
@@ -21,13 +22,23 @@ int ThreadsOf(const nb::dict& options) {
   return threads == 0 ? cores : std::min(threads, cores);
 }
 
+namespace {
+
+// None for "auto".
+std::optional<double> TiltOf(const nb::dict& options) {
+  if (options.contains("tilt") && options["tilt"].equal(nb::str("auto"))) return std::nullopt;
+  return OptionOf<double>(options, "tilt", "a number of degrees, or auto");
+}
+
+}  // namespace
+
 SourceOptions SourceOptionsOf(const nb::dict& options) {
   SourceOptions source{
       .noise = OptionOf<double>(options, "noise", "a number"),
       .missing = OptionOf<double>(options, "missing", "a number"),
       .corrupt = OptionOf<std::string>(options, "corrupt", "a text"),
       .cosine = OptionOf<double>(options, "cosine", "a number"),
-      .tilt_deg = OptionOf<double>(options, "tilt", "a number of degrees"),
+      .tilt_deg = TiltOf(options),
       .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
       .num_threads = ThreadsOf(options),
       .max_angle_deg = OptionOf<double>(options, "max_angle", "a number of degrees"),

@@ -180,7 +180,7 @@ def read(
     missing: float = 0,
     corrupt: str = "",
     cosine: float = 0,
-    tilt: float = 0,
+    tilt: float | str = 0,
     seed: int = 1,
     max_angle: float = 90,
     min_theta_d: float = -1,
@@ -197,7 +197,8 @@ def read(
         missing: the share of the samples that is left out at random.
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
         cosine: takes cos theta_i to this power out of it.
-        tilt: takes out by how much the sample leant towards azimuth 0 [degrees].
+        tilt: takes out by how much the sample leant towards azimuth 0 [degrees]; "auto" as the highlight of
+            a table shows.
         seed: of whatever is random.
         max_angle: theta_i and theta_o beyond it are left out [degrees].
         min_theta_d: theta_d below it is left out [degrees]; -1 as far as scattered samples show that the

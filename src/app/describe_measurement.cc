@@ -98,8 +98,6 @@ void DescribeTable(const Measurement& measurement) {
           [&](const DirectionPair& pair) { return brdf.Measured(pair); });
     }
   }
-  std::vector<std::string> notes = measurement.notes;
-  for (const std::string& symptom : SymptomsOf(table)) notes.push_back(symptom);
   const std::string picture = PicturePath();
   if (!picture.empty()) {
     MakeDirectories(FLAGS_out);
@@ -120,7 +118,7 @@ void DescribeTable(const Measurement& measurement) {
                  {"exchange_error", ToJson(exchange)},
                  {"reciprocity_error", reciprocity ? ToJson(*reciprocity) : Json()},
                  {"albedo", albedo ? ToJson(*albedo) : Json()},
-                 {"notes", notes}};
+                 {"notes", measurement.notes}};
     PrintJson(json);
     return;
   }
@@ -147,7 +145,7 @@ void DescribeTable(const Measurement& measurement) {
         bins.extrapolated + bins.beyond_nodes + bins.beyond_max_angle + bins.below_min_theta_d == 0;
     Print(*albedo, whole ? "directional albedo" : "directional albedo of what was measured");
   }
-  for (const std::string& note : notes) PrintLine("note", note);
+  for (const std::string& note : measurement.notes) PrintLine("note", note);
 }
 
 // Which values an angle has among the samples.
@@ -265,7 +263,8 @@ void DescribeScattered(const Measurement& measurement) {
 
 void DescribeMeasurement(const std::string& source) {
   if (!FLAGS_out.empty()) Inputs({source}).CheckOutput(PicturePath());
-  const Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
+  Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
+  NoteSymptoms(&measurement);
   if (measurement.table) {
     DescribeTable(measurement);
   } else {

@@ -126,11 +126,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   }
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
-  if (measured.table) {
-    for (const std::string& symptom : SymptomsOf(*measured.table)) {
-      measured.notes.push_back(symptom);
-    }
-  }
+  NoteSymptoms(&measured);
   TellNotes(measured);
   report.data_notes = measured.notes;
   report.bins = CountsOf(measured);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -32,9 +34,10 @@ DEFINE_double(
     "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "
     "to 2: 1 where it has a cosine too many, -1 where it has one too few; `trilobe info` "
     "tells");
-DEFINE_double(tilt, 0,
+DEFINE_string(tilt, "0",
               "correct a measurement whose sample leant by so many degrees towards azimuth 0, from "
-              "which the light of a table comes, from -30 to 30; `trilobe info` tells");
+              "which the light of a table comes, from -30 to 30; `trilobe info` tells; auto: as "
+              "the highlight of a table shows");
 DEFINE_double(max_angle, 90,
               "leave out bins whose theta_i or theta_o is beyond this, in degrees, above 0 to 90");
 DEFINE_double(min_theta_d, -1,
@@ -93,12 +96,27 @@ int ThreadsFromFlags() {
   return std::min(FLAGS_threads, cores);
 }
 
+namespace {
+
+// None for auto.
+std::optional<double> TiltFromFlag() {
+  if (FLAGS_tilt == "auto") return std::nullopt;
+  std::istringstream text(FLAGS_tilt);
+  double degrees = 0;
+  if (!(text >> degrees && text.peek() == EOF)) {
+    throw Error("--tilt=" + FLAGS_tilt + ": give a number of degrees from -30 to 30, or auto");
+  }
+  return degrees;
+}
+
+}  // namespace
+
 SourceOptions SourceOptionsFromFlags() {
   SourceOptions options = {.noise = FLAGS_noise,
                            .missing = FLAGS_missing,
                            .corrupt = FLAGS_corrupt,
                            .cosine = FLAGS_cosine,
-                           .tilt_deg = FLAGS_tilt,
+                           .tilt_deg = TiltFromFlag(),
                            .seed = static_cast<uint64_t>(FLAGS_seed),
                            .num_threads = ThreadsFromFlags(),
                            .max_angle_deg = FLAGS_max_angle,

@@ -15,7 +15,7 @@ DECLARE_double(noise);
 DECLARE_double(missing);
 DECLARE_string(corrupt);
 DECLARE_double(cosine);
-DECLARE_double(tilt);
+DECLARE_string(tilt);
 DECLARE_double(max_angle);
 DECLARE_double(min_theta_d);
 DECLARE_string(radiometry);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "appearance/color.h"
+#include "math/quantile.h"
 
 namespace trilobe {
 namespace {
@@ -68,11 +69,8 @@ SeenError SeenErrorSum::Total() const {
                                        : std::numeric_limits<double>::infinity();
   for (const double difference : delta_e_) error.mean_delta_e += difference / n;
   if (!delta_e_.empty()) {
-    std::vector<double> sorted = delta_e_;
-    const auto nth =
-        sorted.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(sorted.size() - 1));
-    std::ranges::nth_element(sorted, nth);
-    error.delta_e_95 = *nth;
+    std::vector<double> differences = delta_e_;
+    error.delta_e_95 = Quantile(&differences, 0.95);
   }
   double squares = 0;
   for (const Sum& sum : sums_) squares += sum.squares;

@@ -153,12 +153,16 @@ void LeaveOutOwnShadow(Measurement* measurement) {
 
 void LeaveOutOutliers(int num_threads, Measurement* measurement) {
   const int valid = CountsOf(NotNull(measurement, "the measurement")).valid;
-  if (valid == 0 || measurement->anisotropic) return;
+  if (valid == 0) return;
   constexpr int kFewest = 10;
   constexpr double kLeastLight = 2e-5;
   const int least = measurement->table ? kFewest : std::max(kFewest, valid / 500);
   const BrdfSamples samples = SamplesOf(*measurement);
-  const std::vector<Outlier> outliers = FindOutliers(samples, num_threads);
+  std::vector<Outlier> outliers = FindOutliers(samples, num_threads);
+  // Samples of other azimuths may be that far apart, but not from nothing.
+  if (measurement->anisotropic) {
+    std::erase_if(outliers, [&](const Outlier& of) { return Mean(samples.rho[of.sample]) > 0; });
+  }
   const int count = static_cast<int>(outliers.size());
   if (count < least || LightOf(outliers, samples) < kLeastLight) return;
   if (measurement->table) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <optional>
 
+#include "math/quantile.h"
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/merl_grid.h"
 #include "trilobe/system/parallel.h"
@@ -90,9 +90,7 @@ class Surroundings {
     ForEachRow(h, d, reach, [&](int i, int j) {
       ForEachInLine(grid_.theta_d * i + j, p, reach, [&](double x) { values.push_back(x); });
     });
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
+    return Quantile(&values, 0.5);
   }
 
   // What is true of nearly all samples, and soon known.
@@ -141,19 +139,17 @@ class Surroundings {
 }  // namespace
 
 std::vector<Outlier> FindOutliers(const BrdfSamples& samples, int num_threads) {
+  constexpr double kNone = -1;  // less than any median
   const Surroundings surroundings(samples, num_threads);
-  constexpr int kBlock = 1 << 13;
-  std::vector<std::vector<Outlier>> found((samples.size() + kBlock - 1) / kBlock);
-  if (found.empty()) return {};
-  ParallelFor(static_cast<int>(found.size()), num_threads, [&](int block) {
-    for (int j = block * kBlock; j < std::min(samples.size(), (block + 1) * kBlock); ++j) {
-      const auto median = surroundings.FarOffMedian(j, Mean(samples.rho[j]));
-      if (median) found[block].push_back({.sample = j, .median = *median});
-    }
+  std::vector<double> medians(samples.size(), kNone);
+  ParallelForShort(samples.size(), num_threads, [&](int j) {
+    medians[j] = surroundings.FarOffMedian(j, Mean(samples.rho[j])).value_or(kNone);
   });
-  std::vector<Outlier> all;
-  for (const std::vector<Outlier>& block : found) all.insert(all.end(), block.begin(), block.end());
-  return all;
+  std::vector<Outlier> found;
+  for (int j = 0; j < samples.size(); ++j) {
+    if (medians[j] != kNone) found.push_back({.sample = j, .median = medians[j]});
+  }
+  return found;
 }
 
 double LightOf(const std::vector<Outlier>& outliers, const BrdfSamples& samples) {

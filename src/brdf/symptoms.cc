@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <iterator>
 #include <sstream>
 
 #include "brdf/own_shadow.h"
@@ -17,10 +18,6 @@ namespace trilobe {
 namespace {
 
 constexpr double kEqual = 1e-9;  // relative
-
-double MeanOfBin(const BrdfTable& table, int bin) {
-  return Mean({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
-}
 
 // "5.8 %", "96 %".
 std::string Percent(double share) {
@@ -36,42 +33,6 @@ std::string Percent(double share) {
 }
 
 }  // namespace
-
-CosineSymptom CosineOf(const BrdfTable& table) {
-  const MerlGrid& grid = table.grid;
-  const std::vector<bool> valid = ValidBins(table);
-  const GridCosines cosines(grid);
-  std::vector<double> exponents, x, y;
-  constexpr double kApart = 1.5;
-  for (int h = 0; h < grid.theta_h; h += 2) {
-    for (int d = h % 3; d < grid.theta_d; d += 3) {
-      for (int p = 0; p < grid.phi_d / 2; ++p) {
-        const int a = grid.Index(h, d, p), b = grid.Index(h, d, grid.phi_d - 1 - p);
-        if (!valid[a] || !valid[b]) continue;
-        const auto [cos_i, cos_o] = cosines(h, d, p);
-        const double apart = std::log(cos_i / cos_o);
-        if (!(std::abs(apart) > std::log(kApart))) continue;
-        const double first = MeanOfBin(table, a), second = MeanOfBin(table, b);
-        if (!(first > 0 && second > 0)) continue;
-        x.push_back(apart);
-        y.push_back(std::log(first / second));
-        exponents.push_back(y.back() / x.back());
-      }
-    }
-  }
-  constexpr size_t kFewest = 100;
-  if (exponents.size() < kFewest) return {};
-  CosineSymptom symptom{.exponent = Quantile(&exponents, 0.5)};
-  const double nearer = symptom.exponent > 0 ? 1 : -1;
-  std::vector<double> without(y.size());
-  for (size_t k = 0; k < y.size(); ++k) {
-    without[k] = std::abs(y[k] - nearer * x[k]);
-    y[k] = std::abs(y[k]);
-  }
-  symptom.error = Quantile(&y, 0.5);
-  symptom.error_without = Quantile(&without, 0.5);
-  return symptom;
-}
 
 PlateauSymptom PlateauOf(const BrdfTable& table) {
   const std::vector<bool> valid = ValidBins(table);
@@ -135,49 +96,29 @@ QuantizationSymptom QuantizationOf(const BrdfTable& table) {
   return {.share = 2.0 * equal / static_cast<double>(signals.size())};
 }
 
-TiltSymptom TiltOf(const BrdfTable& table) {
+NoiseSymptom NoiseOf(const BrdfTable& table) {
   const MerlGrid& grid = table.grid;
   const std::vector<bool> valid = ValidBins(table);
-  const double within = DegreesToRadians(15);
-  std::vector<double> middles;
-  for (int d = 0; d < grid.theta_d; ++d) {
-    const double theta_d = grid.ThetaD(d + 0.5);
-    if (theta_d < DegreesToRadians(10) || theta_d > DegreesToRadians(60)) continue;
-    double largest = 0;
-    for (int h = 0; h < grid.theta_h && grid.ThetaH(h + 0.5) < within; ++h) {
-      for (int p = 0; p < grid.phi_d; ++p) {
-        const int bin = grid.Index(h, d, p);
-        if (valid[bin]) largest = std::max(largest, MeanOfBin(table, bin));
+  std::vector<double> differences;
+  for (int row = 0; row < grid.theta_h * grid.theta_d; row += 3) {
+    std::array<double, 4> logs{};  // of the last bins; of a row without gaps all of them
+    int there = 0;
+    for (int bin = row * grid.phi_d; bin < (row + 1) * grid.phi_d; ++bin) {
+      const double value = valid[bin] ? table.Value(1, bin) : 0;
+      if (!(value > 0)) {
+        there = 0;
+        continue;
       }
+      std::rotate(logs.begin(), logs.begin() + 1, logs.end());
+      logs[3] = std::log(value);
+      if (++there < 4) continue;
+      differences.push_back(std::abs(logs[0] - 3 * logs[1] + 3 * logs[2] - logs[3]));
     }
-    double light = 0, along = 0, rim = 0;
-    int at_rim = 0;
-    for (int h = 0; h < grid.theta_h && grid.ThetaH(h + 0.5) < within; ++h) {
-      const bool last = !(grid.ThetaH(h + 1.5) < within);
-      const double area = grid.ThetaH(h + 0.5) * (grid.ThetaH(h + 1) - grid.ThetaH(h));
-      for (int p = 0; p < grid.phi_d; ++p) {
-        const int bin = grid.Index(h, d, p);
-        if (!valid[bin]) continue;
-        const double rho = MeanOfBin(table, bin);
-        if (last) {
-          rim += rho;
-          ++at_rim;
-        }
-        const double above = std::max(rho - largest / 2, 0.0) * area;
-        light += above;
-        // wi is at phi_d from the direction in which h is off the normal.
-        const HalfDiffAngles at = grid.Center(bin);
-        along += above * at.theta_h * std::cos(at.phi_d);
-      }
-    }
-    // A highlight, and not the light of all directions.
-    if (!(light > 0 && at_rim > 0 && rim / at_rim < largest / 3)) continue;
-    middles.push_back(RadiansToDegrees(along / light));
   }
-  constexpr size_t kFewest = 10;
-  if (middles.size() < kFewest) return {};
-  return {.degrees = Quantile(&middles, 0.5),
-          .spread = Quantile(&middles, 0.75) - Quantile(&middles, 0.25)};
+  constexpr size_t kFewest = 1000;
+  if (differences.size() < kFewest) return {};
+  // Of normal numbers, 0.6745 times the standard deviation, here of 1 + 9 + 9 + 1 values.
+  return {.relative = Quantile(&differences, 0.5) / (0.6745 * std::sqrt(20.0))};
 }
 
 namespace {
@@ -215,6 +156,13 @@ std::vector<std::string> SymptomsOf(const BrdfTable& table) {
          ": values seem to have been ", k > 0 ? "multiplied" : "divided",
          " by it once; --cosine=", k, " corrects that");
   }
+  const StrayLightSymptom stray = StrayLightOf(table);
+  if (stray.IsThere()) {
+    tell("exchanged directions differ by ", Percent(stray.error), " in the median, and by ",
+         Percent(stray.error_without), " without ", Percent(stray.share),
+         " of the median signal: there seems to be as much light from elsewhere in all that was "
+         "measured");
+  }
   if (const PlateauSymptom plateau = PlateauOf(table); plateau.IsThere()) {
     tell("the largest value is there ", plateau.values,
          " times, as where a detector is saturated: highlights are brighter than that");
@@ -222,6 +170,15 @@ std::vector<std::string> SymptomsOf(const BrdfTable& table) {
   if (const QuantizationSymptom quantized = QuantizationOf(table); quantized.IsThere()) {
     tell(Percent(quantized.share),
          " of the dark signals are there more than once, as where a measurement has few levels");
+  }
+  if (const NoiseSymptom noise = NoiseOf(table); noise.IsThere()) {
+    tell("values scatter by ", Percent(noise.relative),
+         " about their neighbours, as noise does, which a fit of many samples averages out");
+  }
+  if (const RepetitionSymptom repeated = RepetitionOf(table); repeated.IsThere()) {
+    tell("values hardly change any more beyond ", repeated.degrees,
+         " deg, as where what was not measured repeats the last that was; --max_angle=",
+         repeated.degrees, " leaves that out");
   }
   if (const TiltSymptom tilt = TiltOf(table); tilt.IsThere()) {
     tell("the highlight is ", std::abs(tilt.degrees),
@@ -236,6 +193,11 @@ std::vector<std::string> SymptomsOf(const BrdfTable& table) {
          shadow.theta_d_deg, " leaves that out");
   }
   return symptoms;
+}
+
+void NoteSymptoms(Measurement* measurement) {
+  if (!measurement->table) return;
+  std::ranges::copy(SymptomsOf(*measurement->table), std::back_inserter(measurement->notes));
 }
 
 }  // namespace trilobe

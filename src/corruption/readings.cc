@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <memory>
 #include <utility>
 
+#include "math/quantile.h"
 #include "trilobe/base/error.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/brdf/tabulated_brdf.h"
@@ -60,9 +60,7 @@ double Readings::ThetaD(int j) const {
 double Readings::MedianSignal() const {
   std::vector<double> signals(size());
   ForEach([&](int j) { signals[j] = Mean(rho_[j]) * CosinesOf(j).i; });
-  const auto middle = signals.begin() + size() / 2;
-  std::ranges::nth_element(signals, middle);
-  return *middle;
+  return Quantile(&signals, 0.5);
 }
 
 double Readings::LargestSignal() const {
@@ -74,36 +72,27 @@ double Readings::LargestSignal() const {
 }
 
 Readings::Between Readings::ReadBetween() const {
+  BrdfFunction rho;
   if (table()) {
     const auto table = std::make_shared<const TabulatedBrdf>(*measurement_.table);
-    return [table](const DirectionPair& pair) -> std::optional<Rgb> {
-      if (!IsAbove(pair)) return std::nullopt;
-      return table->Interpolate(pair);
-    };
+    rho = [table](const DirectionPair& pair) { return table->Interpolate(pair); };
+  } else if (measurement_.look_up) {
+    rho = [&from = measurement_.look_up](const DirectionPair& pair) { return from(pair).rho; };
+  } else if (measurement_.formula) {
+    rho = measurement_.formula;
+  } else {
+    throw Error(measurement_.source +
+                ": tilt, origin, aperture and repeat read between samples, which a table, an RGL "
+                "file and a synthetic material allow; scattered samples do before any other kind "
+                "has changed them: name these first, or leave them out");
   }
-  if (measurement_.look_up) {
-    return [&look_up = measurement_.look_up](const DirectionPair& pair) -> std::optional<Rgb> {
-      if (!IsAbove(pair)) return std::nullopt;
-      return look_up(pair).rho;
-    };
-  }
-  if (measurement_.formula) {
-    return [&formula = measurement_.formula](const DirectionPair& pair) -> std::optional<Rgb> {
-      if (!IsAbove(pair)) return std::nullopt;
-      return formula(pair);
-    };
-  }
-  throw Error(measurement_.source +
-              ": tilt, origin, aperture and repeat read between samples, which a table, an RGL "
-              "file and a synthetic material allow; scattered samples do before any other kind "
-              "has changed them: name these first, or leave them out");
+  return [rho](const DirectionPair& pair) {
+    return IsAbove(pair) ? std::optional(rho(pair)) : std::nullopt;
+  };
 }
 
 void Readings::ForEach(const std::function<void(int)>& work) const {
-  constexpr int kBlock = 1 << 12;
-  ParallelFor((size() + kBlock - 1) / kBlock, num_threads_, [&](int block) {
-    for (int j = block * kBlock; j < std::min(size(), (block + 1) * kBlock); ++j) work(j);
-  });
+  ParallelForShort(size(), num_threads_, work);
 }
 
 void Readings::Store() {

@@ -5,6 +5,7 @@
 
 #include "brdf/counter_random.h"
 #include "corruption/kinds.h"
+#include "math/quantile.h"
 #include "trilobe/math/angles.h"
 
 namespace trilobe {
@@ -77,11 +78,8 @@ void Clip(double strength, uint64_t /*seed*/, Readings* readings) {
           readings->rho(j)[c] * readings->CosinesOf(j).i;
     }
   });
-  const auto last = static_cast<double>(signals.size() - 1);
-  const auto most = signals.begin() + static_cast<std::ptrdiff_t>((1 - strength) * last);
-  std::ranges::nth_element(signals, most);
-  ForEachSignal(readings,
-                [most = *most](double signal, uint64_t) { return std::min(signal, most); });
+  const double most = Quantile(&signals, 1 - strength);
+  ForEachSignal(readings, [&](double signal, uint64_t) { return std::min(signal, most); });
 }
 
 void Quantize(double strength, uint64_t /*seed*/, Readings* readings) {

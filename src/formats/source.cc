@@ -1,8 +1,11 @@
 #include "trilobe/formats/source.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "base/named.h"
+#include "brdf/symptoms.h"
 #include "files/file.h"
 #include "files/text_lines.h"
 #include "formats/utia_file.h"
@@ -100,17 +103,41 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
   note(options.radiometry != SourceOptions().radiometry, "utia", "--radiometry is of UTIA files");
 }
 
+// The tilt that the highlight shows, 0 if it shows none, with a note that says so.
+double ShownTilt(Measurement* measurement) {
+  const std::string& source = measurement->source;
+  if (!measurement->table) {
+    throw Error(source + ": --tilt=auto goes by the highlight of a table, and this is a " +
+                measurement->kind + "; give degrees");
+  }
+  const TiltSymptom tilt = TiltOf(*measurement->table);
+  if (!tilt.highlight) {
+    throw Error(source +
+                ": --tilt=auto goes by the highlight, and there is none that is three times as "
+                "bright as what is around it; give degrees");
+  }
+  std::ostringstream note;
+  note.precision(2);
+  note << "the highlight is " << std::abs(tilt.degrees) << " deg off the mirror direction"
+       << (tilt.IsThere() ? ", which --tilt=auto takes out"
+                          : ", too little or too unsteadily for a tilt: --tilt=auto changes "
+                            "nothing");
+  measurement->notes.push_back(note.str());
+  return tilt.IsThere() ? tilt.degrees : 0;
+}
+
 }  // namespace
 
 void CorruptBy(const SourceOptions& options, Measurement* measurement) {
-  std::vector<Corruption> corruptions = ParseCorruptions(options.corrupt);
+  Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
   // What undoes a corruption is the same, the other way round.
+  std::vector<Corruption> corruptions;
   const auto undo = [&](const char* kind, double strength) {
     if (strength == 0) return;
     corruptions.push_back(
         {.kind = &FindNamed("kind", kind, CorruptionKinds()), .strength = -strength});
   };
-  undo("tilt", options.tilt_deg);
+  undo("tilt", options.tilt_deg ? *options.tilt_deg : ShownTilt(measurement));
   undo("cosine", options.cosine);
   Corrupt(corruptions, options.seed, options.num_threads, measurement);
 }
@@ -126,8 +153,8 @@ void CheckSourceOptions(const SourceOptions& options) {
               "in degrees from 0 to below 90, or -1 to go by the data");
   FindNamed("radiometry", options.radiometry, UtiaRadiometries());
   ParseCorruptions(options.corrupt);
-  CheckNumber("--tilt", options.tilt_deg, options.tilt_deg >= -30 && options.tilt_deg <= 30,
-              "in degrees from -30 to 30");
+  const double tilt = options.tilt_deg.value_or(0);
+  CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
   CheckNumber("--cosine", options.cosine, options.cosine >= -2 && options.cosine <= 2,
               "from -2 to 2");
 }

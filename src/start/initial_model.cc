@@ -8,6 +8,7 @@
 #include "base/named.h"
 #include "lobes/gauge.h"
 #include "lobes/with_axes.h"
+#include "math/quantile.h"
 #include "objective/canonical_form.h"
 #include "solvers/awls/awls.h"
 #include "trilobe/solvers/solver.h"
@@ -31,16 +32,13 @@ std::vector<WeightedSample> Selection(const Objective& objective) {
 }
 
 // The value that a share `fraction` of the samples stays below, a channel.
-Rgb Quantile(const std::vector<WeightedSample>& samples, double fraction) {
+Rgb QuantileOf(const std::vector<WeightedSample>& samples, double fraction) {
   Rgb result{};
   std::vector<double> values(samples.size());
   for (int c = 0; c < kChannels; ++c) {
     std::ranges::transform(samples, values.begin(),
                            [c](const WeightedSample& sample) { return sample.rho[c]; });
-    const auto at =
-        values.begin() + static_cast<int>(fraction * (static_cast<double>(values.size()) - 1));
-    std::ranges::nth_element(values, at);
-    result[c] = *at;
+    result[c] = Quantile(&values, fraction);
   }
   return result;
 }
@@ -157,7 +155,7 @@ Table SchlickFresnel(int bins) {
 FactorModel WithoutWeights(const std::vector<WeightedSample>& samples, const ModelSpec& spec,
                            const std::vector<Table>& D) {
   FactorModel model(spec);
-  std::ranges::copy(Quantile(samples, 0.1), model.d().begin());
+  std::ranges::copy(QuantileOf(samples, 0.1), model.d().begin());
   for (int m = 0; m < spec.lobes; ++m) {
     SetTable(Factor::kD, m, D[m], &model);
     SetTable(Factor::kF, m, SchlickFresnel(spec.f_axis.size), &model);
@@ -187,7 +185,7 @@ std::vector<Table> SpreadDistributions(const ModelSpec& spec, double narrow, dou
 FactorModel ConstantModel(const Objective& objective, uint64_t /*seed*/) {
   FactorModel model(objective.spec());
   const std::vector<WeightedSample> samples = Selection(objective);
-  std::ranges::copy(Quantile(samples, 0.1), model.d().begin());
+  std::ranges::copy(QuantileOf(samples, 0.1), model.d().begin());
   for (int m = 0; m < objective.spec().lobes; ++m) {
     for (const Factor factor : kFactors) {
       SetTable(factor, m, Table(objective.spec().table_size(factor), 1.0), &model);
@@ -213,7 +211,7 @@ int Nearest(const Stencil& stencil) {
 // left of a lobe there is its D, up to a factor. [d_axis.size]
 Table HighlightProfile(const Objective& objective) {
   const std::vector<WeightedSample> samples = Selection(objective);
-  const Rgb d = Quantile(samples, 0.1);
+  const Rgb d = QuantileOf(samples, 0.1);
   const Axis& axis = objective.spec().d_axis;
   const int bins = axis.size, f_limit = objective.spec().f_axis.size / 2;
   Table sum(bins, 0.0), count(bins, 0.0);

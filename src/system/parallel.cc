@@ -92,6 +92,15 @@ void ParallelFor(int count, int num_threads, const std::function<void(int)>& wor
   RunOnThreads(count, own + lent, work);
 }
 
+void ParallelForShort(int count, int num_threads, const std::function<void(int)>& work) {
+  CheckNotEmpty(work, "work");
+  constexpr int kBlock = 1 << 12;
+  ParallelFor(count / kBlock + (count % kBlock > 0 ? 1 : 0), num_threads, [&](int block) {
+    const int begin = block * kBlock, size = std::min(count - begin, kBlock);
+    for (int i = begin; i < begin + size; ++i) work(i);
+  });
+}
+
 void ParallelJobs(int count, int num_threads, const std::function<void(int)>& work) {
   CheckNumThreads(num_threads);
   CheckNotEmpty(work, "work");

@@ -167,6 +167,21 @@ TEST(Outliers, ScatteredSamplesHaveSome) {
   EXPECT_THAT(measurement.notes, testing::SizeIs(1));
 }
 
+TEST(Outliers, WhereAzimuthsMatterOnlyNothingIsOne) {
+  const std::string source = "synth:aniso_ggx_steel@6x24";
+  const int all = CountsOf(LoadMeasurement(source)).valid;
+  EXPECT_EQ(all, 6 * 24 * 6 * 24);
+  const auto left_of = [&](const std::string& corrupt) {
+    Measurement measurement = Corrupted(source, corrupt);
+    LeaveOutOutliers(2, &measurement);
+    return measurement;
+  };
+  EXPECT_EQ(CountsOf(left_of("outliers:0.05")).valid, all);
+  const Measurement left = left_of("zeros:0.05");
+  EXPECT_NEAR(CountsOf(left).valid, 0.95 * all, 0.02 * all);
+  EXPECT_LE(std::ranges::count(left.samples.rho, Rgb{}), 0.001 * all);
+}
+
 TEST(Outliers, TheirLightIsWhatTheyAreOffBy) {
   const BrdfSamples smooth = ValidSamples(Highlight(1));
   for (const double factor : {0.0, 100.0}) {

@@ -29,8 +29,8 @@ TEST(Symptoms, CleanDataHaveNone) {
 }
 
 TEST(Symptoms, WhatDoesNotLookLikeOneIsNotTold) {
-  for (const char* const corrupt : {"noise:0.2", "gaps:0.9", "zeros:0.05", "outliers:0.05",
-                                    "stray:0.1", "crosstalk:0.1", "beyond:60", "aperture:3"}) {
+  for (const char* const corrupt : {"noise:0.01", "gaps:0.9", "zeros:0.05", "outliers:0.05",
+                                    "crosstalk:0.1", "beyond:60", "aperture:3"}) {
     EXPECT_THAT(SymptomsOf(Corrupted(corrupt)), IsEmpty()) << corrupt;
   }
 }
@@ -86,6 +86,31 @@ TEST(Symptoms, ATiltIsToldByItsAngle) {
   options.corrupt = "tilt:1";
   options.tilt_deg = 1;
   EXPECT_NEAR(TiltOf(LoadSource("synth:aluminium@60x30x60", options)).degrees, 0, 0.1);
+}
+
+TEST(Symptoms, NoiseIsToldByItsSize) {
+  EXPECT_LT(NoiseOf(Corrupted("")).relative, 0.002);
+  for (const double noise : {0.01, 0.05, 0.3}) {
+    EXPECT_NEAR(NoiseOf(Corrupted("noise:" + std::to_string(noise))).relative, noise, 0.05 * noise);
+  }
+  EXPECT_THAT(SymptomsOf(Corrupted("noise:0.05")),
+              ElementsAre(HasSubstr("scatter by 5 % about their neighbours")));
+}
+
+TEST(Symptoms, RepeatedValuesAreToldByTheirAngle) {
+  EXPECT_FALSE(RepetitionOf(Corrupted("")).IsThere());
+  for (const int degrees : {60, 72, 80}) {
+    const BrdfTable table = Corrupted("repeat:" + std::to_string(degrees));
+    EXPECT_NEAR(RepetitionOf(table).degrees, degrees, 4);
+    EXPECT_THAT(SymptomsOf(table), testing::Contains(HasSubstr("repeats the last that was")));
+  }
+}
+
+TEST(Symptoms, StrayLightIsToldByItsShare) {
+  EXPECT_FALSE(StrayLightOf(Corrupted("")).IsThere());
+  const BrdfTable table = Corrupted("stray:0.1");
+  EXPECT_NEAR(StrayLightOf(table).share, 0.1, 0.05);
+  EXPECT_THAT(SymptomsOf(table), ElementsAre(HasSubstr("as much light from elsewhere")));
 }
 
 TEST(Symptoms, AShadowIsTold) {

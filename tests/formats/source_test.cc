@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -177,6 +179,37 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       EXPECT_EQ(format.recognise(bytes), format.name == name) << format.name << " of " << name;
     }
   }
+}
+
+// By what the highlight shows, which is within a tenth of the tilt.
+TEST(LoadMeasurement, TakesOutTheTiltThatTheHighlightShows) {
+  const std::string source = "synth:aluminium@60x30x60";
+  const SourceOptions shown = {.corrupt = "tilt:1", .tilt_deg = std::nullopt, .outliers = true};
+  const Measurement by_highlight = LoadMeasurement(source, shown);
+  ASSERT_EQ(by_highlight.notes.size(), 1);
+  EXPECT_THAT(by_highlight.notes[0], HasSubstr("deg off the mirror direction, which --tilt=auto"));
+  const auto difference = [&](double degrees) {
+    const SourceOptions given = {.corrupt = "tilt:1", .tilt_deg = degrees, .outliers = true};
+    const std::vector<double>& a = by_highlight.table->stored[1];
+    const std::vector<double> b = LoadMeasurement(source, given).table->stored[1];
+    double sum = 0;
+    for (size_t k = 0; k < a.size(); ++k) sum += std::abs(a[k] - b[k]);
+    return sum;
+  };
+  EXPECT_LT(difference(1), difference(0.8));
+  EXPECT_LT(difference(1), difference(1.2));
+}
+
+TEST(LoadMeasurement, SaysWhereNoTiltIsShown) {
+  const SourceOptions shown = {.tilt_deg = std::nullopt};
+  const Measurement straight = LoadMeasurement("synth:aluminium@60x30x60", shown);
+  EXPECT_THAT(straight.notes, testing::ElementsAre(HasSubstr("--tilt=auto changes nothing")));
+  EXPECT_EQ(straight.table->stored, LoadMeasurement("synth:aluminium@60x30x60").table->stored);
+  EXPECT_THAT(
+      ErrorOf([&] { LoadMeasurement("synth:felt@60x30x60", shown); }),
+      HasSubstr("synth:felt@60x30x60: --tilt=auto goes by the highlight, and there is none"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement("synth:plastic@4x8", shown); }),
+              HasSubstr("give degrees"));
 }
 
 }  // namespace

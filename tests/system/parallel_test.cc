@@ -28,8 +28,16 @@ TEST(ParallelFor, CallsEveryItemOnce) {
   }
 }
 
+TEST(ParallelForShort, CallsEveryItemOnce) {
+  for (const int count : {-1, 0, 1, 4095, 4096, 4097, 20000}) {
+    std::vector<int> calls(std::max(count, 0), 0);
+    ParallelForShort(count, 3, [&](int i) { ++calls[i]; });
+    EXPECT_THAT(calls, testing::Each(1)) << count;
+  }
+}
+
 TEST(ParallelFor, NeedsAThreadAndWork) {
-  for (const auto& parallel : {ParallelFor, ParallelJobs}) {
+  for (const auto& parallel : {ParallelFor, ParallelForShort, ParallelJobs}) {
     for (const int threads : {-1, 0}) EXPECT_THROW(parallel(1, threads, [](int) {}), Error);
     EXPECT_THROW(parallel(1, 1, nullptr), Error);
   }

@@ -71,7 +71,7 @@ void LeaveOutOwnShadow(Measurement* measurement);
 // Leaves out the samples that are far off what surrounds them (FindOutliers), as if they were lost,
 // with a note that says so, where they are 10 or more, of scattered samples one in 500 or more, and
 // off by 2e-5 of the light that is reflected, or more: clean materials have some that are no error,
-// in the dark. Changes nothing where azimuths matter.
+// in the dark. Where azimuths matter only those that are 0 are left out.
 void LeaveOutOutliers(int num_threads, Measurement* measurement);
 
 // Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had

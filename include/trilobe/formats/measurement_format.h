@@ -2,6 +2,7 @@
 #define TRILOBE_FORMATS_MEASUREMENT_FORMAT_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,7 +19,8 @@ struct SourceOptions {
   double missing = 0.0;      // share of the bins or samples that is left out at random, 0 up to 1
   std::string corrupt = {};  // ParseCorruptions: what happens to what was measured, by `seed`
   double cosine = 0;         // exponent of the cos theta_i that is taken out of what was measured
-  double tilt_deg = 0;       // by which the sample leant towards azimuth 0, which is taken out
+  // By which the sample leant towards azimuth 0, which is taken out; none: as its highlight shows.
+  std::optional<double> tilt_deg = 0;
   uint64_t seed = 1;
   int num_threads = 1;
   double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured; above 0

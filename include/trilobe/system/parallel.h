@@ -14,6 +14,9 @@ namespace trilobe {
 // fewer threads, and where there is no work.
 void ParallelFor(int count, int num_threads, const std::function<void(int)>& work);
 
+// The same for many and short items, which are handed out thousands at a time.
+void ParallelForShort(int count, int num_threads, const std::function<void(int)>& work);
+
 // The same for few and long items: threads that have no item, or none left, help in the ParallelFor
 // and ParallelJobs that other items call, in addition to the num_threads that these ask for.
 void ParallelJobs(int count, int num_threads, const std::function<void(int)>& work);
