@@ -194,18 +194,20 @@ def _by_corruption(rows):
 
 
 def _by_way(rows, of):
-    """dB that are lost by each solver, weighting or remedy, the others as by default, on the
-    materials that all have: a line a corruption and material; empty where there is but one."""
+    """dB that are lost by each solver, weighting or remedy, the others as by default, against the
+    clean fit by default: a line a corruption and material; empty where there is but one."""
     others = [(name, value) for name, value in zip(WAY, KNOWN_BY) if name != of]
     rows = [row for row in rows if all(row[name] == value for name, value in others)]
     ways = list(tables.groups(rows, of))
-    lost = {(row["corruption"], row["material"], row[of]): row["lost_db"] for row in rows}
+    clean = {row["material"]: row["psnr_db"] for row in _by_default(rows)
+             if row["corruption"] == CLEAN}
+    lost = {(row["corruption"], row["material"], row[of]): clean[row["material"]] - row["psnr_db"]
+            for row in rows if row["material"] in clean}
     lines = [[corruption, material, *(f"{lost[(corruption, material, way)]:.1f}"
                                       if (corruption, material, way) in lost else ""
                                       for way in ways)]
              for corruption, material in tables.groups(rows, "corruption", "material")
-             if corruption != CLEAN
-             and sum((corruption, material, way) in lost for way in ways) > 1]
+             if sum((corruption, material, way) in lost for way in ways) > 1]
     return tables.markdown(["corruption", "material", *ways], lines) if lines else ""
 
 
