@@ -262,6 +262,20 @@ TEST(SyntheticPrior, TamesAFitThatIsWildBetweenNoisySamples) {
   EXPECT_TRUE(std::ranges::equal(model.parameters(), corrected.parameters()));
 }
 
+// Two kinds of threads reflect in shot silk, a coat and its base in lacquer; one of anything in
+// steel.
+TEST(SyntheticPrior, HasASecondLobeWhereOneLeavesMostOfE) {
+  const auto lobes_of = [](const char* material, const HemisphereGrid& grid) {
+    const Objective data(SamplesOf(SynthesizeSamples(FindSynthMaterial(material), 0, 1, grid)),
+                         Spec(10), Weightings().front(), 2);
+    return SyntheticPrior(data, {}).model().spec().lobes;
+  };
+  EXPECT_EQ(lobes_of("shot_silk", kGrid), 2);
+  EXPECT_EQ(lobes_of("aniso_ggx_lacquer", kGrid), 2);
+  EXPECT_EQ(lobes_of("aniso_ggx_steel", kGrid), 1);
+  EXPECT_EQ(lobes_of("shot_silk", {4, 8}), 1) << "too few samples to tell";
+}
+
 TEST(SyntheticPrior, NeedsDirections) {
   BrdfSamples samples = SteelAtNodes();
   samples.directions.clear();

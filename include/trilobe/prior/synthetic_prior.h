@@ -15,11 +15,11 @@ namespace trilobe {
 // UTIA's directions are 15 degrees apart, and highlights narrower. There the data determine the
 // product of D, F and G^2 at their own directions only: factors that trade a hundredfold between
 // neighbouring nodes fit them as well as smooth ones do, and shine wrongly in between. The prior is
-// a model of too few numbers for that, one lobe on few nodes, fitted first; samples of it between
-// the measured ones then join the data, and any solver fits both. So it is with few scattered
-// samples of an isotropic material. Without azimuths a sample says more about each parameter, and
-// it is enough that the prior decides between what fits the samples equally well: its weight is
-// small.
+// a model of too few numbers for that, one lobe on few nodes, or two where one leaves most of E,
+// fitted first; samples of it between the measured ones then join the data, and any solver fits
+// both. So it is with few scattered samples of an isotropic material. Without azimuths a sample
+// says more about each parameter, and it is enough that the prior decides between what fits the
+// samples equally well: its weight is small.
 struct SyntheticPriorOptions {
   double weight = 1;  // > 0: what a sample of the prior counts, where there is one for six measured
   // The data know no azimuths, and so the prior knows none; what it says counts 0.003 of that.
