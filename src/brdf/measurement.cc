@@ -48,6 +48,39 @@ KeyedSample KeyOf(const SphericalAngles& angles, bool anisotropic, int sample) {
           .sample = sample};
 }
 
+// Samples of the same directions, exchanged or not, one after the other.
+std::vector<KeyedSample> ByDirections(const Measurement& scattered) {
+  std::vector<KeyedSample> keys;
+  keys.reserve(scattered.samples.directions.size());
+  for (int j = 0; j < scattered.samples.size(); ++j) {
+    keys.push_back(KeyOf(scattered.samples.directions[j], scattered.anisotropic, j));
+  }
+  std::ranges::stable_sort(keys, {}, &KeyedSample::key);
+  return keys;
+}
+
+// Where azimuths matter, neighbours may be far apart; but nothing that reflects from wi into wo
+// reflects nothing from wo into wi.
+std::vector<Outlier> DeadReadings(const Measurement& scattered) {
+  const std::vector<KeyedSample> keys = ByDirections(scattered);
+  std::vector<Outlier> dead;
+  for (size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
+    std::array<double, 2> brightest{};
+    for (; end < keys.size() && keys[end].key == keys[begin].key; ++end) {
+      double& so_far = brightest[keys[end].swapped];
+      so_far = std::max(so_far, Mean(scattered.samples.rho[keys[end].sample]));
+    }
+    for (size_t k = begin; k < end; ++k) {
+      const double exchanged = brightest[!keys[k].swapped];
+      if (exchanged > 0 && !(Mean(scattered.samples.rho[keys[k].sample]) > 0)) {
+        dead.push_back({.sample = keys[k].sample, .median = exchanged});
+      }
+    }
+  }
+  std::ranges::sort(dead, {}, &Outlier::sample);
+  return dead;
+}
+
 constexpr double kRounding = 1e-9;  // of degrees that became radians: 60 are not beyond 60
 
 // Leaves only these samples, and counts the others as left out for this reason.
@@ -158,16 +191,13 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
   constexpr double kLeastLight = 2e-5;
   const int least = measurement->table ? kFewest : std::max(kFewest, valid / 500);
   const BrdfSamples samples = SamplesOf(*measurement);
-  std::vector<Outlier> outliers = FindOutliers(samples, num_threads);
-  // Samples of other azimuths may be that far apart, but not from nothing.
-  if (measurement->anisotropic) {
-    std::erase_if(outliers, [&](const Outlier& of) { return Mean(samples.rho[of.sample]) > 0; });
-  }
+  const std::vector<Outlier> outliers =
+      measurement->anisotropic ? DeadReadings(*measurement) : FindOutliers(samples, num_threads);
   const int count = static_cast<int>(outliers.size());
   if (count < least || LightOf(outliers, samples) < kLeastLight) return;
   if (measurement->table) {
-    for (const auto& [j, median] : outliers) {
-      for (auto& plane : measurement->table->stored) plane[samples.bins[j]] = -1;
+    for (const Outlier& outlier : outliers) {
+      for (auto& plane : measurement->table->stored) plane[samples.bins[outlier.sample]] = -1;
     }
   } else {
     std::vector<int> kept;
@@ -214,12 +244,7 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
 
 PairError ReciprocityError(const Measurement& scattered) {
   CheckDirections(scattered);
-  std::vector<KeyedSample> keys;
-  keys.reserve(scattered.samples.directions.size());
-  for (int j = 0; j < scattered.samples.size(); ++j) {
-    keys.push_back(KeyOf(scattered.samples.directions[j], scattered.anisotropic, j));
-  }
-  std::ranges::stable_sort(keys, {}, &KeyedSample::key);
+  const std::vector<KeyedSample> keys = ByDirections(scattered);
   std::vector<std::pair<Rgb, Rgb>> pairs;
   for (size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
     std::array<Rgb, 2> mean{};

@@ -56,8 +56,8 @@ class Surroundings {
     });
   }
 
-  // The median around a sample of this value, if it is far off that.
-  std::optional<double> FarOffMedian(int sample, double own) const {
+  // What is said of a sample of this value if it is far off the median around it.
+  std::optional<Outlier> FarOff(int sample, double own) const {
     const int row = bins_[sample] / grid_.phi_d, p = bins_[sample] % grid_.phi_d;
     const int h = row / grid_.theta_d, d = row % grid_.theta_d;
     if (IsLikeAllAround(h, d, p, own)) return std::nullopt;
@@ -73,7 +73,8 @@ class Surroundings {
       if (!all.Tells()) continue;
       const bool far_off = all.FarOff() && (!same_h.Tells() || same_h.FarOff()) &&
                            (!same_d.Tells() || same_d.FarOff());
-      return far_off ? std::optional(MedianAround(h, d, p, reach)) : std::nullopt;
+      if (!far_off) return std::nullopt;
+      return Outlier{.sample = sample, .median = MedianAround(h, d, p, reach)};
     }
     return std::nullopt;
   }
@@ -139,15 +140,13 @@ class Surroundings {
 }  // namespace
 
 std::vector<Outlier> FindOutliers(const BrdfSamples& samples, int num_threads) {
-  constexpr double kNone = -1;  // less than any median
   const Surroundings surroundings(samples, num_threads);
-  std::vector<double> medians(samples.size(), kNone);
-  ParallelForShort(samples.size(), num_threads, [&](int j) {
-    medians[j] = surroundings.FarOffMedian(j, Mean(samples.rho[j])).value_or(kNone);
-  });
+  std::vector<std::optional<Outlier>> told(samples.size());
+  ParallelForShort(samples.size(), num_threads,
+                   [&](int j) { told[j] = surroundings.FarOff(j, Mean(samples.rho[j])); });
   std::vector<Outlier> found;
-  for (int j = 0; j < samples.size(); ++j) {
-    if (medians[j] != kNone) found.push_back({.sample = j, .median = medians[j]});
+  for (const std::optional<Outlier>& outlier : told) {
+    if (outlier) found.push_back(*outlier);
   }
   return found;
 }
@@ -159,10 +158,11 @@ double LightOf(const std::vector<Outlier>& outliers, const BrdfSamples& samples)
     return samples.SolidAngle(j) * cosines.i * cosines.o;
   };
   for (int j = 0; j < samples.size(); ++j) all += weight(j) * Mean(samples.rho[j]);
-  for (const auto& [j, median] : outliers) {
-    const double own = Mean(samples.rho[j]);
-    off += weight(j) * std::abs(own - median);
-    all -= weight(j) * (own - median);
+  for (const Outlier& outlier : outliers) {
+    const int j = outlier.sample;
+    const double excess = Mean(samples.rho[j]) - outlier.median;
+    off += weight(j) * std::abs(excess);
+    all -= weight(j) * excess;
   }
   return all > 0 ? off / all : 0;
 }

@@ -53,7 +53,7 @@ RepetitionSymptom RepetitionOf(const BrdfTable& table);
 // of every third row.
 struct NoiseSymptom {
   double relative = 0;
-  bool IsThere() const { return relative > 0.02; }
+  bool IsThere() const { return relative > 0.03; }
 };
 NoiseSymptom NoiseOf(const BrdfTable& table);
 

@@ -344,8 +344,9 @@ TEST(Fit, WithoutABudgetThereAreNoCandidates) {
 // edge of the data, does not win it back.
 TEST(Fit, ARobustFitWeighsLargeErrorsLess) {
   const TemporaryFolder folder;
-  const std::vector<std::string> few = {"--lobes=1",   "--solver=varpro", "--max_iterations=15",
-                                        "--noise=0.3", "--max_angle=40",  "--nomatch_reflectance"};
+  const std::vector<std::string> few = {"--lobes=1",     "--solver=varpro", "--max_iterations=15",
+                                        "--noise=0.3",   "--max_angle=40",  "--nomatch_reflectance",
+                                        "--smoothness=0"};
   std::vector<double> E;
   for (const char* const robust : {"0", "1e6", "0.01"}) {
     std::vector<std::string> flags = few;
@@ -383,7 +384,7 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
   ASSERT_EQ(RunProgram({"convert", folder / "material.json", "--out=" + table}).status, 0);
   const auto fit = [&](const char* name, const char* match) {
     return RunProgram({"fit", table, "--lobes=1", "--missing=0.9", "--solver=varpro",
-                       "--tolerance=1e-2", "--nodiagnose", "--verbose", match,
+                       "--tolerance=1e-2", "--nodiagnose", "--verbose", match, "--smoothness=0",
                        "--out=" + folder / name});
   };
   const ProgramResult matched = fit("with", "--match_reflectance"),
