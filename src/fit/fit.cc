@@ -182,14 +182,13 @@ class Fitting {
               FitResult* fit) const {
     // One that was stopped early gains more by going on.
     const bool has_ended = HasEnded(fit->summary.stop_reason);
-    FinishOptions finish{
-        .smoothness = has_ended ? options_.smoothness : 0,
-        .robust = options_.robust,
-        .max_parameters = options_.max_parameters,
-        .prior = prior,
-        .match_reflectance = options_.match_reflectance && has_ended,
-        .appearance = Appearance(),
-        .stop = options_.stop};
+    FinishOptions finish{.smoothness = has_ended ? options_.smoothness : 0,
+                         .robust = options_.robust,
+                         .max_parameters = options_.max_parameters,
+                         .prior = prior,
+                         .match_reflectance = options_.match_reflectance && has_ended,
+                         .appearance = Appearance(),
+                         .stop = options_.stop};
     FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
     fit->file.model = std::move(finished.model);
     if (&solved != &fit->objective) {
