@@ -49,7 +49,7 @@ DEFINE_double(
 DEFINE_double(
     smoothness, trilobe::FitOptions().smoothness,
     "let E rise by this share at the end for tables as smooth as that allows, where that is not "
-    "seen: lobes that are told apart, without holes; 0 is the least E");
+    "seen: without holes, and without falls that D and G exchange; 0 is the least E");
 DEFINE_bool(match_reflectance, true,
             "of a table: where a fit that has converged reflects more or less light than was "
             "measured, by more than 1 %, let E rise a little to mend that, as far as neither the "
