@@ -110,6 +110,15 @@ def test_arrays_are_counted_like_a_file():
     assert one_channel.rho.shape == (96, 3)
 
 
+def test_takes_out_the_tilt_that_the_highlight_shows():
+    tilted = trilobe.read("synth:plastic", corrupt="tilt:2", tilt="auto")
+    assert [note for note in tilted.notes if "--tilt=auto takes out" in note and "2 deg" in note]
+    with pytest.raises(trilobe.Error, match="--tilt=auto goes by the highlight"):
+        trilobe.read("synth:felt", tilt="auto")
+    with pytest.raises(trilobe.Error, match="tilt must be a number of degrees, or auto"):
+        trilobe.read(SMALL, tilt="a lot")
+
+
 def test_reads_a_table(plastic, tmp_path):
     assert plastic.grid == (24, 24, 48)
     assert plastic.wi.shape == plastic.wo.shape == plastic.rho.shape == (27648, 3)
