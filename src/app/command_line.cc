@@ -15,8 +15,8 @@ using gflags::CommandLineFlagInfo;
 
 // With a value, too, which gflags would take for the list of all flags of all libraries.
 bool IsHelp(std::string_view word) {
-  return word == "-h" || word.substr(0, word.find('=')) == "--help" ||
-         word.substr(0, word.find('=')) == "-help";
+  const std::string_view name = word.substr(0, word.find('='));
+  return word == "-h" || name == "--help" || name == "-help";
 }
 
 bool IsBool(const std::string& name) {

@@ -213,8 +213,11 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
   }
   measurement->notes.push_back(
       std::to_string(count) + " of " + std::to_string(valid) +
-      " samples are more than 8 times darker or brighter than those around them, as dead readings "
-      "and glints are, and left out; --outliers takes them");
+      (measurement->anisotropic
+           ? " samples are 0 where those with wi and wo exchanged are not, as dead readings are"
+           : " samples are more than 8 times darker or brighter than those around them, as dead "
+             "readings and glints are") +
+      ", and left out; --outliers takes them");
 }
 
 void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {

@@ -71,7 +71,8 @@ void LeaveOutOwnShadow(Measurement* measurement);
 // Leaves out the samples that are far off what surrounds them (FindOutliers), as if they were lost,
 // with a note that says so, where they are 10 or more, of scattered samples one in 500 or more, and
 // off by 2e-5 of the light that is reflected, or more: clean materials have some that are no error,
-// in the dark. Where azimuths matter only those that are 0 are left out.
+// in the dark. Where azimuths matter, instead, those that are 0 while one with wi and wo exchanged
+// is not.
 void LeaveOutOutliers(int num_threads, Measurement* measurement);
 
 // Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had

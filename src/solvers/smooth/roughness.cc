@@ -1,6 +1,5 @@
 #include "solvers/smooth/roughness.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "algebra/cholesky.h"
