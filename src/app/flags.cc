@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "base/text.h"
+#include "files/text_lines.h"
 #include "formats/utia_file.h"
 #include "trilobe/base/error.h"
 #include "trilobe/formats/source.h"
@@ -101,12 +101,8 @@ namespace {
 // None for auto.
 std::optional<double> TiltFromFlag() {
   if (FLAGS_tilt == "auto") return std::nullopt;
-  std::istringstream text(FLAGS_tilt);
-  double degrees = 0;
-  if (!(text >> degrees && text.peek() == EOF)) {
-    throw Error("--tilt=" + FLAGS_tilt + ": give a number of degrees from -30 to 30, or auto");
-  }
-  return degrees;
+  if (const std::optional<double> degrees = ToNumber(FLAGS_tilt)) return degrees;
+  throw Error("--tilt=" + FLAGS_tilt + ": give a number of degrees from -30 to 30, or auto");
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 #include "trilobe/corruption/corruption.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "base/named.h"
 #include "corruption/kinds.h"
 #include "corruption/readings.h"
+#include "files/text_lines.h"
 #include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 
@@ -20,16 +21,14 @@ Corruption ParseOne(const std::string& text) {
   }
   const CorruptionKind& kind =
       FindNamed("kind of corruption", text.substr(0, colon), CorruptionKinds());
-  std::istringstream number(text.substr(colon + 1));
-  double strength = 0;
-  if (!(number >> strength && number.peek() == EOF && strength >= kind.min &&
-        strength <= kind.max)) {
+  const std::optional<double> strength = ToNumber(std::string_view(text).substr(colon + 1));
+  if (!strength || !(*strength >= kind.min && *strength <= kind.max)) {
     std::ostringstream message;
     message << "'" << text << "': the strength of " << kind.name << " is a number from " << kind.min
             << " to " << kind.max << " [" << kind.unit << "]";
     throw Error(message.str());
   }
-  return {.kind = &kind, .strength = strength};
+  return {.kind = &kind, .strength = *strength};
 }
 
 }  // namespace
@@ -42,6 +41,7 @@ const std::vector<CorruptionKind>& CorruptionKinds() {
       {"photons", "electrons of the largest signal", 10, 1e18, 1e18,
        "n + sqrt(n) z, rounded, n = x b/max(b)", AddPhotonNoise},
       {"outliers", "share", 0, 1, 0, "a share x of the samples times 1000", AddOutliers},
+      {"spikes", "factor", 0, 1e6, 1, "a twentieth of the samples times x", AddSpikes},
       {"zeros", "share", 0, 1, 0, "a share x of the samples is 0", AddZeros},
       {"gaps", "share", 0, 1, 0, "a share x of the samples is lost, at random", LoseAtRandom},
       {"retro", "deg", 0, 180, 0, "lost where wi and wo are less than x apart", LoseCone},

@@ -13,6 +13,7 @@ void AddNoise(double strength, uint64_t seed, Readings* readings);
 void AddDarkNoise(double strength, uint64_t seed, Readings* readings);
 void AddPhotonNoise(double strength, uint64_t seed, Readings* readings);
 void AddOutliers(double strength, uint64_t seed, Readings* readings);
+void AddSpikes(double strength, uint64_t seed, Readings* readings);
 void AddZeros(double strength, uint64_t seed, Readings* readings);
 void Clip(double strength, uint64_t seed, Readings* readings);
 void Quantize(double strength, uint64_t seed, Readings* readings);

@@ -30,6 +30,13 @@ bool IsDrawn(double share, uint64_t seed, uint64_t number) {
   return UniformAt(seed, number) < share;
 }
 
+void MultiplyShare(double share, double factor, uint64_t seed, Readings* readings) {
+  readings->ForEach([&](int j) {
+    if (!IsDrawn(share, seed, readings->number(j))) return;
+    for (double& rho : readings->rho(j)) rho *= factor;
+  });
+}
+
 }  // namespace
 
 void AddNoise(double strength, uint64_t seed, Readings* readings) {
@@ -58,10 +65,12 @@ void AddPhotonNoise(double strength, uint64_t seed, Readings* readings) {
 
 void AddOutliers(double strength, uint64_t seed, Readings* readings) {
   constexpr double kFactor = 1000;
-  readings->ForEach([&](int j) {
-    if (!IsDrawn(strength, seed, readings->number(j))) return;
-    for (double& rho : readings->rho(j)) rho *= kFactor;
-  });
+  MultiplyShare(strength, kFactor, seed, readings);
+}
+
+void AddSpikes(double strength, uint64_t seed, Readings* readings) {
+  constexpr double kShare = 0.05;
+  MultiplyShare(kShare, strength, seed, readings);
 }
 
 void AddZeros(double strength, uint64_t seed, Readings* readings) {

@@ -97,11 +97,11 @@ TEST(Corruption, WhatChangesNothingChangesNextToNothing) {
 TEST(Corruption, StrengthsNearItChangeLittle) {
   const Measurement before = LoadMeasurement(kTable);
   for (const std::string text :
-       {"noise:0.001",     "dark:0.001",         "photons:1e12",  "outliers:0.001", "zeros:0.001",
-        "gaps:0.001",      "retro:0.1",          "beyond:89.9",   "side:0.001",     "clip:0.001",
-        "tilt:0.001",      "origin:-0.001",      "aperture:0.01", "quantize:40",    "brackets:12",
-        "crosstalk:0.001", "stray:0.001",        "flare:1e-6",    "shadow:0.5",     "cosine:0.001",
-        "repeat:89.9",     "nonreciprocal:0.001"}) {
+       {"noise:0.001",  "dark:0.001",      "photons:1e12",       "outliers:0.001", "spikes:1.01",
+        "zeros:0.001",  "gaps:0.001",      "retro:0.1",          "beyond:89.9",    "side:0.001",
+        "clip:0.001",   "tilt:0.001",      "origin:-0.001",      "aperture:0.01",  "quantize:40",
+        "brackets:12",  "crosstalk:0.001", "stray:0.001",        "flare:1e-6",     "shadow:0.5",
+        "cosine:0.001", "repeat:89.9",     "nonreciprocal:0.001"}) {
     // Near the horizon a little light changes much, and so does a little of an angle.
     const Changed change = Compare(before, Corrupted(kTable, text), [](const HalfDiffAngles& at) {
       return std::min(ToCosines(at).i, ToCosines(at).o) > 0.3;
@@ -160,6 +160,9 @@ TEST(Corruption, SharesAreWhatTheySay) {
     EXPECT_EQ(zeros.smallest, 0);
     EXPECT_EQ(gaps.changed + outliers.lost + zeros.lost, 0);
   }
+  const Changed spikes = Compare(before, Corrupted(kTable, "spikes:3"));
+  EXPECT_EQ(spikes.changed, Compare(before, Corrupted(kTable, "outliers:0.05")).changed);
+  EXPECT_NEAR(spikes.ratio, 3, 1e-9);
   const Changed noise = Compare(before, Corrupted(kTable, "noise:0.1"));
   EXPECT_EQ(noise.changed, valid);
   EXPECT_LE(noise.ratio, 1.6);
