@@ -7,7 +7,8 @@ from lab.units import Unit
 # What `info` says of a table, by words of its notes.
 TOLD = {"cosine": "--cosine=", "stray light": "light from elsewhere", "saturation": "saturated",
         "levels": "few levels", "noise": "scatter by", "repeated": "repeats the last",
-        "tilt": "is tilted", "shadow": "own light", "outliers": "dead readings"}
+        "tilt": "is tilted", "shadow": "own light", "outliers": "dead readings",
+        "dark noise": "dark noise is"}
 
 
 def units(setting):

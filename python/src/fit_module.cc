@@ -45,6 +45,7 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .min_theta_d_deg = OptionOf<double>(options, "min_theta_d", "a number of degrees"),
       .extrapolated = OptionOf<bool>(options, "extrapolated", "True or False"),
       .outliers = OptionOf<bool>(options, "outliers", "True or False"),
+      .dark_noise = OptionOf<bool>(options, "dark_noise", "True or False"),
       .radiometry = OptionOf<std::string>(options, "radiometry", "a name")};
   CheckSourceOptions(source);
   return source;

@@ -186,6 +186,7 @@ def read(
     min_theta_d: float = -1,
     extrapolated: bool = False,
     outliers: bool = False,
+    dark_noise: bool = False,
     radiometry: str = "brdf",
     threads: int = 0,
 ) -> Measurement:
@@ -205,6 +206,7 @@ def read(
             detector stood in its own light.
         extrapolated: of an RGL file, takes what its authors extrapolated, too.
         outliers: takes samples that are far off those around them, too.
+        dark_noise: takes readings that are lost in dark noise as they are, not medians around them.
         radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
         threads: 0 for all cores.
 
@@ -222,6 +224,7 @@ def read(
         min_theta_d=min_theta_d,
         extrapolated=extrapolated,
         outliers=outliers,
+        dark_noise=dark_noise,
         radiometry=radiometry,
         threads=threads,
     )
@@ -296,6 +299,7 @@ def source_options(**given: Any) -> dict[str, Any]:
         "min_theta_d": -1.0,
         "extrapolated": False,
         "outliers": False,
+        "dark_noise": False,
         "radiometry": "brdf",
         "threads": 0,
         **given,

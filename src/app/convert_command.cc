@@ -60,7 +60,7 @@ int RunConvert(std::span<const std::string> arguments) {
   const std::string out = RequiredMeasurementOut("convert");
   Inputs({source}).CheckOutput(out);
   SourceOptions options = SourceOptionsFromFlags();
-  options.outliers = true;  // what is copied stays as it is
+  options.outliers = options.dark_noise = true;  // what is copied stays as it is
   const Measurement measurement = MeasurementOf(source, out, options);
   TellNotes(measurement);
   const std::string written = WriteMeasurement(measurement, out, options.num_threads);

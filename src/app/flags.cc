@@ -51,6 +51,9 @@ DEFINE_bool(
     outliers, false,
     "also take the bins of a table that are more than 8 times darker or brighter than those "
     "around them");
+DEFINE_bool(dark_noise, false,
+            "take the readings of a table as they are, though dark noise is more than a tenth of "
+            "their signal; else they become medians of what surrounds them");
 DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
               "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
               "(docs/file-formats.md)");
@@ -119,14 +122,15 @@ SourceOptions SourceOptionsFromFlags() {
                            .min_theta_d_deg = FLAGS_min_theta_d,
                            .extrapolated = FLAGS_extrapolated,
                            .outliers = FLAGS_outliers,
+                           .dark_noise = FLAGS_dark_noise,
                            .radiometry = FLAGS_radiometry};
   CheckSourceOptions(options);
   return options;
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",     "missing",     "corrupt",      "tilt",     "cosine",    "seed",
-          "max_angle", "min_theta_d", "extrapolated", "outliers", "radiometry"};
+  return {"noise",     "missing",     "corrupt",      "tilt",     "cosine",     "seed",
+          "max_angle", "min_theta_d", "extrapolated", "outliers", "dark_noise", "radiometry"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -21,6 +21,7 @@ DECLARE_double(min_theta_d);
 DECLARE_string(radiometry);
 DECLARE_bool(extrapolated);
 DECLARE_bool(outliers);
+DECLARE_bool(dark_noise);
 DECLARE_string(weighting);
 DECLARE_string(out);
 

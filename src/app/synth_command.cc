@@ -30,7 +30,7 @@ int RunSynth(std::span<const std::string> arguments) {
   const std::string out = RequiredMeasurementOut("synth");
   Inputs().CheckOutput(out);
   SourceOptions options = SourceOptionsFromFlags();
-  options.outliers = true;  // what was asked for is written
+  options.outliers = options.dark_noise = true;  // what was asked for is written
   WriteMeasurement(LoadMeasurement(source, options), out, options.num_threads);
   PrintLine("wrote " + out + ": " + material.description + ", noise " + Text(options.noise) +
             ", seed " + std::to_string(options.seed));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "brdf/counter_random.h"
+#include "brdf/dark_noise.h"
 #include "brdf/outliers.h"
 #include "brdf/own_shadow.h"
 #include "trilobe/base/check.h"
@@ -182,6 +183,17 @@ void LeaveOutOwnShadow(Measurement* measurement) {
        << measurement->counts.below_min_theta_d << " samples below "
        << static_cast<int>(shadow.theta_d_deg) << " deg are left out; --min_theta_d=0 takes them";
   measurement->notes.push_back(note.str());
+}
+
+void SmoothDarkReadings(int num_threads, Measurement* measurement) {
+  if (!NotNull(measurement, "the measurement").table) return;
+  const int valid = CountsOf(*measurement).valid;
+  const int smoothed = SmoothDarkReadings(num_threads, &*measurement->table);
+  if (smoothed == 0) return;
+  measurement->notes.push_back(
+      "dark noise is more than a tenth of " + std::to_string(smoothed) + " of " +
+      std::to_string(valid) +
+      " readings, which became medians of those around them; --dark_noise takes them as they are");
 }
 
 void LeaveOutOutliers(int num_threads, Measurement* measurement) {

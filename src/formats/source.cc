@@ -238,6 +238,7 @@ Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
   CorruptBy(options, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
+  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
   if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;
@@ -266,6 +267,7 @@ Measurement LoadMeasurement(const std::string& source, const SourceOptions& opti
   }
   NoteUnread(options, kSynth, &measurement);
   CorruptBy(options, &measurement);
+  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
   if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
   DecideMeasured(options, &measurement);
   return measurement;

@@ -75,6 +75,10 @@ void LeaveOutOwnShadow(Measurement* measurement);
 // is not.
 void LeaveOutOutliers(int num_threads, Measurement* measurement);
 
+// Of a table, replaces readings that are lost in dark noise by medians of what surrounds them
+// (SmoothDarkReadings), with a note that says so, where there is such noise.
+void SmoothDarkReadings(int num_threads, Measurement* measurement);
+
 // Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had
 // been lost: a table marks them as it marks lost bins, and of samples they are missing. Throws
 // Error for other shares.

@@ -29,6 +29,7 @@ struct SourceOptions {
   double min_theta_d_deg = -1;
   bool extrapolated = false;        // what the authors of a file made up counts as measured
   bool outliers = false;            // samples that are far off those around them count as well
+  bool dark_noise = false;          // readings that are lost in it count as they are
   std::string radiometry = "brdf";  // of UtiaRadiometries()
 };
 
