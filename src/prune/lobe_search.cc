@@ -91,8 +91,8 @@ FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& obj
     // They come from fits, so their magnitudes need no sweeps.
     for (int k = 0; k < static_cast<int>(starts.size()); ++k) {
       elimination.Enter(
-          std::to_string(k), [&starts, k] { return std::optional(starts[k]); }, {.count = 0},
-          stored_of(k));
+          std::to_string(k), [&starts, k](PhaseSeconds*) { return std::optional(starts[k]); },
+          {.count = 0}, stored_of(k));
     }
     elimination.Advance(kFirstTries);
     if (elimination.leader() == nullptr) return {best, objective.Value(best)};

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "solvers/joint/joint_step.h"
+#include "solvers/multistart/agreement.h"
 #include "solvers/multistart/smooth_starts.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
@@ -39,10 +40,7 @@ class Continuation : public Solver {
     for (const SoftenedStart& start : starts) {
       run.summary().starts.push_back({.name = start.name, .objective = start.E});
     }
-    if (!starts.empty()) {
-      run.summary().notes.push_back(std::to_string(CountAgreeing(starts)) + " of " +
-                                    std::to_string(starts.size()) + " starts agree");
-    }
+    if (!starts.empty()) run.summary().notes.push_back(Agreement(run.summary().starts));
     if (go_on) {
       stepper.Restart(best);
       RepeatJointSteps(&stepper, &run);

@@ -1,13 +1,17 @@
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "lobes/gauge.h"
 #include "lobes/lobes.h"
 #include "solvers/joint/joint_step.h"
+#include "solvers/multistart/agreement.h"
+#include "solvers/multistart/smooth_starts.h"
 #include "solvers/multistart/start_elimination.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/solvers/run.h"
@@ -34,7 +38,7 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed, const St
     const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
     StartElimination elimination(smaller, kAsTheyAre, stop);
     if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
-    elimination.Enter("", [&] { return model; }, {.count = sweeps});
+    elimination.Enter("", [&](PhaseSeconds*) { return model; }, {.count = sweeps});
     elimination.Advance(kTries);
     if (elimination.leader() != nullptr) model = *elimination.leader();
     NormalizeScale(smaller.coverage(), &model);
@@ -55,41 +59,59 @@ class Starts {
         stop_(std::move(stop)) {}
 
   // Enters more of them, until there have been `count`.
-  void EnterUpTo(int count) {
+  void EnterUpTo(size_t count) {
     for (; entered_ < count; ++entered_) EnterOne(entered_);
   }
 
  private:
   // In the order of what they have won for the time that they take (docs/solvers.md).
-  void EnterOne(int number) {
-    if (objective_.spec().anisotropic() && number > 0 && number < 4) {
-      constexpr const char* kNames[] = {"freed", "moments", "highlight"};
-      EnterInitial(kNames[number - 1], seed_, kNames[number - 1]);
-    } else if (number == 0) {
-      elimination_->Enter("given", [this] { return given_; });
-    } else if (number == 2) {
-      EnterInitial("highlight", seed_, "highlight");
-    } else if (number == 4) {
-      EnterInitial("analytic", seed_, "analytic");
-    } else if (number == 7) {
+  static constexpr std::array<std::string_view, 10> kIsotropic = {
+      "given",    "wide",      "narrow", "highlight", "middle",
+      "analytic", "roughness", "swept",  "grown",     "grown/3"};
+  static constexpr std::array<std::string_view, 10> kAnisotropic = {
+      "given",     "freed",     "moments", "highlight", "analytic",
+      "roughness", "roughness", "swept",   "grown",     "grown/3"};
+
+  void EnterOne(size_t number) {
+    const auto& names = objective_.spec().anisotropic() ? kAnisotropic : kIsotropic;
+    const std::string_view name = number < names.size() ? names[number] : "roughness";
+    const auto smooth = std::ranges::find(SmoothStarts(), name, &SmoothStart::name);
+    if (name == "given") {
+      elimination_->Enter("given", [this](PhaseSeconds*) { return given_; });
+    } else if (smooth != SmoothStarts().end()) {
+      EnterSmooth(*smooth);
+    } else if (name == "swept") {
       EnterSwept();
-    } else if (number == 8) {
+    } else if (name == "grown") {
       EnterGrown(5, "grown");
-    } else if (number == 9) {
+    } else if (name == "grown/3") {
       EnterGrown(3, "grown/3");
-    } else {
+    } else if (name == "roughness") {
       const uint64_t seed = seed_ + random_++;
-      EnterInitial("roughness", seed, "roughness/" + std::to_string(seed));
+      EnterInitial(name, seed, "roughness/" + std::to_string(seed));
+    } else {
+      EnterInitial(name, seed_, std::string(name));
     }
+  }
+
+  // Its tables have softened before it enters, and it needs no sweeps.
+  void EnterSmooth(const SmoothStart& start) {
+    elimination_->Enter(start.name,
+                        [this, &start](PhaseSeconds* phases) {
+                          return WithUnobservedBins(
+                              SoftenFrom(start, elimination_->thinned(), given_, stop_, phases));
+                        },
+                        {.count = 0});
   }
 
   // As `awls` would go on from the given one: it creeps past minima that longer steps fall into.
   void EnterSwept() {
-    elimination_->Enter("swept", [this] { return given_; }, {.count = 60, .in_blocks = false});
+    elimination_->Enter("swept", [this](PhaseSeconds*) { return given_; },
+                        {.count = 60, .in_blocks = false});
   }
 
   void EnterGrown(int sweeps, const char* name) {
-    const auto grow = [this, sweeps]() -> std::optional<FactorModel> {
+    const auto grow = [this, sweeps](PhaseSeconds*) -> std::optional<FactorModel> {
       const ModelSpec& spec = objective_.spec();
       if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
       return WithUnobservedBins(Grow(elimination_->thinned(), sweeps, seed_, stop_));
@@ -97,12 +119,13 @@ class Starts {
     elimination_->Enter(name, grow, {.count = sweeps});
   }
 
-  void EnterInitial(const char* init, uint64_t seed, std::string name) {
-    elimination_->Enter(std::move(name), [this, init, seed]() -> std::optional<FactorModel> {
-      FactorModel model = WithUnobservedBins(FindInitialModel(init).make(objective_, seed));
-      if (std::ranges::equal(model.parameters(), given_.parameters())) return std::nullopt;
-      return model;
-    });
+  void EnterInitial(std::string_view init, uint64_t seed, std::string name) {
+    elimination_->Enter(
+        std::move(name), [this, init, seed](PhaseSeconds*) -> std::optional<FactorModel> {
+          FactorModel model = WithUnobservedBins(FindInitialModel(init).make(objective_, seed));
+          if (std::ranges::equal(model.parameters(), given_.parameters())) return std::nullopt;
+          return model;
+        });
   }
 
   // Unobserved bins are the caller's, and stay.
@@ -116,15 +139,15 @@ class Starts {
   const uint64_t seed_;
   StartElimination* const elimination_;
   const StopCheck stop_;
-  int entered_ = 0;
+  size_t entered_ = 0;
   uint64_t random_ = 0;  // of those, random ones
 };
 
 // A round: so many starts have entered, each that is still in goes on until it has tried so
-// many joint steps, and then the best stay. The leader may show what a few steps on all samples
-// make of it; it goes on among the others as it was.
+// many joint steps, and then the best stay. Some are skipped where two starts agree.
 struct Round {
-  int starts, tries, keep, steps_on_all = 0;
+  int starts, tries, keep;
+  bool if_undecided = false;
 };
 
 // By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
@@ -170,6 +193,7 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
         stop);
     Starts starts(objective, given, run->options().seed, &elimination, stop);
     for (const Round& round : rounds) {
+      if (round.if_undecided && CountAgreeing(elimination.Results()) >= 2) continue;
       starts.EnterUpTo(round.starts);
       stepper->Rest();
       elimination.Advance(round.tries);
@@ -179,10 +203,6 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
       begin_at(*elimination.leader());
       const double mismatch = stepper->E() / elimination.Results().front().objective - 1;
       go_on = record();
-      for (int k = 0; k < round.steps_on_all && go_on; ++k) {
-        stepper->Step();
-        go_on = record();
-      }
       if (!go_on) break;
       // Where few bins hold most of E, as in measurements that are noisy near the horizon, a model
       // fits the thinned samples at the cost of the others.
@@ -206,11 +226,12 @@ class Auto : public Solver {
   static constexpr double kToleranceFactor = 10;
 
   static std::vector<Round> Rounds() {
-    return {{.starts = 2, .tries = 4, .keep = 2},
-            {.starts = 2, .tries = 16, .keep = 2, .steps_on_all = 1},
-            {.starts = 7, .tries = 16, .keep = 3},
-            {.starts = 7, .tries = 40, .keep = 2},
-            {.starts = 7, .tries = 100, .keep = 1}};
+    constexpr int kAsBefore = 0;
+    return {{.starts = 1, .tries = 4, .keep = 1},
+            {.starts = 3, .tries = 16, .keep = 3},
+            {.starts = 5, .tries = 16, .keep = 3, .if_undecided = true},
+            {.starts = kAsBefore, .tries = 40, .keep = 2},
+            {.starts = kAsBefore, .tries = 100, .keep = 1}};
   }
 
   // A step of some two thousand parameters costs ten times as much.
@@ -227,6 +248,11 @@ class Auto : public Solver {
     run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
     RunRounds(objective.spec().anisotropic() ? FewRounds() : Rounds(), objective,
               FactorModel(*model), &run);
+    const std::vector<StartResult>& tried = run.summary().starts;
+    // A few steps of an anisotropic model tell which start is best, but not whether two agree.
+    if (tried.size() > 1 && !objective.spec().anisotropic()) {
+      run.summary().notes.push_back(Agreement(tried));
+    }
     return run.Finish();
   }
 };
@@ -242,11 +268,11 @@ class Multistart : public Solver {
                {.starts = n, .tries = 100, .keep = half}},
               objective, FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
-    if (!tried.empty()) run.summary().notes.push_back(Agreement(tried));
+    if (!tried.empty()) run.summary().notes.push_back(Within(tried));
     return run.Finish();
   }
 
-  static std::string Agreement(const std::vector<StartResult>& starts) {
+  static std::string Within(const std::vector<StartResult>& starts) {
     const auto within = [&](double fraction) {
       return std::ranges::count_if(starts, [&](const StartResult& start) {
         return start.objective <= (1 + fraction) * starts.front().objective;
@@ -263,9 +289,8 @@ class Multistart : public Solver {
 
 SolverEntry AutoEntry() {
   return {.name = "auto",
-          .description = "several starts, all but the best eliminated on thinned data",
+          .description = "as few starts as agree, all but the best eliminated on thinned data",
           .reference = "docs/solvers.md",
-          .options = {"seed"},
           .make = [] { return std::make_unique<Auto>(); }};
 }
 

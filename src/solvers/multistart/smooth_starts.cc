@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lobes/gauge.h"
+#include "solvers/multistart/agreement.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
 #include "trilobe/start/initial_model.h"
@@ -14,30 +15,38 @@
 namespace trilobe {
 namespace {
 
-// Starts that are alike agree for no other reason, so the most different ones come first; and the
-// widest, which has the longest way, begins stiffer.
-struct Spread {
-  const char* name;
-  double narrow, wide, stiffest;
-};
-constexpr Spread kSpreads[] = {{"wide", 0.2, 0.6, 10 * kStiffTables},
-                               {"narrow", 0.02, 0.2, kStiffTables},
-                               {"middle", 0.1, 0.6, kStiffTables}};
-constexpr int kNumSpreads = std::size(kSpreads);
+// The widest, which has the longest way, begins stiffer.
+constexpr SmoothStart kStarts[] = {{"wide", 0.2, 0.6, 10 * kStiffTables},
+                                   {"narrow", 0.02, 0.2, kStiffTables},
+                                   {"middle", 0.1, 0.6, kStiffTables}};
+constexpr int kNumStarts = std::size(kStarts);
 
-std::optional<SoftenedStart> SoftenStart(int number, const Objective& few, const FactorModel& given,
-                                         const StopCheck& stop, PhaseSeconds* phases) {
+std::optional<SoftenedStart> Softened(int number, const Objective& few, const FactorModel& given,
+                                      const StopCheck& stop, PhaseSeconds* phases) {
   if (stop()) return std::nullopt;
-  if (number == kNumSpreads) {
+  if (number == kNumStarts) {
     return SoftenedStart{.name = "given", .model = Soften(few, given, kStiffTables, stop, phases)};
   }
-  const auto& [name, narrow, wide, stiffest] = kSpreads[number];
-  FactorModel model = SpreadModel(few, narrow, wide);
-  CopyUnobservedParameters(few.coverage(), given, &model);
-  return SoftenedStart{.name = name, .model = Soften(few, model, stiffest, stop, phases)};
+  return SoftenedStart{.name = kStarts[number].name,
+                       .model = SoftenFrom(kStarts[number], few, given, stop, phases)};
+}
+
+bool TwoAgree(const std::vector<SoftenedStart>& starts) {
+  std::vector<double> E;
+  for (const SoftenedStart& start : starts) E.push_back(start.E);
+  return CountAgreeing(E) >= 2;
 }
 
 }  // namespace
+
+std::span<const SmoothStart> SmoothStarts() { return kStarts; }
+
+FactorModel SoftenFrom(const SmoothStart& start, const Objective& few, const FactorModel& given,
+                       const StopCheck& stop, PhaseSeconds* phases) {
+  FactorModel model = SpreadModel(few, start.narrow, start.wide);
+  CopyUnobservedParameters(few.coverage(), given, &model);
+  return Soften(few, model, start.stiffest, stop, phases);
+}
 
 std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const FactorModel& given,
                                         const StopCheck& stop, PhaseSeconds* phases,
@@ -47,11 +56,11 @@ std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const Factor
   const Objective few(Thinned(objective.samples(), stride), objective.spec(), objective.weighting(),
                       /*num_threads=*/1);
   std::vector<SoftenedStart> starts;
-  for (int first = 0; first <= kNumSpreads; first += kPair) {
+  for (int first = 0; first <= kNumStarts; first += kPair) {
     std::optional<SoftenedStart> pair[kPair];
     PhaseSeconds phases_of[kPair];
     ParallelJobs(kPair, objective.num_threads(),
-                 [&](int k) { pair[k] = SoftenStart(first + k, few, given, stop, &phases_of[k]); });
+                 [&](int k) { pair[k] = Softened(first + k, few, given, stop, &phases_of[k]); });
     for (int k = 0; k < kPair; ++k) {
       *phases += phases_of[k];
       if (!pair[k]) continue;
@@ -61,16 +70,9 @@ std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const Factor
     if (starts.empty()) break;
     std::ranges::stable_sort(starts, {}, &SoftenedStart::E);
     on_pair(starts.front());
-    if (stop() || CountAgreeing(starts) >= kPair) break;
+    if (stop() || TwoAgree(starts)) break;
   }
   return starts;
-}
-
-int CountAgreeing(const std::vector<SoftenedStart>& starts) {
-  constexpr double kSameE = 0.005;
-  return static_cast<int>(std::ranges::count_if(starts, [&](const SoftenedStart& start) {
-    return start.E <= (1 + kSameE) * starts.front().E;
-  }));
 }
 
 }  // namespace trilobe

@@ -2,6 +2,7 @@
 #define TRILOBE_SOLVERS_MULTISTART_SMOOTH_STARTS_H_
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,20 @@
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
+
+// GGX lobes to begin with: roughness from `narrow` to `wide`, tables as stiff as `stiffest`.
+struct SmoothStart {
+  const char* name;
+  double narrow, wide, stiffest;
+};
+
+// `wide`, `narrow` and `middle`. Starts that are alike agree for no other reason, so the most
+// different ones come first.
+std::span<const SmoothStart> SmoothStarts();
+
+// Where continuation on the samples of `few` leads from one. What no sample reads is of `given`.
+FactorModel SoftenFrom(const SmoothStart& start, const Objective& few, const FactorModel& given,
+                       const StopCheck& stop, PhaseSeconds* phases);
 
 // Where continuation on few of the samples has led from several starts, and what all samples say.
 struct SoftenedStart {
@@ -25,9 +40,6 @@ struct SoftenedStart {
 std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const FactorModel& given,
                                         const StopCheck& stop, PhaseSeconds* phases,
                                         const std::function<void(const SoftenedStart&)>& on_pair);
-
-// How many have E of the first one, within 0.5 %, itself among them.
-int CountAgreeing(const std::vector<SoftenedStart>& starts);
 
 }  // namespace trilobe
 

@@ -79,7 +79,7 @@ class StartElimination::Candidate {
 
  private:
   void Start(const StopCheck& stop) {
-    model_ = std::exchange(make_start_, nullptr)();
+    model_ = std::exchange(make_start_, nullptr)(&phases_);
     if (!model_) {
       Leave();
       return;

@@ -22,7 +22,8 @@ namespace trilobe {
 class StartElimination {
  public:
   // Makes a starting point; asked once, from any thread. Nothing if there is none, or no new one.
-  using MakeStart = std::function<std::optional<FactorModel>()>;
+  // Times may go to *phases.
+  using MakeStart = std::function<std::optional<FactorModel>(PhaseSeconds* phases)>;
 
   // Samples are left out by a stride (Thinned) of at most `max_stride`, as long as so many folded
   // ones are left for each number of the model.

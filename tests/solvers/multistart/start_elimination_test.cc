@@ -23,14 +23,14 @@ TEST(StartElimination, MakesNoStartOnceTimeIsUp) {
       MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(2, kGrid), "compressive", 2);
   bool stop = false;
   StartElimination elimination(objective, kThinning, [&] { return stop; });
-  elimination.Enter("first", [&] { return RandomModel(objective.spec(), 1); });
+  elimination.Enter("first", [&](PhaseSeconds*) { return RandomModel(objective.spec(), 1); });
   EXPECT_EQ(elimination.leader(), nullptr);
   elimination.Advance(3);
   ASSERT_NE(elimination.leader(), nullptr);
   const double E = elimination.thinned().Value(*elimination.leader());
   stop = true;
   int made = 0;
-  elimination.Enter("second", [&] {
+  elimination.Enter("second", [&](PhaseSeconds*) {
     ++made;
     return RandomModel(objective.spec(), 2);
   });
@@ -49,7 +49,7 @@ TEST(StartElimination, RanksByAFewOfManySamples) {
   StartElimination elimination(objective, kThinning, Never);
   EXPECT_LT(elimination.thinned().samples().size(), objective.samples().size() / 20);
   const FactorModel start = RandomModel(spec, 1);
-  elimination.Enter("start", [&]() -> std::optional<FactorModel> { return start; });
+  elimination.Enter("start", [&](PhaseSeconds*) -> std::optional<FactorModel> { return start; });
   elimination.Advance(20);
   // Noise of 0.3 in thousands of samples: the two means of E differ by some 5 %.
   EXPECT_NEAR(elimination.Results().front().objective, objective.Value(*elimination.leader()),
@@ -79,7 +79,8 @@ TEST(StartElimination, ThinsLess) {
   const Objective objective = MakeObjective(RandomTable(kFine, 1), spec);
   const int all = objective.samples().size();
   StartElimination elimination(objective, {.samples_per_parameter = 1, .max_stride = 8}, Never);
-  elimination.Enter("start", [&]() -> std::optional<FactorModel> { return RandomModel(spec, 1); });
+  elimination.Enter(
+      "start", [&](PhaseSeconds*) -> std::optional<FactorModel> { return RandomModel(spec, 1); });
   elimination.Advance(1);
   int tries = 1;
   for (const int stride : {4, 2, 1}) {
@@ -103,7 +104,7 @@ TEST(StartElimination, SweepsAsAwlsDoes) {
   const Objective objective = MakeObjective(RandomTable(kFine, 1), spec);
   StartElimination elimination(objective, kThinning, Never);
   const FactorModel start = RandomModel(spec, 1);
-  elimination.Enter("swept", [&]() -> std::optional<FactorModel> { return start; },
+  elimination.Enter("swept", [&](PhaseSeconds*) -> std::optional<FactorModel> { return start; },
                     {.count = 7, .in_blocks = false});
   elimination.Advance(0);
   FactorModel swept = start;

@@ -1,0 +1,22 @@
+#ifndef TRILOBE_SOLVERS_MULTISTART_AGREEMENT_H_
+#define TRILOBE_SOLVERS_MULTISTART_AGREEMENT_H_
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// How many have the least E, within 0.5 %. Two that came there from different starts are hardly
+// there by chance.
+int CountAgreeing(std::span<const double> E);
+int CountAgreeing(const std::vector<StartResult>& starts);
+
+// The same for a report: "2 of 3 starts agree".
+std::string Agreement(const std::vector<StartResult>& starts);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_MULTISTART_AGREEMENT_H_
