@@ -94,7 +94,7 @@ FormOptions FormOf(const nb::dict& options) {
                                                            {"isotropic", Kind::kIsotropic},
                                                            {"anisotropic", Kind::kAnisotropic},
                                                            {"independent", Kind::kIndependent},
-                                                           {"auto", Kind::kIsotropic}};
+                                                           {"auto", Kind::kShared}};
   FormOptions form;
   bool known = false;
   for (const auto& [name, kind] : kinds) {
@@ -211,9 +211,9 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
   if (!(fit.robust >= 0 && fit.robust <= 1e6)) throw Error("robust must be from 0 to 1e6");
   fit.smoothness = OptionOf<double>(options, "smoothness", "a number");
   if (!(fit.smoothness >= 0 && fit.smoothness <= 1)) throw Error("smoothness must be from 0 to 1");
-  const int numbers = OptionOf<int>(options, "max_parameters", "an integer");
-  if (numbers < 1) throw Error("max_parameters must be at least 1");
-  if (OptionOf<std::string>(options, "model", "a name") == "auto") fit.max_parameters = numbers;
+  fit.max_parameters = MaybeOf<int>(options, "max_parameters", "an integer");
+  if (fit.max_parameters.value_or(1) < 1) throw Error("max_parameters must be at least 1");
+  fit.choose_form = OptionOf<std::string>(options, "model", "a name") == "auto";
   fit.match_reflectance = OptionOf<bool>(options, "match_reflectance", "True or False");
   if (const auto start = MaybeOf<nb::bytes>(options, "start", "the text of a model file")) {
     fit.start_model = ParseModel({start->c_str(), start->size()}, "start").model;

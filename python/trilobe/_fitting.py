@@ -95,7 +95,7 @@ def fit(
     robust: float = 0,
     smoothness: float = 0.005,
     match_reflectance: bool = True,
-    max_parameters: int = 822,
+    max_parameters: int | None = None,
     seed: int = 1,
     threads: int = 0,
     progress: bool = True,
@@ -122,7 +122,7 @@ def fit(
         robust: above 0, a loss that is linear in the error beyond this.
         smoothness: by which share E may rise for the smoothest tables, where that is not seen; 0: the least E.
         match_reflectance: whether the light that is reflected is mended after the fit.
-        max_parameters: of model="auto", how many the model may store.
+        max_parameters: of model="auto", how many the model may store; by default as many as the default form.
         seed: of whatever is random.
         threads: 0 for all cores. The result does not depend on it.
         progress: shows a bar, where tqdm is installed.

@@ -6,7 +6,6 @@
 #include <ostream>
 
 #include "files/file.h"
-#include "lobes/with_axes.h"
 #include "trilobe/objective/score.h"
 
 namespace trilobe {
@@ -36,7 +35,8 @@ void ConvergenceCurve::Write(const std::string& path, const Objective& objective
     out << "iteration,seconds,objective,psnr_db,rmse,mean_relative_error,mean_log_error\n"
         << std::setprecision(std::numeric_limits<double>::max_digits10);
     for (const auto& [record, model] : points) {
-      const ScoreReport score = ScoreModel(objective, WithAxes(model, objective.spec()));
+      // Of the form that was fitted, whichever was chosen then.
+      const ScoreReport score = ScoreModel(Objective(objective, model.spec()), model);
       out << record.iteration << ',' << record.seconds << ',' << score.objective << ','
           << score.psnr_db << ',' << score.rmse << ',' << score.mean_relative_error << ','
           << score.mean_log_error << '\n';

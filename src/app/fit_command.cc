@@ -41,7 +41,9 @@ DEFINE_string(
     init, "analytic",
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
-DEFINE_int32(max_parameters, 822, "with --model=auto: how many parameters the model may store");
+DEFINE_int32(max_parameters, 822,
+             "with --model=auto: how many parameters the model may store; without it, of an "
+             "anisotropic measurement, as many as its default form has");
 DEFINE_double(
     robust, 0,
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "
@@ -146,7 +148,8 @@ FitSettings SettingsFromFlags() {
   }
   fit.robust = FLAGS_robust;
   fit.smoothness = FLAGS_smoothness;
-  fit.max_parameters = ChoosesModel() ? FLAGS_max_parameters : 0;
+  fit.choose_form = ChoosesModel();
+  if (!IsDefault("max_parameters")) fit.max_parameters = FLAGS_max_parameters;
   fit.match_reflectance = FLAGS_match_reflectance;
   fit.appearance = AppearanceOptionsFromFlags();
   fit.form = FormFromFlags();

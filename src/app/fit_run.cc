@@ -20,7 +20,6 @@
 #include "formats/utia_file.h"
 #include "input/read_file.h"
 #include "lobes/gauge.h"
-#include "lobes/with_axes.h"
 #include "objective/canonical_form.h"
 #include "pictures/plots.h"
 #include "reports/fit_details.h"

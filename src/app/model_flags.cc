@@ -19,7 +19,7 @@ DEFINE_string(
     "shared: D and G shared by the channels, F by the lobes (Peng et al.), isotropic, or "
     "anisotropic where the measurement is; isotropic: though it is not; anisotropic: on the nodes "
     "of the paper and without a prior; independent: one lobe, nothing shared (Bagher et al.); "
-    "auto: what looks best within --max_parameters (docs/model-choice.md)");
+    "auto: what looks best within --max_parameters (docs/model-choice.md, docs/anisotropic.md)");
 DEFINE_string(
     d_nodes, "",
     "of an anisotropic model, nodes of D: so many theta_h by so many phi_h, theta_h at even "
@@ -105,7 +105,7 @@ FormOptions FormFromFlags() {
                                              {"isotropic", Kind::kIsotropic},
                                              {"anisotropic", Kind::kAnisotropic},
                                              {"independent", Kind::kIndependent},
-                                             {"auto", Kind::kIsotropic}};
+                                             {"auto", Kind::kShared}};
   const auto kind = kinds.find(FLAGS_model);
   if (kind == kinds.end()) {
     throw Error("unknown model '" + FLAGS_model +

@@ -6,6 +6,8 @@
 #include "appearance/picture_data.h"
 #include "appearance/seen_samples.h"
 #include "brdf/anisotropy.h"
+#include "fit/anisotropic_forms.h"
+#include "fit/choose_form.h"
 #include "lobes/gauge.h"
 #include "objective/canonical_form.h"
 #include "system/stopwatch.h"
@@ -38,8 +40,11 @@ std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitO
                                       const Objective& data) {
   const double weight = PriorWeight(measurement, options);
   if (!(weight > 0)) return std::nullopt;
-  return SyntheticPrior(
-      data, {.weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop});
+  SyntheticPriorOptions prior{
+      .weight = weight, .isotropic = !measurement.anisotropic, .stop = options.stop};
+  // A model that cannot follow the data had better follow the prior as it is.
+  if (data.spec().anisotropic()) prior.grid = GridOf(measurement);
+  return SyntheticPrior(data, prior);
 }
 
 FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
@@ -72,7 +77,8 @@ FitOptions Checked(FitOptions options) {
               "finite and 0 or more");
   CheckNumber("smoothness", options.smoothness, options.smoothness >= 0 && options.smoothness <= 1,
               "from 0 to 1");
-  CheckNumber("max_parameters", options.max_parameters, options.max_parameters >= 0, "0 or more");
+  const int most = options.max_parameters.value_or(1);
+  CheckNumber("max_parameters", most, most >= 1, "at least 1");
   CheckNumThreads(options.num_threads);
   const auto complete = [&options, by_default = FitOptions()](const auto member) {
     if (!(options.*member)) options.*member = by_default.*member;
@@ -91,19 +97,13 @@ class Fitting {
   Fitting(const Measurement& measurement, const FitOptions& options)
       : measurement_(measurement),
         options_(Checked(options)),
-        table_(measurement.table && !options.select ? &*measurement.table : nullptr) {
-    if (!measurement.table && options.max_parameters > 0) {
-      throw Error(measurement.source +
-                  ": --model=auto chooses among isotropic models of a MERL or RGL table; choose "
-                  "--model=isotropic, anisotropic or independent");
-    }
-  }
+        table_(measurement.table && !options.select ? &*measurement.table : nullptr) {}
 
   FitResult Run() {
     BrdfSamples samples = SamplesToFit(measurement_, options_);
-    const ModelSpec spec = options_.start_model
-                               ? options_.start_model->spec()
-                               : SpecFor(measurement_, options_.form, samples.size());
+    ModelSpec spec = options_.start_model ? options_.start_model->spec()
+                                          : SpecFor(measurement_, options_.form, samples.size());
+    if (options_.choose_form) MakeReadyToChoose(&spec);
     const std::vector<NodeCandidate> nodes = options_.start_model
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
@@ -129,9 +129,29 @@ class Fitting {
                                 : FindInitialModel(options_.init).make(objective, options_.seed);
   }
 
+  // Which forms there are besides the spec, which is made to keep to the budget. Of a table they
+  // are made of the fit, when that is finished (ChooseModel).
+  void MakeReadyToChoose(ModelSpec* spec) {
+    if (table_ != nullptr) return;
+    if (options_.start_model) throw Error("--model=auto has starts of its own; leave one out");
+    pictured_ = options_.select ? PictureData() : PictureDataOf(measurement_);
+    if (!pictured_.nodes || !spec->anisotropic()) {
+      throw Error(measurement_.source +
+                  ": --model=auto chooses by pictures, which are made of tables and of anisotropic "
+                  "samples at the nodes of a grid; leave it out");
+    }
+    if (options_.form.nodes_by_held_out || options_.form.d_nodes || options_.form.g_nodes) {
+      throw Error("--model=auto chooses the nodes; leave out --nodes, --d_nodes and --g_nodes");
+    }
+    forms_ = AnisotropicForms(*spec, pictured_.nodes->table().grid,
+                              options_.max_parameters.value_or(spec->num_parameters()));
+    *spec = forms_.front().spec;
+  }
+
   void ChooseAmong(const std::vector<NodeCandidate>& nodes, FitResult* fit, FactorModel* model) {
     NodeChoiceOptions choice{.seed = options_.seed,
                              .prior = PriorWeight(measurement_, options_),
+                             .grid = GridOf(measurement_),
                              .on_iteration =
                                  [this](const IterationRecord& record, const FactorModel&) {
                                    options_.on_progress(record);
@@ -148,34 +168,62 @@ class Fitting {
 
   void Solve(FitResult* fit, FactorModel* model) {
     const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, fit->objective);
-    std::optional<Objective> with_prior;
-    if (prior) with_prior.emplace(fit->objective, prior->With(fit->objective));
-    const Objective& solved = with_prior ? *with_prior : fit->objective;
-    const int added = solved.samples().size() - fit->objective.samples().size();
-    if (added > 0) fit->prior = {solved.samples().multiplicity.back(), added};
-    SolverOptions solver = options_.solver_options(solved.spec());
-    solver.on_iteration = [this](const IterationRecord& record, const FactorModel& current) {
-      options_.on_progress(record);
-      options_.on_iteration(record, current);
-      return true;
-    };
-    solver.stop = options_.stop;
-    fit->summary = MakeSolver(options_.solver)->Solve(solved, solver, model);
+    SolvedForm form = SolveForm(fit->objective, prior, std::move(*model), /*is_first=*/true);
     fit->seconds.solve = stopwatch_.Lap();
-    fit->file.fit = InfoOf(measurement_, options_, fit->objective, fit->summary);
+    Tell(form, fit);
     // As the solver left it; what follows may take longer than somebody who ends it waits.
     if (!options_.stop()) {
-      fit->file.model = *model;
+      fit->file.model = form.model;
       Canonicalize(fit->objective, &fit->file.model);
       fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
       options_.on_model(*fit);
     }
-    Finish(solved, prior ? &*prior : nullptr, std::move(*model), fit);
+    if (forms_.size() > 1 && !options_.stop()) {
+      Choose(prior, &form, fit);
+      Tell(form, fit);
+    }
+    Finish(form.solved, prior ? &*prior : nullptr, std::move(form.model), fit);
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.compare) Compare(fit);
     fit->seconds.score = stopwatch_.Lap();
     fit->interrupted = options_.stop();
+  }
+
+  void Tell(const SolvedForm& form, FitResult* fit) const {
+    fit->objective = form.data;
+    const int added = form.solved.samples().size() - form.data.samples().size();
+    if (added > 0) fit->prior = {form.solved.samples().multiplicity.back(), added};
+    fit->summary = form.summary;
+    fit->file.fit = InfoOf(measurement_, options_, fit->objective, fit->summary);
+  }
+
+  SolvedForm SolveForm(Objective data, const std::optional<SyntheticPrior>& prior,
+                       FactorModel model, bool is_first) const {
+    Objective solved = prior ? Objective(data, prior->With(data)) : data;
+    SolverOptions solver = options_.solver_options(solved.spec());
+    solver.on_iteration = [this, is_first](const IterationRecord& record,
+                                           const FactorModel& current) {
+      options_.on_progress(record);
+      if (is_first) options_.on_iteration(record, current);
+      return true;
+    };
+    solver.stop = options_.stop;
+    SolverSummary summary = MakeSolver(options_.solver)->Solve(solved, solver, &model);
+    return {std::move(data), std::move(solved), std::move(model), std::move(summary)};
+  }
+
+  // Of the forms the one that looks best.
+  void Choose(const std::optional<SyntheticPrior>& prior, SolvedForm* form, FitResult* fit) const {
+    const auto solve = [&](const AnisotropicForm& other) {
+      const Objective data(form->data, other.spec);
+      return SolveForm(data, prior, Start(data), /*is_first=*/false);
+    };
+    ChosenForm chosen =
+        ChooseForm(forms_, *form, *pictured_.nodes, Appearance(), solve, options_.stop);
+    *form = std::move(chosen.form);
+    fit->finished.candidates = std::move(chosen.candidates);
+    fit->finished.chosen = chosen.chosen;
   }
 
   void Finish(const Objective& solved, const SyntheticPrior* prior, FactorModel model,
@@ -184,21 +232,26 @@ class Fitting {
     const bool has_ended = HasEnded(fit->summary.stop_reason);
     FinishOptions finish{.smoothness = has_ended ? options_.smoothness : 0,
                          .robust = options_.robust,
-                         .max_parameters = options_.max_parameters,
+                         .max_parameters = BudgetOfTable(),
                          .prior = prior,
                          .match_reflectance = options_.match_reflectance && has_ended,
                          .appearance = Appearance(),
                          .stop = options_.stop};
     FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
     fit->file.model = std::move(finished.model);
-    if (&solved != &fit->objective) {
+    if (solved.has_prior()) {
       Canonicalize(fit->objective, &fit->file.model);  // by the data alone
     } else {
       fit->objective = finished.objective;
     }
-    fit->finished = {finished.overshoot, finished.smoothed,
-                     finished.tied,      std::move(finished.candidates),
-                     finished.chosen,    finished.matched};
+    fit->finished.overshoot = finished.overshoot;
+    fit->finished.smoothed = finished.smoothed;
+    fit->finished.tied = finished.tied;
+    fit->finished.matched = finished.matched;
+    if (BudgetOfTable() > 0) {
+      fit->finished.candidates = std::move(finished.candidates);
+      fit->finished.chosen = finished.chosen;
+    }
     fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
     fit->file.layout = std::move(finished.layout);
     const ModelSpec& spec = fit->model().spec();
@@ -206,6 +259,13 @@ class Fitting {
         fit->file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
     fit->score = ScoreModel(fit->objective, fit->model());
     fit->file.fit.objective = fit->score.objective;
+  }
+
+  // FinishOptions::max_parameters.
+  int BudgetOfTable() const {
+    constexpr int kOfDefault = 822;
+    if (!options_.choose_form || table_ == nullptr) return 0;
+    return options_.max_parameters.value_or(kOfDefault);
   }
 
   AppearanceOptions Appearance() const {
@@ -235,6 +295,8 @@ class Fitting {
   const Measurement& measurement_;
   const FitOptions options_;
   const BrdfTable* const table_;  // as the whole of it is fitted
+  PictureData pictured_;          // of choices among forms_
+  std::vector<AnisotropicForm> forms_ = {};
   Stopwatch stopwatch_;
 };
 

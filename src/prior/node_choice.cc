@@ -102,7 +102,9 @@ NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& 
   const Objective judge = objective_of(Selected(samples, held));
   Objective fitted = objective_of(Selected(samples, kept));
   if (options.prior > 0) {
-    fitted = Objective(fitted, WithPrior(fitted, {.weight = options.prior, .stop = options.stop}));
+    fitted = Objective(
+        fitted,
+        WithPrior(fitted, {.weight = options.prior, .grid = options.grid, .stop = options.stop}));
   }
   std::optional<FactorModel> model;
   NodeChoice choice = {.model = FactorModel(ladder[0].spec), .held_out = judge.samples().size()};

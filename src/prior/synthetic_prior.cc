@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "prior/lack.h"
 #include "trilobe/base/error.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/geometry/directions.h"
@@ -78,8 +79,14 @@ void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) 
   }
 }
 
-// What `prior` says at these directions.
-BrdfSamples SamplesOf(const FactorModel& prior, std::vector<SphericalAngles> directions,
+// A prior as it stands, and what it lacks at the nodes of the data, if they have any.
+struct Speaker {
+  const FactorModel& model;
+  const NodeBrdf* lack = nullptr;
+};
+
+// What it says at these directions.
+BrdfSamples SamplesOf(const Speaker& prior, std::vector<SphericalAngles> directions,
                       const BrdfSamples& measured, int num_threads) {
   BrdfSamples said;
   said.source = measured.source;
@@ -89,7 +96,12 @@ BrdfSamples SamplesOf(const FactorModel& prior, std::vector<SphericalAngles> dir
     said.angles.push_back(ToHalfDiff(ToDirections(at)));
   }
   said.rho.assign(said.directions.size(), {});
-  said.rho = EvaluateSamples(prior, said, num_threads);
+  said.rho = EvaluateSamples(prior.model, said, num_threads);
+  if (prior.lack == nullptr) return said;
+  for (size_t j = 0; j < said.rho.size(); ++j) {
+    const Rgb lack = (*prior.lack)(said.directions[j]);
+    for (int c = 0; c < kChannels; ++c) said.rho[j][c] = std::max(said.rho[j][c] + lack[c], 0.0);
+  }
   return said;
 }
 
@@ -115,7 +127,7 @@ std::vector<SphericalAngles> Above(double times, const Objective& with_prior,
 }
 
 // The data and what `prior` says between them, enough for a model of so many parameters.
-BrdfSamples WithSamplesOf(const FactorModel& prior, const Objective& data, int num_parameters,
+BrdfSamples WithSamplesOf(const Speaker& prior, const Objective& data, int num_parameters,
                           double weight) {
   const BrdfSamples& measured = data.samples();
   const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
@@ -142,7 +154,7 @@ FactorModel FitPrior(const PriorKind& kind, size_t number, const Objective& data
   const bool with_prior =
       data.samples().size() < kSamplesPerParameter * n && number + 1 < kind.specs.size();
   const Objective objective =
-      with_prior ? Objective(WithSamplesOf(FitPrior(kind, number + 1, data, stop), data, n,
+      with_prior ? Objective(WithSamplesOf({FitPrior(kind, number + 1, data, stop)}, data, n,
                                            /*weight=*/1),
                              spec, data.weighting(), data.num_threads())
                  : Objective(data, spec);
@@ -152,6 +164,19 @@ FactorModel FitPrior(const PriorKind& kind, size_t number, const Objective& data
   options.stop = stop;
   MakeSolver("varpro")->Solve(objective, options, &model);
   return model;
+}
+
+// With two lobes, if they are worth it.
+void TryTwoLobes(PriorKind* kind, const Objective& data, const StopCheck& stop,
+                 FactorModel* model) {
+  for (ModelSpec& spec : kind->specs) spec.lobes = 2;
+  // Of few samples it would follow the noise.
+  if (data.samples().size() < kSamplesPerParameter * kind->specs.front().num_parameters()) return;
+  FactorModel two = FitPrior(*kind, 0, data, stop);
+  const auto E = [&](const FactorModel& fitted) {
+    return Objective(data, fitted.spec()).Value(fitted);
+  };
+  if (!stop() && E(two) < kWorthALobe * E(*model)) *model = std::move(two);
 }
 
 }  // namespace
@@ -167,19 +192,13 @@ SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOption
   PriorKind kind = KindFor(options, data.spec().lobes);
   weight_ = kind.weight;
   model_ = FitPrior(kind, 0, data, options.stop);
-  if (options.isotropic || data.spec().lobes < 2) return;
-  for (ModelSpec& spec : kind.specs) spec.lobes = 2;
-  // Of few samples it would follow the noise.
-  if (measured.size() < kSamplesPerParameter * kind.specs.front().num_parameters()) return;
-  FactorModel two = FitPrior(kind, 0, data, options.stop);
-  const auto E = [&](const FactorModel& model) {
-    return Objective(data, model.spec()).Value(model);
-  };
-  if (!options.stop() && E(two) < kWorthALobe * E(model_)) model_ = std::move(two);
+  if (!options.isotropic && data.spec().lobes >= 2) TryTwoLobes(&kind, data, options.stop, &model_);
+  if (options.grid) lack_ = LackOf(model_, data, *options.grid);
 }
 
 BrdfSamples SyntheticPrior::With(const Objective& data) const {
-  return WithSamplesOf(model_, data, data.spec().num_parameters(), weight_);
+  return WithSamplesOf({model_, lack_ ? &*lack_ : nullptr}, data, data.spec().num_parameters(),
+                       weight_);
 }
 
 std::optional<Objective> SyntheticPrior::WhereLarge(const Objective& with_prior,
@@ -187,7 +206,8 @@ std::optional<Objective> SyntheticPrior::WhereLarge(const Objective& with_prior,
   const BrdfSamples& measured = with_prior.data().samples();
   const std::vector<SphericalAngles> large = Above(kMaxOfLargest, with_prior, fit);
   if (large.empty()) return std::nullopt;
-  BrdfSamples said = SamplesOf(model_, large, measured, with_prior.num_threads());
+  BrdfSamples said =
+      SamplesOf({model_, lack_ ? &*lack_ : nullptr}, large, measured, with_prior.num_threads());
   LimitTo(kMaxOfLargest, measured.rho, &said.rho);
   return Objective(with_prior.data(), Joined(with_prior.samples(), said, times * weight_));
 }

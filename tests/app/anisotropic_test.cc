@@ -175,7 +175,7 @@ TEST_F(AnisotropicCommands, WhatCannotBeIsOneLine) {
   ExpectRefusal({"plot", model, "synth:plastic@30x30x60", "--out=" + In("p")}, "knows no azimuths");
   ExpectRefusal({"score", model, "synth:plastic@30x30x60"}, "knows no azimuths");
   ExpectRefusal({"fit", "synth:plastic@30x30x60", "--init=" + model}, "knows no azimuths");
-  ExpectRefusal({"fit", kVelvet, "--model=auto"}, "--model=auto chooses among isotropic models");
+  ExpectRefusal({"fit", kVelvet, "--model=auto", "--nodes=held_out"}, "auto chooses the nodes");
   ExpectRefusal({"score", kVelvet, kVelvet}, "needs a table");
   ExpectRefusal({"compare", In("fit")}, "plan.json");
 }
@@ -235,6 +235,30 @@ TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
   const json model = Parse(Contents(In("chosen1/model.json")));
   EXPECT_EQ(model["theta_nodes"]["D"].size(), 8 + 4 * chosen);
   EXPECT_TRUE(Parse(Contents(In("fit/report.json")))["nodes"].is_null());
+}
+
+// The report says what was tried; the model is of the form that looks best, within the budget.
+TEST_F(AnisotropicCommands, FitChoosesTheFormThatLooksBest) {
+  const auto fit_into = [&](const std::string& name, const char* threads) {
+    const ProgramResult fit =
+        RunProgram({"fit", "synth:linen@4x12", "--model=auto", "--lobes=1", "--max_parameters=300",
+                    "--solver=awls", "--max_iterations=5", "--convergence", "--verbose",
+                    "--out=" + In(name), threads});
+    EXPECT_EQ(fit.status, 0) << fit.err;
+    EXPECT_THAT(fit.out, HasSubstr("the best of "));
+    EXPECT_THAT(fit.out, HasSubstr("<- chosen"));
+    return Parse(Contents(In(name + "/report.json")));
+  };
+  const json one = fit_into("form1", "--threads=1"), three = fit_into("form3", "--threads=3");
+  EXPECT_EQ(one["objective"], three["objective"]);
+  const json& candidates = one["candidates"];
+  ASSERT_GE(candidates.size(), 3U);
+  EXPECT_EQ(candidates[0]["name"], "as fitted");
+  const auto score = [](const json& candidate) { return candidate["psnr_db"].get<double>(); };
+  const json& best = *std::ranges::max_element(candidates, {}, score);
+  const bool ahead = score(best) > score(candidates[0]) + 0.5;
+  EXPECT_EQ(one["stored_parameters"], (ahead ? best : candidates[0])["parameters"]);
+  for (const json& candidate : candidates) EXPECT_LE(candidate["parameters"], 300);
 }
 
 TEST_F(AnisotropicCommands, RefuseToChooseNodesWhereThereIsNothingToChoose) {

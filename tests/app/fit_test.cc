@@ -412,7 +412,8 @@ TEST(Fit, AThinnedModelReflectsAsMuchToo) {
   const TemporaryFolder folder;
   const ProgramResult result =
       RunProgram({"fit", "synth:rubber@30x30x60", "--noise=0.3", "--max_angle=40", "--model=auto",
-                  "--max_parameters=150", "--lobes=1", "--nodiagnose", "--out=" + folder / "out"});
+                  "--max_parameters=150", "--lobes=1", "--nodiagnose", "--convergence",
+                  "--out=" + folder / "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json report = Json(folder / "out/report.json");
   EXPECT_LT(report["stored_parameters"], report["parameters"]);

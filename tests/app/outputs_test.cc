@@ -368,7 +368,7 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   EXPECT_FALSE(scored["worst_bins"][0].contains("h"));
 
   ExpectRefusal(RunProgram({"fit", csv, "--model=auto", "--out=" + (folder / "o")}),
-                "chooses among isotropic models");
+                "chooses by pictures");
   ExpectRefusal(RunProgram({"score", out + "/model.json", csv, "--out=" + (folder / "x.png")}),
                 "needs a table");
   const ProgramResult many =

@@ -82,7 +82,8 @@ TEST(Fit, ChecksItsOptions) {
   options.robust = std::nan("");
   EXPECT_THROW(Fit(measured, options), Error);
   options = Quick();
-  options.max_parameters = -1;
+  options.choose_form = true;
+  options.max_parameters = 0;
   EXPECT_THROW(Fit(measured, options), Error);
   options = Quick();
   options.num_threads = -1;
@@ -127,9 +128,13 @@ TEST(Fit, RefusesWhatTheMeasurementCannotHave) {
   options.form.kind = FormOptions::Kind::kAnisotropic;
   EXPECT_THAT(error(table, options), testing::HasSubstr("knows no azimuths"));
   options = Quick();
-  options.max_parameters = 100;
+  options.choose_form = true;
+  options.max_parameters = 40;
   EXPECT_THAT(error(LoadMeasurement("synth:velvet@4x12"), options),
-              testing::HasSubstr("--model=auto chooses among isotropic models"));
+              testing::HasSubstr("no anisotropic form keeps to 40 parameters"));
+  options.form.kind = FormOptions::Kind::kIsotropic;
+  EXPECT_THAT(error(LoadMeasurement("synth:velvet@4x12"), options),
+              testing::HasSubstr("--model=auto chooses by pictures"));
 }
 
 }  // namespace

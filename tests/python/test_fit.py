@@ -44,6 +44,7 @@ def without_times(text):
     (SMALL, {"solver": "awls", "max_iterations": 3, "g_filter": 0.5, "model": "independent"}),
     (SMALL, {"solver": "varpro", "max_iterations": 3, "stretch": (-0.2, 0.3), "lobes": 2}),
     ("synth:shot_silk@5x8", {"solver": "lm", "max_iterations": 1, "f_bins": 5, "prior": 0.5}),
+    ("synth:linen@4x12", {"model": "auto", "solver": "awls", "max_iterations": 2, "lobes": 1, "max_parameters": 300}),
 ])
 def test_is_the_programs_to_the_bit(source, flags, tmp_path):
     result = trilobe.fit(trilobe.read(source, noise=0.02), **flags, progress=False)

@@ -51,10 +51,13 @@ struct FitOptions {
   // Of scattered samples, SyntheticPriorOptions::weight, or 0 for no prior; where it is not given,
   // 1, and with kAnisotropic 0.
   std::optional<double> prior = {};
-  double smoothness = 0.005;  // FinishOptions, as the next three
+  double smoothness = 0.005;  // FinishOptions, as the next
   double robust = 0;
-  int max_parameters = 0;  // above 0: --model=auto, of a table
-  bool match_reflectance = true;
+  // --model=auto: the form that looks best, within so many parameters; by default as many as that
+  // of `form` has. Of tables and of scattered samples at the nodes of a grid.
+  bool choose_form = false;
+  std::optional<int> max_parameters = {};
+  bool match_reflectance = true;  // FinishOptions
   bool compare = true;  // makes `appearance`, `left_out`, `reach` and `light` of the result, too
   AppearanceOptions appearance = {};  // num_threads is replaced
   uint64_t seed = 1;
@@ -63,7 +66,8 @@ struct FitOptions {
   // All of what follows but `stop` is called from the thread that fits.
   // When the input has proved right, and before the first step.
   std::function<void()> on_begin = [] {};
-  // After each iteration: of whatever is fitted on the way, and of the solver's own.
+  // After each iteration: of whatever is fitted on the way, and of the solver's own; where it fits
+  // several forms, those of the first.
   std::function<void(const IterationRecord&)> on_progress = [](const IterationRecord&) {};
   std::function<void(const IterationRecord&, const FactorModel&)> on_iteration =
       [](const IterationRecord&, const FactorModel&) {};

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/node_brdf.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/objective/iteration_record.h"
@@ -36,7 +38,8 @@ std::vector<bool> HeldOut(const BrdfSamples& samples, uint64_t seed);
 
 struct NodeChoiceOptions {
   uint64_t seed = 1;
-  double prior = 1;  // SyntheticPriorOptions::weight, or 0 for no prior
+  double prior = 1;                         // SyntheticPriorOptions::weight, or 0 for no prior
+  std::optional<HemisphereGrid> grid = {};  // SyntheticPriorOptions::grid
   // As of SolverOptions, of each candidate's fit; returns false to stop.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
   StopCheck stop = {};

@@ -5,6 +5,7 @@
 
 #include "trilobe/base/stop_check.h"
 #include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/brdf/node_brdf.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
 
@@ -24,6 +25,10 @@ struct SyntheticPriorOptions {
   double weight = 1;  // > 0: what a sample of the prior counts, where there is one for six measured
   // The data know no azimuths, and so the prior knows none; what it says counts 0.003 of that.
   bool isotropic = false;
+  // At whose nodes the samples stand, if they do. What the prior says between them is then moved by
+  // what it lacks at them, interpolated, where that helps: with highlights that are wider than the
+  // grid's steps (docs/anisotropic.md).
+  std::optional<HemisphereGrid> grid = {};
   StopCheck stop = {};  // ends the fit of the prior early
 };
 
@@ -49,6 +54,7 @@ class SyntheticPrior {
  private:
   double weight_;
   FactorModel model_;
+  std::optional<NodeBrdf> lack_ = {};  // data less model, if that can be interpolated
 };
 
 // The objective's samples and the prior's, one for six of them, with the objective's number of
