@@ -144,7 +144,8 @@ class Starts {
 };
 
 // A round: so many starts have entered, each that is still in goes on until it has tried so
-// many joint steps, and then the best stay. Some are skipped where two starts agree.
+// many joint steps, and then the best stay. A round for the undecided is skipped where two starts
+// agree, and the better of these goes on alone.
 struct Round {
   int starts, tries, keep;
   bool if_undecided = false;
@@ -193,7 +194,10 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
         stop);
     Starts starts(objective, given, run->options().seed, &elimination, stop);
     for (const Round& round : rounds) {
-      if (round.if_undecided && CountAgreeing(elimination.Results()) >= 2) continue;
+      if (round.if_undecided && CountAgreeing(elimination.Results()) >= 2) {
+        elimination.Keep(1);
+        continue;
+      }
       starts.EnterUpTo(round.starts);
       stepper->Rest();
       elimination.Advance(round.tries);
@@ -229,7 +233,7 @@ class Auto : public Solver {
     constexpr int kAsBefore = 0;
     return {{.starts = 1, .tries = 4, .keep = 1},
             {.starts = 3, .tries = 16, .keep = 3},
-            {.starts = 5, .tries = 16, .keep = 3, .if_undecided = true},
+            {.starts = 5, .tries = 16, .keep = 4, .if_undecided = true},
             {.starts = kAsBefore, .tries = 40, .keep = 2},
             {.starts = kAsBefore, .tries = 100, .keep = 1}};
   }
