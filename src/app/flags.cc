@@ -49,8 +49,7 @@ DEFINE_bool(extrapolated, false,
             "lies beyond its last theta_i");
 DEFINE_bool(
     outliers, false,
-    "also take the bins of a table that are more than 8 times darker or brighter than those "
-    "around them");
+    "also take the bins of a table that are much darker or brighter than those around them");
 DEFINE_bool(dark_noise, false,
             "take the readings of a table as they are, though dark noise is more than a tenth of "
             "their signal; else they become medians of what surrounds them");

@@ -203,8 +203,11 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
   constexpr double kLeastLight = 2e-5;
   const int least = measurement->table ? kFewest : std::max(kFewest, valid / 500);
   const BrdfSamples samples = SamplesOf(*measurement);
-  const std::vector<Outlier> outliers =
+  std::vector<Outlier> outliers =
       measurement->anisotropic ? DeadReadings(*measurement) : FindOutliers(samples, num_threads);
+  const auto is_near = [](const Outlier& outlier) { return !outlier.far; };
+  const int fewest_near = std::max(kFewest, valid / 500);
+  if (std::ranges::count_if(outliers, is_near) < fewest_near) std::erase_if(outliers, is_near);
   const int count = static_cast<int>(outliers.size());
   if (count < least || LightOf(outliers, samples) < kLeastLight) return;
   if (measurement->table) {
@@ -227,8 +230,8 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
       std::to_string(count) + " of " + std::to_string(valid) +
       (measurement->anisotropic
            ? " samples are 0 where those with wi and wo exchanged are not, as dead readings are"
-           : " samples are more than 8 times darker or brighter than those around them, as dead "
-             "readings and glints are") +
+           : " samples are much darker or brighter than those around them, as dead readings and "
+             "glints are") +
       ", and left out; --outliers takes them");
 }
 

@@ -15,6 +15,8 @@ namespace trilobe {
 namespace {
 
 constexpr double kFarOff = 8;     // times brighter or darker
+constexpr double kOff = 2;        // where the others agree better than that
+constexpr double kScatter = 7;    // times the median difference of their logarithms
 constexpr int kFewestAround = 9;  // bins that tell what surrounds one
 constexpr int kWidestReach = 8;   // bins of theta_d to each side, where they are few
 
@@ -29,6 +31,18 @@ struct Count {
   bool Tells() const { return bins >= kFewestAround; }
   bool FarOff() const { return 2 * brighter > bins || 2 * darker > bins; }
 };
+
+// Whether a value is off the median of some by more than kOff and by kScatter times what these are
+// off it themselves, in the median. Reorders them.
+bool StandsOut(double own, std::vector<double>* values) {
+  const double median = Quantile(values, 0.5);
+  if (!(own > median * kOff || own < median / kOff)) return false;
+  if (!(median > 0)) return false;
+  std::vector<double> off(values->size());
+  std::ranges::transform(*values, off.begin(),
+                         [&](double x) { return std::abs(std::log(x / median)); });
+  return std::abs(std::log(own / median)) > kScatter * Quantile(&off, 0.5);
+}
 
 // The samples by the bins of their grid, in which scattered ones lie as well.
 class Surroundings {
@@ -73,8 +87,8 @@ class Surroundings {
       if (!all.Tells()) continue;
       const bool far_off = all.FarOff() && (!same_h.Tells() || same_h.FarOff()) &&
                            (!same_d.Tells() || same_d.FarOff());
-      if (!far_off) return std::nullopt;
-      return Outlier{.sample = sample, .median = MedianAround(h, d, p, reach)};
+      if (!far_off && !StandsOut(h, d, p, reach, own)) return std::nullopt;
+      return Outlier{.sample = sample, .median = MedianAround(h, d, p, reach), .far = far_off};
     }
     return std::nullopt;
   }
@@ -85,6 +99,22 @@ class Surroundings {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     int samples = 0;
   };
+
+  // Among all around it, those of its own theta_h, and those of its own theta_d.
+  bool StandsOut(int h, int d, int p, int reach, double own) const {
+    std::vector<double> all, same_h, same_d;
+    ForEachRow(h, d, reach, [&](int i, int j) {
+      ForEachInLine(grid_.theta_d * i + j, p, reach, [&](double x) {
+        all.push_back(x);
+        if (i == h) same_h.push_back(x);
+        if (j == d) same_d.push_back(x);
+      });
+    });
+    const auto agrees = [&](std::vector<double>* values) {
+      return values->size() < kFewestAround || trilobe::StandsOut(own, values);
+    };
+    return trilobe::StandsOut(own, &all) && agrees(&same_h) && agrees(&same_d);
+  }
 
   double MedianAround(int h, int d, int p, int reach) const {
     std::vector<double> values;
@@ -103,8 +133,8 @@ class Surroundings {
       around.most = std::max(around.most, line.most);
       around.samples += line.samples;
     });
-    return around.samples >= kFewestAround && around.most <= own * kFarOff &&
-           around.least >= own / kFarOff;
+    return around.samples >= kFewestAround && around.most <= own * kOff &&
+           around.least >= own / kOff;
   }
 
   template <typename Work>

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/test_util.h"
@@ -72,6 +73,30 @@ TEST(Outliers, SmoothDataHaveNone) {
   }
   EXPECT_THAT(BinsOf(Highlight(50), 1), IsEmpty());
   EXPECT_LE(ShareOfOutliers(TableOf(Corrupted("synth:plastic@40x40x40", "noise:0.2"))), 1e-4);
+}
+
+TEST(Outliers, LessIsEnoughWhereTheOthersAgree) {
+  // The share of the spikes that are found, and the share of what is found that is none.
+  const auto found = [](const std::string& source, const std::string& spikes) {
+    const BrdfTable clean = TableOf(Corrupted(source, ""));
+    const BrdfTable table = TableOf(Corrupted(source, spikes));
+    const std::vector<int> bins = BinsOf(table, 2);
+    int spiked = 0, right = 0;
+    for (int bin = 0; bin < table.grid.size(); ++bin) {
+      if (table.stored[0][bin] == clean.stored[0][bin]) continue;
+      ++spiked;
+      right += std::ranges::binary_search(bins, bin) ? 1 : 0;
+    }
+    return std::pair(1.0 * right / spiked, 1 - 1.0 * right / static_cast<double>(bins.size()));
+  };
+  for (const char* const spikes : {"spikes:0.2", "spikes:0.33", "spikes:3", "spikes:5"}) {
+    const auto [matt, wrong] = found("synth:felt@45x30x60", spikes);
+    EXPECT_GT(matt, 0.9) << spikes;
+    EXPECT_LT(wrong, 0.02) << spikes;
+    // Beside a highlight of few bins the others do not agree.
+    EXPECT_GT(found("synth:plastic@45x30x60", spikes).first, 0.5) << spikes;
+  }
+  EXPECT_LE(ShareOfOutliers(TableOf(Corrupted("synth:plastic@45x30x60", "noise:0.5"))), 1e-3);
 }
 
 TEST(Outliers, SingleBinsAreFoundEverywhere) {

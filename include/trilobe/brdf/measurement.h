@@ -71,8 +71,8 @@ void LeaveOutOwnShadow(Measurement* measurement);
 // Leaves out the samples that are far off what surrounds them (FindOutliers), as if they were lost,
 // with a note that says so, where they are 10 or more, of scattered samples one in 500 or more, and
 // off by 2e-5 of the light that is reflected, or more: clean materials have some that are no error,
-// in the dark. Where azimuths matter, instead, those that are 0 while one with wi and wo exchanged
-// is not.
+// in the dark; those that are off by less than 8 times only where they are one in 500 or more.
+// Where azimuths matter, instead, those that are 0 while one with wi and wo exchanged is not.
 void LeaveOutOutliers(int num_threads, Measurement* measurement);
 
 // Of a table, replaces readings that are lost in dark noise by medians of what surrounds them
