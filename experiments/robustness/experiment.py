@@ -121,6 +121,13 @@ def _same_lobes(model, clean):
     return float(min(table[i][j] for i, j in enumerate(lobes.assign(table))))
 
 
+def _albedo_error(score):
+    """By how much the share of light that is reflected is off, in the mean over theta_i; nan where
+    no appearance was compared."""
+    appearance = score.get("appearance") or {}
+    return (appearance.get("albedo") or {}).get("mean_error", math.nan)
+
+
 def _rises(fit):
     """Iterations that raised what is minimised by more than rounding."""
     name = "objective_with_prior" if "objective_with_prior" in fit.trace[0] else "objective"
@@ -153,6 +160,7 @@ def tabulate(setting, results):
                      "psnr_db": math.inf if psnr is None else psnr,
                      "mean_delta_e": said["verdict"]["mean_delta_e"],
                      "mean_log_error": said["mean_log_error"],
+                     "albedo_error": _albedo_error(said),
                      "relative_objective": said["relative_objective"],
                      "worst_lobe": _same_lobes(fit, clean) if clean else math.nan,
                      "iterations": fit.report["iterations"],
@@ -191,6 +199,27 @@ def _by_corruption(rows):
                       f"{max(lost.values()):.1f}",
                       *(f"{shown[name]:.1f}" if name in shown else "" for name in materials)])
     return tables.markdown(["corruption", "lost dB, median", "most", *materials], lines)
+
+
+# What `errors.md` shows of each fit: heading, member of a row, digits.
+ERRORS = (("lost dB", "lost_db", ".1f"), ("Delta E", "mean_delta_e", ".2f"),
+          ("mean log error", "mean_log_error", ".4f"), ("albedo off by", "albedo_error", ".4f"),
+          ("worst lobe", "worst_lobe", ".2f"), ("iterations", "iterations", ".0f"),
+          ("seconds", "seconds", ".0f"))
+
+
+def _errors(rows):
+    """By default, a line a corruption: errors against the clean table, and what a fit took; medians
+    over the materials, those of an earlier run having no albedo."""
+    lines = []
+    for corruption, of in tables.groups(rows, "corruption").items():
+        known = [[row[name] for row in of if not math.isnan(row.get(name, math.nan))]
+                 for _, name, _ in ERRORS]
+        lines.append([corruption, str(len(of)), *(format(stats.median(values), digits) if values else ""
+                                                  for values, (_, _, digits) in zip(known, ERRORS))])
+    shown = [k for k in range(len(lines[0])) if k < 2 or any(line[k] for line in lines)]
+    headings = ["corruption", "materials", *(heading for heading, _, _ in ERRORS)]
+    return tables.markdown([headings[k] for k in shown], [[line[k] for k in shown] for line in lines])
 
 
 def _by_way(rows, of):
@@ -292,5 +321,6 @@ def draw(drawn, _):
         if text := _by_way(rows, name):
             drawn_by[table] = text
     if own:
-        drawn_by |= {"spheres": _figure(own), "corruptions.md": _by_corruption(own)}
+        drawn_by |= {"spheres": _figure(own), "corruptions.md": _by_corruption(own),
+                     "errors.md": _errors(own)}
     return drawn_by
