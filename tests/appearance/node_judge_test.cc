@@ -12,7 +12,7 @@ namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 AppearanceOptions Quick(int num_threads = 1) {
-  return {.lights = 80, .size = 16, .num_threads = num_threads};
+  return {.lights = 40, .size = 12, .num_threads = num_threads};
 }
 
 SphericalBrdf Times(const SphericalBrdf& brdf, double factor) {
