@@ -202,7 +202,9 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
       WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
     }
     if (draws && settings.plots) {
-      DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance);
+      std::optional<SphereError> sphere;
+      if (report.appearance) sphere = report.appearance->sphere;
+      DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance, sphere);
     }
   } catch (const Error&) {
     failure = std::current_exception();

@@ -50,13 +50,13 @@ Material MaterialOf(const FactorModel& model) {
     return {{}, [copy](const SphericalAngles& at) { return EvaluateByAngles(*copy, at); }};
   }
   const auto prepared = std::make_shared<const PreparedModel<double>>(model);
-  const auto value = [prepared](const DirectionPair& pair) {
-    return prepared->Value(pair.wi, pair.wo);
-  };
-  return {[value](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
-            return value(ToDirections(angles));
+  return {[prepared](const HalfDiffAngles& angles, const Cosines& cosines) {
+            return prepared->Value(angles, cosines);
           },
-          [value](const SphericalAngles& at) { return value(ToDirections(at)); }};
+          [prepared](const SphericalAngles& at) {
+            const auto [wi, wo] = ToDirections(at);
+            return prepared->Value(wi, wo);
+          }};
 }
 
 }  // namespace trilobe

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/lanes.h"
+
 namespace trilobe {
 namespace {
 
@@ -44,7 +46,7 @@ std::vector<HalfCell> MakeCells() {
     for (int k = 0; k < around; ++k) {
       // Turned by the golden angle from ring to ring, so that no spokes are seen.
       const double phi = 2 * kPi * k / around + ring * kPi * (3 - std::sqrt(5.0));
-      cells.push_back({ToDirection({middle, phi}), solid_angle});
+      cells.push_back({ToDirection({middle, phi}), middle, std::sin(middle), solid_angle});
     }
   }
   return cells;
@@ -57,13 +59,13 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
   Level finest{kSize, {}};
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
-      Rgb sum{};
+      Pixel sum;
       for (int k = 0; k < kSamples * kSamples; ++k) {
         const int line = k / kSamples;
         const double x = column + (k % kSamples + 0.5) / kSamples;
         const double y = row + (line + 0.5) / kSamples;
         const Rgb& seen = Reflected(environment, 2 * x / kSize - 1, 1 - 2 * y / kSize);
-        for (int c = 0; c < kChannels; ++c) sum[c] += seen[c] / (kSamples * kSamples);
+        for (int c = 0; c < kChannels; ++c) sum.lane[c] += seen[c] / (kSamples * kSamples);
       }
       finest.radiance.push_back(sum);
     }
@@ -74,10 +76,10 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
     Level coarse{fine.size / 2, {}};
     for (int row = 0; row < coarse.size; ++row) {
       for (int column = 0; column < coarse.size; ++column) {
-        Rgb mean{};
+        Pixel mean;
         for (int k = 0; k < 4; ++k) {
-          const Rgb& part = fine.radiance[(2 * row + k / 2) * fine.size + 2 * column + k % 2];
-          for (int c = 0; c < kChannels; ++c) mean[c] += part[c] / 4;
+          const Pixel& part = fine.radiance[(2 * row + k / 2) * fine.size + 2 * column + k % 2];
+          for (int c = 0; c < kChannels; ++c) mean.lane[c] += part.lane[c] / 4;
         }
         coarse.radiance.push_back(mean);
       }
@@ -87,32 +89,30 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
 }
 
 // Linear between the middles of pixels; x and y from -1 to 1.
-Rgb MirroredEnvironment::Level::At(double x, double y) const {
+inline void MirroredEnvironment::Level::AddAt(double x, double y, double share, Pixel* sum) const {
   const double column = std::clamp((x + 1) / 2 * size - 0.5, 0.0, size - 1.0);
   const double row = std::clamp((1 - y) / 2 * size - 0.5, 0.0, size - 1.0);
   const int c0 = std::min(static_cast<int>(column), size - 2);
   const int r0 = std::min(static_cast<int>(row), size - 2);
   const double s = column - c0, t = row - r0;
-  const Rgb* const above = &radiance[r0 * size + c0];
-  const Rgb* const below = above + size;
-  Rgb mean;
-  for (int c = 0; c < kChannels; ++c) {
-    mean[c] = (1 - t) * ((1 - s) * above[0][c] + s * above[1][c]) +
-              t * ((1 - s) * below[0][c] + s * below[1][c]);
-  }
-  return mean;
+  const Pixel* const above = &radiance[r0 * size + c0];
+  const Pixel* const below = above + size;
+  const Four<double> mean = (1 - t) * ((1 - s) * Load(above[0].lane) + s * Load(above[1].lane)) +
+                            t * ((1 - s) * Load(below[0].lane) + s * Load(below[1].lane));
+  Store<double>(Load(sum->lane) + share * mean, sum->lane);
 }
 
 Rgb MirroredEnvironment::Mean(const Direction& half, double solid_angle) const {
   const double area = std::max(half[2] * solid_angle, 1e-12);
-  const double level = std::clamp(std::log2(kBlur * std::sqrt(area) * kSize / 2), 0.0,
+  // log2 of the side of a square of kBlur^2 times that area, in pixels of the finest map.
+  const double level = std::clamp(std::log2(kBlur * kSize / 2) + std::log2(area) / 2, 0.0,
                                   static_cast<double>(levels_.size() - 1));
   const int finer = std::min(static_cast<int>(level), static_cast<int>(levels_.size()) - 2);
   const double t = level - finer;
-  const Rgb a = levels_[finer].At(half[0], half[1]), b = levels_[finer + 1].At(half[0], half[1]);
-  Rgb mean;
-  for (int c = 0; c < kChannels; ++c) mean[c] = (1 - t) * a[c] + t * b[c];
-  return mean;
+  Pixel mean;
+  levels_[finer].AddAt(half[0], half[1], 1 - t, &mean);
+  levels_[finer + 1].AddAt(half[0], half[1], t, &mean);
+  return {mean.lane[0], mean.lane[1], mean.lane[2]};
 }
 
 const std::vector<HalfCell>& HalfCells() {

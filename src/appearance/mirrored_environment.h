@@ -23,10 +23,15 @@ class MirroredEnvironment {
   Rgb Mean(const Direction& half, double solid_angle) const;
 
  private:
+  // The channels, in the lanes of a vector.
+  struct alignas(4 * sizeof(double)) Pixel {
+    double lane[kChannels + 1] = {};
+  };
   struct Level {
     int size = 0;
-    std::vector<Rgb> radiance;  // [size * size]
-    Rgb At(double x, double y) const;
+    std::vector<Pixel> radiance;  // [size * size]
+    // Adds `share` of it to *sum.
+    void AddAt(double x, double y, double share, Pixel* sum) const;
   };
   std::vector<Level> levels_;  // finest first
 };
@@ -34,7 +39,8 @@ class MirroredEnvironment {
 // A piece of the half vectors about a normal, which is z here.
 struct HalfCell {
   Direction half{};
-  double solid_angle = 0;  // [sr]
+  double theta = 0, sine = 0;  // from the normal [rad]
+  double solid_angle = 0;      // [sr]
 };
 
 // All half vectors in rings, narrow where highlights are, theta_h being in proportion to the power

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/arc_functions.h"
 #include "trilobe/appearance/environment.h"
 #include "trilobe/geometry/directions.h"
 
@@ -28,17 +29,23 @@ inline PreparedLight Prepare(const Light& light) {
   return {half, across, std::atan2(sin_d, Dot(half, l)), sin_d};
 }
 
+// phi_d of light and eye over a surface, which is on the left of the plane of the two, seen from
+// the half vector towards the light, or else on its right.
+inline double PhiDOver(const Cosines& cosines, double sin_h, double sin_d, bool on_left) {
+  // cos theta_{i,o} = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
+  const double b = 2 * sin_h * sin_d;
+  const double cos_phi = b > 0 ? std::clamp((cosines.o - cosines.i) / b, -1.0, 1.0) : 1.0;
+  // phi_d below 0 is that of the exchanged directions, phi_d + pi.
+  const double phi = AngleOfCosine(cos_phi);
+  return on_left || phi == 0 ? phi : kPi - phi;
+}
+
 // The angles of light and eye over a surface with normal n.
 inline HalfDiffAngles AnglesOver(const Direction& n, const PreparedLight& light,
                                  const Cosines& cosines) {
-  const double cos_h = std::min(Dot(n, light.half), 1.0);
-  const double sin_h = std::sqrt(1 - cos_h * cos_h);
-  // cos theta_{i,o} = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
-  const double b = 2 * sin_h * light.sin_d;
-  const double cos_phi = b > 0 ? std::clamp((cosines.o - cosines.i) / b, -1.0, 1.0) : 1.0;
-  // phi_d below 0 is that of the exchanged directions, phi_d + pi.
-  const double phi = std::acos(cos_phi);
-  return {std::acos(cos_h), light.theta_d, Dot(n, light.across) >= 0 || phi == 0 ? phi : kPi - phi};
+  const double cos_h = std::min(Dot(n, light.half), 1.0), sin_h = SineOf(cos_h);
+  return {AngleOfCosine(cos_h), light.theta_d,
+          PhiDOver(cosines, sin_h, light.sin_d, Dot(n, light.across) >= 0)};
 }
 
 }  // namespace trilobe

@@ -18,20 +18,20 @@ class CellLights {
 
   int size() const { return static_cast<int>(cells_.size()); }
 
-  // Of a cell about the normal of a point. Calls `set_angles(half, light, incident)` if it is above
-  // the surface, and then `irradiance` holds.
+  // Of a cell about the normal of a point. Calls `set_angles(cell, half, light, incident)` if it is
+  // above the surface, and then `irradiance` holds.
   template <typename Angles, typename SetAngles>
   Incident<Angles> On(int point, int cell, const SetAngles& set_angles) const {
-    const auto& [local, solid_angle] = cells_[cell];
-    const Direction half = Turned(view_.points[point].normal, local);
+    const HalfCell& about = cells_[cell];
+    const Direction half = Turned(view_.points[point].normal, about.half);
     if (!(half[2] > 0)) return {};
     const Direction light = {2 * half[2] * half[0], 2 * half[2] * half[1],
                              2 * half[2] * half[2] - 1};
     Incident<Angles> incident{.cosines = CosinesOver(view_.points[point], light)};
     if (!(incident.cosines.i > 0)) return incident;
-    set_angles(half, light, &incident);
-    incident.irradiance = mirrored_.Mean(half, solid_angle);
-    const double light_angle = 4 * half[2] * solid_angle;
+    set_angles(about, half, light, &incident);
+    incident.irradiance = mirrored_.Mean(half, about.solid_angle);
+    const double light_angle = 4 * half[2] * about.solid_angle;
     for (double& x : incident.irradiance) x *= light_angle;
     incident.weight = Luminance(incident.irradiance);
     return incident;
@@ -61,7 +61,8 @@ RenderedImages RenderUnder(const Environment& environment, const View& view,
       view, lights.size(), static_cast<int>(materials.size()),
       [&](int k, int cell) {
         return lights.On<SphericalAngles>(
-            k, cell, [&](const Direction&, const Direction& light, auto* incident) {
+            k, cell,
+            [&](const HalfCell&, const Direction&, const Direction& light, auto* incident) {
               const SurfacePoint& point = view.points[k];
               incident->angles = {std::acos(incident->cosines.i), PhiOver(point, light),
                                   std::acos(incident->cosines.o), PhiOver(point, kEye)};
@@ -81,12 +82,15 @@ RenderedImages RenderUnder(const Environment& environment, const View& view,
       view, lights.size(), static_cast<int>(materials.size()),
       [&](int k, int cell) {
         return lights.On<HalfDiffAngles>(
-            k, cell, [&](const Direction& half, const Direction&, auto* incident) {
-              // As Prepare has it, light being half mirrored at the eye.
-              const double sin_d = std::hypot(half[0], half[1]);
-              const PreparedLight prepared = {
-                  half, {-half[1], half[0], 0}, std::atan2(sin_d, half[2]), sin_d};
-              incident->angles = AnglesOver(view.points[k].normal, prepared, incident->cosines);
+            k, cell,
+            [&](const HalfCell& about, const Direction& half, const Direction&, auto* incident) {
+              // As AnglesOver has it, the light being the eye's mirror image at the half vector.
+              const double sine2 = half[0] * half[0] + half[1] * half[1];
+              const Direction& normal = view.points[k].normal;
+              const bool on_left = normal[1] * half[0] >= normal[0] * half[1];
+              incident->angles = {
+                  about.theta, AngleOfSine2(sine2),
+                  PhiDOver(incident->cosines, about.sine, std::sqrt(sine2), on_left)};
             });
       },
       [&](int m, const HalfDiffAngles& angles, const Cosines& cosines) {

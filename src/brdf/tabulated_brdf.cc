@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/lanes.h"
 #include "trilobe/base/error.h"
 #include "trilobe/math/stencil.h"
 
@@ -11,10 +12,28 @@ namespace {
 
 constexpr int kNone = -1;
 
+// LinearStencil, with two bins wherever it has one.
+struct Place {
+  int bin[2];
+  double weight[2];
+
+  Place(double coordinate, int bins) {
+    const double x = std::clamp(coordinate - 0.5, 0.0, bins - 1.0);
+    bin[0] = std::min(static_cast<int>(x), bins - 1);
+    bin[1] = std::min(bin[0] + 1, bins - 1);
+    const double t = x - bin[0];
+    weight[1] = t < kAtEntry ? 0 : t > 1 - kAtEntry ? 1 : t;
+    weight[0] = 1 - weight[1];
+  }
+};
+
 // Replaces each kNone of a sequence of `count` bins, `stride` apart, by the nearest other entry; of
 // two at the same distance, by the earlier.
 void FillFromNearest(int* first, int count, int stride, bool cyclic) {
   const auto at = [&](int i) -> int& { return first[i * stride]; };
+  int missing = 0;
+  for (int i = 0; i < count; ++i) missing += at(i) == kNone;
+  if (missing == 0 || missing == count) return;
   std::vector<int> distance(count, 2 * count);
   // Two sweeps each way carry an entry once around a cycle.
   const int steps = cyclic ? 2 * count : count;
@@ -32,31 +51,35 @@ void FillFromNearest(int* first, int count, int stride, bool cyclic) {
 
 }  // namespace
 
-TabulatedBrdf::TabulatedBrdf(const BrdfTable& table) : table_(table) {
-  const MerlGrid& grid = table.grid;
+TabulatedBrdf::TabulatedBrdf(const BrdfTable& table) : grid_(table.grid) {
+  const MerlGrid& grid = grid_;
   const std::vector<bool> valid = ValidBins(table);
   if (std::ranges::find(valid, true) == valid.end()) {
     throw Error(table.source + ": no valid bin; check that the file is a BRDF in MERL layout");
   }
-  nearest_valid_.assign(grid.size(), kNone);
+  std::vector<int> nearest(grid.size(), kNone);
   for (int bin = 0; bin < grid.size(); ++bin) {
-    if (valid[bin]) nearest_valid_[bin] = bin;
+    if (valid[bin]) nearest[bin] = bin;
   }
   const int row = grid.theta_d * grid.phi_d;
   for (int i = 0; i < grid.size(); i += grid.phi_d) {
-    FillFromNearest(&nearest_valid_[i], grid.phi_d, 1, true);
+    FillFromNearest(&nearest[i], grid.phi_d, 1, true);
   }
   for (int h = 0; h < grid.theta_h; ++h) {
     for (int p = 0; p < grid.phi_d; ++p) {
-      FillFromNearest(&nearest_valid_[grid.Index(h, 0, p)], grid.theta_d, grid.phi_d, false);
+      FillFromNearest(&nearest[grid.Index(h, 0, p)], grid.theta_d, grid.phi_d, false);
     }
   }
-  for (int i = 0; i < row; ++i) FillFromNearest(&nearest_valid_[i], grid.theta_h, row, false);
+  for (int i = 0; i < row; ++i) FillFromNearest(&nearest[i], grid.theta_h, row, false);
+  values_.resize(grid.size());
+  for (int bin = 0; bin < grid.size(); ++bin) {
+    for (int c = 0; c < kChannels; ++c) values_[bin].channel[c] = table.Value(c, nearest[bin]);
+  }
 }
 
 Rgb TabulatedBrdf::operator()(const DirectionPair& directions) const {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {0, 0, 0};
-  return Value(table_.grid.Bin(ToHalfDiff(directions)));
+  return Value(grid_.Bin(ToHalfDiff(directions)));
 }
 
 Rgb TabulatedBrdf::Interpolate(const DirectionPair& directions) const {
@@ -66,25 +89,21 @@ Rgb TabulatedBrdf::Interpolate(const DirectionPair& directions) const {
 
 Rgb TabulatedBrdf::Interpolate(const HalfDiffAngles& angles) const {
   CheckAngles(angles);
-  const MerlGrid& grid = table_.grid;
-  const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
-  const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);
-  const double p = angles.phi_d / kPi * grid.phi_d - 0.5;
+  const Place h(grid_.ThetaHCoordinate(angles.theta_h), grid_.theta_h);
+  const Place d(grid_.ThetaDCoordinate(angles.theta_d), grid_.theta_d);
+  const double p = angles.phi_d / kPi * grid_.phi_d - 0.5;
   const int p0 = static_cast<int>(std::floor(p));
   const double t = p - p0;
-  const auto wrap = [&](int i) { return (i + grid.phi_d) % grid.phi_d; };
-  Rgb rho{};
-  for (int a = 0; a < h.size; ++a) {
-    for (int b = 0; b < d.size; ++b) {
-      const double weight = h.weight[a] * d.weight[b];
-      const int bin0 = grid.Index(h.index[a], d.index[b], wrap(p0));
-      const int bin1 = grid.Index(h.index[a], d.index[b], wrap(p0 + 1));
-      for (int c = 0; c < kChannels; ++c) {
-        rho[c] += weight * ((1 - t) * Value(c, bin0) + t * Value(c, bin1));
-      }
+  const int first = p0 < 0 ? grid_.phi_d - 1 : p0, second = p0 + 1 < grid_.phi_d ? p0 + 1 : 0;
+  Four<double> rho{};
+  for (int a = 0; a < 2; ++a) {
+    for (int b = 0; b < 2; ++b) {
+      const Colour* const row = &values_[grid_.Index(h.bin[a], d.bin[b], 0)];
+      rho += h.weight[a] * d.weight[b] *
+             ((1 - t) * Load(row[first].channel) + t * Load(row[second].channel));
     }
   }
-  return rho;
+  return {rho[0], rho[1], rho[2]};
 }
 
 }  // namespace trilobe

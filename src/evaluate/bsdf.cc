@@ -17,13 +17,6 @@ namespace {
 // has no node at is never drawn: of what the lobes reflect.
 constexpr double kCosineShare = 0.01;
 
-// From 0 to 180 degrees [rad]: cos x = 1 - 2 sin^2 (x / 2). What is beyond [-1, 1] by rounding is
-// at its end.
-template <typename Real>
-Real AngleOfCosine(Real cosine) {
-  return 2 * AngleOfSine2((1 - cosine) / 2);
-}
-
 // The azimuth between the half vector and wi up to which wo is above the surface, for
 //   0 < cos theta_o = 2 (wi . h) cos theta_h - cos theta_i. [rad]
 template <typename Real>

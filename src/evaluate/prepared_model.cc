@@ -193,18 +193,24 @@ class PairEvaluation {
       *value = {};
       return;
     }
-    Four<Real> rho = Load(model_.diffuse_lanes_.lane);
-    if constexpr (kPlain) {
-      const Four<Real> lobes = Load(at.D->lane) * (Load(at.G->lane) * at.scale);
-      constexpr int kMost = kForm == PreparedForm::kIsotropic ? 3 : 4;  // that have room
-      for (int m = 0; m < kMost; ++m) {
-        rho += Load(model_.specular_[m].lane) * Load(at.F->lane) * Broadcast<Real>(lobes[m]);
-      }
-    } else {
-      for (int m = 0; m < model_.lobes_; ++m) rho += LobeOf(at, m) * at.scale;
-    }
-    rho = MaxOf(rho, Four<Real>{});
-    for (int c = 0; c < kChannels; ++c) (*value)[c] = rho[c];
+    Sum(at, value);
+  }
+
+  // The same by angles of 0 or more, so that theta_h and theta_d need not be found, and by cosines
+  // above 0.
+  TRILOBE_ALWAYS_INLINE void ValueAt(const HalfDiffAngles& angles, const Cosines& cosines,
+                                     Colour* value) const {
+    static_assert(kForm == PreparedForm::kIsotropic);
+    const auto i = static_cast<Real>(cosines.i), o = static_cast<Real>(cosines.o);
+    Four<Real> places = PlacesOf(AboveZero(Four<Real>{0, 0, 1 - i * i, 1 - o * o}));
+    const auto share = [](double theta) {
+      return static_cast<Real>(std::min(theta * (2 / kPi), 1.0));
+    };
+    places[0] = model_.right_angle_.lane[0] * share(angles.theta_h);
+    places[1] = model_.right_angle_.lane[1] * share(angles.theta_d);
+    Readings at;
+    ReadIsotropic(places, &at);
+    Sum(at, value);
   }
 
   TRILOBE_ALWAYS_INLINE void LobeValues(const Vector& wi, const Vector& wo, Colour* values) const {
@@ -254,6 +260,37 @@ class PairEvaluation {
            FactorOf(model_.f_, at.F, lobe) * FactorOf(model_.g_, at.G, lobe);
   }
 
+  // The diffuse term and all lobes, if that is not negative.
+  TRILOBE_ALWAYS_INLINE void Sum(const Readings& at, Colour* value) const {
+    Four<Real> rho = Load(model_.diffuse_lanes_.lane);
+    if constexpr (kPlain) {
+      const Four<Real> lobes = Load(at.D->lane) * (Load(at.G->lane) * at.scale);
+      constexpr int kMost = kForm == PreparedForm::kIsotropic ? 3 : 4;  // that have room
+      for (int m = 0; m < kMost; ++m) {
+        rho += Load(model_.specular_[m].lane) * Load(at.F->lane) * Broadcast<Real>(lobes[m]);
+      }
+    } else {
+      for (int m = 0; m < model_.lobes_; ++m) rho += LobeOf(at, m) * at.scale;
+    }
+    rho = MaxOf(rho, Four<Real>{});
+    for (int c = 0; c < kChannels; ++c) (*value)[c] = rho[c];
+  }
+
+  TRILOBE_ALWAYS_INLINE static Four<Real> AboveZero(const Four<Real>& sines2) {
+    return MaxOf(sines2, Broadcast(std::numeric_limits<Real>::min()));
+  }
+
+  // Where the tables are read, by the squares of the sines of theta_h, theta_d, theta_i and
+  // theta_o, which are not 0.
+  TRILOBE_ALWAYS_INLINE Four<Real> PlacesOf(const Four<Real>& sines2) const {
+    const Four<Real> m = MinOf(sines2, Four<Real>{1 - sines2});
+    const auto term = [&](size_t k) __attribute__((always_inline)) {
+      return Load(model_.terms_[k].lane);
+    };
+    const Four<Real> places = SqrtOf(m) * Polynomial<Model::kTerms, Four<Real>>(term, m);
+    return sines2 > Broadcast<Real>(0.5) ? Load(model_.right_angle_.lane) - places : places;
+  }
+
   // False where the value is 0 whatever the tables say.
   TRILOBE_ALWAYS_INLINE bool Read(const Vector& wi, const Vector& wo, Readings* readings) const {
     if (!(wi[2] > 0 && wo[2] > 0)) return false;
@@ -261,15 +298,13 @@ class PairEvaluation {
     const Real across2 = sum[0] * sum[0] + sum[1] * sum[1], length2 = across2 + sum[2] * sum[2];
     // |wi + wo| = 2 cos theta_d. No numbers, or nothing like unit vectors:
     if (!(length2 > 0 && length2 < 16)) return false;
-    const Four<Real> sines2 =
-        MaxOf(Four<Real>{across2 / length2, 1 - length2 / 4, 1 - wi[2] * wi[2], 1 - wo[2] * wo[2]},
-              Broadcast(std::numeric_limits<Real>::min()));
-    const Four<Real> m = MinOf(sines2, Four<Real>{1 - sines2});
-    const auto term = [&](size_t k) __attribute__((always_inline)) {
-      return Load(model_.terms_[k].lane);
-    };
-    Four<Real> angles = SqrtOf(m) * Polynomial<Model::kTerms, Four<Real>>(term, m);
-    angles = sines2 > Broadcast<Real>(0.5) ? Load(model_.right_angle_.lane) - angles : angles;
+    const Four<Real> sines2 = AboveZero(
+        Four<Real>{across2 / length2, 1 - length2 / 4, 1 - wi[2] * wi[2], 1 - wo[2] * wo[2]});
+    const Four<Real> angles = PlacesOf(sines2);
+    if constexpr (kForm == PreparedForm::kIsotropic) {
+      ReadIsotropic(angles, readings);
+      return true;
+    }
     const Parts<Real> at(angles);  // an entry later, as tables begin an entry before
     Four<Real> turn = Broadcast<Real>(-0.5);
     if (Is(PreparedForm::kAnisotropic, model_.anisotropic())) {
@@ -293,10 +328,7 @@ class PairEvaluation {
     } else if (!kPlain && model_.stretched_) {
       ReadStretchedD(wi, wo, angles[0], std::sqrt(sines2[0]), std::sqrt(length2) / 2, readings->D);
     } else {
-      // By itself, as a root comes late.
-      Real x = Is(PreparedForm::kIsotropic, model_.by_root_) ? std::sqrt(angles[0]) : angles[0];
-      const Parts<Real> at_h(Broadcast(x));
-      ReadBins(model_.d_, at_h.whole(0), at_h.lower[0], at_h.upper[0], readings->D);
+      ReadD(model_.by_root_ ? std::sqrt(angles[0]) : angles[0], readings->D);
     }
     ReadBins(model_.f_, at.whole(1), at.lower[1], at.upper[1], readings->F);
     Quad* const G = readings->G;
@@ -309,17 +341,36 @@ class PairEvaluation {
       }
       readings->scale = 1 / std::max(wi[2] * wo[2], std::numeric_limits<Real>::min());
     } else {
-      const Quad* const at_i = &model_.g_pieces_[at.whole(2) * VectorsOf(model_.g_) * 4];
-      const Quad* const at_o = &model_.g_pieces_[at.whole(3) * VectorsOf(model_.g_) * 4];
-      for (int v = 0; v < VectorsOf(model_.g_); ++v) {
-        Store<Real>(Cubic(at_i[4 * v].lane, Real{at.lower[2]}, Real{at.upper[2]}) *
-                        Cubic(at_o[4 * v].lane, Real{at.lower[3]}, Real{at.upper[3]}),
-                    G[v].lane);
-      }
-      const int lane = kPlain ? 3 : model_.cosine_lane_;
-      readings->scale = 1 / G[lane / 4].lane[lane % 4];
+      ReadSpline(at, readings);
     }
     return true;
+  }
+
+  // The same from where the tables are read.
+  TRILOBE_ALWAYS_INLINE void ReadIsotropic(const Four<Real>& places, Readings* readings) const {
+    const Parts<Real> at(places);
+    ReadD(std::sqrt(places[0]), readings->D);
+    ReadBins(model_.f_, at.whole(1), at.lower[1], at.upper[1], readings->F);
+    ReadSpline(at, readings);
+  }
+
+  // By itself, as a root comes late.
+  TRILOBE_ALWAYS_INLINE void ReadD(Real place, Quad* values) const {
+    const Parts<Real> at(Broadcast(place));
+    ReadBins(model_.d_, at.whole(0), at.lower[0], at.upper[0], values);
+  }
+
+  TRILOBE_ALWAYS_INLINE void ReadSpline(const Parts<Real>& at, Readings* readings) const {
+    const Quad* const at_i = &model_.g_pieces_[at.whole(2) * VectorsOf(model_.g_) * 4];
+    const Quad* const at_o = &model_.g_pieces_[at.whole(3) * VectorsOf(model_.g_) * 4];
+    Quad* const G = readings->G;
+    for (int v = 0; v < VectorsOf(model_.g_); ++v) {
+      Store<Real>(Cubic(at_i[4 * v].lane, Real{at.lower[2]}, Real{at.upper[2]}) *
+                      Cubic(at_o[4 * v].lane, Real{at.lower[3]}, Real{at.upper[3]}),
+                  G[v].lane);
+    }
+    const int lane = kPlain ? 3 : model_.cosine_lane_;
+    readings->scale = 1 / G[lane / 4].lane[lane % 4];
   }
 
   TRILOBE_ALWAYS_INLINE static void ReadBins(const Tables& tables, int entry, Real lower,
@@ -389,6 +440,11 @@ namespace {
     for (size_t k = 0; k < size; ++k) evaluation.Value(wi[k], wo[k], &values[k]);                \
   }
 #define TRILOBE_EVALUATE(Real)                                                                   \
+  TRILOBE_MULTIVERSION void EvaluateAngles(                                                      \
+      const PairEvaluation<Real, PreparedForm::kIsotropic>& evaluation,                          \
+      const HalfDiffAngles& angles, const Cosines& cosines, std::array<Real, 3>* value) {        \
+    evaluation.ValueAt(angles, cosines, value);                                                  \
+  }                                                                                              \
   TRILOBE_EVALUATE_FORM(Real, PreparedForm::kAny)                                                \
   TRILOBE_EVALUATE_FORM(Real, PreparedForm::kIsotropic)                                          \
   TRILOBE_EVALUATE_FORM(Real, PreparedForm::kAnisotropic)                                        \
@@ -428,6 +484,22 @@ void PreparedModel<Real>::Values(std::span<const Vector> wi, std::span<const Vec
                 " values; give as many of each");
   }
   Evaluate(values.size(), wi.data(), wo.data(), values.data());
+}
+
+template <typename Real>
+typename PreparedModel<Real>::Colour PreparedModel<Real>::Value(const HalfDiffAngles& angles,
+                                                                const Cosines& cosines) const {
+  if (!(angles.theta_h >= 0 && angles.theta_d >= 0 && cosines.i > 0 && cosines.o > 0)) return {};
+  if (form_ == PreparedForm::kIsotropic) {
+    Colour value;
+    EvaluateAngles(PairEvaluation<Real, PreparedForm::kIsotropic>(*this), angles, cosines, &value);
+    return value;
+  }
+  const auto [wi, wo] = ToDirections(angles);
+  const auto real = [](const Direction& w) {
+    return Vector{static_cast<Real>(w[0]), static_cast<Real>(w[1]), static_cast<Real>(w[2])};
+  };
+  return Value(real(wi), real(wo));
 }
 
 template <typename Real>

@@ -91,6 +91,13 @@ TRILOBE_ALWAYS_INLINE Real AngleOfSine2(Real sine2) {
   return sine2 > Real{0.5} ? static_cast<Real>(kPi / 2) - angle : angle;
 }
 
+// From 0 to 180 degrees [rad]: cos x = 1 - 2 sin^2 (x / 2). What is beyond [-1, 1] by rounding is
+// at its end.
+template <typename Real>
+TRILOBE_ALWAYS_INLINE Real AngleOfCosine(Real cosine) {
+  return 2 * AngleOfSine2((1 - cosine) / 2);
+}
+
 // The azimuths of points (x, y) in turns, from 0 to 1; 0 where both are 0. Within 2e-15, of floats
 // 1e-7.
 template <typename Real>

@@ -27,23 +27,25 @@ SphereError ErrorOf(const ImagePair& pair) { return CompareSpheres(pair.measured
 }  // namespace
 
 void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
-                 const AppearanceOptions& options) {
-  PairPicture picture{.source = measured.source,
-                      .rows = {},
-                      .error = ErrorOf(RenderMeasuredPair(measured, fitted, options)),
-                      .subject = MeasureOf(options),
-                      .images = {}};
+                 const AppearanceOptions& options, const std::optional<SphereError>& error) {
+  PairPicture picture{
+      .source = measured.source,
+      .rows = {},
+      .error = error ? *error : ErrorOf(RenderMeasuredPair(measured, fitted, options)),
+      .subject = MeasureOf(options),
+      .images = {}};
   picture.images = RenderPicture(measured, fitted, Larger(options, kSizeOfTable));
   DrawImagePair(picture, options, path);
 }
 
 void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
-                 const AppearanceOptions& options) {
-  PairPicture picture{.source = measured.table().source,
-                      .rows = {},
-                      .error = ErrorOf(RenderMeasuredPair(measured, fitted, options)),
-                      .subject = MeasureOf(options),
-                      .images = {}};
+                 const AppearanceOptions& options, const std::optional<SphereError>& error) {
+  PairPicture picture{
+      .source = measured.table().source,
+      .rows = {},
+      .error = error ? *error : ErrorOf(RenderMeasuredPair(measured, fitted, options)),
+      .subject = MeasureOf(options),
+      .images = {}};
   picture.images = RenderPicture(measured, fitted, Shape::kSphere, Larger(options, kSizeOfNodes));
   DrawImagePair(picture, options, path);
 }

@@ -52,7 +52,8 @@ void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace
 std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,
-                                      const AppearanceOptions& appearance) {
+                                      const AppearanceOptions& appearance,
+                                      const std::optional<SphereError>& sphere) {
   CheckDrawable(file, trace);
   std::vector<std::string> paths;
   std::vector<std::function<void()>> drawings;
@@ -69,8 +70,9 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
   if (measured.nodes) {
     const NodeBrdf& nodes = *measured.nodes;
     add("slices.png", [&](const std::string& path) { DrawSlices(nodes, fitted.spherical, path); });
-    add("spheres.png",
-        [&](const std::string& path) { DrawSpheres(nodes, fitted.spherical, path, appearance); });
+    add("spheres.png", [&](const std::string& path) {
+      DrawSpheres(nodes, fitted.spherical, path, appearance, sphere);
+    });
     add("cloth.png",
         [&](const std::string& path) { DrawCloth(nodes, fitted.spherical, path, appearance); });
   } else if (measured.table != nullptr) {
@@ -78,8 +80,9 @@ std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& 
     add("slices.png", [&](const std::string& path) {
       DrawSlices(table, Reconstruct(file.model, "fit", table.grid, appearance.num_threads), path);
     });
-    add("spheres.png",
-        [&](const std::string& path) { DrawSpheres(table, fitted.angular, path, appearance); });
+    add("spheres.png", [&](const std::string& path) {
+      DrawSpheres(table, fitted.angular, path, appearance, sphere);
+    });
   } else {
     if (measured.scattered != nullptr && HasSlices(*measured.scattered)) {
       add("slices.png", [&](const std::string& path) {

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_PICTURES_PLOTS_H_
 #define TRILOBE_PICTURES_PLOTS_H_
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,12 +41,12 @@ void DrawSlices(const Measurement& scattered, const SphericalBrdf& fitted, const
 
 // Measured and fitted material on a sphere under the environment of the options, all of it, and how
 // far apart they are to the eye; the figures are those of the spheres that CompareAppearance
-// compares.
+// compares, found anew unless they are given.
 void DrawSpheres(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
-                 const AppearanceOptions& options);
+                 const AppearanceOptions& options, const std::optional<SphereError>& error = {});
 
 void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
-                 const AppearanceOptions& options);
+                 const AppearanceOptions& options, const std::optional<SphereError>& error = {});
 
 // The fitted one alone, without text, where no measurement can be shown beside it.
 void DrawFittedSphere(const Material& fitted, const std::string& path,
@@ -95,11 +96,13 @@ void CheckDrawable(const ModelFile& file, std::span<const IterationRecord> trace
 // All pictures that the inputs allow, as factors.png, slices.png, spheres.png, cloth.png and
 // trace.png in an existing folder: cloth needs data at nodes, trace needs records. Of isotropic
 // scattered samples spheres.png shows a table of them (TableOfSamples) where they are dense;
-// without data, or where samples are few, it is of the fit alone. Returns their paths.
+// without data, or where samples are few, it is of the fit alone. `sphere`: CompareAppearance's, if
+// that is known. Returns their paths.
 std::vector<std::string> DrawPictures(const ModelFile& file, const PictureData& measured,
                                       std::span<const IterationRecord> trace,
                                       const std::string& folder,
-                                      const AppearanceOptions& appearance);
+                                      const AppearanceOptions& appearance,
+                                      const std::optional<SphereError>& sphere = {});
 
 // Names of all of them.
 inline constexpr const char* kPictureNames[] = {"factors.png", "slices.png", "spheres.png",

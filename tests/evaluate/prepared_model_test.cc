@@ -82,6 +82,32 @@ TEST(PreparedModelTest, ValuesOfManyPairsAreThoseOfEach) {
   }
 }
 
+TEST(PreparedModelTest, OfAnglesIsThatOfTheirDirections) {
+  for (const auto& [name, model] : TestMaterials()) {
+    if (model.spec().anisotropic()) continue;
+    const PreparedModel<double> prepared(model);
+    Random random(4);
+    for (int k = 0; k < 500; ++k) {
+      const HalfDiffAngles angles = {random.Uniform(0, kPi / 2), random.Uniform(0, kPi / 2),
+                                     random.Uniform(0, kPi)};
+      const auto [wi, wo] = ToDirections(angles);
+      const Rgb expected = prepared.Value(wi, wo);
+      const Rgb value = prepared.Value(angles, Cosines{wi[2], wo[2]});
+      for (int c = 0; c < kChannels; ++c) {
+        ASSERT_NEAR(value[c], expected[c], 1e-9 * expected[c]) << name;
+      }
+    }
+    const Cosines up = {0.5, 0.5};
+    const double none = std::numeric_limits<double>::quiet_NaN(), huge = 1e300;
+    for (const HalfDiffAngles& bad :
+         {HalfDiffAngles{none, 0.3, 0.3}, {0.3, none, 0.3}, {-1, 0.3, 0.3}, {0.3, -1, 0.3}}) {
+      EXPECT_FALSE(prepared.Value(bad, up)[0] > 0) << name;
+    }
+    EXPECT_EQ(prepared.Value(HalfDiffAngles{0.3, 0.3, 0.3}, Cosines{-0.1, 0.5}), Rgb{}) << name;
+    EXPECT_TRUE(std::isfinite(prepared.Value(HalfDiffAngles{huge, huge, huge}, up)[0])) << name;
+  }
+}
+
 TEST(PreparedModelTest, IsReciprocal) {
   for (const auto& [name, model] : TestMaterials()) {
     const PreparedModel<double> prepared(model);

@@ -15,7 +15,7 @@ namespace trilobe {
 // directions above the surface may have its centre below it.)
 class TabulatedBrdf {
  public:
-  // Keeps a reference to `table`, which must outlive it. Throws Error when no bin is valid.
+  // Throws Error when no bin is valid.
   explicit TabulatedBrdf(const BrdfTable& table);
 
   // BRDF [1/sr] of the bin that contains these directions; 0 where either is below the surface.
@@ -27,13 +27,19 @@ class TabulatedBrdf {
   Rgb Interpolate(const HalfDiffAngles& angles) const;
 
   // Of a bin, or the valid one that stands for it.
-  Rgb Value(int bin) const { return {Value(0, bin), Value(1, bin), Value(2, bin)}; }
+  Rgb Value(int bin) const {
+    const Colour& rho = values_[bin];
+    return {rho.channel[0], rho.channel[1], rho.channel[2]};
+  }
 
  private:
-  double Value(int channel, int bin) const { return table_.Value(channel, nearest_valid_[bin]); }
+  // The channels side by side: a place between bins reads eight of them, which lie far apart.
+  struct alignas(4 * sizeof(double)) Colour {
+    double channel[kChannels + 1];
+  };
 
-  const BrdfTable& table_;
-  std::vector<int> nearest_valid_;  // [grid.size()]
+  MerlGrid grid_;
+  std::vector<Colour> values_;  // [grid.size()]
 };
 
 }  // namespace trilobe

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trilobe/geometry/channels.h"
+#include "trilobe/geometry/directions.h"
 #include "trilobe/math/catmull_rom.h"
 #include "trilobe/model/factor_model.h"
 
@@ -40,6 +41,10 @@ class PreparedModel {
     Evaluate(1, &wi, &wo, &value);
     return value;
   }
+
+  // Of an isotropic model, by the angles of two directions, which are sooner read than found, and
+  // by their cosines. 0 where the surface hides one, or an angle is below 0 or not a number.
+  Colour Value(const HalfDiffAngles& angles, const Cosines& cosines) const;
 
   // Of many pairs, the same numbers. Throws Error unless there are as many of each.
   void Values(std::span<const Vector> wi, std::span<const Vector> wo,
