@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string>
 
 #include "base/text.h"
 #include "geometry/grid_cosines.h"
+#include "trilobe/base/check.h"
 #include "trilobe/base/error.h"
 
 namespace trilobe {
@@ -207,6 +209,16 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
     if (phase % stride == 0) kept.push_back(j);
   }
   if (kept.empty() && samples.size() > 0) kept.push_back(0);
+  return Selected(samples, kept);
+}
+
+BrdfSamples EvenlySpread(const BrdfSamples& samples, int count) {
+  CheckNumber("the number of samples", count, count >= 1, "1 or more");
+  int stride = std::max(1, samples.size() / count);
+  // One that has no factor in common with the number of bins of phi_d visits all of these.
+  while (std::gcd(stride, samples.grid.phi_d) > 1) ++stride;
+  std::vector<int> kept;
+  for (int j = 0; j < samples.size(); j += stride) kept.push_back(j);
   return Selected(samples, kept);
 }
 

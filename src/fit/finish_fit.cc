@@ -63,7 +63,8 @@ class Looks {
 class NoHarm {
  public:
   NoHarm(const Objective& objective, const FactorModel& before, Looks* looks)
-      : objective_(objective),
+      : samples_(EvenlySpread(objective.samples(), kSamples)),
+        num_threads_(objective.num_threads()),
         looks_(*looks),
         measured_(looks->Measured(before)),
         beyond_(looks->has_beyond() ? looks->Beyond(before) : 0),
@@ -79,10 +80,12 @@ class NoHarm {
 
  private:
   double LogError(const FactorModel& model) const {
-    return ScoreModel(objective_, model).mean_log_error;
+    return MeanLogError(samples_, model, num_threads_);
   }
 
-  const Objective& objective_;
+  static constexpr int kSamples = 1 << 16;  // tell the same as a million would
+  const BrdfSamples samples_;
+  const int num_threads_;
   Looks& looks_;
   double measured_, beyond_, log_error_;
 };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "objective/batch_evaluator.h"
+#include "objective/stencils_of.h"
 #include "trilobe/base/error.h"
 #include "trilobe/system/parallel.h"
 
@@ -172,11 +173,8 @@ struct Objective::Prepared {
   }
 
   WeightedSample Sample(int j) const {
-    const HalfDiffAngles angles = samples.Angles(j);
     WeightedSample sample;
-    sample.stencils = samples.on_grid()    ? GridStencils(spec, samples.grid, samples.bins[j])
-                      : spec.anisotropic() ? ScatteredStencils(spec, samples.directions[j])
-                                           : ScatteredStencils(spec, angles);
+    sample.stencils = StencilsOf(spec, samples, j);
     sample.rho = samples.rho[j];
     sample.weight = weighting({sample.rho, samples.CosinesOf(j), samples.SolidAngle(j)});
     for (double& w : sample.weight) w *= samples.Multiplicity(j);

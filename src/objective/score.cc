@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "trilobe/base/error.h"
@@ -19,6 +20,10 @@ constexpr double kRelativeErrorFloor = 1e-3;  // [1/sr]
 // Largest error first; equal ones in the order of the samples.
 bool Worse(const WorstSample& a, const WorstSample& b) {
   return std::tuple(-a.error, a.sample, a.channel) < std::tuple(-b.error, b.sample, b.channel);
+}
+
+double LogError(double rho, double rho_star, double cos_i) {
+  return std::abs(std::log1p(std::max(rho, 0.0) * cos_i) - std::log1p(rho_star * cos_i));
 }
 
 // Sums over some of the samples.
@@ -62,7 +67,7 @@ Sums SumRange(const Objective& objective, const std::vector<Rgb>& fitted, int be
       sums.objective += weight * difference * difference;
       sums.squared[c] += difference / unit * (difference / unit);
       sums.relative += difference / (rho_star + kRelativeErrorFloor);
-      sums.log += std::abs(std::log1p(std::max(rho, 0.0) * cos_i) - std::log1p(rho_star * cos_i));
+      sums.log += LogError(rho, rho_star, cos_i);
       sums.max_absolute = std::max(sums.max_absolute, difference);
       sums.Keep({j, c, angles, rho_star, rho, weight * difference * difference});
     }
@@ -87,6 +92,21 @@ ScoreReport ScoreModel(const Objective& objective, const FactorModel& model) {
     report.relative_objective = report.objective / objective.MeasuredEnergy();
   }
   return report;
+}
+
+double MeanLogError(const BrdfSamples& samples, const FactorModel& model, int num_threads) {
+  const std::vector<Rgb> fitted = EvaluateSamples(model, samples, num_threads);
+  std::vector<double> parts((samples.size() + kChunk - 1) / kChunk);
+  ParallelFor(static_cast<int>(parts.size()), num_threads, [&](int i) {
+    const int end = std::min(samples.size(), (i + 1) * kChunk);
+    for (int j = i * kChunk; j < end; ++j) {
+      const double cos_i = samples.CosinesOf(j).i;
+      for (int c = 0; c < kChannels; ++c) {
+        parts[i] += LogError(fitted[j][c], samples.rho[j][c], cos_i);
+      }
+    }
+  });
+  return std::accumulate(parts.begin(), parts.end(), 0.0) / (kChannels * samples.size());
 }
 
 ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted) {

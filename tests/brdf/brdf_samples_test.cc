@@ -67,6 +67,18 @@ TEST(Thinned, IsAPartOfTheSamplesInTheirOrder) {
 }
 
 // Places that few samples read keep more of them, and each counts for those that it stands for.
+TEST(EvenlySpread, IsOfAllPhiDAndOfAboutSoMany) {
+  const BrdfSamples samples = ValidSamples(RandomTable(kLong, 3, /*lost=*/0));
+  EXPECT_EQ(EvenlySpread(samples, samples.size()).size(), samples.size());
+  const int count = samples.size() / 6;
+  const BrdfSamples spread = EvenlySpread(samples, count);
+  EXPECT_NEAR(spread.size(), count, count / 2);
+  std::vector<int> seen(kLong.phi_d, 0);
+  for (const int bin : spread.bins) ++seen[bin % kLong.phi_d];
+  EXPECT_GT(std::ranges::min(seen), 0);
+  EXPECT_THROW(EvenlySpread(samples, 0), Error);
+}
+
 TEST(ThinnedByPlace, KeepsWhatIsRareAndCountsItRight) {
   const BrdfSamples all = ValidSamples(RandomTable(kLong, 3, /*lost=*/0));
   for (const bool scattered : {false, true}) {

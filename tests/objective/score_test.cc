@@ -94,6 +94,13 @@ TEST(ScoreTest, ValuesScoreAsTheModelThatHasThem) {
 }
 
 // Weights decide which samples are worst: percentage weighs the dim ones up.
+TEST(ScoreTest, MeanLogErrorIsThatOfAllFigures) {
+  const FactorModel model = Lambertian(0.1, 0.3, 0.2);
+  const Objective objective(ThreeSamples(), model.spec(), FindWeighting("log"));
+  EXPECT_NEAR(MeanLogError(objective.samples(), model), ScoreModel(objective, model).mean_log_error,
+              1e-15);
+}
+
 TEST(ScoreTest, WorstSamplesAreWeighted) {
   const FactorModel model = Lambertian(0, 0, 0.1);
   BrdfSamples samples = ThreeSamples();

@@ -67,9 +67,13 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
 // there is any. Throws Error for other strides.
 BrdfSamples Thinned(const BrdfSamples& samples, int stride);
 
-// The same where few samples lie by smaller strides, down to 1, so that about `least` >= 1 of each
-// bin of theta_h, of theta_d, and of each degree of theta_i and theta_o are left, or all that there
-// are. Each counts as many times as there are in its stride. Throws Error as above.
+// About `count` >= 1 of them for a mean, evenly spread over their order, or all if there are fewer
+// than twice as many. On a grid they are of all phi_d. Throws Error for other counts.
+BrdfSamples EvenlySpread(const BrdfSamples& samples, int count);
+
+// The same as Thinned where few samples lie by smaller strides, down to 1, so that about `least` >=
+// 1 of each bin of theta_h, of theta_d, and of each degree of theta_i and theta_o are left, or all
+// that there are. Each counts as many times as there are in its stride. Throws Error as above.
 BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least);
 
 }  // namespace trilobe

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/directions.h"
 #include "trilobe/model/factor_model.h"
@@ -60,7 +61,11 @@ struct ScoreReport {
 // any number of threads. Throws Error if the model's values overflow.
 ScoreReport ScoreModel(const Objective& objective, const FactorModel& model);
 
-// The same for anything that has a value at each sample. [samples().size()] Throws Error for
+// ScoreReport::mean_log_error alone, of any samples that a model can be compared with. The same
+// bits for any number of threads.
+double MeanLogError(const BrdfSamples& samples, const FactorModel& model, int num_threads = 1);
+
+// ScoreModel for anything that has a value at each sample. [samples().size()] Throws Error for
 // another number of values.
 ScoreReport ScoreValues(const Objective& objective, const std::vector<Rgb>& fitted);
 

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <numeric>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "objective/sample_derivatives.h"
+#include "objective/stencils_of.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/nonnegative_step.h"
 #include "solvers/joint/reduction.h"
@@ -34,67 +35,83 @@ struct Light {
 
 enum class Slopes { kNone, kAll };
 
-// Every few samples are enough: what is measured and what is fitted are summed over the same ones.
-// A stride that has no factor in common with the number of bins of phi_d visits all of these.
-int StrideOf(const BrdfSamples& samples) {
-  constexpr int kSamplesLookedAt = 1 << 16;
-  int stride = std::max(1, samples.size() / kSamplesLookedAt);
-  while (std::gcd(stride, samples.grid.phi_d) > 1) ++stride;
-  return stride;
-}
+}  // namespace
 
-Light LightOf(const Objective& objective, const FactorModel& model, Slopes slopes) {
-  constexpr int kParts = 16;
-  const BrdfSamples& samples = objective.samples();
-  const int stride = StrideOf(samples);
-  const int num_parameters = slopes == Slopes::kAll ? model.spec().num_parameters() : 0;
-  struct Part {
-    double through = 0;
-    Light light;
-  };
-  std::vector<Part> parts(kParts);
-  const int size = (samples.size() + stride - 1) / stride;
-  ParallelFor(kParts, objective.num_threads(), [&](int k) {
-    Part part;
-    for (auto& slope : part.light.slope) slope.assign(num_parameters, 0.0);
-    SampleDerivatives derivatives(num_parameters);
-    const auto begin = static_cast<int>(static_cast<int64_t>(size) * k / kParts);
-    const auto end = static_cast<int>(static_cast<int64_t>(size) * (k + 1) / kParts);
-    for (int j = begin * stride; j < end * stride; j += stride) {
-      const Cosines cosines = samples.CosinesOf(j);
-      const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
-      const SampleStencils at = objective.Sample(j).stencils;
-      part.through += through;
-      for (int c = 0; c < kChannels; ++c) {
-        part.light.reflectance.measured[c] += through * samples.rho[j][c];
-        part.light.reflectance.fitted[c] += through * UnclampedValue(model, at, c);
-        if (slopes == Slopes::kNone) continue;
-        derivatives.Set(model, at, c);
-        for (const int x : derivatives.touched()) {
-          part.light.slope[c][x] += through * derivatives[x];
+// The samples that stand for all, and how they read the tables: what is measured and what is fitted
+// are summed over the same ones.
+class SampledLight {
+ public:
+  explicit SampledLight(const Objective& objective)
+      : spec_(objective.spec()), num_threads_(objective.num_threads()) {
+    constexpr int kSamples = 1 << 16;
+    const BrdfSamples samples = EvenlySpread(objective.samples(), kSamples);
+    size_ = samples.size();
+    at_.resize(size_);
+    ParallelFor(kParts, num_threads_, [&](int part) {
+      for (int j = Begin(part); j < Begin(part + 1); ++j) {
+        const Cosines cosines = samples.CosinesOf(j);
+        at_[j] = {samples.SolidAngle(j) * cosines.i * cosines.o, StencilsOf(spec_, samples, j)};
+      }
+    });
+    for (int j = 0; j < size_; ++j) {
+      through_ += at_[j].through;
+      for (int c = 0; c < kChannels; ++c) measured_[c] += at_[j].through * samples.rho[j][c];
+    }
+    for (double& x : measured_) x /= through_;
+  }
+
+  // Of a model with the objective's spec. The same bits for any number of threads.
+  Light Of(const FactorModel& model, Slopes slopes) const {
+    const int num_parameters = slopes == Slopes::kAll ? spec_.num_parameters() : 0;
+    std::vector<Light> parts(kParts);
+    ParallelFor(kParts, num_threads_, [&](int part) {
+      Light light;
+      for (auto& slope : light.slope) slope.assign(num_parameters, 0.0);
+      for (int j = Begin(part); j < Begin(part + 1); ++j) {
+        const auto& [through, stencils] = at_[j];
+        for (int c = 0; c < kChannels; ++c) {
+          light.reflectance.fitted[c] += through * UnclampedValue(model, stencils, c);
+          if (slopes == Slopes::kNone) continue;
+          SampleDerivatives::Visit(
+              model, stencils, c,
+              [&slope = light.slope[c], scale = through](int parameter, double value) {
+                slope[parameter] += scale * value;
+              });
         }
       }
-    }
-    parts[k] = std::move(part);
-  });
-  Light light = std::move(parts[0].light);
-  double through = parts[0].through;
-  for (int k = 1; k < kParts; ++k) {
-    const Light& part = parts[k].light;
-    through += parts[k].through;
+      parts[part] = std::move(light);
+    });
+    Light sum = std::move(parts[0]);
+    sum.reflectance.measured = measured_;
     for (int c = 0; c < kChannels; ++c) {
-      light.reflectance.measured[c] += part.reflectance.measured[c];
-      light.reflectance.fitted[c] += part.reflectance.fitted[c];
-      for (int x = 0; x < num_parameters; ++x) light.slope[c][x] += part.slope[c][x];
+      for (int k = 1; k < kParts; ++k) {
+        sum.reflectance.fitted[c] += parts[k].reflectance.fitted[c];
+        for (int x = 0; x < num_parameters; ++x) sum.slope[c][x] += parts[k].slope[c][x];
+      }
+      sum.reflectance.fitted[c] /= through_;
+      for (double& x : sum.slope[c]) x /= through_;
     }
+    return sum;
   }
-  for (int c = 0; c < kChannels; ++c) {
-    light.reflectance.measured[c] /= through;
-    light.reflectance.fitted[c] /= through;
-    for (double& x : light.slope[c]) x /= through;
-  }
-  return light;
-}
+
+ private:
+  static constexpr int kParts = 16;
+  struct At {
+    double through = 0;
+    SampleStencils stencils;
+  };
+
+  int Begin(int part) const { return static_cast<int>(int64_t{size_} * part / kParts); }
+
+  const ModelSpec spec_;
+  const int num_threads_;
+  int size_ = 0;
+  double through_ = 0;
+  Rgb measured_{};
+  std::vector<At> at_;
+};
+
+namespace {
 
 // Adds price |fitted - target|^2 / |target|^2 to a problem in parameters of which `slope_of` makes
 // slopes, of those in all.
@@ -120,20 +137,26 @@ double Reflectance::Error() const { return RelativeDistance(fitted, measured); }
 
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) {
   CheckSameSpec(model.spec(), objective.spec());
-  return LightOf(objective, model, Slopes::kNone).reflectance;
+  return SampledLight(objective).Of(model, Slopes::kNone).reflectance;
 }
 
 ReflectancePrice::ReflectancePrice(const Objective& objective, const FactorModel& model,
                                    double price)
-    : objective_(objective), target_(ReflectanceOf(objective, model).fitted), price_(price) {}
+    : light_(std::make_unique<const SampledLight>(objective)), price_(price) {
+  CheckSameSpec(model.spec(), objective.spec());
+  target_ = light_->Of(model, Slopes::kNone).reflectance.fitted;
+}
+
+ReflectancePrice::~ReflectancePrice() = default;
 
 double ReflectancePrice::operator()(const FactorModel& model) const {
-  return price_ * std::pow(RelativeDistance(ReflectanceOf(objective_, model).fitted, target_), 2);
+  const Reflectance reflectance = light_->Of(model, Slopes::kNone).reflectance;
+  return price_ * std::pow(RelativeDistance(reflectance.fitted, target_), 2);
 }
 
 void ReflectancePrice::AddTo(const FactorModel& model, QuadraticModel* at) const {
   if (target_ == Rgb{}) return;
-  const Light light = LightOf(objective_, model, Slopes::kAll);
+  const Light light = light_->Of(model, Slopes::kAll);
   at->objective += price_ * std::pow(RelativeDistance(light.reflectance.fitted, target_), 2);
   AddPrice(price_, target_, light, std::identity(), at);
 }
@@ -145,7 +168,8 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
   CheckSameSpec(model.spec(), minimised.spec());
   CheckParameters(model);
   CheckLayout(layout, objective.spec());
-  const Reflectance reflectance = ReflectanceOf(objective, model);
+  const SampledLight sampled(objective);
+  const Reflectance reflectance = sampled.Of(model, Slopes::kNone).reflectance;
   if (!reflectance.IsOff()) return std::nullopt;
   const double before = reflectance.Error();
   const Reduction reduction(objective.spec(), layout);
@@ -162,7 +186,7 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
       equations.Evaluate(at.model, Hessian::kGaussNewton, &problem);
       problem = reduction(problem);
       const std::vector<double> metric = DampingMetric(reduction.parts(), problem.squared_lengths);
-      const Light light = LightOf(objective, at.model, Slopes::kAll);
+      const Light light = sampled.Of(at.model, Slopes::kAll);
       AddPrice(
           price * E0, light.reflectance.measured, light,
           [&](const std::vector<double>& slope) { return reduction.Transpose(slope); }, &problem);
@@ -171,7 +195,7 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
     }
     FactorModel stepped = at.model;
     std::ranges::copy(reduction.Expand(step.Solve(lambda).x), stepped.parameters().begin());
-    const double error = ReflectanceOf(objective, stepped).Error();
+    const double error = sampled.Of(stepped, Slopes::kNone).reflectance.Error();
     const double lower = total(minimised.Value(stepped), error);
     if (!(lower < lowest)) {
       lambda *= kRise;

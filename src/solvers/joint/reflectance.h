@@ -1,6 +1,7 @@
 #ifndef TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
 #define TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
 
+#include <memory>
 #include <optional>
 
 #include "trilobe/base/stop_check.h"
@@ -27,20 +28,23 @@ struct Reflectance {
 };
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model);
 
+class SampledLight;
+
 // price |fitted - target|^2 / |target|^2, to be minimised beside E, so that steps that care for
-// something else keep the light. Holds a reference to the objective.
+// something else keep the light.
 class ReflectancePrice {
  public:
   // The target: what `model` reflects.
   ReflectancePrice(const Objective& objective, const FactorModel& model, double price);
+  ~ReflectancePrice();
 
   double operator()(const FactorModel& model) const;
   // Makes E + that of E, to second order around a model, in all its parameters. Gauss-Newton.
   void AddTo(const FactorModel& model, QuadraticModel* at) const;
 
  private:
-  const Objective& objective_;
-  const Rgb target_;
+  const std::unique_ptr<const SampledLight> light_;
+  Rgb target_{};
   const double price_;
 };
 
