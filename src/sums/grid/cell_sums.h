@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sums/grid/cell_kernels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/folded_grid.h"
 
@@ -41,13 +42,15 @@ class CellSums {
   void UpdateBlocks(double E, int num_threads,
                     const std::function<void(const FactorModel&)>& on_block, FactorModel* model);
 
-  int basis() const { return basis_; }          // 1 + lobes
+  int basis() const { return basis_; }  // 1 + lobes
+  // Rows of A are this far apart; what pads them is 0.
+  int padded_basis() const { return padded_; }
   const double* b(int h, int d, int c) const {  // [basis]
     return &numbers_[static_cast<size_t>((h * folded_.grid.theta_d + d) * kChannels + c) *
                      stride()];
   }
-  const double* A(int h, int d, int c) const {  // [basis][basis], symmetric
-    return b(h, d, c) + basis_;
+  const double* A(int h, int d, int c) const {  // [basis][padded basis], symmetric
+    return b(h, d, c) + padded_;
   }
 
  private:
@@ -59,18 +62,21 @@ class CellSums {
     Range h, d, channels;
   };
 
-  // Puts the elements, kMaxElements at most, where E is lowest. moved(h, d, c) tells how they move
-  // a cell's x. E: as for UpdateBlocks; a single element does without.
-  template <int kMaxElements, typename Moved>
-  void Update(const Block& block, const Moved& moved, std::span<double* const> elements,
-              double E = 0);
+  // Puts an element where E is lowest. moved(h, d, c) tells how it moves a cell's x.
+  template <typename Moved>
+  void Update(const Block& block, const Moved& moved, double* element);
 
-  int stride() const { return basis_ + basis_ * basis_; }
+  // The same for several together. element_of: the number of the one that moves each entry of x, or
+  // -1. [basis]. E: as for UpdateBlocks.
+  void UpdateBlock(const MovedCells& cells, std::span<const int> element_of,
+                   std::span<double* const> elements, double E);
+
+  int stride() const { return padded_ + padded_ * padded_; }
   double* mutable_b(int h, int d, int c) { return const_cast<double*>(b(h, d, c)); }
 
   const FoldedGrid& folded_;
   const ModelSpec spec_;
-  const int basis_;
+  const int basis_, padded_;
   std::vector<double> numbers_;
 };
 
