@@ -17,6 +17,9 @@ function(trilobe_compile_options target)
     -fno-semantic-interposition
     -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/= -Wall -Wextra -Wshadow
     -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast)
+  if(NOT TRILOBE_WIDEST_VECTOR EQUAL 512)
+    target_compile_definitions(${target} PRIVATE TRILOBE_WIDEST_VECTOR=${TRILOBE_WIDEST_VECTOR})
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict)
   endif()

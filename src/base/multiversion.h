@@ -7,10 +7,19 @@
 // multiply-add is fused (-ffp-contract=off).
 //
 // Sanitizers instrument the picking, which runs before they are ready: a single copy there. So it
-// is with clang, where the attribute is young.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define TRILOBE_MULTIVERSION __attribute__((target_clones("avx512f", "avx2", "default")))
+// is with clang, where the attribute is young. TRILOBE_WIDEST_VECTOR (CMake) leaves wide copies
+// out: what remains is what an older processor runs.
+#ifndef TRILOBE_WIDEST_VECTOR
+#define TRILOBE_WIDEST_VECTOR 512
+#endif
+#if TRILOBE_WIDEST_VECTOR >= 512
+#define TRILOBE_COPIES "avx512f", "avx2", "default"
+#else
+#define TRILOBE_COPIES "avx2", "default"
+#endif
+#if TRILOBE_WIDEST_VECTOR >= 256 && defined(__x86_64__) && defined(__GNUC__) && \
+    !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define TRILOBE_MULTIVERSION __attribute__((target_clones(TRILOBE_COPIES)))
 #else
 #define TRILOBE_MULTIVERSION
 #endif

@@ -33,9 +33,14 @@ BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid) {
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid) {
   const GridCosines cosines(grid);
   std::vector<bool> above(grid.size());
-  for (int bin = 0; bin < grid.size(); ++bin) {
-    const auto [cos_i, cos_o] = cosines(bin);
-    above[bin] = cos_i > 0 && cos_o > 0;
+  int bin = 0;
+  for (int h = 0; h < grid.theta_h; ++h) {
+    for (int d = 0; d < grid.theta_d; ++d) {
+      for (int p = 0; p < grid.phi_d; ++p, ++bin) {
+        const auto [cos_i, cos_o] = cosines(h, d, p);
+        above[bin] = cos_i > 0 && cos_o > 0;
+      }
+    }
   }
   return above;
 }

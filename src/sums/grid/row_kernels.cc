@@ -42,13 +42,24 @@ double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe,
     const double* __restrict const K = lobe[m].K;
     for (int n = 0; n < size; ++n) w_residual[n] += x * K[n];
   }
+  // In the same eight lanes whatever the width of vectors.
+  const int whole = size - size % kBatch;
+  Lanes8 sums = {};
+  for (int n = 0; n < whole; n += kBatch) {
+    Lanes8 w_n, residual;
+    LoadLanes(w + n, &w_n);
+    LoadLanes(w_residual + n, &residual);
+    w_n *= residual;
+    StoreLanes(w_n, w_residual + n);
+    sums += w_n * residual;
+  }
   double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (int n = 0; n < size; ++n) {
+  for (int n = whole; n < size; ++n) {
     const double residual = w_residual[n];
     w_residual[n] *= w[n];
     sum += w_residual[n] * residual;
   }
+  for (int lane = 0; lane < kBatch; ++lane) sum += sums[lane];
   return sum;
 }
 
