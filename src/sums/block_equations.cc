@@ -25,13 +25,14 @@ void AddProducts(int size, const double* __restrict w, const double* __restrict 
 }
 
 // Of all samples.
-TRILOBE_MULTIVERSION
-double SumOfProducts(int size, const double* w, const double* x, const double* y) {
+template <typename Eight>
+TRILOBE_ALWAYS_INLINE double SumOfProductsBy(int size, const double* w, const double* x,
+                                             const double* y) {
   constexpr int kLanes = 8;
-  Lanes8 lanes = {};
+  Eight lanes = {};
   const int whole = size - size % kLanes;
   for (int n = 0; n < whole; n += kLanes) {
-    Lanes8 w_n, x_n, y_n;
+    Eight w_n, x_n, y_n;
     LoadLanes(w + n, &w_n);
     LoadLanes(x + n, &x_n);
     LoadLanes(y + n, &y_n);
@@ -41,6 +42,9 @@ double SumOfProducts(int size, const double* w, const double* x, const double* y
   for (int lane = 0; lane < kLanes; ++lane) sum += lanes[lane];
   for (int n = whole; n < size; ++n) sum += w[n] * x[n] * y[n];
   return sum;
+}
+double SumOfProducts(int size, const double* w, const double* x, const double* y) {
+  TRILOBE_FOR_EIGHT(SumOfProductsBy, size, w, x, y);
 }
 
 // Samples on their way to the cells that they read.

@@ -38,32 +38,32 @@ struct NodeJob {
 
 constexpr int kLanes = 8;
 
-template <bool kBoth>
+template <bool kBoth, typename Eight>
 TRILOBE_ALWAYS_INLINE void AddLanes(const SampleRange& at, int n, const double* G,
-                                    const double* weight, Lanes8* c) {
-  Lanes8 A, b, w, g;
+                                    const double* weight, Eight* c) {
+  Eight A, b, w, g;
   LoadLanes(at.A + n, &A);
   LoadLanes(at.b + n, &b);
   LoadLanes(weight + n, &w);
   LoadLanes(G + n, &g);
   if constexpr (kBoth) {
-    Lanes8 w_o, G_i;
+    Eight w_o, G_i;
     LoadLanes(at.weight_o + n, &w_o);
     LoadLanes(at.G_i + n, &G_i);
-    const Lanes8 p1 = w * g + w_o * G_i, p2 = w * w_o, A_p2 = A * p2;
+    const Eight p1 = w * g + w_o * G_i, p2 = w * w_o, A_p2 = A * p2;
     c[0] -= 2 * b * p1;
     c[1] += A * p1 * p1 - 2 * b * p2;
     c[2] += 2 * A_p2 * p1;
     c[3] += A_p2 * p2;
   } else {
-    const Lanes8 p1 = w * g;
+    const Eight p1 = w * g;
     c[0] -= 2 * b * p1;
     c[1] += A * p1 * p1;
   }
 }
 
 // c1 .. c4 of the change of E (ElementQuartic).
-template <bool kBoth>
+template <bool kBoth, typename Eight>
 TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
   // Of one direction alone, G of the other one counts.
   const bool is_i = at.weight_i != nullptr;
@@ -72,7 +72,7 @@ TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
   constexpr int kTerms = kBoth ? 4 : 2;
   const int whole = at.size - at.size % kLanes;
   if (whole > 0) {
-    Lanes8 sums[4] = {};
+    Eight sums[4] = {};
     for (int n = 0; n < whole; n += kLanes) AddLanes<kBoth>(at, n, G, weight, sums);
     for (int k = 0; k < kTerms; ++k) {
       for (int lane = 0; lane < kLanes; ++lane) c[k] += sums[k][lane];
@@ -94,15 +94,20 @@ TRILOBE_ALWAYS_INLINE void AddStretch(const SampleRange& at, double* c) {
   }
 }
 
-TRILOBE_MULTIVERSION
-void AddChange(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers, double* c) {
+template <typename Eight>
+TRILOBE_ALWAYS_INLINE void AddChangeBy(const NodeJob& job,
+                                       std::span<const ShadowingUpdates::Readers> readers,
+                                       double* c) {
   for (const ShadowingUpdates::Readers& range : readers) {
     if (range.i >= 0 && range.o >= 0) {
-      AddStretch<true>(job.Of(range), c);
+      AddStretch<true, Eight>(job.Of(range), c);
     } else {
-      AddStretch<false>(job.Of(range), c);
+      AddStretch<false, Eight>(job.Of(range), c);
     }
   }
+}
+void AddChange(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers, double* c) {
+  TRILOBE_FOR_EIGHT(AddChangeBy, job, readers, c);
 }
 
 // A += w a^2, b += w a residual.

@@ -21,18 +21,19 @@ static_assert(kMaxBasis <= kMaxNonnegativeUnknowns);
 
 // b_a = sum w residual phi_a and A_ae = sum w phi_a phi_e over the samples of a row. The rows of A
 // are `stride` apart.
-TRILOBE_MULTIVERSION
-void RowSums(int size, const double* __restrict w, const double* __restrict residual,
-             const double* const* phi, int basis, int stride, double* __restrict b,
-             double* __restrict A) {
+template <typename Eight>
+TRILOBE_ALWAYS_INLINE void RowSumsBy(int size, const double* __restrict w,
+                                     const double* __restrict residual, const double* const* phi,
+                                     int basis, int stride, double* __restrict b,
+                                     double* __restrict A) {
   constexpr int kLanes = 8;
   const int whole = size - size % kLanes;
-  const auto dot = [&](const double* x, const double* y) {
-    Lanes8 sums = {}, w_n, x_n, y_n;
+  const auto dot = [&](const double* x, const double* y) __attribute__((always_inline)) {
+    Eight sums = {}, w_n, x_n, y_n;
     for (int n = 0; n < whole; n += kLanes) {
-      std::memcpy(&w_n, w + n, sizeof(Lanes8));
-      std::memcpy(&x_n, x + n, sizeof(Lanes8));
-      std::memcpy(&y_n, y + n, sizeof(Lanes8));
+      LoadLanes(w + n, &w_n);
+      LoadLanes(x + n, &x_n);
+      LoadLanes(y + n, &y_n);
       sums += w_n * x_n * y_n;
     }
     double sum = 0;
@@ -44,6 +45,10 @@ void RowSums(int size, const double* __restrict w, const double* __restrict resi
     b[a] = dot(phi[a], residual);
     for (int e = a; e < basis; ++e) A[a * stride + e] = A[e * stride + a] = dot(phi[a], phi[e]);
   }
+}
+void RowSums(int size, const double* w, const double* residual, const double* const* phi, int basis,
+             int stride, double* b, double* A) {
+  TRILOBE_FOR_EIGHT(RowSumsBy, size, w, residual, phi, basis, stride, b, A);
 }
 
 // residual -= x K

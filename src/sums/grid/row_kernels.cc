@@ -32,10 +32,13 @@ void ReadTable(int size, const CatmullRom::Piece* G, const int16_t* interval_i,
   }
 }
 
-TRILOBE_MULTIVERSION
-double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe,
-                      const double* __restrict w, const double* __restrict rho,
-                      double* __restrict w_residual) {
+namespace {
+
+template <typename Eight>
+TRILOBE_ALWAYS_INLINE double WeighResidualsBy(int size, double d, int lobes, const LobesOfRow& lobe,
+                                              const double* __restrict w,
+                                              const double* __restrict rho,
+                                              double* __restrict w_residual) {
   for (int n = 0; n < size; ++n) w_residual[n] = d - rho[n];
   for (int m = 0; m < lobes; ++m) {
     const double x = lobe[m].x;
@@ -44,9 +47,9 @@ double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe,
   }
   // In the same eight lanes whatever the width of vectors.
   const int whole = size - size % kBatch;
-  Lanes8 sums = {};
+  Eight sums = {};
   for (int n = 0; n < whole; n += kBatch) {
-    Lanes8 w_n, residual;
+    Eight w_n, residual;
     LoadLanes(w + n, &w_n);
     LoadLanes(w_residual + n, &residual);
     w_n *= residual;
@@ -61,6 +64,13 @@ double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe,
   }
   for (int lane = 0; lane < kBatch; ++lane) sum += sums[lane];
   return sum;
+}
+
+}  // namespace
+
+double WeighResiduals(int size, double d, int lobes, const LobesOfRow& lobe, const double* w,
+                      const double* rho, double* w_residual) {
+  TRILOBE_FOR_EIGHT(WeighResidualsBy, size, d, lobes, lobe, w, rho, w_residual);
 }
 
 TRILOBE_MULTIVERSION
@@ -99,29 +109,29 @@ void AddRowSums(int size, int basis, const double* w, const double* w_residual, 
   }
 }
 
-TRILOBE_MULTIVERSION
-void AddChannel(int size, double X, const double* __restrict w, const double* __restrict w_residual,
-                int lobes, const LobesOfRow& lobe, bool curvature, int d_line, int gradient_line,
-                int line_size, double* __restrict q) {
+namespace {
+
+template <typename Eight>
+TRILOBE_ALWAYS_INLINE void AddChannelBy(int size, double X, const double* __restrict w,
+                                        const double* __restrict w_residual, int lobes,
+                                        const LobesOfRow& lobe, bool curvature, int d_line,
+                                        int gradient_line, int line_size, double* __restrict q) {
   for (int n = 0; n < size; n += kBatch) {
-    const auto load = [n](const double* from, Lanes8* value) {
-      std::memcpy(value, from + n, sizeof(*value));
-    };
-    const auto add = [&](int line, const Lanes8& value) {
-      double* const target = q + static_cast<size_t>(line) * line_size;
-      Lanes8 sum;
-      load(target, &sum);
+    const auto add = [&](int line, const Eight& value) __attribute__((always_inline)) {
+      double* const target = q + static_cast<size_t>(line) * line_size + n;
+      Eight sum;
+      LoadLanes(target, &sum);
       sum += value;
-      std::memcpy(target + n, &sum, sizeof(sum));
+      StoreLanes(sum, target);
     };
-    Lanes8 X_w, residual, u;
-    load(w, &X_w);
-    load(w_residual, &residual);
+    Eight X_w, residual, u;
+    LoadLanes(w + n, &X_w);
+    LoadLanes(w_residual + n, &residual);
     X_w *= X;
     add(d_line, X_w);
     add(gradient_line, X * residual);
     for (int m = 0; m < lobes; ++m) {
-      load(lobe[m].K, &u);
+      LoadLanes(lobe[m].K + n, &u);
       u *= X_w;
       if (curvature && lobe[m].served) u += residual;
       add(lobe[m].s_line, lobe[m].DF * u);
@@ -129,6 +139,15 @@ void AddChannel(int size, double X, const double* __restrict w, const double* __
       add(lobe[m].F_line, lobe[m].sD * u);
     }
   }
+}
+
+}  // namespace
+
+void AddChannel(int size, double X, const double* w, const double* w_residual, int lobes,
+                const LobesOfRow& lobe, bool curvature, int d_line, int gradient_line,
+                int line_size, double* q) {
+  TRILOBE_FOR_EIGHT(AddChannelBy, size, X, w, w_residual, lobes, lobe, curvature, d_line,
+                    gradient_line, line_size, q);
 }
 
 TRILOBE_MULTIVERSION
@@ -160,41 +179,63 @@ void Transpose(int lines, int size, int line_size, const double* __restrict from
 
 namespace {
 
-// sums [node][lines] += z q for the four nodes of both sides of each sample: one vector of lines.
+// sums [node][lines] += z q for the four nodes of one side of each sample: one vector of lines.
+// Along a row theta_i and theta_o move slowly. So the sums of four nodes stay in registers until a
+// sample reads others, where each would wait for the one before to come back from memory.
 template <typename Lanes>
-[[gnu::always_inline]] inline void AddLanes(const RowOfNodes& row, int q_lines, const double* q,
-                                            int lines, double* sums) {
-  const auto add = [lines](const double* B, const Lanes& H_q, double* at) {
-    for (int a = 0; a < 4; ++a, at += lines) {
-      Lanes sum;
-      std::memcpy(&sum, at, sizeof(Lanes));
-      sum += B[a] * H_q;
-      std::memcpy(at, &sum, sizeof(Lanes));
-    }
+TRILOBE_ALWAYS_INLINE void AddSide(int size, const int16_t* interval, const double* B,
+                                   const double* H, int q_lines, const double* q, int lines,
+                                   double* sums) {
+  Lanes sum[4];
+  double* nodes = sums + static_cast<size_t>(interval[0]) * lines;
+  const auto load = [&]() __attribute__((always_inline)) {
+    for (int a = 0; a < 4; ++a) LoadLanes(nodes + a * lines, &sum[a]);
   };
-  const RowOfNodes nodes = row;  // nothing below can change it
-  for (int n = 0; n < nodes.size; ++n, q += q_lines) {
-    Lanes q_n;
-    std::memcpy(&q_n, q, sizeof(Lanes));
-    add(nodes.B_i + 4 * n, nodes.H_i[n] * q_n,
-        sums + static_cast<size_t>(nodes.interval_i[n]) * lines);
-    add(nodes.B_o + 4 * n, nodes.H_o[n] * q_n,
-        sums + static_cast<size_t>(nodes.interval_o[n]) * lines);
+  const auto store = [&]() __attribute__((always_inline)) {
+    for (int a = 0; a < 4; ++a) StoreLanes(sum[a], nodes + a * lines);
+  };
+  load();
+  for (int n = 0; n < size; ++n, q += q_lines, B += 4) {
+    if (n > 0 && interval[n] != interval[n - 1]) {
+      store();
+      nodes = sums + static_cast<size_t>(interval[n]) * lines;
+      load();
+    }
+    Lanes H_q;
+    LoadLanes(q, &H_q);
+    H_q *= H[n];
+    for (int a = 0; a < 4; ++a) sum[a] += B[a] * H_q;
+  }
+  store();
+}
+
+// The same of both sides.
+template <typename Lanes>
+TRILOBE_ALWAYS_INLINE void AddSides(const RowOfNodes& row, int q_lines, const double* q, int lines,
+                                    double* sums) {
+  AddSide<Lanes>(row.size, row.interval_i, row.B_i, row.H_i, q_lines, q, lines, sums);
+  AddSide<Lanes>(row.size, row.interval_o, row.B_o, row.H_o, q_lines, q, lines, sums);
+}
+
+template <typename Eight>
+TRILOBE_ALWAYS_INLINE void AddCrossSumsBy(const RowOfNodes& row, int theta_h_lines,
+                                          int theta_d_lines, const double* q, double* theta_h_sums,
+                                          double* theta_d_sums) {
+  const int lines = theta_h_lines + theta_d_lines;
+  for (int line = 0; line < theta_h_lines; line += 8) {
+    AddSides<Eight>(row, lines, q + line, theta_h_lines, theta_h_sums + line);
+  }
+  for (int line = 0; line < theta_d_lines; line += 4) {
+    AddSides<Lanes4>(row, lines, q + theta_h_lines + line, theta_d_lines, theta_d_sums + line);
   }
 }
 
 }  // namespace
 
-TRILOBE_MULTIVERSION
 void AddCrossSums(const RowOfNodes& row, int theta_h_lines, int theta_d_lines, const double* q,
                   double* theta_h_sums, double* theta_d_sums) {
-  const int lines = theta_h_lines + theta_d_lines;
-  for (int line = 0; line < theta_h_lines; line += 8) {
-    AddLanes<Lanes8>(row, lines, q + line, theta_h_lines, theta_h_sums + line);
-  }
-  for (int line = 0; line < theta_d_lines; line += 4) {
-    AddLanes<Lanes4>(row, lines, q + theta_h_lines + line, theta_d_lines, theta_d_sums + line);
-  }
+  TRILOBE_FOR_EIGHT(AddCrossSumsBy, row, theta_h_lines, theta_d_lines, q, theta_h_sums,
+                    theta_d_sums);
 }
 
 }  // namespace trilobe
