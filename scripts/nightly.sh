@@ -47,6 +47,9 @@ for compiler in release clang; do
   done
 done
 
+step "Fitting by the kernels of processors without AVX-512, to the same bits"
+quietly copies scripts/check_copies.sh
+
 step "Doing what a newcomer does, in an inconvenient place"
 scripts/check_anywhere.sh
 
