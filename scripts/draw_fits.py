@@ -25,7 +25,7 @@ def main() -> None:
     sources = [str(pathlib.Path(source).absolute()) if pathlib.Path(source).exists() else source
                for source in options.source]
     picture = fits.in_a_folder(DRAWN[options.name], *sources)
-    colors = {"corruptions": 64, "forms": 96, "stored": 96, "method": 256}.get(options.name, 0)
+    colors = {"corruptions": 192, "forms": 96, "stored": 96, "method": 256}.get(options.name, 0)
     name = "_".join((options.name, *options.source)) if options.name == "corruptions" else options.name
     save(picture, options.out / f"{name}.png", colors)
 

@@ -76,7 +76,7 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   SceneFitSettings settings = Settings();
   settings.lobes = 2;
   settings.appearance = {.lights = 6, .size = 48};
-  SceneMaterial material = Material("rubber@30x30x60");
+  SceneMaterial material = Material("plastic@30x30x60");
   material.directions = AllDirections();
   material.channels = SceneChannels::kLuminance;
   const auto fitted = [&](SceneBudget::Unit unit, double amount) {
