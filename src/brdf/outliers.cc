@@ -48,7 +48,10 @@ bool StandsOut(double own, std::vector<double>* values) {
 class Surroundings {
  public:
   Surroundings(const BrdfSamples& samples, int num_threads)
-      : grid_(samples.grid), begin_(grid_.size() + 1, 0), bins_(samples.size()) {
+      : grid_(samples.grid),
+        on_grid_(samples.on_grid()),
+        begin_(grid_.size() + 1, 0),
+        bins_(samples.size()) {
     for (int j = 0; j < samples.size(); ++j) {
       bins_[j] = samples.on_grid() ? samples.bins[j] : grid_.Bin(samples.angles[j]);
       ++begin_[bins_[j] + 1];
@@ -87,7 +90,9 @@ class Surroundings {
       if (!all.Tells()) continue;
       const bool far_off = all.FarOff() && (!same_h.Tells() || same_h.FarOff()) &&
                            (!same_d.Tells() || same_d.FarOff());
-      if (!far_off && !StandsOut(h, d, p, reach, own)) return std::nullopt;
+      // Samples that lie farther apart, or anywhere, differ by what is between them, too.
+      const bool close = on_grid_ && reach == 1;
+      if (!far_off && !(close && StandsOut(h, d, p, reach, own))) return std::nullopt;
       return Outlier{.sample = sample, .median = MedianAround(h, d, p, reach), .far = far_off};
     }
     return std::nullopt;
@@ -161,6 +166,7 @@ class Surroundings {
   }
 
   const MerlGrid grid_;
+  const bool on_grid_;
   std::vector<int> begin_;      // of the samples of a bin, among the values
   std::vector<int> bins_;       // of the samples
   std::vector<double> values_;  // means over the channels, by bins
