@@ -141,7 +141,7 @@ void CellSums::Update(const Block& block, const Moved& moved, double* element) {
 }
 
 void CellSums::UpdateBlock(const MovedCells& cells, std::span<const int> element_of,
-                           std::span<double* const> elements, double E) {
+                           std::span<double* const> elements, double E) const {
   std::array<double, kMaxCellBasis> along{}, steps{};
   std::array<double, kMaxCellBasis * kMaxCellBasis> products{};
   AddAlong(cells, padded_, along.data(), products.data());

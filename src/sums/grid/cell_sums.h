@@ -69,7 +69,7 @@ class CellSums {
   // The same for several together. element_of: the number of the one that moves each entry of x, or
   // -1. [basis]. E: as for UpdateBlocks.
   void UpdateBlock(const MovedCells& cells, std::span<const int> element_of,
-                   std::span<double* const> elements, double E);
+                   std::span<double* const> elements, double E) const;
 
   int stride() const { return padded_ + padded_ * padded_; }
   double* mutable_b(int h, int d, int c) { return const_cast<double*>(b(h, d, c)); }
