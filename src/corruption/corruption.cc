@@ -21,7 +21,8 @@ Corruption ParseOne(const std::string& text) {
   }
   const CorruptionKind& kind =
       FindNamed("kind of corruption", text.substr(0, colon), CorruptionKinds());
-  const std::optional<double> strength = ToNumber(std::string_view(text).substr(colon + 1));
+  const std::string_view number = std::string_view{text}.substr(colon + 1);
+  const std::optional<double> strength = ToNumber(number);
   if (!strength || !(*strength >= kind.min && *strength <= kind.max)) {
     std::ostringstream message;
     message << "'" << text << "': the strength of " << kind.name << " is a number from " << kind.min

@@ -72,7 +72,7 @@ TEST(EvenlySpread, IsOfAllPhiDAndOfAboutSoMany) {
   EXPECT_EQ(EvenlySpread(samples, samples.size()).size(), samples.size());
   const int count = samples.size() / 6;
   const BrdfSamples spread = EvenlySpread(samples, count);
-  EXPECT_NEAR(spread.size(), count, count / 2);
+  EXPECT_NEAR(spread.size(), count, 0.5 * count);
   std::vector<int> seen(kLong.phi_d, 0);
   for (const int bin : spread.bins) ++seen[bin % kLong.phi_d];
   EXPECT_GT(std::ranges::min(seen), 0);
