@@ -20,11 +20,11 @@ struct Outlier {
 // where all hold fewer, it is none. A highlight falls by less from one theta_h to the next, and a
 // median has half of the samples on either side. The same must be true of the median of those of
 // its own theta_h, and of its own theta_d, where they are 9: all samples of a theta_h or theta_d
-// may be darker than the next ones, as an entry of D or F says. Where the samples around agree
-// better than that, less is enough (Hampel 1974): a sample that is more than twice as bright or
-// dark as each of these medians, by more than 7 times the median difference of the samples' own
-// logarithms. Scattered samples lie in the bins of their grid, as those of a table do. Ascending.
-// The same for any number of threads.
+// may be darker than the next ones, as an entry of D or F says. Where the samples in the nearest
+// bins of a table agree better than that, less is enough (Hampel 1974): a sample that is more than
+// twice as bright or dark as each of these medians, by more than 7 times the median difference of
+// the samples' own logarithms. Scattered samples lie in the bins of their grid, as those of a table
+// do. Ascending. The same for any number of threads.
 std::vector<Outlier> FindOutliers(const BrdfSamples& samples, int num_threads);
 
 // By how much they are off the medians, as a share of the reflected light that the others and these
