@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "brdf/surroundings.h"
 #include "geometry/grid_cosines.h"
 #include "math/quantile.h"
 #include "trilobe/system/parallel.h"
@@ -53,38 +54,23 @@ double MedianOf(const Four* begin, const Four* end, const Number& number) {
   return Quantile(&numbers, 0.5);
 }
 
-class Surroundings {
- public:
-  Surroundings(const BrdfTable& table, const std::vector<bool>& valid)
-      : table_(table), valid_(valid) {}
-
-  // The median of a channel about a valid bin; `values` is room for it.
-  double Median(int channel, int h, int d, int p, std::vector<double>* values) const {
-    constexpr size_t kFewest = 9;
-    constexpr int kWidestReach = 8;
-    const MerlGrid& grid = table_.grid;
-    for (int reach = 1; reach <= kWidestReach; reach *= 2) {
-      values->clear();
-      const int bins = std::min(4 * reach + 1, grid.phi_d);
-      for (int i = std::max(h - 1, 0); i <= std::min(h + 1, grid.theta_h - 1); ++i) {
-        for (int j = std::max(d - reach, 0); j <= std::min(d + reach, grid.theta_d - 1); ++j) {
-          for (int k = 0; k < bins; ++k) {
-            // Beyond 180 degrees phi_d begins again.
-            const int q = (p - bins / 2 + k + grid.phi_d) % grid.phi_d;
-            const int bin = grid.Index(i, j, q);
-            if (valid_[bin]) values->push_back(table_.stored[channel][bin]);
-          }
+// The median of a channel about a valid bin; `values` is room for it.
+double MedianAround(const BrdfTable& table, const std::vector<bool>& valid, int channel, int h,
+                    int d, int p, std::vector<double>* values) {
+  const MerlGrid& grid = table.grid;
+  for (int reach = 1; reach <= kWidestReach; reach *= 2) {
+    values->clear();
+    ForEachRowAround(grid, h, d, reach, [&](int i, int j) {
+      ForEachRangeAround(grid, p, reach, [&](int first, int end) {
+        for (int bin = grid.Index(i, j, first); bin < grid.Index(i, j, end); ++bin) {
+          if (valid[bin]) values->push_back(table.stored[channel][bin]);
         }
-      }
-      if (values->size() >= kFewest) break;
-    }
-    return Quantile(values, 0.5);
+      });
+    });
+    if (values->size() >= kFewestAround) break;
   }
-
- private:
-  const BrdfTable& table_;
-  const std::vector<bool>& valid_;
-};
+  return Quantile(values, 0.5);
+}
 
 DarkNoise DarkNoiseOf(const BrdfTable& table, const std::vector<bool>& valid, int channel) {
   std::vector<Four> fours = FoursOf(table, valid, channel);
@@ -136,7 +122,6 @@ int SmoothDarkReadings(int num_threads, BrdfTable* table) {
   const std::vector<bool> valid = ValidBins(*table);
   const GridCosines cosines(grid);
   const BrdfTable measured = *table;
-  const Surroundings surroundings(measured, valid);
   std::vector<char> changed(grid.size(), 0);
   for (int c = 0; c < kChannels; ++c) {
     const DarkNoise noise = DarkNoiseOf(measured, valid, c);
@@ -150,7 +135,7 @@ int SmoothDarkReadings(int num_threads, BrdfTable* table) {
           const int bin = grid.Index(h, d, p);
           const double cos_i = cosines(bin).i;
           if (!valid[bin] || measured.stored[c][bin] * cos_i > peak) continue;
-          const double median = surroundings.Median(c, h, d, p, &values);
+          const double median = MedianAround(measured, valid, c, h, d, p, &values);
           if (!(median * cos_i < least)) continue;
           table->stored[c][bin] = median;
           changed[bin] = 1;

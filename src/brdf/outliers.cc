@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "brdf/surroundings.h"
 #include "math/quantile.h"
 #include "trilobe/geometry/channels.h"
 #include "trilobe/geometry/merl_grid.h"
@@ -14,11 +15,9 @@
 namespace trilobe {
 namespace {
 
-constexpr double kFarOff = 8;     // times brighter or darker
-constexpr double kOff = 2;        // where the others agree better than that
-constexpr double kScatter = 7;    // times the median difference of their logarithms
-constexpr int kFewestAround = 9;  // bins that tell what surrounds one
-constexpr int kWidestReach = 8;   // bins of theta_d to each side, where they are few
+constexpr double kFarOff = 8;   // times brighter or darker
+constexpr double kOff = 2;      // where the others agree better than that
+constexpr double kScatter = 7;  // times the median difference of their logarithms
 
 struct Count {
   int bins = 0, brighter = 0, darker = 0;
@@ -80,7 +79,7 @@ class Surroundings {
     if (IsLikeAllAround(h, d, p, own)) return std::nullopt;
     for (int reach = 1; reach <= kWidestReach; reach *= 2) {
       Count all, same_h, same_d;
-      ForEachRow(h, d, reach, [&](int i, int j) {
+      ForEachRowAround(grid_, h, d, reach, [&](int i, int j) {
         ForEachInLine(grid_.theta_d * i + j, p, reach, [&](double x) {
           all.Add(x, own);
           if (i == h) same_h.Add(x, own);
@@ -108,7 +107,7 @@ class Surroundings {
   // Among all around it, those of its own theta_h, and those of its own theta_d.
   bool StandsOut(int h, int d, int p, int reach, double own) const {
     std::vector<double> all, same_h, same_d;
-    ForEachRow(h, d, reach, [&](int i, int j) {
+    ForEachRowAround(grid_, h, d, reach, [&](int i, int j) {
       ForEachInLine(grid_.theta_d * i + j, p, reach, [&](double x) {
         all.push_back(x);
         if (i == h) same_h.push_back(x);
@@ -123,7 +122,7 @@ class Surroundings {
 
   double MedianAround(int h, int d, int p, int reach) const {
     std::vector<double> values;
-    ForEachRow(h, d, reach, [&](int i, int j) {
+    ForEachRowAround(grid_, h, d, reach, [&](int i, int j) {
       ForEachInLine(grid_.theta_d * i + j, p, reach, [&](double x) { values.push_back(x); });
     });
     return Quantile(&values, 0.5);
@@ -132,7 +131,7 @@ class Surroundings {
   // What is true of nearly all samples, and soon known.
   bool IsLikeAllAround(int h, int d, int p, double own) const {
     Line around;
-    ForEachRow(h, d, 1, [&](int i, int j) {
+    ForEachRowAround(grid_, h, d, 1, [&](int i, int j) {
       const Line& line = lines_[grid_.Index(i, j, p)];
       around.least = std::min(around.least, line.least);
       around.most = std::max(around.most, line.most);
@@ -142,27 +141,13 @@ class Surroundings {
            around.least >= own / kOff;
   }
 
-  template <typename Work>
-  void ForEachRow(int h, int d, int reach, const Work& work) const {
-    for (int i = std::max(h - 1, 0); i <= std::min(h + 1, grid_.theta_h - 1); ++i) {
-      for (int j = std::max(d - reach, 0); j <= std::min(d + reach, grid_.theta_d - 1); ++j) {
-        work(i, j);
-      }
-    }
-  }
-
-  // The samples of a row about phi_d bin `p`; 180 degrees further on it begins again, each bin
-  // being there once.
+  // The samples of a row about phi_d bin `p`.
   template <typename Work>
   void ForEachInLine(int row, int p, int reach, const Work& work) const {
-    const int bins = std::min(4 * reach + 1, grid_.phi_d), phis = grid_.phi_d;
-    const int first = p - bins / 2, end = first + bins;
-    const auto in_row = [&](int from, int last) {
-      for (int k = begin_[row * phis + from]; k < begin_[row * phis + last]; ++k) work(values_[k]);
-    };
-    if (first < 0) in_row(first + phis, phis);
-    in_row(std::max(first, 0), std::min(end, phis));
-    if (end > phis) in_row(0, end - phis);
+    ForEachRangeAround(grid_, p, reach, [&](int first, int end) {
+      const int* const begin = &begin_[row * grid_.phi_d];
+      for (int k = begin[first]; k < begin[end]; ++k) work(values_[k]);
+    });
   }
 
   const MerlGrid grid_;
