@@ -77,7 +77,7 @@ export function halfCells() {
   const theta = ring => (Math.PI / 2) * (ring / rings) ** 2.5;
   for (let ring = 0; ring < rings; ++ring) {
     const inner = theta(ring), outer = theta(ring + 1), middle = theta(ring + 0.5);
-    const count = Math.max(6, Math.round((2 * Math.PI * Math.sin(middle)) / (outer - inner) / 1.5));
+    const count = 4 * Math.max(2, Math.round(((Math.PI / 2) * Math.sin(middle)) / (outer - inner) / 1.5));
     const angle = (2 * Math.PI * (Math.cos(inner) - Math.cos(outer))) / count;
     for (let k = 0; k < count; ++k) {
       const phi = (2 * Math.PI * k) / count + ring * Math.PI * (3 - Math.sqrt(5));

@@ -281,23 +281,23 @@ ImagePairs RenderPicture(const BrdfTable& measured, const AngularBrdf& fitted,
                          const AppearanceOptions& options) {
   const TabulatedBrdf table(measured);
   const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
-  return PairsOf(RenderUnder(EnvironmentOf(options), ViewSphere(options.size), brdfs,
-                             MeasuredDirections(measured), options.num_threads));
+  return PairsOf(RenderSphereUnder(EnvironmentOf(options), options.size, brdfs,
+                                   MeasuredDirections(measured), options.num_threads));
 }
 
 RenderedImage RenderPicture(const Material& material, const AppearanceOptions& options) {
   const Environment& environment = EnvironmentOf(options);
-  const View view = ViewSphere(options.size);
   if (material.angular) {
     const AngularBrdf brdf = Clamped(material.angular);
     return std::move(
-        RenderUnder(environment, view, {&brdf, 1}, Everything, options.num_threads).whole[0]);
+        RenderSphereUnder(environment, options.size, {&brdf, 1}, Everything, options.num_threads)
+            .whole[0]);
   }
   CheckNotEmpty(material.spherical, "the material");
   const auto everything = [](const SphericalAngles&) { return true; };
-  return std::move(
-      RenderUnder(environment, view, {&material.spherical, 1}, everything, options.num_threads)
-          .whole[0]);
+  return std::move(RenderUnder(environment, ViewSphere(options.size), {&material.spherical, 1},
+                               everything, options.num_threads)
+                       .whole[0]);
 }
 
 }  // namespace trilobe

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/lanes.h"
+#include "appearance/color.h"
 
 namespace trilobe {
 namespace {
@@ -40,8 +40,8 @@ std::vector<HalfCell> MakeCells() {
   std::vector<HalfCell> cells;
   for (int ring = 0; ring < kRings; ++ring) {
     const double inner = theta(ring), outer = theta(ring + 1), middle = theta(ring + 0.5);
-    const int around = std::max(
-        6, static_cast<int>(std::lround(2 * kPi * std::sin(middle) / (outer - inner) / kAspect)));
+    const double quarter = kPi / 2 * std::sin(middle) / (outer - inner) / kAspect;
+    const int around = 4 * std::max(2, static_cast<int>(std::lround(quarter)));
     const double solid_angle = 2 * kPi * (std::cos(inner) - std::cos(outer)) / around;
     for (int k = 0; k < around; ++k) {
       // Turned by the golden angle from ring to ring, so that no spokes are seen.
@@ -54,7 +54,8 @@ std::vector<HalfCell> MakeCells() {
 
 }  // namespace
 
-MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
+MirroredEnvironment::MirroredEnvironment(const Environment& environment)
+    : finest_pixels_(kBlur * kSize / 2) {
   CheckEnvironment(environment);
   Level finest{kSize, {}};
   for (int row = 0; row < kSize; ++row) {
@@ -65,7 +66,8 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
         const double x = column + (k % kSamples + 0.5) / kSamples;
         const double y = row + (line + 0.5) / kSamples;
         const Rgb& seen = Reflected(environment, 2 * x / kSize - 1, 1 - 2 * y / kSize);
-        for (int c = 0; c < kChannels; ++c) sum.lane[c] += seen[c] / (kSamples * kSamples);
+        const double lanes[] = {seen[0], seen[1], seen[2], Luminance(seen)};
+        for (int c = 0; c < 4; ++c) sum.lane[c] += lanes[c] / (kSamples * kSamples);
       }
       finest.radiance.push_back(sum);
     }
@@ -79,7 +81,7 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
         Pixel mean;
         for (int k = 0; k < 4; ++k) {
           const Pixel& part = fine.radiance[(2 * row + k / 2) * fine.size + 2 * column + k % 2];
-          for (int c = 0; c < kChannels; ++c) mean.lane[c] += part.lane[c] / 4;
+          for (int c = 0; c < 4; ++c) mean.lane[c] += part.lane[c] / 4;
         }
         coarse.radiance.push_back(mean);
       }
@@ -88,31 +90,10 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment) {
   }
 }
 
-// Linear between the middles of pixels; x and y from -1 to 1.
-inline void MirroredEnvironment::Level::AddAt(double x, double y, double share, Pixel* sum) const {
-  const double column = std::clamp((x + 1) / 2 * size - 0.5, 0.0, size - 1.0);
-  const double row = std::clamp((1 - y) / 2 * size - 0.5, 0.0, size - 1.0);
-  const int c0 = std::min(static_cast<int>(column), size - 2);
-  const int r0 = std::min(static_cast<int>(row), size - 2);
-  const double s = column - c0, t = row - r0;
-  const Pixel* const above = &radiance[r0 * size + c0];
-  const Pixel* const below = above + size;
-  const Four<double> mean = (1 - t) * ((1 - s) * Load(above[0].lane) + s * Load(above[1].lane)) +
-                            t * ((1 - s) * Load(below[0].lane) + s * Load(below[1].lane));
-  Store<double>(Load(sum->lane) + share * mean, sum->lane);
-}
-
 Rgb MirroredEnvironment::Mean(const Direction& half, double solid_angle) const {
-  const double area = std::max(half[2] * solid_angle, 1e-12);
-  // log2 of the side of a square of kBlur^2 times that area, in pixels of the finest map.
-  const double level = std::clamp(std::log2(kBlur * kSize / 2) + std::log2(area) / 2, 0.0,
-                                  static_cast<double>(levels_.size() - 1));
-  const int finer = std::min(static_cast<int>(level), static_cast<int>(levels_.size()) - 2);
-  const double t = level - finer;
-  Pixel mean;
-  levels_[finer].AddAt(half[0], half[1], 1 - t, &mean);
-  levels_[finer + 1].AddAt(half[0], half[1], t, &mean);
-  return {mean.lane[0], mean.lane[1], mean.lane[2]};
+  Four<double> mean;
+  SetMeans<1>(half, solid_angle, &mean);
+  return {mean[0], mean[1], mean[2]};
 }
 
 const std::vector<HalfCell>& HalfCells() {

@@ -21,11 +21,12 @@ RenderedImages RenderUnder(const Environment& environment, const View& view,
                            const std::function<bool(const SphericalAngles&)>& counts,
                            int num_threads);
 
-// The same of isotropic materials, faster.
-RenderedImages RenderUnder(const Environment& environment, const View& view,
-                           std::span<const AngularBrdf> materials,
-                           const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts,
-                           int num_threads);
+// The same of isotropic materials on ViewSphere(size), much faster: turned by a quarter about the
+// eye's direction a sphere and its half vectors are what they were, and so are the angles between
+// them, so that a fourth of the pixels says what the materials are in all of them.
+RenderedImages RenderSphereUnder(
+    const Environment& environment, int size, std::span<const AngularBrdf> materials,
+    const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads);
 
 }  // namespace trilobe
 

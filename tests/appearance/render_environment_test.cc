@@ -19,7 +19,7 @@ Environment Uniform() { return {"uniform", 8, 4, std::vector<Rgb>(32, Rgb{1, 1, 
 
 RenderedImage Under(const Environment& environment, const AngularBrdf& brdf, int size = 32,
                     int num_threads = 1) {
-  return RenderUnder(environment, ViewSphere(size), {&brdf, 1}, Everything, num_threads).whole[0];
+  return RenderSphereUnder(environment, size, {&brdf, 1}, Everything, num_threads).whole[0];
 }
 
 Rgb White(const HalfDiffAngles& /*angles*/, const Cosines& /*cosines*/) {
@@ -57,13 +57,13 @@ TEST(HalfCells, CoverTheHemisphere) {
   EXPECT_NEAR(sum, 2 * kPi, 1e-9);
 }
 
-TEST(RenderUnder, IsWhiteWhereAllIsWhite) {
+TEST(RenderSphereUnder, IsWhiteWhereAllIsWhite) {
   const RenderedImage image = Under(Uniform(), White);
   ForMiddlePixels(image, 1, [](double, double, const Rgb& seen) { EXPECT_NEAR(seen[0], 1, 0.05); });
 }
 
 // No dots, whatever the gloss: a mirror under an even sky is even.
-TEST(RenderUnder, IsSmoothForAnyGloss) {
+TEST(RenderSphereUnder, IsSmoothForAnyGloss) {
   for (const double degrees : {0.3, 1.0, 5.0}) {
     const RenderedImage image = Under(Uniform(), Gloss(degrees));
     ForMiddlePixels(image, 0.9, [&](double, double, const Rgb& seen) {
@@ -72,7 +72,7 @@ TEST(RenderUnder, IsSmoothForAnyGloss) {
   }
 }
 
-TEST(RenderUnder, ShowsTheEnvironmentInAMirror) {
+TEST(RenderSphereUnder, ShowsTheEnvironmentInAMirror) {
   const RenderedImage image = Under(StudioEnvironment(), Gloss(0.3), 40);
   const MirroredEnvironment mirrored(StudioEnvironment());
   int far = 0, pixels = 0;
@@ -86,7 +86,7 @@ TEST(RenderUnder, ShowsTheEnvironmentInAMirror) {
 
 // What points show of a rough material, this does, too, but for what a wide cell carries over the
 // horizon, into the dark half below.
-TEST(RenderUnder, AgreesWithManyPoints) {
+TEST(RenderSphereUnder, AgreesWithManyPoints) {
   const AngularBrdf brdf = [](const HalfDiffAngles& angles, const Cosines&) {
     const double c = std::cos(angles.theta_h);
     return Rgb{0.1 + c * c * c * c, 0.2, 0.3};
@@ -103,20 +103,45 @@ TEST(RenderUnder, AgreesWithManyPoints) {
   EXPECT_LT(error, 0.06 * sum);
 }
 
-TEST(RenderUnder, IsTheSameForAnyKindOfAngles) {
-  const AngularBrdf brdf = Gloss(5);
-  const Material material = Isotropic(brdf);
-  const RenderedImage image = Under(StudioEnvironment(), brdf, 24);
-  const RenderedImage spherical = RenderUnder(
-                                      StudioEnvironment(), ViewSphere(24), {&material.spherical, 1},
-                                      [](const SphericalAngles&) { return true; }, 2)
-                                      .whole[0];
-  for (size_t k = 0; k < image.radiance.size(); ++k) {
-    EXPECT_NEAR(spherical.radiance[k][2], image.radiance[k][2], 1e-5 * image.radiance[k][2]);
+// What a fourth of the pixels says of materials is what each of them says; whether or not there is
+// one in the middle, which turns take to itself, and for what is not the same on both sides of the
+// plane of light and eye.
+TEST(RenderSphereUnder, AgreesWithEachPixelByItself) {
+  const AngularBrdf brdf = [](const HalfDiffAngles& angles, const Cosines& cosines) {
+    const Rgb gloss = Gloss(5)(angles, cosines);
+    return Rgb{gloss[0], 0.1 + angles.phi_d, 0.2 + angles.theta_d};
+  };
+  const auto counts = [](const HalfDiffAngles& angles, const Cosines&) {
+    return angles.theta_d < 0.7 && angles.theta_h < 0.9;
+  };
+  for (const int size : {24, 25}) {
+    const AngularBrdf brdfs[] = {White, brdf};
+    const RenderedImages images = RenderSphereUnder(StudioEnvironment(), size, brdfs, counts, 2);
+    const SphericalBrdf sphericals[] = {Isotropic(White).spherical, Isotropic(brdf).spherical};
+    const RenderedImages each = RenderUnder(
+        StudioEnvironment(), ViewSphere(size), sphericals,
+        [&](const SphericalAngles& at) { return counts(ToHalfDiff(ToDirections(at)), {}); }, 2);
+    for (const int m : {0, 1}) {
+      int partly = 0;
+      for (size_t k = 0; k < each.whole[m].radiance.size(); ++k) {
+        for (int c = 0; c < kChannels; ++c) {
+          const double whole = each.whole[m].radiance[k][c];
+          EXPECT_NEAR(images.whole[m].radiance[k][c], whole, 1e-5 * whole) << k;
+          EXPECT_NEAR(images.counted[m].radiance[k][c], each.counted[m].radiance[k][c],
+                      1e-5 * whole)
+              << k;
+        }
+        const double coverage = each.whole[m].coverage[k];
+        EXPECT_NEAR(images.whole[m].coverage[k], coverage, 1e-9) << k;
+        EXPECT_EQ(images.counted[m].coverage[k], images.whole[m].coverage[k]);
+        partly += coverage > 0.01 && coverage < 0.99;
+      }
+      EXPECT_GT(partly, size * size / 2);
+    }
   }
 }
 
-TEST(RenderUnder, IsTheSameForAnyNumberOfThreads) {
+TEST(RenderSphereUnder, IsTheSameForAnyNumberOfThreads) {
   const RenderedImage one = Under(StudioEnvironment(), Gloss(1), 24, 1);
   EXPECT_EQ(Under(StudioEnvironment(), Gloss(1), 24, 3).radiance, one.radiance);
 }
