@@ -264,7 +264,7 @@ void DescribeScattered(const Measurement& measurement) {
 void DescribeMeasurement(const std::string& source) {
   if (!FLAGS_out.empty()) Inputs({source}).CheckOutput(PicturePath());
   Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
-  NoteSymptoms(&measurement);
+  NoteSymptoms(ThreadsFromFlags(), &measurement);
   if (measurement.table) {
     DescribeTable(measurement);
   } else {

@@ -2,10 +2,12 @@
 
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <utility>
+#include <vector>
 
 #include "app/inputs.h"
 #include "app/interrupt.h"
@@ -34,6 +36,7 @@
 #include "trilobe/objective/score.h"
 #include "trilobe/prior/synthetic_prior.h"
 #include "trilobe/results/trace_file.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {
@@ -125,7 +128,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   }
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
-  NoteSymptoms(&measured);
+  NoteSymptoms(num_threads, &measured);
   TellNotes(measured);
   report.data_notes = measured.notes;
   report.bins = CountsOf(measured);
@@ -194,17 +197,25 @@ void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   AppearanceOptions appearance = settings.fit.appearance;
   appearance.num_threads = threads;
   std::exception_ptr failure;
-  // Who ends the program early does not wait for pictures.
-  const bool draws = !report.interrupted;
-  try {
-    if (draws && settings.view) WriteView(*run, settings, folder);
-    if (draws && settings.pair && !pictured.empty()) {
+  std::vector<std::function<void()>> drawings;
+  if (settings.view) drawings.emplace_back([&] { WriteView(*run, settings, folder); });
+  if (settings.pair && !pictured.empty()) {
+    drawings.emplace_back([&] {
       WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
-    }
-    if (draws && settings.plots) {
+    });
+  }
+  if (settings.plots) {
+    drawings.emplace_back([&] {
       std::optional<SphereError> sphere;
       if (report.appearance) sphere = report.appearance->sphere;
       DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance, sphere);
+    });
+  }
+  // Who ends the program early does not wait for pictures.
+  if (report.interrupted) drawings.clear();
+  try {
+    if (!drawings.empty()) {
+      ParallelFor(static_cast<int>(drawings.size()), threads, [&](int k) { drawings[k](); });
     }
   } catch (const Error&) {
     failure = std::current_exception();

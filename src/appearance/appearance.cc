@@ -161,7 +161,8 @@ BrdfTable AllMeasured(BrdfTable measured) {
 
 ImagePair RenderEverywhere(const BrdfTable& measured, const AngularBrdf& fitted,
                            const AppearanceOptions& options) {
-  return RenderPair(TabulatedBrdf(AllMeasured(measured)), fitted, Everything, options);
+  return RenderPair(TabulatedBrdf(AllMeasured(measured), options.num_threads), fitted, Everything,
+                    options);
 }
 
 }  // namespace
@@ -213,7 +214,7 @@ SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& f
 AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,
                                    const AppearanceOptions& options) {
   const Environment& environment = EnvironmentOf(options);
-  const TabulatedBrdf table(measured);
+  const TabulatedBrdf table(measured, options.num_threads);
   const MeasuredDirections counts(measured);
   const std::vector<bool> valid = ValidBins(measured);
   const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
@@ -242,7 +243,8 @@ AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf&
 
 ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
                              const AppearanceOptions& options) {
-  return RenderPair(TabulatedBrdf(measured), fitted, MeasuredDirections(measured), options);
+  return RenderPair(TabulatedBrdf(measured, options.num_threads), fitted,
+                    MeasuredDirections(measured), options);
 }
 
 SphereJudge::SphereJudge(const BrdfTable& measured, const AppearanceOptions& options)
@@ -255,7 +257,7 @@ SphereJudge::SphereJudge(const BrdfTable& measured,
       num_threads_(options.num_threads),
       lights_(DrawLights(EnvironmentOf(options), options.lights)),
       counts_(std::move(counts)),
-      measured_(Render(Interpolated(TabulatedBrdf(measured)))) {}
+      measured_(Render(Interpolated(TabulatedBrdf(measured, options.num_threads)))) {}
 
 SphereJudge SphereJudge::OfAllDirections(const BrdfTable& measured,
                                          const AppearanceOptions& options) {
@@ -279,7 +281,7 @@ ImagePairs PairsOf(RenderedImages&& images) {
 
 ImagePairs RenderPicture(const BrdfTable& measured, const AngularBrdf& fitted,
                          const AppearanceOptions& options) {
-  const TabulatedBrdf table(measured);
+  const TabulatedBrdf table(measured, options.num_threads);
   const AngularBrdf brdfs[] = {Interpolated(table), Clamped(fitted)};
   return PairsOf(RenderSphereUnder(EnvironmentOf(options), options.size, brdfs,
                                    MeasuredDirections(measured), options.num_threads));

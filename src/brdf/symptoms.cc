@@ -13,6 +13,7 @@
 #include "math/quantile.h"
 #include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/geometry/channels.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {
@@ -138,66 +139,96 @@ OwnShadow ShadowOf(const BrdfTable& table) {
   return FindOwnShadow(samples);
 }
 
+// The parts, numbers with two digits.
+template <typename... Parts>
+std::string Said(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(2);
+  (text << ... << parts);
+  return text.str();
+}
+
+// What is said of each, in this order, if it is there.
+constexpr std::string (*kTelling[])(const BrdfTable&) = {
+    [](const BrdfTable& table) -> std::string {
+      const CosineSymptom cosine = CosineOf(table);
+      if (!cosine.IsOneTooMany() && !cosine.IsOneTooFew()) return "";
+      const int k = cosine.IsOneTooMany() ? 1 : -1;
+      return Said("exchanged directions differ by ", Percent(cosine.error),
+                  " in the median, and by ", Percent(cosine.error_without),
+                  " with a cosine of theta_i ", k > 0 ? "less" : "more",
+                  ": values seem to have been ", k > 0 ? "multiplied" : "divided",
+                  " by it once; --cosine=", k, " corrects that");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const StrayLightSymptom stray = StrayLightOf(table);
+      if (!stray.IsThere()) return "";
+      return Said("exchanged directions differ by ", Percent(stray.error),
+                  " in the median, and by ", Percent(stray.error_without), " without ",
+                  Percent(stray.share),
+                  " of the median signal: there seems to be as much light from elsewhere in all "
+                  "that was measured");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const PlateauSymptom plateau = PlateauOf(table);
+      if (!plateau.IsThere()) return "";
+      return Said("the largest value is there ", plateau.values,
+                  " times, as where a detector is saturated: highlights are brighter than that");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const QuantizationSymptom quantized = QuantizationOf(table);
+      if (!quantized.IsThere()) return "";
+      return Said(Percent(quantized.share),
+                  " of the dark signals are there more than once, as where a measurement has few "
+                  "levels");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const NoiseSymptom noise = NoiseOf(table);
+      if (!noise.IsThere()) return "";
+      return Said("values scatter by ", Percent(noise.relative),
+                  " about their neighbours, as noise does, which a fit of many samples averages "
+                  "out");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const RepetitionSymptom repeated = RepetitionOf(table);
+      if (!repeated.IsThere()) return "";
+      return Said("values hardly change any more beyond ", repeated.degrees,
+                  " deg, as where what was not measured repeats the last that was; --max_angle=",
+                  repeated.degrees, " leaves that out");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const TiltSymptom tilt = TiltOf(table);
+      if (!tilt.IsThere()) return "";
+      return Said("the highlight is ", std::abs(tilt.degrees),
+                  " deg off the mirror direction, as where a sample is tilted by that, or the zero "
+                  "of an angle twice as far off; --tilt=",
+                  tilt.degrees, " corrects the former");
+    },
+    [](const BrdfTable& table) -> std::string {
+      const OwnShadow shadow = ShadowOf(table);
+      if (!(shadow.theta_d_deg > 0)) return "";
+      return Said("the highlight is ", std::round(shadow.darker),
+                  " times darker towards theta_d = 0 than at 20 to 30 deg, as where a detector "
+                  "stands in its own light; --min_theta_d=",
+                  shadow.theta_d_deg, " leaves that out");
+    }};
+
 }  // namespace
 
-std::vector<std::string> SymptomsOf(const BrdfTable& table) {
+std::vector<std::string> SymptomsOf(const BrdfTable& table, int num_threads) {
+  std::array<std::string, std::size(kTelling)> told;
+  ParallelFor(static_cast<int>(told.size()), num_threads,
+              [&](int k) { told[k] = kTelling[k](table); });
   std::vector<std::string> symptoms;
-  const auto tell = [&](const auto&... parts) {
-    std::ostringstream text;
-    text.precision(2);
-    (text << ... << parts);
-    symptoms.push_back(text.str());
-  };
-  const CosineSymptom cosine = CosineOf(table);
-  if (cosine.IsOneTooMany() || cosine.IsOneTooFew()) {
-    const int k = cosine.IsOneTooMany() ? 1 : -1;
-    tell("exchanged directions differ by ", Percent(cosine.error), " in the median, and by ",
-         Percent(cosine.error_without), " with a cosine of theta_i ", k > 0 ? "less" : "more",
-         ": values seem to have been ", k > 0 ? "multiplied" : "divided",
-         " by it once; --cosine=", k, " corrects that");
-  }
-  const StrayLightSymptom stray = StrayLightOf(table);
-  if (stray.IsThere()) {
-    tell("exchanged directions differ by ", Percent(stray.error), " in the median, and by ",
-         Percent(stray.error_without), " without ", Percent(stray.share),
-         " of the median signal: there seems to be as much light from elsewhere in all that was "
-         "measured");
-  }
-  if (const PlateauSymptom plateau = PlateauOf(table); plateau.IsThere()) {
-    tell("the largest value is there ", plateau.values,
-         " times, as where a detector is saturated: highlights are brighter than that");
-  }
-  if (const QuantizationSymptom quantized = QuantizationOf(table); quantized.IsThere()) {
-    tell(Percent(quantized.share),
-         " of the dark signals are there more than once, as where a measurement has few levels");
-  }
-  if (const NoiseSymptom noise = NoiseOf(table); noise.IsThere()) {
-    tell("values scatter by ", Percent(noise.relative),
-         " about their neighbours, as noise does, which a fit of many samples averages out");
-  }
-  if (const RepetitionSymptom repeated = RepetitionOf(table); repeated.IsThere()) {
-    tell("values hardly change any more beyond ", repeated.degrees,
-         " deg, as where what was not measured repeats the last that was; --max_angle=",
-         repeated.degrees, " leaves that out");
-  }
-  if (const TiltSymptom tilt = TiltOf(table); tilt.IsThere()) {
-    tell("the highlight is ", std::abs(tilt.degrees),
-         " deg off the mirror direction, as where a sample is tilted by that, or the zero of an "
-         "angle twice as far off; --tilt=",
-         tilt.degrees, " corrects the former");
-  }
-  if (const OwnShadow shadow = ShadowOf(table); shadow.theta_d_deg > 0) {
-    tell("the highlight is ", std::round(shadow.darker),
-         " times darker towards theta_d = 0 than at 20 to 30 deg, as where a detector stands in "
-         "its own light; --min_theta_d=",
-         shadow.theta_d_deg, " leaves that out");
-  }
+  std::ranges::copy_if(told, std::back_inserter(symptoms),
+                       [](const std::string& symptom) { return !symptom.empty(); });
   return symptoms;
 }
 
-void NoteSymptoms(Measurement* measurement) {
+void NoteSymptoms(int num_threads, Measurement* measurement) {
   if (!measurement->table) return;
-  std::ranges::copy(SymptomsOf(*measurement->table), std::back_inserter(measurement->notes));
+  std::ranges::copy(SymptomsOf(*measurement->table, num_threads),
+                    std::back_inserter(measurement->notes));
 }
 
 }  // namespace trilobe

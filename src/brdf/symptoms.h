@@ -89,10 +89,10 @@ struct TiltSymptom {
 TiltSymptom TiltOf(const BrdfTable& table);
 
 // A sentence each; empty where nothing looks wrong.
-std::vector<std::string> SymptomsOf(const BrdfTable& table);
+std::vector<std::string> SymptomsOf(const BrdfTable& table, int num_threads);
 
 // Adds those of a measurement that has a table to its notes.
-void NoteSymptoms(Measurement* measurement);
+void NoteSymptoms(int num_threads, Measurement* measurement);
 
 }  // namespace trilobe
 

@@ -6,6 +6,7 @@
 #include "math/lanes.h"
 #include "trilobe/base/error.h"
 #include "trilobe/math/stencil.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {
@@ -51,30 +52,34 @@ void FillFromNearest(int* first, int count, int stride, bool cyclic) {
 
 }  // namespace
 
-TabulatedBrdf::TabulatedBrdf(const BrdfTable& table) : grid_(table.grid) {
+TabulatedBrdf::TabulatedBrdf(const BrdfTable& table, int num_threads) : grid_(table.grid) {
   const MerlGrid& grid = grid_;
   const std::vector<bool> valid = ValidBins(table);
   if (std::ranges::find(valid, true) == valid.end()) {
     throw Error(table.source + ": no valid bin; check that the file is a BRDF in MERL layout");
   }
   std::vector<int> nearest(grid.size(), kNone);
-  for (int bin = 0; bin < grid.size(); ++bin) {
-    if (valid[bin]) nearest[bin] = bin;
-  }
   const int row = grid.theta_d * grid.phi_d;
-  for (int i = 0; i < grid.size(); i += grid.phi_d) {
-    FillFromNearest(&nearest[i], grid.phi_d, 1, true);
-  }
-  for (int h = 0; h < grid.theta_h; ++h) {
-    for (int p = 0; p < grid.phi_d; ++p) {
-      FillFromNearest(&nearest[grid.Index(h, 0, p)], grid.theta_d, grid.phi_d, false);
+  ParallelFor(grid.theta_h, num_threads, [&](int h) {
+    const int begin = h * row, end = begin + row;
+    for (int bin = begin; bin < end; ++bin) {
+      if (valid[bin]) nearest[bin] = bin;
     }
-  }
-  for (int i = 0; i < row; ++i) FillFromNearest(&nearest[i], grid.theta_h, row, false);
+    for (int i = begin; i < end; i += grid.phi_d) {
+      FillFromNearest(&nearest[i], grid.phi_d, 1, true);
+    }
+    for (int i = begin; i < begin + grid.phi_d; ++i) {
+      FillFromNearest(&nearest[i], grid.theta_d, grid.phi_d, false);
+    }
+  });
+  ParallelForShort(row, num_threads,
+                   [&](int i) { FillFromNearest(&nearest[i], grid.theta_h, row, false); });
   values_.resize(grid.size());
-  for (int bin = 0; bin < grid.size(); ++bin) {
-    for (int c = 0; c < kChannels; ++c) values_[bin].channel[c] = table.Value(c, nearest[bin]);
-  }
+  ParallelFor(grid.theta_h, num_threads, [&](int h) {
+    for (int bin = h * row; bin < (h + 1) * row; ++bin) {
+      for (int c = 0; c < kChannels; ++c) values_[bin].channel[c] = table.Value(c, nearest[bin]);
+    }
+  });
 }
 
 Rgb TabulatedBrdf::operator()(const DirectionPair& directions) const {

@@ -9,6 +9,7 @@
 #include "appearance/color.h"
 #include "pictures/gnuplot.h"
 #include "pictures/image_file.h"
+#include "trilobe/system/parallel.h"
 
 namespace trilobe {
 namespace {
@@ -216,7 +217,7 @@ std::string RowLabels(const std::vector<std::string>& rows, const Layout& layout
 
 void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
                    const std::string& path) {
-  const auto& [counted, whole] = picture.images;
+  const ImagePair &counted = picture.images.counted, &whole = picture.images.whole;
   const double exposure = ExposureOf(CompareSpheres(counted.measured, counted.fitted));
   const std::vector<double> delta_e = DeltaE(counted, exposure);
   const Layout layout = picture.rows.empty() ? Layout{}
@@ -225,11 +226,18 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
                                                       .left = kGutter + 40};
   const int object = picture.rows.empty() ? layout.size - 2 * kMargin : layout.size;
   bool all_measured = true;
-  const Raster map = Rasterize(whole.measured, object, kLightBackground, [&](int pixel) {
-    all_measured = all_measured && delta_e[pixel] >= 0;
-    Rgb color = delta_e[pixel] < 0 ? kNotMeasured : DifferenceColor(delta_e[pixel]);
-    for (double& c : color) c = LinearizeSrgb(c);
-    return color;
+  std::array<Raster, 3> panels;
+  ParallelFor(3, options.num_threads, [&](int k) {
+    if (k < 2) {
+      panels[k] = ToneMapped(k == 0 ? whole.measured : whole.fitted, object, exposure);
+      return;
+    }
+    panels[k] = Rasterize(whole.measured, object, kLightBackground, [&](int pixel) {
+      all_measured = all_measured && delta_e[pixel] >= 0;
+      Rgb color = delta_e[pixel] < 0 ? kNotMeasured : DifferenceColor(delta_e[pixel]);
+      for (double& c : color) c = LinearizeSrgb(c);
+      return color;
+    });
   });
 
   std::array<char, 300> figures;
@@ -264,9 +272,9 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
                     layout) +
               "unset label\n";
   };
-  panel(0, "measured", ToneMapped(whole.measured, object, exposure));
-  panel(1, "fitted", ToneMapped(whole.fitted, object, exposure));
-  panel(2, "difference: below 1 unseen", map);
+  panel(0, "measured", panels[0]);
+  panel(1, "fitted", panels[1]);
+  panel(2, "difference: below 1 unseen", panels[2]);
   script += "unset arrow\n" + ColorBar(layout);
   DrawPng(path, layout.width(), layout.height(), script);
 }

@@ -16,7 +16,7 @@ namespace trilobe {
 class TabulatedBrdf {
  public:
   // Throws Error when no bin is valid.
-  explicit TabulatedBrdf(const BrdfTable& table);
+  explicit TabulatedBrdf(const BrdfTable& table, int num_threads = 1);
 
   // BRDF [1/sr] of the bin that contains these directions; 0 where either is below the surface.
   Rgb operator()(const DirectionPair& directions) const;
