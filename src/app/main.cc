@@ -2,6 +2,7 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <csignal>
@@ -150,6 +151,13 @@ int Main(int argc, char** argv) {
 }  // namespace trilobe
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+  // What was freed stays for what is made next. Else each large table comes as pages of its own,
+  // and to clear these takes the system 3 % of a fit.
+  constexpr int kAll = 1 << 30;  // bytes
+  mallopt(M_MMAP_THRESHOLD, kAll);
+  mallopt(M_TRIM_THRESHOLD, kAll);
+#endif
   // A file that has reached `ulimit -f` is an error of writing then, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
   FLAGS_logtostderr = true;
