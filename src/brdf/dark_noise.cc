@@ -120,13 +120,15 @@ int SmoothDarkReadings(int num_threads, BrdfTable* table) {
   constexpr double kLeastSignal = 10, kPeak = 20;  // of its noise
   const MerlGrid& grid = table->grid;
   const std::vector<bool> valid = ValidBins(*table);
+  std::array<DarkNoise, kChannels> noise;
+  ParallelFor(kChannels, num_threads, [&](int c) { noise[c] = DarkNoiseOf(*table, valid, c); });
+  if (std::ranges::none_of(noise, &DarkNoise::IsThere)) return 0;
   const GridCosines cosines(grid);
   const BrdfTable measured = *table;
   std::vector<char> changed(grid.size(), 0);
   for (int c = 0; c < kChannels; ++c) {
-    const DarkNoise noise = DarkNoiseOf(measured, valid, c);
-    if (!noise.IsThere()) continue;
-    const double unit = noise.deviation / kMerlScale[c];
+    if (!noise[c].IsThere()) continue;
+    const double unit = noise[c].deviation / kMerlScale[c];
     const double least = kLeastSignal * unit, peak = kPeak * unit;
     ParallelFor(grid.theta_h, num_threads, [&](int h) {
       std::vector<double> values;
