@@ -102,7 +102,6 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(solved.coverage(), model);
   // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
   // entries that hardly a sample reads are held by what the model says where nothing was measured.
-  const std::vector<double> all_covered(model.parameters().size(), 1.0);
   const Objective held = thinned ? UnmeasuredPrior(solved, model).With(solved) : solved;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
@@ -111,7 +110,7 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
     // A lower price mends still less.
     if (!matched || matched->error_after > kWorthwhile * matched->error_before) return;
     if (thinned) {
-      Canonicalize(all_covered, &matched->model, LobeOrder::kAsTheyAre, solved.num_threads());
+      SetCanonicalScale(solved.coverage(), &matched->model, solved.num_threads());
     } else {
       Canonicalize(solved, &matched->model);
     }
@@ -179,6 +178,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     ChosenModel chosen = ChooseModel(solved, fit.model, choice);
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
+    SetCanonicalScale(fit.objective.coverage(), &fit.model, objective.num_threads());
     fit.layout = std::move(chosen.layout);
     fit.candidates = std::move(chosen.candidates);
     fit.chosen = chosen.chosen;

@@ -179,6 +179,7 @@ void FillFromNeighbors(std::span<const double> coverage, FactorModel* model) {
 
 void ContinueBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model) {
   CheckCoverage(coverage, NotNull(model, "the model"));
+  const FactorModel before = *model;
   ForEachObservedTable(coverage, model, [&](Factor factor, const auto& covered, const auto& table) {
     const Axis& axis = model->spec().axis(factor);
     if (factor == Factor::kG) {
@@ -188,6 +189,12 @@ void ContinueBeyondData(std::span<const double> coverage, int num_threads, Facto
     }
   });
   DimBeyondData(coverage, num_threads, model);
+  // What was right but for rounding stays as it was: to do it again changes no bit.
+  constexpr double kRounding = 1e-13;
+  for (size_t k = 0; k < coverage.size(); ++k) {
+    double& x = model->parameters()[k];
+    if (std::abs(x - before.parameters()[k]) <= kRounding * x) x = before.parameters()[k];
+  }
 }
 
 }  // namespace trilobe

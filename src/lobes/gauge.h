@@ -9,26 +9,31 @@
 namespace trilobe {
 
 // Scale can move between s, D, F and G without changing any BRDF value, and lobes can change
-// places. The canonical form, in which models are stored, fixes both by what a lobe reflects
-// (docs/stored-model.md), so that entries that hardly any light goes through have no say:
+// places. The canonical form, in which models are stored, fixes both by what a lobe reflects of
+// light that comes from everywhere alike (LobeLight), so that entries that hardly any light goes
+// through have no say (docs/stored-model.md):
 // - each D integrates to 1 over the solid angle of half vectors, weighted by how much of the
 //   directions there is above the surface (VisibleSolidAngles); over the projected solid angle
 //   where the model is anisotropic;
-// - each F and each G has mean 1, weighted by the light that goes through its entries
-//   (LobeLight::through); by coverage where the model is anisotropic;
-// - s carries the magnitude: 4 s is the albedo of a lobe whose F and G are 1. A lobe whose factors
-//   vanish gets s = 0, its vanished tables 1 everywhere before normalisation;
+// - each F has the geometric mean 1, weighted by the light that goes through its entries;
+// - each G has the scale by which the lobes and channels that read it reflect, in their sum, 4 s;
+// - a table that is 0 everywhere becomes a constant, and s of its lobes 0. Where no light goes
+//   through an F or G, its geometric mean over all entries that are not 0 is 1;
 // - the lobe that reflects most comes first; but lobes that are stretched differently stay in their
 //   places.
 // Entries that no data touch are filled first, as ContinueBeyondData says. `coverage` is
-// Objective::coverage(), in the order of model->parameters(); these functions throw Error if it has
-// another size. The same bits for any number of threads.
+// Objective::coverage(), in the order of model->parameters(), of which no more counts than whether
+// it is above 0; these functions throw Error if it has another size. A model in canonical form
+// stays the same to the bit. The same bits for any number of threads.
 enum class LobeOrder { kByLight, kAsTheyAre };
 void Canonicalize(std::span<const double> coverage, FactorModel* model,
                   LobeOrder order = LobeOrder::kByLight, int num_threads = 1);
 
-// The same for work inside a fit, which compares models of one run: cheaper, as F and G are
-// weighted by coverage and D by the projected solid angle; lobes keep their places.
+// The scale alone: lobes keep their places, and entries that no data touch what they say.
+void SetCanonicalScale(std::span<const double> coverage, FactorModel* model, int num_threads = 1);
+
+// A scale for work inside a fit, which compares models of one run: cheaper, as F and G have the
+// mean 1 weighted by coverage, and D by the projected solid angle; lobes keep their places.
 void NormalizeScale(std::span<const double> coverage, FactorModel* model);
 
 // Integral of D over the projected hemisphere, D constant in each bin, or in the cell of each node.

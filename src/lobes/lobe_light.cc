@@ -254,7 +254,7 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
       for (const int m : lobes) light.lobes[m][c] = scale * part.lobes[m][c];
       if (k == 0) light.diffuse[c] = scale * part.diffuse[c];
     }
-    for (size_t j = 0; j < light.through.size(); ++j) light.through[j] += part.through[j];
+    for (size_t j = 0; j < light.through.size(); ++j) light.through[j] += scale * part.through[j];
   }
   return light;
 }

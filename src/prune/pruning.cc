@@ -163,6 +163,10 @@ PrunedModel Pruning::Result(LobeOrder order) const {
   } else {
     Canonicalize(*state_.objective, &result.model, order);
     ExpandStored(result.layout, &result.model);
+    // What tables are beyond their last nodes counts in the integral of D; and samples of a prior
+    // say what is read, but not what was measured.
+    SetCanonicalScale(state_.data->coverage(), &result.model, state_.data->num_threads());
+    ExpandStored(result.layout, &result.model);
   }
   result.E = state_.data->Value(result.model);
   return result;

@@ -100,8 +100,9 @@ TEST(LobeLight, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Four times s is the albedo of a lobe with constant F and G and a D of integral 1.
-TEST(LobeLight, FourTimesSIsTheAlbedo) {
+// Four times s is the albedo of a lobe with constant F and G and a D of integral 1: there G is 1,
+// but for the steps of the integral.
+TEST(LobeLight, WithConstantFactorsTheCanonicalOnesAreOne) {
   FactorModel model = SmoothModel();
   for (double& d : model.d()) d = 0;
   for (int t = 0; t < 3; ++t) std::ranges::fill(model.table(Factor::kF, t), 2.0);
@@ -110,9 +111,11 @@ TEST(LobeLight, FourTimesSIsTheAlbedo) {
   const LobeLight light = ComputeLobeLight(AllObserved(model), model);
   for (int m = 0; m < 2; ++m) {
     for (int c = 0; c < kChannels; ++c) {
-      EXPECT_NEAR(light.lobes[m][c], 4 * model.s(m)[c], 0.02 * light.lobes[m][c]);
+      EXPECT_NEAR(light.lobes[m][c], 4 * model.s(m)[c], 1e-12 * light.lobes[m][c]);
     }
+    for (const double G : model.table(Factor::kG, m)) EXPECT_NEAR(G, 1, 0.01);
   }
+  for (const double F : model.table(Factor::kF, 1)) EXPECT_NEAR(F, 1, 1e-12);
 }
 
 TEST(LobeLight, DoesNotDependOnTheGauge) {

@@ -18,7 +18,8 @@ struct LobeLight {
   std::vector<Rgb> lobes;
 
   // The light that goes through each entry of a table, a spline's shared out by its weights; 0 for
-  // d and s. In the order of FactorModel::parameters(), in some unit.
+  // d and s. In the order of FactorModel::parameters(): those of a table of D or F have the sum of
+  // the albedos of the lobes and channels that it serves.
   std::vector<double> through;
 
   // The part of all that the model reflects, mean over the channels, that a lobe does; 0 where the
