@@ -130,8 +130,7 @@ def model() -> Any:
         for table, color in zip(fitted[name], RGB if name == "F" else lobes, strict=True):
             axes.plot(at[name], entries(table), color=color, marker=".", ms=3, lw=1)
         axes.set(xlabel=label, xlim=(0, 90), xticks=range(0, 91, 30))
-        if name == "D":
-            axes.set_yscale("symlog", linthresh=0.01)
+        axes.set_yscale("symlog", linthresh=0.01)
         axes.set_ylim(0)
     return figure
 
