@@ -178,6 +178,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     ChosenModel chosen = ChooseModel(solved, fit.model, choice);
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
+    // Forms were judged by some of the samples, which may leave entries unread.
     SetCanonicalScale(fit.objective.coverage(), &fit.model, objective.num_threads());
     fit.layout = std::move(chosen.layout);
     fit.candidates = std::move(chosen.candidates);

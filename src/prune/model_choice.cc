@@ -214,6 +214,10 @@ class ModelSearch {
     const Objective refitted = prior.With(some_.For(pruned.model.spec(), weighting));
     const Reduction stored(refitted.spec(), pruned.layout);
     pruned.model = GoOn(refitted, pruned.model, options_.stop, &stored);
+    // By what was measured, without the prior.
+    const Objective measured = some_.For(pruned.model.spec(), weighting);
+    SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
+    ExpandStored(pruned.layout, &pruned.model);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
     Choose(pruned.model, pruned.layout, weighting);
   }
