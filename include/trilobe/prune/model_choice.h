@@ -39,8 +39,8 @@ struct ModelCandidate {
 };
 
 struct ChosenModel {
-  FactorModel model;   // of full-size tables; its scale, if thinned, and its lobes' order as fitted
-  TableLayout layout;  // which of its parameters are stored
+  FactorModel model;    // of full-size tables, in canonical form but for the order of its lobes
+  TableLayout layout;   // which of its parameters are stored
   Weighting weighting;  // by which the form was fitted; that of the objective or by channel
   std::vector<ModelCandidate> candidates;  // in the order in which they were tried
   int chosen = -1;                         // which of them; there is always one
