@@ -42,8 +42,8 @@ DEFINE_string(
     "one of the starting points above, or the path of a model file, whose spec the fit then "
     "takes");
 DEFINE_int32(max_parameters, 822,
-             "with --model=auto: how many parameters the model may store; without it, of an "
-             "anisotropic measurement, as many as its default form has");
+             "with --model=auto: how many parameters the model may store; without it, of scattered "
+             "samples, as many as their default form has");
 DEFINE_double(
     robust, 0,
     "go on with a loss that is linear in the error, as the weighting sees it, beyond this, "

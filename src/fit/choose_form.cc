@@ -5,27 +5,17 @@
 #include <limits>
 #include <utility>
 
-#include "appearance/node_judge.h"
 #include "objective/canonical_form.h"
 #include "system/stopwatch.h"
-#include "trilobe/appearance/material.h"
 
 namespace trilobe {
 namespace {
 
-// What another form has to be ahead by [dB]: the judge knows the material no better than that
-// (docs/decisions/forms-of-anisotropic.md).
-constexpr double kAhead = 0.5;
-
-Material MaterialOf(const SolvedForm& form) {
+ModelCandidate Judged(const std::string& name, const SolvedForm& form,
+                      const std::function<double(const FactorModel&)>& judge, double seconds) {
   FactorModel model = form.model;
   Canonicalize(form.data, &model);
-  return MaterialOf(model);
-}
-
-ModelCandidate Judged(const std::string& name, const SolvedForm& form, const NodeJudge& judge,
-                      double seconds) {
-  const double score = judge(MaterialOf(form).spherical);
+  const double score = judge(model);
   return {.name = name,
           .num_parameters = form.model.spec().num_parameters(),
           .E = form.summary.final_objective,
@@ -37,12 +27,9 @@ ModelCandidate Judged(const std::string& name, const SolvedForm& form, const Nod
 }  // namespace
 
 ChosenForm ChooseForm(const std::vector<AnisotropicForm>& forms, SolvedForm first,
-                      const NodeBrdf& measured, const AppearanceOptions& appearance,
+                      const std::function<double(const FactorModel&)>& judge,
                       const std::function<SolvedForm(const AnisotropicForm&)>& solve,
                       const StopCheck& stop) {
-  AppearanceOptions small = appearance;  // many are rendered
-  small.size = std::max(small.size / 3, 8);
-  const NodeJudge judge(measured, MaterialOf(first).spherical, small);
   const double seconds = first.summary.seconds;
   ChosenForm best{.form = std::move(first), .candidates = {}};
   best.candidates.push_back(Judged(forms.front().name, best.form, judge, seconds));

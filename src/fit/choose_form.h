@@ -5,15 +5,17 @@
 #include <vector>
 
 #include "fit/anisotropic_forms.h"
-#include "trilobe/appearance/appearance.h"
 #include "trilobe/base/stop_check.h"
-#include "trilobe/brdf/node_brdf.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
 #include "trilobe/prune/model_choice.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
+
+// What another form than the default has to be ahead by [dB]: judges know the material no better
+// than that (docs/decisions/forms-of-anisotropic.md, docs/decisions/forms-of-scattered.md).
+inline constexpr double kAhead = 0.5;
 
 // What a solver has made of one form.
 struct SolvedForm {
@@ -29,10 +31,10 @@ struct ChosenForm {
 };
 
 // Fits the forms after the first by `solve`, and takes the one that looks most like the measurement
-// (NodeJudge, which goes by `first`); the first where none is ahead of it by half a decibel. Once
-// `stop` is true the best of those that are finished.
+// to `judge` [dB], which is asked of canonical models; the first where none is ahead of it by half
+// a decibel. Once `stop` is true the best of those that are finished.
 ChosenForm ChooseForm(const std::vector<AnisotropicForm>& forms, SolvedForm first,
-                      const NodeBrdf& measured, const AppearanceOptions& appearance,
+                      const std::function<double(const FactorModel&)>& judge,
                       const std::function<SolvedForm(const AnisotropicForm&)>& solve,
                       const StopCheck& stop);
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "fit/choose_held_out.h"
 #include "objective/canonical_form.h"
 #include "objective/robust.h"
 #include "prune/unmeasured_prior.h"
@@ -125,6 +126,19 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
   }
 }
 
+ModelChoiceOptions ByLooks(Looks* looks, const FinishOptions& options) {
+  ModelChoiceOptions choice;
+  choice.max_parameters = options.max_parameters;
+  choice.stop = options.stop;
+  choice.judge = [looks](const FactorModel& candidate) { return looks->Measured(candidate); };
+  if (looks->has_beyond()) {
+    choice.judge_beyond = [looks](const FactorModel& candidate) {
+      return looks->Beyond(candidate);
+    };
+  }
+  return choice;
+}
+
 // As far as the share allows and does no harm.
 void SmoothOut(const Objective& solved, const FinishOptions& options, Looks* looks,
                FinishedFit* fit) {
@@ -166,21 +180,21 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   if (measured != nullptr) looks.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();
   if (options.max_parameters > 0 && !options.stop()) {
-    ModelChoiceOptions choice;
-    choice.max_parameters = options.max_parameters;
-    choice.stop = options.stop;
-    choice.judge = [&looks](const FactorModel& candidate) { return looks->Measured(candidate); };
-    if (looks->has_beyond()) {
-      choice.judge_beyond = [&looks](const FactorModel& candidate) {
-        return looks->Beyond(candidate);
-      };
+    ChosenModel chosen;
+    if (looks) {
+      chosen = ChooseModel(solved, fit.model, ByLooks(&*looks, options));
+    } else {
+      const HeldOutPart held_out(objective.data().samples(), options.seed, objective.num_threads());
+      fit.held_out = held_out.size();
+      chosen = ChooseModel(solved, held_out, fit.model, options.max_parameters, options.stop);
     }
-    ChosenModel chosen = ChooseModel(solved, fit.model, choice);
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
-    // Forms were judged by some of the samples, which may leave entries unread.
-    SetCanonicalScale(fit.objective.coverage(), &fit.model, objective.num_threads());
-    fit.layout = std::move(chosen.layout);
+    if (looks || chosen.chosen > 0) {
+      // Forms were judged by some of the samples, which may leave entries unread.
+      SetCanonicalScale(fit.objective.coverage(), &fit.model, objective.num_threads());
+      fit.layout = std::move(chosen.layout);
+    }
     fit.candidates = std::move(chosen.candidates);
     fit.chosen = chosen.chosen;
     weighting = chosen.weighting;
@@ -195,7 +209,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     MatchReflectanceOf(weighed, options.stop, &*looks, &fit);
   }
   // Tables of a form that was chosen are thinned.
-  if (options.smoothness > 0 && options.max_parameters == 0 && !options.stop()) {
+  if (options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) && !options.stop()) {
     SmoothOut(solved, options, looks ? &*looks : nullptr, &fit);
   }
   return fit;

@@ -1,13 +1,18 @@
 #include "trilobe/fit/fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <utility>
 
+#include "appearance/node_judge.h"
 #include "appearance/picture_data.h"
 #include "appearance/seen_samples.h"
 #include "brdf/anisotropy.h"
 #include "fit/anisotropic_forms.h"
 #include "fit/choose_form.h"
+#include "fit/held_out.h"
 #include "lobes/gauge.h"
 #include "objective/canonical_form.h"
 #include "system/stopwatch.h"
@@ -103,7 +108,7 @@ class Fitting {
     BrdfSamples samples = SamplesToFit(measurement_, options_);
     ModelSpec spec = options_.start_model ? options_.start_model->spec()
                                           : SpecFor(measurement_, options_.form, samples.size());
-    if (options_.choose_form) MakeReadyToChoose(&spec);
+    if (options_.choose_form) MakeReadyToChoose(samples.size(), &spec);
     const std::vector<NodeCandidate> nodes = options_.start_model
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
@@ -129,23 +134,30 @@ class Fitting {
                                 : FindInitialModel(options_.init).make(objective, options_.seed);
   }
 
-  // Which forms there are besides the spec, which is made to keep to the budget. Of a table they
-  // are made of the fit, when that is finished (ChooseModel).
-  void MakeReadyToChoose(ModelSpec* spec) {
-    if (table_ != nullptr) return;
-    if (options_.start_model) throw Error("--model=auto has starts of its own; leave one out");
-    pictured_ = options_.select ? PictureData() : PictureDataOf(measurement_);
-    if (!pictured_.nodes || !spec->anisotropic()) {
-      throw Error(measurement_.source +
-                  ": --model=auto chooses by pictures, which are made of tables and of anisotropic "
-                  "samples at the nodes of a grid; leave it out");
+  // Which forms there are besides the spec, which is made to keep to the budget. Of isotropic ones
+  // they are made of the fit, when that is finished (ChooseModel).
+  void MakeReadyToChoose(int num_samples, ModelSpec* spec) {
+    constexpr int kOfTables = 822;  // of any size
+    const int budget =
+        options_.max_parameters.value_or(table_ != nullptr ? kOfTables : spec->num_parameters());
+    if (!options_.select) pictured_ = PictureDataOf(measurement_);
+    if (spec->anisotropic()) {
+      if (options_.start_model) throw Error("--model=auto has starts of its own; leave one out");
+      if (options_.form.nodes_by_held_out || options_.form.d_nodes || options_.form.g_nodes) {
+        throw Error("--model=auto chooses the nodes; leave out --nodes, --d_nodes and --g_nodes");
+      }
+      forms_ = AnisotropicForms(
+          *spec, pictured_.nodes ? pictured_.nodes->table().grid : HemisphereGrid(), budget);
+      *spec = forms_.front().spec;
+    } else {
+      isotropic_budget_ = budget;
     }
-    if (options_.form.nodes_by_held_out || options_.form.d_nodes || options_.form.g_nodes) {
-      throw Error("--model=auto chooses the nodes; leave out --nodes, --d_nodes and --g_nodes");
-    }
-    forms_ = AnisotropicForms(*spec, pictured_.nodes->table().grid,
-                              options_.max_parameters.value_or(spec->num_parameters()));
-    *spec = forms_.front().spec;
+    const bool by_picture = table_ != nullptr || (spec->anisotropic() && pictured_.nodes);
+    const int least = by_picture ? 0 : LeastToHoldOut(budget);
+    if (num_samples >= least || spec->num_parameters() > budget) return;
+    too_few_to_choose_ = least;
+    forms_.clear();
+    isotropic_budget_ = 0;
   }
 
   void ChooseAmong(const std::vector<NodeCandidate>& nodes, FitResult* fit, FactorModel* model) {
@@ -213,17 +225,53 @@ class Fitting {
     return {std::move(data), std::move(solved), std::move(model), std::move(summary)};
   }
 
-  // Of the forms the one that looks best.
+  // Of the forms the one that looks best: beside a picture or, where there is none, at samples held
+  // out, and then fitted to all.
   void Choose(const std::optional<SyntheticPrior>& prior, SolvedForm* form, FitResult* fit) const {
-    const auto solve = [&](const AnisotropicForm& other) {
-      const Objective data(form->data, other.spec);
+    const auto solve = [&](const Objective& samples, const ModelSpec& spec) {
+      const Objective data(samples, spec);
       return SolveForm(data, prior, Start(data), /*is_first=*/false);
     };
-    ChosenForm chosen =
-        ChooseForm(forms_, *form, *pictured_.nodes, Appearance(), solve, options_.stop);
-    *form = std::move(chosen.form);
-    fit->finished.candidates = std::move(chosen.candidates);
-    fit->finished.chosen = chosen.chosen;
+    const auto choose = [&](SolvedForm first, const auto& judge) {
+      const Objective samples = first.data;
+      ChosenForm chosen = ChooseForm(
+          forms_, std::move(first), judge,
+          [&](const AnisotropicForm& other) { return solve(samples, other.spec); }, options_.stop);
+      fit->finished.candidates = std::move(chosen.candidates);
+      fit->finished.chosen = chosen.chosen;
+      return std::move(chosen.form);
+    };
+    if (pictured_.nodes) {
+      *form = choose(*form, PictureJudge(*form));
+      return;
+    }
+    const HeldOutPart held_out(form->data.samples(), options_.seed, options_.num_threads);
+    fit->finished.held_out = held_out.size();
+    SolvedForm first = {held_out.Without(form->data), held_out.Without(form->solved), form->model,
+                        form->summary};
+    first.model = FitToPart(first.solved, std::move(first.model), options_.stop);
+    first.summary.final_objective = first.data.Value(first.model);
+    const SolvedForm chosen =
+        choose(std::move(first), [&](const FactorModel& model) { return held_out.Score(model); });
+    if (fit->finished.chosen == 0) return;
+    SolvedForm on_all = solve(form->data, chosen.data.spec());
+    // One that was stopped half-way may be worse than the default.
+    if (options_.stop()) {
+      fit->finished.chosen = 0;
+    } else {
+      *form = std::move(on_all);
+    }
+  }
+
+  // Goes by the first form to see where the measurement can be interpolated.
+  std::function<double(const FactorModel&)> PictureJudge(const SolvedForm& first) const {
+    AppearanceOptions small = Appearance();  // many are rendered
+    small.size = std::max(small.size / 3, 8);
+    FactorModel model = first.model;
+    Canonicalize(first.data, &model);
+    const auto judge =
+        std::make_shared<NodeJudge>(*pictured_.nodes, MaterialOf(model).spherical, small);
+    return [judge](const FactorModel& other) { return (*judge)(MaterialOf(other).spherical); };
   }
 
   void Finish(const Objective& solved, const SyntheticPrior* prior, FactorModel model,
@@ -232,7 +280,8 @@ class Fitting {
     const bool has_ended = HasEnded(fit->summary.stop_reason);
     FinishOptions finish{.smoothness = has_ended ? options_.smoothness : 0,
                          .robust = options_.robust,
-                         .max_parameters = BudgetOfTable(),
+                         .max_parameters = isotropic_budget_,
+                         .seed = options_.seed,
                          .prior = prior,
                          .match_reflectance = options_.match_reflectance && has_ended,
                          .appearance = Appearance(),
@@ -240,7 +289,8 @@ class Fitting {
     FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
     fit->file.model = std::move(finished.model);
     if (solved.has_prior()) {
-      Canonicalize(fit->objective, &fit->file.model);  // by the data alone
+      fit->objective = Objective(fit->objective, fit->file.model.spec());
+      if (!finished.layout) Canonicalize(fit->objective, &fit->file.model);  // by the data alone
     } else {
       fit->objective = finished.objective;
     }
@@ -248,10 +298,12 @@ class Fitting {
     fit->finished.smoothed = finished.smoothed;
     fit->finished.tied = finished.tied;
     fit->finished.matched = finished.matched;
-    if (BudgetOfTable() > 0) {
+    if (isotropic_budget_ > 0) {
       fit->finished.candidates = std::move(finished.candidates);
       fit->finished.chosen = finished.chosen;
+      fit->finished.held_out = finished.held_out;
     }
+    fit->finished.too_few_to_choose = too_few_to_choose_;
     fit->file.unobserved = UnobservedParameters(fit->objective.coverage());
     fit->file.layout = std::move(finished.layout);
     const ModelSpec& spec = fit->model().spec();
@@ -259,13 +311,6 @@ class Fitting {
         fit->file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
     fit->score = ScoreModel(fit->objective, fit->model());
     fit->file.fit.objective = fit->score.objective;
-  }
-
-  // FinishOptions::max_parameters.
-  int BudgetOfTable() const {
-    constexpr int kOfDefault = 822;
-    if (!options_.choose_form || table_ == nullptr) return 0;
-    return options_.max_parameters.value_or(kOfDefault);
   }
 
   AppearanceOptions Appearance() const {
@@ -297,6 +342,8 @@ class Fitting {
   const BrdfTable* const table_;  // as the whole of it is fitted
   PictureData pictured_;          // of choices among forms_
   std::vector<AnisotropicForm> forms_ = {};
+  int isotropic_budget_ = 0;  // FinishOptions::max_parameters
+  int too_few_to_choose_ = 0;
   Stopwatch stopwatch_;
 };
 

@@ -6,31 +6,73 @@
 #include <vector>
 
 #include "trilobe/brdf/brdf_table.h"
+#include "trilobe/geometry/directions.h"
 #include "trilobe/lobes/reconstruct.h"
+#include "trilobe/math/angles.h"
+#include "trilobe/prior/reach.h"
 
 namespace trilobe {
 namespace {
 
-constexpr double kWeight = 0.01;  // of what it says of a bin, where a measured one counts 1
+// Of what it says of a bin, where a measured one counts 1; of directions beyond samples on no grid,
+// where 0.01 costs 1.5 dB where data are (docs/decisions/forms-of-scattered.md).
+constexpr double kWeight = 0.01, kWeightOfScattered = 0.001;
 // Said for so many bins, but by so many samples at least of each theta_h, theta_d, theta_i and
 // theta_o.
 constexpr int kStride = 32, kLeast = 64;
 constexpr double kAbsurd = 100;    // times the largest value that was measured
 constexpr double kLargest = 1e50;  // that an objective takes
 
+std::vector<int> OpenBins(const BrdfSamples& measured) {
+  std::vector<bool> open = BinsAboveSurface(measured.grid);
+  for (const int bin : measured.bins) open[bin] = false;
+  std::vector<int> bins;
+  for (int bin = 0; bin < measured.grid.size(); ++bin) {
+    if (open[bin]) bins.push_back(bin);
+  }
+  return bins;
+}
+
+// Pairs farther from the normal than any that was measured, as dense as these.
+std::vector<SphericalAngles> DirectionsBeyond(const BrdfSamples& measured) {
+  constexpr double kFarthest = DegreesToRadians(89);
+  std::vector<SphericalAngles> pairs =
+      DirectionsBetween(kFarthest, measured.directions.size(), Spread::kRetroreflectionToo);
+  std::erase_if(pairs, [largest = LargestTheta(measured)](const SphericalAngles& at) {
+    return std::max(at.theta_i, at.theta_o) <= largest;
+  });
+  return pairs;
+}
+
+// Scattered ones.
+BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said) {
+  const auto append = [](const auto& from, auto* target) {
+    target->insert(target->end(), from.begin(), from.end());
+  };
+  samples.multiplicity.resize(samples.rho.size(), 1);
+  append(said.multiplicity, &samples.multiplicity);
+  append(said.angles, &samples.angles);
+  append(said.directions, &samples.directions);
+  append(said.rho, &samples.rho);
+  return samples;
+}
+
 }  // namespace
 
 UnmeasuredPrior::UnmeasuredPrior(const Objective& objective, const FactorModel& model)
     : said_{objective.samples().source, objective.samples().grid, {}, {}, {}} {
   const BrdfSamples& measured = objective.samples();
-  if (!measured.on_grid()) return;
-  std::vector<bool> open = BinsAboveSurface(measured.grid);
-  for (const int bin : measured.bins) open[bin] = false;
-  for (int bin = 0; bin < measured.grid.size(); ++bin) {
-    if (open[bin]) said_.bins.push_back(bin);
+  if (measured.on_grid()) {
+    said_.bins = OpenBins(measured);
+  } else {
+    said_.directions = DirectionsBeyond(measured);
+    for (const SphericalAngles& at : said_.directions) {
+      said_.angles.push_back(ToHalfDiff(ToDirections(at)));
+    }
   }
-  if (said_.bins.empty()) return;
-  said_.rho.assign(said_.bins.size(), {});
+  const size_t places = said_.bins.size() + said_.angles.size();
+  if (places == 0) return;
+  said_.rho.assign(places, {});
   said_.rho = UnclampedSamples(model, said_, objective.num_threads());
   Rgb most{};
   for (const Rgb& rho : measured.rho) {
@@ -47,12 +89,17 @@ UnmeasuredPrior::UnmeasuredPrior(const Objective& objective, const FactorModel& 
     }
   }
   said_ = ThinnedByPlace(Selected(said_, finite), kStride, kLeast);
-  for (double& times : said_.multiplicity) times *= kWeight;
+  const double weight = measured.on_grid() ? kWeight : kWeightOfScattered;
+  for (double& times : said_.multiplicity) times *= weight;
 }
 
 Objective UnmeasuredPrior::With(const Objective& objective) const {
   if (said_.rho.empty()) return objective;
   const BrdfSamples& measured = objective.samples();
+  if (!measured.on_grid()) {
+    BrdfSamples both = Joined(measured, said_);
+    return {std::move(both), objective.spec(), objective.weighting(), objective.num_threads()};
+  }
   BrdfSamples both{measured.source, measured.grid, {}, {}, {}};
   for (int j = 0, k = 0; j < measured.size() || k < said_.size();) {
     const bool own = k == said_.size() || (j < measured.size() && measured.bins[j] < said_.bins[k]);

@@ -13,8 +13,9 @@ namespace trilobe {
 // open.
 class UnmeasuredPrior {
  public:
-  // Speaks about the bins above the surface that are not among the objective's samples, and not
-  // where these are on no grid. It says the same in every objective that it joins.
+  // Speaks about the bins above the surface that are not among the objective's samples; where these
+  // are on no grid, about directions farther from the normal than they are. It says the same in
+  // every objective that it joins.
   UnmeasuredPrior(const Objective& objective, const FactorModel& model);
 
   // The objective, whose samples are some of the other's, with the prior's samples besides.

@@ -129,6 +129,11 @@ std::string Describe(const FitReport::Finished& finished) {
             std::string(*finished.tied < 0 ? "fell" : "rose") + " by " +
             Text(100 * std::abs(*finished.tied), 3) + " %\n";
   }
+  if (finished.held_out > 0) {
+    text +=
+        "held out     " + std::to_string(finished.held_out) +
+        " samples, by which candidates were judged; E of these is of what they were fitted to\n";
+  }
   for (size_t k = 0; k < finished.candidates.size(); ++k) {
     const ModelCandidate& candidate = finished.candidates[k];
     text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
@@ -181,6 +186,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
       {"parameters", report.spec.num_parameters()},
       {"stored_parameters", report.stored_parameters},
       {"candidates", ToJson(report.finished.candidates)},
+      {"candidates_held_out", report.finished.held_out},
       {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
       {"prior", report.prior
                     ? Json{{"weight", report.prior->weight},

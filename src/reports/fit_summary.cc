@@ -59,6 +59,11 @@ void PrintSummary(const FitReport& report) {
   std::cout << "solver       " << summary.solver << ": " << summary.iterations << " iterations, "
             << EndText(summary.stop_reason) << "; E is "
             << Text(100 * report.score.relative_objective, 3) << " % of a black model's\n";
+  if (report.finished.too_few_to_choose > 0) {
+    PrintLine("note         no form was chosen, which takes " +
+              std::to_string(report.finished.too_few_to_choose) +
+              " samples or more; this is the default form");
+  }
   if (report.appearance) std::cout << DescribeBriefly(*report.appearance);
   if (report.reach) std::cout << ReachText(*report.reach);
 }

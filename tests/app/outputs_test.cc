@@ -367,8 +367,6 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   EXPECT_TRUE(scored["appearance"].is_null());
   EXPECT_FALSE(scored["worst_bins"][0].contains("h"));
 
-  ExpectRefusal(RunProgram({"fit", csv, "--model=auto", "--out=" + (folder / "o")}),
-                "chooses by pictures");
   ExpectRefusal(RunProgram({"score", out + "/model.json", csv, "--out=" + (folder / "x.png")}),
                 "needs a table");
   const ProgramResult many =

@@ -89,5 +89,61 @@ TEST_F(Scattered, AFitFromAStoredModelKeepsItsSmallForm) {
               1e-9 * first["objective"].get<double>());
 }
 
+// The report says by what; too few samples are fitted by the default form, with a line about it.
+TEST_F(Scattered, AFormIsChosenByHeldOutSamples) {
+  const json report = Fit("auto", {"--model=auto", "--lobes=1", "--max_parameters=120",
+                                   "--max_iterations=10", "--noplots"});
+  const json& candidates = report["candidates"];
+  ASSERT_GE(candidates.size(), 3U);
+  EXPECT_EQ(candidates[0]["name"], "as fitted");
+  EXPECT_NEAR(report["candidates_held_out"], 0.2 * report["valid_samples"].get<double>(),
+              0.05 * report["valid_samples"].get<double>());
+  EXPECT_LE(report["stored_parameters"], 120);
+  const ModelFile file = ReadModel(folder_ / "auto/model.json");
+  ASSERT_TRUE(file.layout);
+  EXPECT_EQ(file.layout->num_parameters(file.model.spec()), report["stored_parameters"]);
+  const json score = json::parse(
+      RunProgram({"score", folder_ / "auto/model.json", folder_ / "few.csv", "--json"}).out);
+  EXPECT_NEAR(score["objective"], report["objective"], 1e-9 * score["objective"].get<double>());
+
+  const ProgramResult few = RunProgram({"fit", folder_ / "few.csv", "--missing=0.9", "--model=auto",
+                                        "--lobes=1", "--solver=awls", "--max_iterations=3",
+                                        "--verbose", "--noplots", "--out=" + folder_ / "few"});
+  ASSERT_EQ(few.status, 0) << few.err;
+  EXPECT_THAT(few.out, HasSubstr("note         no form was chosen, which takes 1350 samples"));
+  EXPECT_EQ(json::parse(Contents(folder_ / "few/report.json"))["candidates"], json::array());
+}
+
+TEST_F(Scattered, AnisotropicFormsAreChosenByHeldOutSamples) {
+  const std::string csv = folder_ / "cloth.csv";
+  ASSERT_EQ(RunProgram({"convert", "synth:linen@6x24", "--missing=0.75", "--out=" + csv}).status,
+            0);
+  const std::vector<std::string> quick = {"fit",
+                                          csv,
+                                          "--model=auto",
+                                          "--lobes=1",
+                                          "--solver=awls",
+                                          "--out=" + folder_ / "cloth",
+                                          "--max_iterations=2",
+                                          "--nodiagnose",
+                                          "--noplots"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = quick;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram(arguments);
+  };
+  const ProgramResult fit = with({"--max_parameters=350", "--verbose"});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("samples, by which candidates were judged"));
+  EXPECT_THAT(fit.out, HasSubstr("<- chosen"));
+  EXPECT_LE(ReadModel(folder_ / "cloth/model.json").model.spec().num_parameters(), 350);
+  const ProgramResult small = with({"--max_parameters=40"});
+  EXPECT_NE(small.status, 0);
+  EXPECT_THAT(small.err, HasSubstr("no anisotropic form keeps to 40 parameters"));
+  const ProgramResult nodes = with({"--nodes=held_out"});
+  EXPECT_NE(nodes.status, 0);
+  EXPECT_THAT(nodes.err, HasSubstr("--model=auto chooses the nodes"));
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

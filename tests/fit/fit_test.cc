@@ -132,9 +132,9 @@ TEST(Fit, RefusesWhatTheMeasurementCannotHave) {
   options.max_parameters = 40;
   EXPECT_THAT(error(LoadMeasurement("synth:velvet@4x12"), options),
               testing::HasSubstr("no anisotropic form keeps to 40 parameters"));
-  options.form.kind = FormOptions::Kind::kIsotropic;
+  options.start_model = FactorModel(ModelSpec::AnisotropicFor(1, 12, 1));
   EXPECT_THAT(error(LoadMeasurement("synth:velvet@4x12"), options),
-              testing::HasSubstr("--model=auto chooses by pictures"));
+              testing::HasSubstr("--model=auto has starts of its own"));
 }
 
 }  // namespace

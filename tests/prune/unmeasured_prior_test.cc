@@ -76,7 +76,27 @@ TEST(UnmeasuredPrior, SaysTheSameInEveryObjective) {
   EXPECT_EQ(said(few), said(objective));
 }
 
-TEST(UnmeasuredPrior, IsSilentWhereAllWasMeasuredOrNothingIsOnAGrid) {
+TEST(UnmeasuredPrior, SpeaksBeyondScatteredSamplesAndVeryLittle) {
+  BrdfSamples scattered = Scattered(Measured().samples());
+  for (const HalfDiffAngles& at : scattered.angles) {
+    scattered.directions.push_back(ToSphericalAngles(ToDirections(at)));
+  }
+  const Objective objective(scattered, Spec(), FindWeighting("appearance"));
+  const FactorModel model = RandomModel(Spec(), 2);
+  const BrdfSamples both = UnmeasuredPrior(objective, model).With(objective).samples();
+  ASSERT_GT(both.size(), scattered.size());
+  double times = 0;
+  for (int j = 0; j < both.size(); ++j) {
+    const SphericalAngles& at = both.directions[j];
+    EXPECT_EQ(j >= scattered.size(),
+              std::max(at.theta_i, at.theta_o) > DegreesToRadians(60) + 1e-9);
+    if (j >= scattered.size()) times += both.multiplicity[j];
+  }
+  EXPECT_LT(times, 0.001 * scattered.size());
+  EXPECT_GT(times, 0.0001 * scattered.size());
+}
+
+TEST(UnmeasuredPrior, IsSilentWhereAllWasMeasuredOrDirectionsAreNotKnown) {
   const FactorModel model = RandomModel(Spec(), 2);
   const Objective whole = MakeObjective(TableOf(RandomModel(Spec(), 1), kGrid), Spec());
   EXPECT_EQ(UnmeasuredPrior(whole, model).With(whole).samples().size(), whole.samples().size());

@@ -1,6 +1,7 @@
 #ifndef TRILOBE_FIT_FINISH_FIT_H_
 #define TRILOBE_FIT_FINISH_FIT_H_
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -24,6 +25,7 @@ struct FinishOptions {
   double smoothness = 0;
   double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
   int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)
+  uint64_t seed = 1;       // of the samples held out to choose it by, where there is no picture
   const SyntheticPrior* prior = nullptr;  // that the objective has (CorrectOvershoot)
   bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
   AppearanceOptions appearance;
@@ -48,6 +50,7 @@ struct FinishedFit {
   std::optional<double> tied = std::nullopt;
   std::vector<ModelCandidate> candidates = {};  // empty if none was asked for
   int chosen = -1;                              // which of them
+  int held_out = 0;                             // samples that they were judged by; 0: all
   // Nothing if it was not done (MatchReflectance).
   struct Matched {
     double error_before = 0, error_after = 0;  // Reflectance::Error
@@ -56,8 +59,7 @@ struct FinishedFit {
   std::optional<Matched> matched = std::nullopt;
 };
 
-// `measured`: what pictures are made of, which max_parameters and match_reflectance need; null
-// where there is none.
+// `measured`: what pictures are made of, which match_reflectance needs; null where there is none.
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options);
 

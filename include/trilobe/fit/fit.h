@@ -53,8 +53,9 @@ struct FitOptions {
   std::optional<double> prior = {};
   double smoothness = 0.005;  // FinishOptions, as the next
   double robust = 0;
-  // --model=auto: the form that looks best, within so many parameters; by default as many as that
-  // of `form` has. Of tables and of scattered samples at the nodes of a grid.
+  // --model=auto: the form that looks best, within so many parameters; by default 822 of a table,
+  // and of scattered samples as many as that of `form` has. Beside a picture of tables and of
+  // samples at the nodes of a grid; of others by samples that are held out, if there are enough.
   bool choose_form = false;
   std::optional<int> max_parameters = {};
   bool match_reflectance = true;  // FinishOptions
@@ -107,6 +108,8 @@ struct FitResult {
     std::optional<double> tied = {};
     std::vector<ModelCandidate> candidates = {};
     int chosen = -1;
+    int held_out = 0;           // samples that they were judged by; 0: by pictures
+    int too_few_to_choose = 0;  // where a form was to be chosen, the samples that this takes
     std::optional<FinishedFit::Matched> matched = {};
   } finished = {};
   int stored_parameters = 0;
