@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lobes/gauge.h"
 #include "objective/canonical_form.h"
 #include "prune/model_forms.h"
 #include "prune/prune.h"
@@ -26,6 +27,7 @@
 #include "trilobe/objective/score.h"
 #include "trilobe/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
+#include "trilobe/start/initial_model.h"
 
 namespace trilobe {
 namespace {
@@ -82,14 +84,27 @@ class Objectives {
   std::vector<Objective> made_;
 };
 
-// What the default solver makes of few samples from its own starts.
-FactorModel FitAnew(const Objective& few, const FactorModel& start, const StopCheck& stop) {
+// What a solver makes of few samples.
+FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& start,
+                  const StopCheck& stop) {
   FactorModel model = start;
   SolverOptions options;
   options.diagnose = false;
   options.stop = stop;
-  MakeSolver("auto")->Solve(few, options, &model);
+  MakeSolver(solver)->Solve(few, options, &model);
   return model;
+}
+
+// Where highlights widen towards grazing a fit without stretches may let F and G cancel over many
+// decades (docs/stored-model.md), from which no stretch leads back. So there are two ways, from the
+// fit and from the default start; the one that ends lower.
+SteppedModel FitStretchesTwice(const Objective& few, const FactorModel& fitted,
+                               const StopCheck& stop) {
+  SteppedModel of_fit = FitStretches(few, fitted, stop);
+  FactorModel start = InitialModels().front().make(few, /*seed=*/1);
+  CopyUnobservedParameters(few.coverage(), fitted, &start);
+  SteppedModel of_start = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
+  return of_start.E < of_fit.E ? of_start : of_fit;
 }
 
 // Whether the data rather have a form that shares less: a stretch may look like one. What more
@@ -261,7 +276,7 @@ class ModelSearch {
     if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
         !fitted_.spec().stretches.any()) {
       const Objective few = few_with_prior_.For(fitted_.spec(), objective_.weighting());
-      const SteppedModel start = FitStretches(few, fitted_, options_.stop);
+      const SteppedModel start = FitStretchesTwice(few, fitted_, options_.stop);
       if (!Fit({"stretched", start.model, objective_.weighting()})) return false;
       // Under other weights it may look better even where it does not under these.
       stretched = start.model.spec().stretches.any() &&
@@ -281,9 +296,10 @@ class ModelSearch {
       bases_.push_back(forms_.back());
     }
     // From starts of its own, since it ends in another minimum.
-    ModelForm form{"weighed by channel anew",
-                   FitAnew(few_with_prior_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
-                   by_channel};
+    ModelForm form{
+        "weighed by channel anew",
+        FitBy("auto", few_with_prior_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
+        by_channel};
     if (stretched) {
       const Objective few = few_with_prior_.For(fitted_.spec(), by_channel);
       form = {"stretched, weighed by channel anew",
