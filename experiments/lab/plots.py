@@ -90,10 +90,11 @@ def plain_numbers(axis):
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
-def legend_above(figure, axes):
-    """One legend for a figure of many panels that all show the lines of these axes."""
+def legend_above(figure, axes, columns=None):
+    """One legend for a figure of many panels that all show the lines of these axes, in one line or
+    so many columns."""
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=len(labels), fontsize=9,
+    figure.legend(handles, labels, loc="lower center", ncol=columns or len(labels), fontsize=9,
                   bbox_to_anchor=(0.5, 1.0))
 
 

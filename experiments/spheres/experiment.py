@@ -11,7 +11,8 @@ from lab.fits import Fit
 from lab.units import FOLDER, Product, Unit
 
 ONE = ("solver", "threads", "start")  # of these the tables know one
-PEER = "peer"  # instead of a run
+# Instead of a run: the members of the manifest by which they are given.
+PEERS = {"peer": "peers", "reciprocal peer": "reciprocal_peers"}
 BUILT_IN = "built-in"
 SHOWN = "default"  # the run of which the gallery is
 FORMER = "compressive"  # the run that it is compared with
@@ -24,18 +25,18 @@ WORST = {"psnr_db": -math.inf, "mean_delta_e": math.inf, "delta_e_95": math.inf,
 GALLERY_BYTES = 450_000  # at most
 
 
-def _peers(setting):
+def _peers(setting, member):
     """{material: the peer's source}: tables NAME.binary in a folder, or as the manifest says."""
-    given = setting.manifest["peers"]
+    given = setting.manifest[member]
     if isinstance(given, dict):
         return given
-    folder = setting.place("peers")
+    folder = setting.place(member)
     if folder is None:
         return {}
     of_material = {source.name: folder / f"{source.name}.binary" for source in setting.sources}
     found = {name: str(path) for name, path in of_material.items() if path.is_file()}
     if not found:
-        raise UsageError(f"peers: {folder} has no NAME.binary of any of the materials given")
+        raise UsageError(f"{member}: {folder} has no NAME.binary of any of the materials given")
     return found
 
 
@@ -49,8 +50,8 @@ def units(setting):
         environments[probe.stem] = (f"--probe={probe}",)
     judged = [(Product(unit, "model.json"), unit.labels) for unit in fitted]
     names = {unit.labels["material"] for unit in fitted}
-    judged += [(peer, {"material": name, "run": PEER}) for name, peer in _peers(setting).items()
-               if name in names]
+    judged += [(peer, {"material": name, "run": run}) for run, member in PEERS.items()
+               for name, peer in _peers(setting, member).items() if name in names]
     scores = []
     for what, labels in judged:
         source = source_of[labels["material"]]
@@ -268,7 +269,7 @@ def _former_table(rows):
     for names, part in _parts(rows):
         for fit in tables.groups(part, "fit"):
             pairs = _pairs(part, fit, FORMER)
-            if fit in (FORMER, PEER) or not pairs:
+            if fit in (FORMER, *PEERS) or not pairs:
                 continue
             loses = [a["material"] for a, b in pairs if a["psnr_db"] < b["psnr_db"] - APART]
             lines.append([*names, fit, str(len(pairs)),
@@ -284,11 +285,11 @@ def _former_table(rows):
 def _peers_table(rows):
     lines = []
     for names, part in _parts(rows):
-        for fit in tables.groups(part, "fit"):
-            pairs = _pairs(part, fit, PEER)
-            if fit == PEER or not pairs:
+        for fit, peer in itertools.product(tables.groups(part, "fit"), PEERS):
+            pairs = _pairs(part, fit, peer)
+            if fit in PEERS or not pairs:
                 continue
-            lines.append([*names, fit, str(len(pairs)),
+            lines.append([*names, fit, peer, str(len(pairs)),
                           _share(pairs, lambda pair: pair[0]["psnr_db"] > pair[1]["psnr_db"]),
                           _share(pairs, lambda pair:
                                  pair[0]["mean_log_error"] < pair[1]["mean_log_error"]),
@@ -296,7 +297,7 @@ def _peers_table(rows):
                           _difference(pairs, "mean_delta_e", "+.2f"),
                           _difference(pairs, "mean_log_error", "+.2g")])
     return tables.markdown(
-        ["environment", "database", "half", "fit", "n", "better in PSNR than the peer",
+        ["environment", "database", "half", "fit", "against", "n", "better in PSNR",
          "in mean log error", "PSNR dB more", "mean ΔE more", "mean log error more"], lines)
 
 
@@ -368,6 +369,6 @@ def draw(drawn, _):
     there = {row["fit"] for row in rows}
     if FORMER in there:
         products["compressive.md"] = _former_table(rows)
-    if PEER in there:
+    if there & PEERS.keys():
         products["peers.md"] = _peers_table(rows)
     return products

@@ -25,7 +25,7 @@ std::optional<SoftenedStart> Softened(int number, const Objective& few, const Fa
                                       const StopCheck& stop, PhaseSeconds* phases) {
   if (stop()) return std::nullopt;
   if (number == kNumStarts) {
-    return SoftenedStart{.name = "given", .model = Soften(few, given, kStiffTables, stop, phases)};
+    return SoftenedStart{.name = "given", .model = Soften(few, given, {}, stop, phases)};
   }
   return SoftenedStart{.name = kStarts[number].name,
                        .model = SoftenFrom(kStarts[number], few, given, stop, phases)};
@@ -45,7 +45,7 @@ FactorModel SoftenFrom(const SmoothStart& start, const Objective& few, const Fac
                        const StopCheck& stop, PhaseSeconds* phases) {
   FactorModel model = SpreadModel(few, start.narrow, start.wide);
   CopyUnobservedParameters(few.coverage(), given, &model);
-  return Soften(few, model, start.stiffest, stop, phases);
+  return Soften(few, model, {.stiffest = start.stiffest}, stop, phases);
 }
 
 std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const FactorModel& given,

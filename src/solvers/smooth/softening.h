@@ -8,14 +8,22 @@
 
 namespace trilobe {
 
-// Continuation: a fit with tables so stiff that E has few minima, which then soften,
-//   lambda = `stiffest`, stiffest / sqrt(10), stiffest / 10, ... 1e-9,
-// each from where the one before ended. What is settled while tables are stiff, which lobe is what,
+inline constexpr double kStiffTables = 1e-4;
+
+// lambda = stiffest, stiffest / factor, stiffest / factor^2, ... softest.
+struct StiffnessSchedule {
+  double stiffest = kStiffTables;
+  double factor = 3.1622776601683795;  // sqrt(10)
+  double softest = 1e-9;
+  double slope = 0;  // the price of a steady fall: Roughness
+};
+
+// Continuation: a fit with tables so stiff that E has few minima, which then soften, each lambda
+// from where the one before ended. What is settled while tables are stiff, which lobe is what,
 // stays so. Returns where it leads from `start`, or has led when asked to `stop`. Times go to
 // *phases.
-inline constexpr double kStiffTables = 1e-4;
-FactorModel Soften(const Objective& objective, const FactorModel& start, double stiffest,
-                   const StopCheck& stop, PhaseSeconds* phases);
+FactorModel Soften(const Objective& objective, const FactorModel& start,
+                   const StiffnessSchedule& schedule, const StopCheck& stop, PhaseSeconds* phases);
 
 }  // namespace trilobe
 
