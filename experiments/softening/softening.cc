@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <functional>
 #include <optional>
 #include <random>
 #include <string>

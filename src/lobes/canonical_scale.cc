@@ -10,8 +10,7 @@
 namespace trilobe {
 namespace {
 
-// exp(mean of log x) of the entries that have a weight and are not 0; 0 where there
-// are none.
+// exp(mean of log x) of the entries that have a weight and are not 0; 0 where there are none.
 // Relative to the entry of most weight, so that logarithms stay small where weight is.
 double GeometricMean(std::span<const double> weights, std::span<const double> table) {
   double most = 0, reference = 0;

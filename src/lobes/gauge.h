@@ -15,8 +15,9 @@ namespace trilobe {
 // - each D integrates to 1 over the solid angle of half vectors, weighted by how much of the
 //   directions there is above the surface (VisibleSolidAngles); over the projected solid angle
 //   where the model is anisotropic;
-// - each F has the geometric mean 1, weighted by the light that goes through its entries;
-// - each G has the scale by which the lobes and channels that read it reflect, in their sum, 4 s;
+// - each F and each G has the scale by which the lobes and channels that read it reflect, in their
+//   sum, 4 s; all tables of F that read a G together have the geometric mean 1, weighted by the
+//   light that goes through their entries;
 // - a table that is 0 everywhere becomes a constant, and s of its lobes 0. Where no light goes
 //   through an F or G, its geometric mean over all entries that are not 0 is 1;
 // - the lobe that reflects most comes first; but lobes that are stretched differently stay in their
