@@ -146,7 +146,8 @@ TEST(FitOfScattered, ChoosesAmongAnisotropicForms) {
   const std::vector<ModelCandidate>& candidates = fit.finished.candidates;
   const int chosen = fit.finished.chosen;
   ASSERT_GE(candidates.size(), 3U);
-  EXPECT_NEAR(fit.finished.held_out, measured.samples.size() / 5, measured.samples.size() / 20);
+  const double samples = static_cast<double>(measured.samples.size());
+  EXPECT_NEAR(fit.finished.held_out, samples / 5, samples / 20);
   for (const ModelCandidate& candidate : candidates) {
     EXPECT_LE(candidate.num_parameters, 350) << candidate.name;
     EXPECT_TRUE(chosen == 0 || candidates[chosen].score >= candidate.score) << candidate.name;
