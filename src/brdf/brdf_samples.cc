@@ -183,10 +183,14 @@ void CheckStride(int stride) {
 // A number of each sample on a grid, so that those whose number a stride divides are spread evenly;
 // of an exchanged pair the same. Primes, which have no common factor with a smaller stride, so that
 // neighbouring rows differ.
+int PhaseOnGrid(const MerlGrid& grid, int h, int d, int p) {
+  return std::min(p, grid.phi_d - 1 - p) + 29 * h + 37 * d;
+}
+
 int PhaseOnGrid(const BrdfSamples& samples, int j) {
   const MerlGrid& grid = samples.grid;
-  const int bin = samples.bins[j], row = bin / grid.phi_d, p = bin % grid.phi_d;
-  return std::min(p, grid.phi_d - 1 - p) + 29 * (row / grid.theta_d) + 37 * (row % grid.theta_d);
+  const int bin = samples.bins[j], row = bin / grid.phi_d;
+  return PhaseOnGrid(grid, row / grid.theta_d, row % grid.theta_d, bin % grid.phi_d);
 }
 
 // Fractions of the multiples of the golden ratio: evenly spread over any regular order.
@@ -210,6 +214,55 @@ BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
   }
   if (kept.empty() && samples.size() > 0) kept.push_back(0);
   return Selected(samples, kept);
+}
+
+BrdfSamples InEveryOtherRow(const BrdfSamples& samples) {
+  CheckSizes(samples);
+  CheckGrid(samples.grid);
+  if (!samples.on_grid()) throw Error(samples.source + ": scattered samples have no rows");
+  const MerlGrid& grid = samples.grid;
+  std::vector<int> kept;
+  for (int j = 0; j < samples.size(); ++j) {
+    const int row = samples.bins[j] / grid.phi_d;
+    if ((row / grid.theta_d + row % grid.theta_d) % 2 == 0) kept.push_back(j);
+  }
+  if (kept.empty() && samples.size() > 0) kept.push_back(0);
+  return Selected(samples, kept);
+}
+
+BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride) {
+  CheckStride(stride);
+  CheckSizes(samples);
+  CheckGrid(samples.grid);
+  const MerlGrid& fine = samples.grid;
+  if (!samples.on_grid() || fine.theta_h % 2 != 0 || fine.theta_d % 2 != 0) {
+    throw Error(samples.source + ": means of four bins are of samples on a grid with an even " +
+                "number of theta_h and of theta_d");
+  }
+  const MerlGrid grid{
+      .theta_h = fine.theta_h / 2, .theta_d = fine.theta_d / 2, .phi_d = fine.phi_d};
+  std::vector<Rgb> sums(grid.size(), Rgb{});
+  std::vector<double> counts(grid.size(), 0.0);
+  for (int j = 0; j < samples.size(); ++j) {
+    const int bin = samples.bins[j], row = bin / fine.phi_d, p = bin % fine.phi_d;
+    const int h = row / fine.theta_d / 2, d = row % fine.theta_d / 2;
+    if (PhaseOnGrid(grid, h, d, p) % stride != 0) continue;
+    const int mean = grid.Index(h, d, p);
+    const double count = samples.Multiplicity(j);
+    for (int c = 0; c < kChannels; ++c) sums[mean][c] += count * samples.rho[j][c];
+    counts[mean] += count;
+  }
+  BrdfSamples means{samples.source, grid, {}, {}, {}};
+  const std::vector<bool> above = BinsAboveSurface(grid);
+  for (int bin = 0; bin < grid.size(); ++bin) {
+    if (!above[bin] || !(counts[bin] > 0)) continue;
+    Rgb mean;
+    for (int c = 0; c < kChannels; ++c) mean[c] = sums[bin][c] / counts[bin];
+    means.bins.push_back(bin);
+    means.rho.push_back(mean);
+    means.multiplicity.push_back(counts[bin]);
+  }
+  return means;
 }
 
 BrdfSamples EvenlySpread(const BrdfSamples& samples, int count) {

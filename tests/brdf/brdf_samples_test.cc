@@ -13,6 +13,7 @@ namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 constexpr MerlGrid kEven{.theta_h = 10, .theta_d = 9, .phi_d = 24};
+constexpr MerlGrid kFine{.theta_h = 10, .theta_d = 8, .phi_d = 24};
 constexpr MerlGrid kOdd{.theta_h = 10, .theta_d = 9, .phi_d = 23};  // one bin is its own mirror
 
 // As long a row as MERL's has, for strides up to that of the solver multistart.
@@ -174,6 +175,92 @@ TEST(Thinned, BeginsNeighbouringRowsApart) {
       }
     }
   }
+}
+
+// Each row as it was or not at all, and none next to another one.
+TEST(InEveryOtherRow, KeepsRowsAsOnAChessboard) {
+  for (const MerlGrid& grid : {kEven, kOdd, kLong}) {
+    const BrdfSamples samples = Dense(grid);
+    const BrdfSamples kept = InEveryOtherRow(samples);
+    std::vector<int> of_row(grid.theta_h * grid.theta_d, 0);
+    for (const int bin : kept.bins) ++of_row[bin / grid.phi_d];
+    for (int h = 0; h < grid.theta_h; ++h) {
+      for (int d = 0; d < grid.theta_d; ++d) {
+        EXPECT_EQ(of_row[h * grid.theta_d + d], (h + d) % 2 == 0 ? grid.phi_d : 0);
+      }
+    }
+    for (int j = 0; j < kept.size(); ++j) EXPECT_EQ(kept.rho[j][0], kept.bins[j]);
+  }
+}
+
+TEST(InEveryOtherRow, KeepsOneOfSamplesThatAreAllElsewhere) {
+  const BrdfSamples samples = Dense(kEven);
+  EXPECT_EQ(InEveryOtherRow(Selected(samples, {kEven.Index(0, 1, 0)})).size(), 1);
+  EXPECT_EQ(InEveryOtherRow(Selected(samples, {})).size(), 0);
+  EXPECT_THROW(InEveryOtherRow(Scattered(ValidSamples(RandomTable(kEven, 1)))), Error);
+}
+
+// Against the sums over all samples, bin by bin of the coarse grid.
+TEST(MeansOfFourBins, AreMeansOfTheSamplesInABin) {
+  const BrdfTable table = RandomTable(kFine, 3, 0.3);  // with gaps
+  const BrdfSamples samples = ValidSamples(table);
+  const std::set<int> valid(samples.bins.begin(), samples.bins.end());
+  const BrdfSamples means = MeansOfFourBins(samples, 1);
+  const MerlGrid half{kFine.theta_h / 2, kFine.theta_d / 2, kFine.phi_d};
+  EXPECT_EQ(means.grid, half);
+  EXPECT_EQ(means.source, samples.source);
+  EXPECT_NO_THROW(CheckSamples(means));
+  const std::vector<bool> above = BinsAboveSurface(half);
+  int next = 0;
+  for (int bin = 0; bin < half.size(); ++bin) {
+    const int row = bin / half.phi_d, p = bin % half.phi_d;
+    const int h = 2 * (row / half.theta_d), d = 2 * (row % half.theta_d);
+    double sum = 0, count = 0;
+    for (const int fine : {kFine.Index(h, d, p), kFine.Index(h, d + 1, p), kFine.Index(h + 1, d, p),
+                           kFine.Index(h + 1, d + 1, p)}) {
+      if (!valid.contains(fine)) continue;
+      sum += table.Value(1, fine);
+      ++count;
+    }
+    if (count == 0 || !above[bin]) continue;
+    ASSERT_LT(next, means.size());
+    EXPECT_EQ(means.bins[next], bin);
+    EXPECT_NEAR(means.rho[next][1], sum / count, 1e-15 + 1e-12 * sum);
+    EXPECT_EQ(means.Multiplicity(next), count);
+    ++next;
+  }
+  EXPECT_EQ(next, means.size());
+}
+
+TEST(MeansOfFourBins, WeighSamplesByHowOftenTheyCount) {
+  BrdfSamples samples = Selected(Dense(kFine), {kFine.Index(0, 0, 0), kFine.Index(1, 0, 0)});
+  samples.multiplicity = {3, 1};
+  const BrdfSamples means = MeansOfFourBins(samples, 1);
+  ASSERT_EQ(means.size(), 1);
+  EXPECT_NEAR(means.rho[0][0], kFine.Index(1, 0, 0) / 4.0, 1e-12);
+  EXPECT_EQ(means.multiplicity, std::vector<double>{4});
+}
+
+TEST(MeansOfFourBins, KeepMirroredPairsTogether) {
+  const BrdfSamples samples = Dense(kFine);
+  for (int stride = 2; stride <= LongestStride(kFine); ++stride) {
+    const BrdfSamples means = MeansOfFourBins(samples, stride);
+    const MerlGrid& grid = means.grid;
+    const std::set<int> kept(means.bins.begin(), means.bins.end());
+    for (const int bin : kept) {
+      const int p = bin % grid.phi_d;
+      EXPECT_TRUE(kept.contains(bin - p + grid.phi_d - 1 - p)) << stride << ", bin " << bin;
+    }
+    EXPECT_LT(means.size(), MeansOfFourBins(samples, 1).size());
+  }
+}
+
+TEST(MeansOfFourBins, SaysWhatItCannotHalve) {
+  const BrdfSamples odd = Dense({.theta_h = 5, .theta_d = 4, .phi_d = 6});
+  EXPECT_THROW(MeansOfFourBins(odd, 1), Error);
+  EXPECT_THROW(MeansOfFourBins(Scattered(ValidSamples(RandomTable(kFine, 1))), 1), Error);
+  EXPECT_THROW(MeansOfFourBins(Dense(kFine), 0), Error);
+  EXPECT_EQ(MeansOfFourBins(Selected(Dense(kFine), {}), 1).size(), 0);
 }
 
 }  // namespace

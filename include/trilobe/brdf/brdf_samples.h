@@ -67,6 +67,16 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
 // there is any. Throws Error for other strides.
 BrdfSamples Thinned(const BrdfSamples& samples, int stride);
 
+// Those of every other (theta_h, theta_d), as on a chessboard; at least one, where there is any.
+// Throws Error for scattered ones.
+BrdfSamples InEveryOtherRow(const BrdfSamples& samples);
+
+// The samples of a grid with half the bins of theta_h and of theta_d: means of up to four, which
+// count as often as these together, of one in `stride` >= 1 of its bins, chosen as in Thinned.
+// None for a bin whose own centre is of a direction below the surface. Throws Error for other
+// strides, scattered samples, and an odd number of bins of theta_h or theta_d.
+BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride);
+
 // About `count` >= 1 of them for a mean, evenly spread over their order, or all if there are fewer
 // than twice as many. On a grid they are of all phi_d. Throws Error for other counts.
 BrdfSamples EvenlySpread(const BrdfSamples& samples, int count);

@@ -14,7 +14,7 @@ namespace trilobe {
 int CountAgreeing(std::span<const double> E);
 int CountAgreeing(const std::vector<StartResult>& starts);
 
-// The same for a report: "2 of 3 starts agree".
+// The same for a report: "2 of 2 starts agree".
 std::string Agreement(const std::vector<StartResult>& starts);
 
 }  // namespace trilobe

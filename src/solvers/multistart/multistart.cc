@@ -11,6 +11,7 @@
 #include "lobes/lobes.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/multistart/agreement.h"
+#include "solvers/multistart/coarse_starts.h"
 #include "solvers/multistart/smooth_starts.h"
 #include "solvers/multistart/start_elimination.h"
 #include "trilobe/base/stop_check.h"
@@ -50,13 +51,19 @@ FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed, const St
 // The starts, in the order in which they enter: the given one first.
 class Starts {
  public:
-  Starts(const Objective& objective, const FactorModel& given, uint64_t seed,
-         StartElimination* elimination, StopCheck stop)
+  // Those of `coarse`, the coarse samples, if there are any, are made at once.
+  Starts(const Objective& objective, const std::optional<Objective>& coarse,
+         const FactorModel& given, uint64_t seed, StartElimination* elimination, StopCheck stop)
       : objective_(objective),
         given_(given),
         seed_(seed),
         elimination_(elimination),
-        stop_(std::move(stop)) {}
+        stop_(std::move(stop)) {
+    if (coarse) coarse_ = SoftenCoarsely(*coarse, objective.num_threads(), stop_, &phases_);
+  }
+
+  // Of what was done before any start entered.
+  const PhaseSeconds& phases() const { return phases_; }
 
   // Enters more of them, until there have been `count`.
   void EnterUpTo(size_t count) {
@@ -65,6 +72,9 @@ class Starts {
 
  private:
   // In the order of what they have won for the time that they take (docs/solvers.md).
+  static constexpr std::array<std::string_view, 10> kByCoarse = {
+      "given",  "coarse",   "highlight", "coarse", "coarse",
+      "coarse", "analytic", "roughness", "swept",  "grown"};
   static constexpr std::array<std::string_view, 10> kIsotropic = {
       "given",    "wide",      "narrow", "highlight", "middle",
       "analytic", "roughness", "swept",  "grown",     "grown/3"};
@@ -73,13 +83,17 @@ class Starts {
       "roughness", "roughness", "swept",   "grown",     "grown/3"};
 
   void EnterOne(size_t number) {
-    const auto& names = objective_.spec().anisotropic() ? kAnisotropic : kIsotropic;
+    const auto& names = objective_.spec().anisotropic() ? kAnisotropic
+                        : !coarse_.empty()              ? kByCoarse
+                                                        : kIsotropic;
     const std::string_view name = number < names.size() ? names[number] : "roughness";
     const auto smooth = std::ranges::find(SmoothStarts(), name, &SmoothStart::name);
     if (name == "given") {
       elimination_->Enter("given", [this](PhaseSeconds*) { return given_; });
     } else if (smooth != SmoothStarts().end()) {
       EnterSmooth(*smooth);
+    } else if (name == "coarse") {
+      EnterCoarse();
     } else if (name == "swept") {
       EnterSwept();
     } else if (name == "grown") {
@@ -100,6 +114,18 @@ class Starts {
                         [this, &start](PhaseSeconds* phases) {
                           return WithUnobservedBins(
                               SoftenFrom(start, elimination_->thinned(), given_, stop_, phases));
+                        },
+                        {.count = 0});
+  }
+
+  // The next of those that coarse samples have ranked.
+  void EnterCoarse() {
+    if (next_coarse_ == coarse_.size()) return;
+    const CoarseStart& start = coarse_[next_coarse_++];
+    elimination_->Enter(start.name,
+                        [this, &start](PhaseSeconds* phases) {
+                          return WithUnobservedBins(
+                              SoftenFurther(start, elimination_->thinned(), given_, stop_, phases));
                         },
                         {.count = 0});
   }
@@ -139,7 +165,9 @@ class Starts {
   const uint64_t seed_;
   StartElimination* const elimination_;
   const StopCheck stop_;
-  size_t entered_ = 0;
+  std::vector<CoarseStart> coarse_;
+  PhaseSeconds phases_;
+  size_t entered_ = 0, next_coarse_ = 0;
   uint64_t random_ = 0;  // of those, random ones
 };
 
@@ -167,7 +195,7 @@ double ExpectedMismatch(const Objective& thinned) {
 
 // The rounds one by one, then joint steps on all samples from the best point.
 void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
-               const FactorModel& given, Run* run) {
+               const std::optional<Objective>& coarse, const FactorModel& given, Run* run) {
   // On all samples; a new one for each point, as the damping and the bounds of another one mislead.
   std::optional<JointStepper> stepper;
   const auto begin_at = [&](const FactorModel& model) {
@@ -192,7 +220,7 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
     StartElimination elimination(
         objective, objective.spec().anisotropic() ? kThinnedMore : StartElimination::kThinned,
         stop);
-    Starts starts(objective, given, run->options().seed, &elimination, stop);
+    Starts starts(objective, coarse, given, run->options().seed, &elimination, stop);
     for (const Round& round : rounds) {
       if (round.if_undecided && CountAgreeing(elimination.Results()) >= 2) {
         elimination.Keep(1);
@@ -214,6 +242,7 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
       if (large && &round != &rounds.back()) elimination.ThinLess();
     }
     run->summary().starts = elimination.Results();
+    run->summary().phases += starts.phases();
     run->summary().phases += elimination.phases();
   }
   for (int k = 0; k < kMaxCatchUp && go_on && stepper->E() > run->best_objective(); ++k) {
@@ -238,6 +267,15 @@ class Auto : public Solver {
             {.starts = kAsBefore, .tries = 100, .keep = 1}};
   }
 
+  // The start that coarse samples prefer needs but one other to agree with.
+  static std::vector<Round> RoundsByCoarse() {
+    constexpr int kAsBefore = 0;
+    return {{.starts = 2, .tries = 28, .keep = 2},
+            {.starts = 4, .tries = 28, .keep = 3, .if_undecided = true},
+            {.starts = kAsBefore, .tries = 40, .keep = 2},
+            {.starts = kAsBefore, .tries = 100, .keep = 1}};
+  }
+
   // A step of some two thousand parameters costs ten times as much.
   static std::vector<Round> FewRounds() {
     return {{.starts = 2, .tries = 4, .keep = 2},
@@ -250,8 +288,11 @@ class Auto : public Solver {
     Run run("auto", objective, options, model);
     // A joint step on all samples gains more than an iteration of others, and costs more.
     run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
-    RunRounds(objective.spec().anisotropic() ? FewRounds() : Rounds(), objective,
-              FactorModel(*model), &run);
+    const std::optional<Objective> coarse = Coarse(objective);
+    const std::vector<Round> rounds = objective.spec().anisotropic() ? FewRounds()
+                                      : coarse                       ? RoundsByCoarse()
+                                                                     : Rounds();
+    RunRounds(rounds, objective, coarse, FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     // A few steps of an anisotropic model tell which start is best, but not whether two agree.
     if (tried.size() > 1 && !objective.spec().anisotropic()) {
@@ -270,7 +311,7 @@ class Multistart : public Solver {
     RunRounds({{.starts = n, .tries = 10, .keep = n},
                {.starts = n, .tries = 25, .keep = half},
                {.starts = n, .tries = 100, .keep = half}},
-              objective, FactorModel(*model), &run);
+              objective, Coarse(objective), FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     if (!tried.empty()) run.summary().notes.push_back(Within(tried));
     return run.Finish();

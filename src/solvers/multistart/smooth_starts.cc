@@ -53,7 +53,8 @@ std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const Factor
                                         const std::function<void(const SoftenedStart&)>& on_pair) {
   constexpr int kPair = 2;
   const int stride = StartElimination::StrideFor(objective, StartElimination::kThinned);
-  const Objective few(Thinned(objective.samples(), stride), objective.spec(), objective.weighting(),
+  const Objective few(StartElimination::Few(objective.samples(), stride), objective.spec(),
+                      objective.weighting(),
                       /*num_threads=*/1);
   std::vector<SoftenedStart> starts;
   for (int first = 0; first <= kNumStarts; first += kPair) {

@@ -24,6 +24,11 @@ int StartElimination::StrideFor(const Objective& objective, const Thinning& thin
   return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
 }
 
+BrdfSamples StartElimination::Few(const BrdfSamples& samples, int stride) {
+  if (!samples.on_grid() || stride < 2) return Thinned(samples, stride);
+  return InEveryOtherRow(Thinned(samples, stride / 2));
+}
+
 class StartElimination::Candidate {
  public:
   Candidate(std::string name, MakeStart make_start, Sweeps sweeps, const Reduction* reduction,
@@ -122,7 +127,7 @@ StartElimination::StartElimination(const Objective& objective, const Thinning& t
 }
 
 void StartElimination::Thin() {
-  thinned_ = std::make_unique<Objective>(Thinned(objective_.samples(), stride_), objective_.spec(),
+  thinned_ = std::make_unique<Objective>(Few(objective_.samples(), stride_), objective_.spec(),
                                          objective_.weighting(), /*num_threads=*/1);
 }
 

@@ -35,6 +35,9 @@ class StartElimination {
   static constexpr Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
   // Every how many samples are looked at.
   static int StrideFor(const Objective& objective, const Thinning& thinning);
+  // One in `stride` of them: on a grid, of every other (theta_h, theta_d) one in stride / 2 of
+  // phi_d, since a row of few samples takes as long as one of eight.
+  static BrdfSamples Few(const BrdfSamples& samples, int stride);
 
   // `stop` may be asked from several threads.
   StartElimination(const Objective& objective, const Thinning& thinning, StopCheck stop);

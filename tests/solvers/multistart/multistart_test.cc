@@ -9,6 +9,7 @@
 
 #include "lobes/gauge.h"
 #include "solvers/multistart/agreement.h"
+#include "solvers/multistart/start_elimination.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
 #include "trilobe/base/error.h"
@@ -121,8 +122,11 @@ TEST_P(Multistart, IsNeverWorseThanAnyStart) {
     const double E = objective.Value(model);
     EXPECT_EQ(E, summary.final_objective) << name;
     EXPECT_LE(E, summary.initial_objective) << name;
+    // Of samples that are thinned, E of a start is estimated.
+    const int stride = StartElimination::StrideFor(objective, StartElimination::kThinned);
+    const double most = 1 + (stride > 1 ? 0.05 : 1e-12);
     for (const StartResult& start : summary.starts) {
-      EXPECT_LE(E, start.objective * (1 + 1e-12)) << name << ", " << start.name;
+      EXPECT_LE(E, start.objective * most) << name << ", " << start.name;
     }
     for (const char* const init : {"highlight", "analytic", "roughness"}) {
       for (const uint64_t seed : {1, 2, 3}) {
