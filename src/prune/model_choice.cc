@@ -96,15 +96,16 @@ FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& s
 }
 
 // Where highlights widen towards grazing a fit without stretches may let F and G cancel over many
-// decades (docs/stored-model.md), from which no stretch leads back. So there are two ways, from the
-// fit and from the default start; the one that ends lower.
-SteppedModel FitStretchesTwice(const Objective& few, const FactorModel& fitted,
-                               const StopCheck& stop) {
-  SteppedModel of_fit = FitStretches(few, fitted, stop);
+// decades (docs/stored-model.md), from which no stretch leads back; so a second way begins at the
+// default start. Nothing if it ends no lower on `few` than `stretched`, the way from the fit.
+std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,
+                                             const FactorModel& stretched, const StopCheck& stop) {
   FactorModel start = InitialModels().front().make(few, /*seed=*/1);
   CopyUnobservedParameters(few.coverage(), fitted, &start);
-  SteppedModel of_start = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
-  return of_start.E < of_fit.E ? of_start : of_fit;
+  SteppedModel anew = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
+  if (!anew.model.spec().stretches.any()) return std::nullopt;
+  if (!(anew.E < Objective(few, stretched.spec()).Value(stretched))) return std::nullopt;
+  return anew;
 }
 
 // Whether the data rather have a form that shares less: a stretch may look like one. What more
@@ -276,13 +277,31 @@ class ModelSearch {
     if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
         !fitted_.spec().stretches.any()) {
       const Objective few = few_with_prior_.For(fitted_.spec(), objective_.weighting());
-      const SteppedModel start = FitStretchesTwice(few, fitted_, options_.stop);
-      if (!Fit({"stretched", start.model, objective_.weighting()})) return false;
+      SteppedModel stretch = FitStretches(few, fitted_, options_.stop);
+      if (!Fit({"stretched", stretch.model, objective_.weighting()})) return false;
+      double E = best_.candidates.back().E;
+      Fitted best = forms_.back();
+      const Objective* judged = &few;
+      // The prior is what the fit says where nothing was measured, and would lead the second way
+      // back to it. So it goes without, and the picture tells which of both is better.
+      const Objective measured = few_.For(fitted_.spec(), objective_.weighting());
+      std::optional<SteppedModel> anew =
+          FitStretchesAnew(measured, fitted_, stretch.model, options_.stop);
+      if (anew) {
+        if (!Fit({"stretched anew", anew->model, objective_.weighting()})) return false;
+        if (forms_.back().score > best.score) {
+          E = best_.candidates.back().E;
+          best = forms_.back();
+          stretch = *std::move(anew);
+          judged = &measured;
+        }
+      }
       // Under other weights it may look better even where it does not under these.
-      stretched = start.model.spec().stretches.any() &&
-                  best_.candidates.back().E < (1 - kWorthwhile) * best_.candidates.front().E &&
-                  !SharesLess(few, few_.own().samples().size(), fitted_, start, options_.stop);
-      if (stretched) bases_.push_back(forms_.back());
+      stretched =
+          stretch.model.spec().stretches.any() &&
+          E < (1 - kWorthwhile) * best_.candidates.front().E &&
+          !SharesLess(*judged, few_.own().samples().size(), fitted_, stretch, options_.stop);
+      if (stretched) bases_.push_back(std::move(best));
     }
     if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
       return true;
@@ -291,7 +310,7 @@ class ModelSearch {
     const Weighting by_channel =
         ForSamples(FindWeighting("appearance_channel"), objective_.samples());
     if (stretched) {
-      const ModelForm form{"stretched, weighed by channel", forms_.back().form.start, by_channel};
+      const ModelForm form{"stretched, weighed by channel", bases_.back().form.start, by_channel};
       if (!Fit(form)) return false;
       bases_.push_back(forms_.back());
     }

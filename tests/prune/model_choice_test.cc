@@ -367,7 +367,11 @@ TEST(ModelChoice, TriesWhatTheSpecAllows) {
       std::string name = candidate.name;
       if (name.ends_with(", thinned") || name.ends_with(", finished")) continue;
       if (name.ends_with("a lobe more")) name = "a lobe more";
-      if (name.starts_with("stretched, ")) name.erase(0, std::string("stretched, ").size());
+      // Whether a second way to stretches ends lower than the first, noise decides.
+      if (name == "stretched anew") continue;
+      for (const std::string base : {"stretched, ", "stretched anew, "}) {
+        if (name.starts_with(base)) name.erase(0, base.size());
+      }
       if (std::ranges::count(names, name) == 0) names.push_back(name);
     }
     return names;
