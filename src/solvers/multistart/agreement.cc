@@ -5,9 +5,8 @@
 namespace trilobe {
 
 int CountAgreeing(std::span<const double> E) {
-  constexpr double kSame = 0.005;
   if (E.empty()) return 0;
-  const double most = (1 + kSame) * std::ranges::min(E);
+  const double most = (1 + kSameE) * std::ranges::min(E);
   return static_cast<int>(std::ranges::count_if(E, [most](double e) { return e <= most; }));
 }
 

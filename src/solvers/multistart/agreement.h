@@ -9,7 +9,9 @@
 
 namespace trilobe {
 
-// How many have the least E, within 0.5 %. Two that came there from different starts are hardly
+inline constexpr double kSameE = 0.005;  // E of models that agree differ by this share at most
+
+// How many have the least E, within kSameE. Two that came there from different starts are hardly
 // there by chance.
 int CountAgreeing(std::span<const double> E);
 int CountAgreeing(const std::vector<StartResult>& starts);

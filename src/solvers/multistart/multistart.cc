@@ -90,6 +90,8 @@ class Starts {
     const auto smooth = std::ranges::find(SmoothStarts(), name, &SmoothStart::name);
     if (name == "given") {
       elimination_->Enter("given", [this](PhaseSeconds*) { return given_; });
+      // If it agrees with one that does not depend on it, that goes on: the same whatever is given.
+      if (!coarse_.empty()) elimination_->RankLastBehind(kSameE);
     } else if (smooth != SmoothStarts().end()) {
       EnterSmooth(*smooth);
     } else if (name == "coarse") {

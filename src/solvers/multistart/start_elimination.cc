@@ -80,6 +80,8 @@ class StartElimination::Candidate {
   bool active() const { return active_; }
   const FactorModel& model() const { return *model_; }
   double E() const { return E_; }
+  double RankedE() const { return (1 + behind_) * E_; }
+  void RankBehind(double share) { behind_ = share; }
   const PhaseSeconds& phases() const { return phases_; }
 
  private:
@@ -113,7 +115,7 @@ class StartElimination::Candidate {
   const Reduction* const reduction_;  // null: none
   const Objective* objective_;
   std::optional<FactorModel> model_;
-  double E_ = 0;
+  double E_ = 0, behind_ = 0;
   int tries_ = 0;
   bool active_ = true, converged_ = false;
   PhaseSeconds phases_;
@@ -147,6 +149,8 @@ void StartElimination::Enter(std::string name, MakeStart make_start, Sweeps swee
   candidates_.push_back(std::make_unique<Candidate>(std::move(name), std::move(make_start), sweeps,
                                                     reduction, thinned_.get()));
 }
+
+void StartElimination::RankLastBehind(double share) { candidates_.back()->RankBehind(share); }
 
 void StartElimination::Advance(int tries) {
   std::vector<Candidate*> active;
@@ -191,7 +195,7 @@ std::vector<StartElimination::Candidate*> StartElimination::Ranked() const {
   for (const auto& candidate : candidates_) {
     if (candidate->started()) ranked.push_back(candidate.get());
   }
-  std::ranges::stable_sort(ranked, {}, &Candidate::E);
+  std::ranges::stable_sort(ranked, {}, &Candidate::RankedE);
   return ranked;
 }
 

@@ -61,6 +61,9 @@ class StartElimination {
     Enter(std::move(name), std::move(make_start), Sweeps());
   }
 
+  // The start that entered last ranks as if its E were by this share larger.
+  void RankLastBehind(double share);
+
   // Those that are still in go on until they have made their sweeps and then tried so many joint
   // steps. One that has converged, or is to stop, makes no more; one that has not begun by then
   // never does.
