@@ -75,7 +75,7 @@ FactorModel RandomStart(const Objective& objective, int seed) {
   return SpreadModel(objective, std::min(one, other), std::max(one, other));
 }
 
-// As `auto` thins them before it looks for a start.
+// As many as `auto` looks at before it has a start, though not of every other row.
 Objective Few(const std::string& source, const SourceOptions& reading) {
   const BrdfSamples samples = ValidSamples(LoadSource(source, reading));
   const ModelSpec spec = ModelSpec::SharedFactors(3, samples.grid);

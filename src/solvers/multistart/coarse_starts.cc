@@ -17,8 +17,8 @@ namespace {
 
 // From the widest lobes to the narrowest, and two that have both. Which of them ends lowest on few
 // samples, coarse ones tell: docs/decisions/coarse-starts.md.
-constexpr SmoothStart kCoarseStarts[] = {{"wide", 0.2, 0.6, 10 * kStiffTables},
-                                         {"narrow", 0.02, 0.2, kStiffTables},
+constexpr SmoothStart kCoarseStarts[] = {kWideStart,
+                                         kNarrowStart,
                                          {"spread", 0.02, 0.6, kStiffTables},
                                          {"broad", 0.05, 0.6, 10 * kStiffTables}};
 constexpr int kNumCoarseStarts = std::size(kCoarseStarts);
@@ -64,23 +64,19 @@ std::vector<CoarseStart> SoftenCoarsely(const Objective& coarse, int num_threads
     const double E = coarse.Value(model);
     made[k] = {.name = start.name, .model = std::move(model), .E = E};
   });
-  std::vector<CoarseStart> starts, again;
+  std::vector<CoarseStart> starts;
   for (int k = 0; k < kNumCoarseStarts; ++k) {
     *phases += phases_of[k];
     if (made[k]) starts.push_back(*std::move(made[k]));
   }
   std::ranges::stable_sort(starts, {}, &CoarseStart::E);
-  for (size_t k = 1; k < starts.size();) {
-    const bool same = starts[k].E <= (1 + kSame) * starts[k - 1].E;
-    if (!same) {
-      ++k;
-      continue;
-    }
-    again.push_back(std::move(starts[k]));
-    starts.erase(starts.begin() + k);
+  std::vector<CoarseStart> different, again;
+  for (CoarseStart& start : starts) {
+    const bool same = !different.empty() && start.E <= (1 + kSame) * different.back().E;
+    (same ? again : different).push_back(std::move(start));
   }
-  std::ranges::move(again, std::back_inserter(starts));
-  return starts;
+  std::ranges::move(again, std::back_inserter(different));
+  return different;
 }
 
 FactorModel SoftenFurther(const CoarseStart& start, const Objective& few, const FactorModel& given,

@@ -15,10 +15,7 @@
 namespace trilobe {
 namespace {
 
-// The widest, which has the longest way, begins stiffer.
-constexpr SmoothStart kStarts[] = {{"wide", 0.2, 0.6, 10 * kStiffTables},
-                                   {"narrow", 0.02, 0.2, kStiffTables},
-                                   {"middle", 0.1, 0.6, kStiffTables}};
+constexpr SmoothStart kStarts[] = {kWideStart, kNarrowStart, {"middle", 0.1, 0.6, kStiffTables}};
 constexpr int kNumStarts = std::size(kStarts);
 
 std::optional<SoftenedStart> Softened(int number, const Objective& few, const FactorModel& given,
@@ -53,9 +50,7 @@ std::vector<SoftenedStart> SoftenStarts(const Objective& objective, const Factor
                                         const std::function<void(const SoftenedStart&)>& on_pair) {
   constexpr int kPair = 2;
   const int stride = StartElimination::StrideFor(objective, StartElimination::kThinned);
-  const Objective few(StartElimination::Few(objective.samples(), stride), objective.spec(),
-                      objective.weighting(),
-                      /*num_threads=*/1);
+  const Objective few = StartElimination::Few(objective, stride);
   std::vector<SoftenedStart> starts;
   for (int first = 0; first <= kNumStarts; first += kPair) {
     std::optional<SoftenedStart> pair[kPair];

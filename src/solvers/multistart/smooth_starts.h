@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/smooth/softening.h"
 #include "trilobe/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/objective/objective.h"
@@ -18,6 +19,10 @@ struct SmoothStart {
   const char* name;
   double narrow, wide, stiffest;
 };
+
+// The widest, which has the longest way, begins stiffer.
+inline constexpr SmoothStart kWideStart{"wide", 0.2, 0.6, 10 * kStiffTables};
+inline constexpr SmoothStart kNarrowStart{"narrow", 0.02, 0.2, kStiffTables};
 
 // `wide`, `narrow` and `middle`. Starts that are alike agree for no other reason, so the most
 // different ones come first.

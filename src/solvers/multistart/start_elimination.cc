@@ -24,9 +24,11 @@ int StartElimination::StrideFor(const Objective& objective, const Thinning& thin
   return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
 }
 
-BrdfSamples StartElimination::Few(const BrdfSamples& samples, int stride) {
-  if (!samples.on_grid() || stride < 2) return Thinned(samples, stride);
-  return InEveryOtherRow(Thinned(samples, stride / 2));
+Objective StartElimination::Few(const Objective& objective, int stride) {
+  const BrdfSamples& samples = objective.samples();
+  const bool by_rows = samples.on_grid() && stride > 1;
+  return {by_rows ? InEveryOtherRow(Thinned(samples, stride / 2)) : Thinned(samples, stride),
+          objective.spec(), objective.weighting(), /*num_threads=*/1};
 }
 
 class StartElimination::Candidate {
@@ -128,10 +130,7 @@ StartElimination::StartElimination(const Objective& objective, const Thinning& t
   Thin();
 }
 
-void StartElimination::Thin() {
-  thinned_ = std::make_unique<Objective>(Few(objective_.samples(), stride_), objective_.spec(),
-                                         objective_.weighting(), /*num_threads=*/1);
-}
+void StartElimination::Thin() { thinned_ = std::make_unique<Objective>(Few(objective_, stride_)); }
 
 void StartElimination::ThinLess() {
   if (stride_ == 1) return;

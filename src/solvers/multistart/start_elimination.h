@@ -35,9 +35,9 @@ class StartElimination {
   static constexpr Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
   // Every how many samples are looked at.
   static int StrideFor(const Objective& objective, const Thinning& thinning);
-  // One in `stride` of them: on a grid, of every other (theta_h, theta_d) one in stride / 2 of
-  // phi_d, since a row of few samples takes as long as one of eight.
-  static BrdfSamples Few(const BrdfSamples& samples, int stride);
+  // The same of one in `stride` of the samples, for one thread: on a grid, of every other (theta_h,
+  // theta_d) one in stride / 2 of phi_d, since a row of few samples takes as long as one of eight.
+  static Objective Few(const Objective& objective, int stride);
 
   // `stop` may be asked from several threads.
   StartElimination(const Objective& objective, const Thinning& thinning, StopCheck stop);
@@ -75,7 +75,7 @@ class StartElimination {
   // The best of all that ever entered; null if there is none yet.
   const FactorModel* leader() const;
 
-  // All that started, best first, with E on the thinned samples as an estimate of that on all.
+  // All that started, as they rank, with E on the thinned samples as an estimate of that on all.
   std::vector<StartResult> Results() const;
 
   // Summed over the candidates, which work at the same time.
