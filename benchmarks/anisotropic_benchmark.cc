@@ -14,12 +14,12 @@
 #include <ctime>
 #include <vector>
 
-#include "trilobe/brdf/measurement.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/measurement/measurement.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "benchmarks/ggx.h"
-#include "evaluate/ndf_sampler.h"
-#include "trilobe/evaluate/bsdf.h"
-#include "trilobe/math/angles.h"
+#include "model/evaluate/ndf_sampler.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/model/evaluate/bsdf.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {

@@ -19,14 +19,14 @@
 #include <utility>
 #include <vector>
 
-#include "formats/merl_file.h"
-#include "input/read_file.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/registry/solvers.h"
+#include "core/files/read_file.h"
+#include "io/formats/merl_file.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

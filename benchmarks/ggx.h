@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "trilobe/geometry/channels.h"
-#include "trilobe/geometry/directions.h"
-#include "trilobe/math/angles.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/angles.h"
 
 namespace trilobe {
 

@@ -18,16 +18,16 @@
 #include <utility>
 #include <vector>
 
-#include "objective/batch_evaluator.h"
+#include "model/objective/batch_evaluator.h"
 #include "solvers/awls/make_sweep.h"
 #include "solvers/awls/sample_sweep.h"
-#include "sums/scattered_equations.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/geometry/directions.h"
-#include "trilobe/objective/folded_samples.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/sums/normal_equations.h"
+#include "solvers/sums/scattered_equations.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/objective/folded_samples.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

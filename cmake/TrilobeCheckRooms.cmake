@@ -1,9 +1,10 @@
 # cmake -Droot=ROOT -P TrilobeCheckRooms.cmake: checks what the files of the rooms in ROOT/src depend
 # on, their public headers in ROOT/include/trilobe included.
 # - A file includes headers of its own room, and of those that src/rooms.txt lists for it: public ones
-#   as "trilobe/ROOM/NAME.h", others as "ROOM/NAME.h".
+#   as "trilobe/GROUP/ROOM/NAME.h", others as "GROUP/ROOM/NAME.h".
 # - Each of these is needed by some file, and comes before it in the list, so that no room depends,
-#   however indirectly, on itself.
+#   however indirectly, on itself. A room sees those of its own group, and of the groups that the list
+#   gives its group, which come before it, too.
 # - A list by macro of functions that other rooms define, as registries have, counts as an include.
 # - In a room no NAME, a header and its source together, depends on itself through others.
 # - NAME.cc includes its own NAME.h first, so that a build without precompiled headers proves NAME.h
@@ -20,22 +21,22 @@ file(GLOB_RECURSE private RELATIVE ${source_dir} ${source_dir}/*.h ${source_dir}
 file(GLOB_RECURSE public RELATIVE ${public_dir} ${public_dir}/*.h)
 set(errors "")
 foreach(name IN LISTS private public)
-  get_filename_component(room ${name} DIRECTORY)
-  if(room IN_LIST rooms)
-    list(APPEND ${room}_files ${name})
+  get_filename_component(path ${name} DIRECTORY)
+  if(DEFINED room_in_${path})
+    list(APPEND ${room_in_${path}}_files ${name})
   else()
-    string(APPEND errors "${name}: rooms.txt does not list the room ${room}\n")
+    string(APPEND errors "${name}: rooms.txt does not list the room ${path}\n")
   endif()
 endforeach()
 
 # `defined_in_FUNCTION`: the room of a function without arguments.
 foreach(name IN LISTS private)
   if(name MATCHES "\\.cc$")
-    get_filename_component(room ${name} DIRECTORY)
+    get_filename_component(path ${name} DIRECTORY)
     file(STRINGS ${source_dir}/${name} functions REGEX "^[A-Za-z]+ [A-Za-z]+\\(\\) {")
     foreach(function IN LISTS functions)
       string(REGEX REPLACE "^[A-Za-z]+ ([A-Za-z]+)\\(\\).*" "\\1" function "${function}")
-      set(defined_in_${function} ${room})
+      set(defined_in_${function} ${room_in_${path}})
     endforeach()
   endif()
 endforeach()
@@ -43,17 +44,31 @@ endforeach()
 # check_sees(NAME ROOM WHAT OTHER): that ROOM, where NAME is, sees OTHER, where WHAT comes from.
 macro(check_sees name room what other)
   list(APPEND used ${other})
-  if(NOT ${other} STREQUAL ${room} AND NOT ${other} IN_LIST ${room}_sees)
+  if(NOT "${other}" STREQUAL "${room}" AND NOT "${other}" IN_LIST ${room}_sees)
     string(APPEND errors "${name}: ${what}, but the room ${room} does not see ${other}; "
                          "rooms.txt says what it sees\n")
   endif()
 endmacro()
 
 set(lower)
+foreach(group IN LISTS groups)
+  foreach(other IN LISTS ${group}_group_sees)
+    if(NOT other IN_LIST lower)
+      string(APPEND errors "rooms.txt: ${group} sees ${other}, which is not listed above it\n")
+    endif()
+  endforeach()
+  list(APPEND lower ${group})
+endforeach()
+
+set(lower)
 foreach(room IN LISTS rooms)
   foreach(other IN LISTS ${room}_sees)
     if(NOT other IN_LIST lower)
       string(APPEND errors "rooms.txt: ${room} sees ${other}, which is not listed above it\n")
+    elseif(NOT ${other}_group STREQUAL ${room}_group
+           AND NOT ${other}_group IN_LIST ${${room}_group}_group_sees)
+      string(APPEND errors "rooms.txt: ${room} sees ${other}, but the group ${${room}_group} does not "
+                           "see ${${other}_group}\n")
     endif()
   endforeach()
   list(APPEND lower ${room})
@@ -68,27 +83,29 @@ foreach(room IN LISTS rooms)
     get_filename_component(unit ${name} NAME_WE)
     list(APPEND units ${unit})
     foreach(include IN LISTS includes)
-      if(include MATCHES "^#include \"(trilobe/)?(([a-z/]*)/)?([a-z0-9_]+)\\.h\"")
+      if(include MATCHES "^#include \"(trilobe/)?(([a-z_/]*)/)?([a-z0-9_]+)\\.h\"")
         set(is_public ${CMAKE_MATCH_1})
-        set(other ${CMAKE_MATCH_3})
+        set(path ${CMAKE_MATCH_3})
         set(header ${CMAKE_MATCH_4})
-        if(is_public AND EXISTS ${public_dir}/${other}/${header}.h)
-        elseif(NOT is_public AND EXISTS ${source_dir}/${other}/${header}.h)
+        if(is_public AND EXISTS ${public_dir}/${path}/${header}.h)
+        elseif(NOT is_public AND EXISTS ${source_dir}/${path}/${header}.h)
           if(name IN_LIST public)
             string(APPEND errors "${name}: ${include} in a public header, and it is not public; move it "
                                  "to include/trilobe\n")
           endif()
         else()
           string(APPEND errors "${name}: there is no header for ${include}; public ones are "
-                               "\"trilobe/ROOM/NAME.h\", others \"ROOM/NAME.h\"\n")
+                               "\"trilobe/GROUP/ROOM/NAME.h\", others \"GROUP/ROOM/NAME.h\"\n")
           continue()
         endif()
+        set(other "${room_in_${path}}")
         check_sees(${name} ${room} "${include}" ${other})
         if(other STREQUAL room AND NOT header STREQUAL unit)
           list(APPEND ${room}_${unit}_needs ${header})
         endif()
       elseif(include MATCHES "^#include \"")
-        string(APPEND errors "${name}: write ${include} as \"trilobe/ROOM/NAME.h\" or \"ROOM/NAME.h\"\n")
+        string(APPEND errors "${name}: write ${include} as \"trilobe/GROUP/ROOM/NAME.h\" or "
+                             "\"GROUP/ROOM/NAME.h\"\n")
       elseif(name IN_LIST public AND include MATCHES "<.*[/.].*>")
         string(APPEND errors "${name}: ${include} in a public header, whose users would need it; "
                              "include it in a .cc file\n")
@@ -122,7 +139,7 @@ foreach(room IN LISTS rooms)
     endif()
   endforeach()
   foreach(other IN LISTS ${room}_sees)
-    if(NOT other IN_LIST used)
+    if(NOT "${other}" IN_LIST used)
       string(APPEND errors "rooms.txt: no file of ${room} includes a header of ${other}; "
                            "take it from the list\n")
     endif()

@@ -1,5 +1,5 @@
 # cmake -Dout=FILE.cc -Dfiles=A;B;... -Dheader=H -Dfunction=F -P TrilobeEmbed.cmake: writes a C++ file with the text of
-# some files, as the function F that the header H declares gives it (input/embedded_file.h). Raw strings need no escapes, but compilers take no longer ones than
+# some files, as the function F that the header H declares gives it (core/files/embedded_file.h). Raw strings need no escapes, but compilers take no longer ones than
 # 64 KB everywhere: longer texts are cut into several, which stand side by side as one.
 cmake_minimum_required(VERSION 3.25)
 set(code "// Made by cmake/TrilobeEmbed.cmake from files of the repository.\n#include \"${header}\"\n\n")

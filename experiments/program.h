@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "brdf/anisotropy.h"
-#include "trilobe/brdf/measurement.h"
+#include "model/measurement/anisotropy.h"
+#include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
 

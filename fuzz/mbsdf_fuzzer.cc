@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "check_measurement.h"
-#include "formats/mbsdf_file.h"
-#include "trilobe/base/error.h"
+#include "io/formats/mbsdf_file.h"
+#include "trilobe/core/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

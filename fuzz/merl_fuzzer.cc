@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "formats/merl_file.h"
-#include "trilobe/base/error.h"
+#include "io/formats/merl_file.h"
+#include "trilobe/core/base/error.h"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "trilobe/base/error.h"
-#include "trilobe/results/model_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/model_files/model_file.h"
 
 namespace {
 

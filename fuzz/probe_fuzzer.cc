@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "pictures/image_file.h"
-#include "trilobe/appearance/environment.h"
-#include "trilobe/base/error.h"
+#include "io/pictures/image_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/appearance/environment.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

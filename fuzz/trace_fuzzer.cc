@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/base/error.h"
-#include "trilobe/results/trace_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/model_files/trace_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

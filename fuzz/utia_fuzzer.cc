@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "check_measurement.h"
-#include "formats/utia_file.h"
-#include "trilobe/base/error.h"
-#include "trilobe/files/content.h"
+#include "io/formats/utia_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size < 2) return 0;

@@ -93,12 +93,12 @@ SolverEntry MadeUpEntry() {
 
 }  // namespace trilobe
 """)
-    tree.after("src/registry/solvers.cc", r"X\(LmPlain\)", " \\\n  X(MadeUp)")
+    tree.after("src/solvers/registry/solvers.cc", r"X\(LmPlain\)", " \\\n  X(MadeUp)")
 
 
 def measurement_format(tree):
-    tree.add("src/formats/made_up_file.cc", """#include "trilobe/base/error.h"
-#include "trilobe/formats/measurement_format.h"
+    tree.add("src/io/formats/made_up_file.cc", """#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
 
@@ -114,7 +114,7 @@ MeasurementFormat MadeUpFormat() {
 
 }  // namespace trilobe
 """)
-    tree.after("src/formats/source.cc", r"X\(Merl\) *\\\n", "  X(MadeUp) \\\n")
+    tree.after("src/io/formats/source.cc", r"X\(Merl\) *\\\n", "  X(MadeUp) \\\n")
 
 
 def form(tree):
@@ -134,7 +134,7 @@ ModelSpec ModelSpec::MadeUp(const MerlGrid& grid) {
 
 
 def weighting(tree):
-    tree.after("src/objective/weighting.cc", r'\{"uniform", "1", true, ByChannel\(UniformWeight\)\},',
+    tree.after("src/model/objective/weighting.cc", r'\{"uniform", "1", true, ByChannel\(UniformWeight\)\},',
                '\n      {"made_up", "1, too", true, ByChannel(UniformWeight)},')
 
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "tests/contents.h"
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 

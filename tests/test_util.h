@@ -13,12 +13,12 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/brdf/brdf_table.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/objective/weighting.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/model/objective/weighting.h"
 
 namespace trilobe {
 

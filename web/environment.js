@@ -1,5 +1,5 @@
 // Light from everywhere by latitude and longitude, and the half vectors that pictures are summed over: those of
-// src/appearance/environment.cc and mirrored_environment.cc.
+// src/model/appearance/environment.cc and mirrored_environment.cc.
 
 const DEGREE = Math.PI / 180;
 

@@ -1,4 +1,4 @@
-// The environment as mirrors with the normals of a disc send it to the eye (src/appearance/mirrored_environment.cc).
+// The environment as mirrors with the normals of a disc send it to the eye (src/model/appearance/mirrored_environment.cc).
 uniform highp sampler2D environment;  // latitude and longitude
 uniform float turn;                   // of the environment about y, in parts of a turn
 layout(location = 0) out vec4 seen;

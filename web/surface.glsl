@@ -1,5 +1,5 @@
 // The normal and the tangent that each pixel sees, of a sphere, a cloth or a flat sample. The cloth is that of
-// src/appearance/view.cc.
+// src/model/appearance/view.cc.
 uniform int object;  // 0 sphere, 1 cloth, 2 flat
 uniform vec2 turn;   // of the object about y and x, or of the cloth's thread [rad]
 uniform float size;  // pixels

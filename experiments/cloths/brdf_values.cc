@@ -10,17 +10,17 @@
 #include <string>
 #include <vector>
 
-#include "appearance/picture_data.h"
+#include "core/files/file.h"
+#include "core/files/little_endian.h"
+#include "core/files/read_file.h"
 #include "experiments/program.h"
-#include "files/file.h"
-#include "files/little_endian.h"
-#include "input/read_file.h"
-#include "trilobe/base/error.h"
-#include "trilobe/brdf/node_brdf.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/geometry/directions.h"
-#include "trilobe/results/model_file.h"
-#include "trilobe/system/parallel.h"
+#include "model/appearance/picture_data.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/measurement/node_brdf.h"
 
 DEFINE_bool(interpolated, false,
             "of a synthetic material its measurement, linear between nodes, not its formula");

@@ -8,15 +8,15 @@
 #include <string>
 
 #include "experiments/program.h"
-#include "trilobe/base/error.h"
-#include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/brdf/measurement.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/measurement.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 DEFINE_string(solver, "awls", "a solver that moves single elements, or blocks of them");
 DEFINE_int32(

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "experiments/program.h"
-#include "trilobe/base/error.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/results/model_file.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 DEFINE_string(weighting, "compressive", "weights of the objective");
 DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");

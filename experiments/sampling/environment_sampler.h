@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "appearance/color.h"
-#include "trilobe/appearance/environment.h"
-#include "trilobe/geometry/channels.h"
-#include "trilobe/geometry/directions.h"
-#include "trilobe/math/angles.h"
+#include "model/appearance/color.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/model/appearance/environment.h"
 
 namespace trilobe {
 

@@ -12,17 +12,17 @@
 #include <string>
 #include <vector>
 
-#include "appearance/color.h"
 #include "benchmarks/ggx.h"
-#include "evaluate/ndf_sampler.h"
+#include "core/files/file.h"
+#include "core/system/stopwatch.h"
 #include "experiments/program.h"
 #include "experiments/sampling/environment_sampler.h"
-#include "files/file.h"
-#include "pictures/image_file.h"
-#include "system/stopwatch.h"
-#include "trilobe/appearance/environment.h"
-#include "trilobe/evaluate/bsdf.h"
-#include "trilobe/evaluate/read_model.h"
+#include "io/pictures/image_file.h"
+#include "model/appearance/color.h"
+#include "model/evaluate/ndf_sampler.h"
+#include "trilobe/model/appearance/environment.h"
+#include "trilobe/model/evaluate/bsdf.h"
+#include "trilobe/model/evaluate/read_model.h"
 
 DEFINE_int32(size, 64, "pixels across the sphere");
 DEFINE_string(samples, "16,64,256", "samples a pixel, of each sampler");

@@ -15,13 +15,13 @@
 
 #include "experiments/program.h"
 #include "solvers/multistart/start_elimination.h"
-#include "trilobe/base/error.h"
-#include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 DEFINE_string(way, "from_1e-4", "what a start goes through: one of the names in `kWays`");
 DEFINE_int32(starts, 100, "random starts");

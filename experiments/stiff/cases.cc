@@ -6,11 +6,11 @@
 #include <span>
 #include <utility>
 
-#include "base/named.h"
+#include "core/base/named.h"
 #include "experiments/stiff/anisotropic_cases.h"
 #include "experiments/stiff/material.h"
 #include "tests/test_util.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {

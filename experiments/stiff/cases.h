@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/model_spec.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/files/file.h"
+#include "core/files/read_file.h"
 #include "experiments/stiff/agreement.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
-#include "files/file.h"
-#include "input/read_file.h"
-#include "trilobe/base/error.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/error.h"
-#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {

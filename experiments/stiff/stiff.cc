@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "core/files/file.h"
 #include "experiments/program.h"
 #include "experiments/stiff/agreement.h"
 #include "experiments/stiff/answers.h"
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/reference_problem.h"
-#include "files/file.h"
-#include "lobes/gauge.h"
-#include "trilobe/base/error.h"
-#include "trilobe/registry/solvers.h"
+#include "model/lobes/gauge.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 DEFINE_string(case, "all", "name of a case, or all");

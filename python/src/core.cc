@@ -23,10 +23,10 @@
 #include <vector>
 
 #include "owned_array.h"
-#include "trilobe/base/error.h"
-#include "trilobe/evaluate/bsdf.h"
-#include "trilobe/evaluate/read_model.h"
-#include "trilobe/materials/load_model.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/evaluate/bsdf.h"
+#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/materials/load_model.h"
 
 namespace nb = nanobind;
 

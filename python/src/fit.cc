@@ -21,15 +21,15 @@
 #include <variant>
 #include <vector>
 
-#include "algebra/openblas.h"
+#include "core/algebra/openblas.h"
+#include "core/system/peak_memory.h"
+#include "core/system/utc_time.h"
+#include "fit/reports/fit_details.h"
+#include "fit/reports/fit_report.h"
 #include "fit_module.h"
 #include "owned_array.h"
-#include "reports/fit_details.h"
-#include "reports/fit_report.h"
-#include "system/peak_memory.h"
-#include "system/utc_time.h"
-#include "trilobe/results/model_file.h"
-#include "trilobe/results/trace_file.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/model_files/trace_file.h"
 #include "trilobe/solvers/solver_options.h"
 
 namespace nb = nanobind;

@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "trilobe/base/error.h"
-#include "trilobe/brdf/measurement.h"
-#include "trilobe/formats/measurement_format.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/measurement_format.h"
+#include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe::python {
 

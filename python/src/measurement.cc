@@ -13,19 +13,19 @@
 #include <utility>
 #include <vector>
 
+#include "core/system/stopwatch.h"
+#include "fit/reports/bin_counts.h"
 #include "fit_module.h"
-#include "formats/completed_measurement.h"
-#include "formats/utia_file.h"
+#include "io/formats/completed_measurement.h"
+#include "io/formats/utia_file.h"
 #include "owned_array.h"
-#include "reports/bin_counts.h"
-#include "system/stopwatch.h"
-#include "trilobe/brdf/node_brdf.h"
-#include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/convert/convert.h"
-#include "trilobe/evaluate/read_model.h"
 #include "trilobe/fit/as_measurement.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/fit/export/convert.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/measurement/node_brdf.h"
+#include "trilobe/model/measurement/tabulated_brdf.h"
+#include "trilobe/model/synth/synth.h"
 
 namespace nb = nanobind;
 

@@ -1,4 +1,4 @@
-#include "trilobe/objective/score.h"
+#include "trilobe/model/objective/score.h"
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -12,16 +12,16 @@
 #include <utility>
 #include <vector>
 
-#include "appearance/picture_data.h"
-#include "appearance/seen_samples.h"
+#include "fit/reports/score_report.h"
 #include "fit_module.h"
+#include "model/appearance/picture_data.h"
+#include "model/appearance/seen_samples.h"
 #include "owned_array.h"
-#include "reports/score_report.h"
-#include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/material.h"
-#include "trilobe/evaluate/read_model.h"
-#include "trilobe/lobes/reconstruct.h"
-#include "trilobe/objective/weighting.h"
+#include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/appearance/material.h"
+#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/weighting.h"
 
 namespace nb = nanobind;
 

@@ -47,6 +47,6 @@ __all__ = [
     "synthetic_materials",
     "weightings",
 ]
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 Error.__module__ = "trilobe"

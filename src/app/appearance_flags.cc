@@ -3,7 +3,7 @@
 #include <gflags/gflags.h>
 
 #include "app/flags.h"
-#include "pictures/image_file.h"
+#include "io/pictures/image_file.h"
 
 DEFINE_string(
     probe, "",

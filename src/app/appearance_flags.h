@@ -3,7 +3,7 @@
 
 #include <gflags/gflags_declare.h>
 
-#include "trilobe/appearance/appearance.h"
+#include "trilobe/model/appearance/appearance.h"
 
 // What lights the spheres of fit, score and plot.
 DECLARE_string(probe);

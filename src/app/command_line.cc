@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

@@ -15,11 +15,11 @@
 #include "app/scene_report.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
-#include "input/json_value.h"
-#include "pictures/plots.h"
-#include "reports/print.h"
-#include "trilobe/base/error.h"
-#include "trilobe/base/printable.h"
+#include "core/files/json_value.h"
+#include "fit/reports/print.h"
+#include "io/pictures/plots.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
 
 namespace trilobe {
 namespace {

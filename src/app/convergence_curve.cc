@@ -5,8 +5,8 @@
 #include <limits>
 #include <ostream>
 
-#include "files/file.h"
-#include "trilobe/objective/score.h"
+#include "core/files/file.h"
+#include "trilobe/model/objective/score.h"
 
 namespace trilobe {
 namespace {

@@ -5,14 +5,14 @@
 #include "app/describe.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "lobes/gauge.h"
-#include "reports/albedo_table.h"
-#include "reports/light_report.h"
-#include "reports/print.h"
-#include "reports/stretch_report.h"
-#include "results/stretch_json.h"
-#include "trilobe/appearance/material.h"
-#include "trilobe/results/model_file.h"
+#include "fit/reports/albedo_table.h"
+#include "fit/reports/light_report.h"
+#include "fit/reports/print.h"
+#include "fit/reports/stretch_report.h"
+#include "io/model_files/stretch_json.h"
+#include "model/lobes/gauge.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/appearance/material.h"
 
 namespace trilobe {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "algebra/openblas.h"
 #include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/fit_many.h"
@@ -22,20 +21,21 @@
 #include "app/result_folder.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
-#include "input/read_file.h"
-#include "pictures/gnuplot.h"
-#include "reports/fit_details.h"
-#include "reports/fit_report.h"
-#include "reports/fit_summary.h"
-#include "reports/print.h"
-#include "scene/fit_cache.h"
-#include "trilobe/base/error.h"
+#include "core/algebra/openblas.h"
+#include "core/files/read_file.h"
+#include "fit/reports/fit_details.h"
+#include "fit/reports/fit_report.h"
+#include "fit/reports/fit_summary.h"
+#include "fit/reports/print.h"
+#include "fit/scene/fit_cache.h"
+#include "io/pictures/gnuplot.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/materials/load_model.h"
-#include "trilobe/registry/solvers.h"
-#include "trilobe/results/model_file.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/materials/load_model.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 DEFINE_string(
     init, "analytic",

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "trilobe/formats/source.h"
+#include "trilobe/io/formats/source.h"
 
 namespace trilobe {
 

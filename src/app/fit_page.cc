@@ -8,10 +8,10 @@
 #include <sstream>
 #include <vector>
 
-#include "base/markup.h"
-#include "reports/print.h"
-#include "trilobe/base/printable.h"
-#include "view/document.h"
+#include "core/base/markup.h"
+#include "fit/reports/print.h"
+#include "io/page/document.h"
+#include "trilobe/core/base/printable.h"
 
 namespace trilobe {
 namespace {

@@ -8,11 +8,11 @@
 
 #include "app/convergence_curve.h"
 #include "app/result_folder.h"
-#include "reports/fit_report.h"
+#include "fit/reports/fit_report.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/results/model_file.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

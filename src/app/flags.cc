@@ -9,12 +9,12 @@
 #include <thread>
 #include <utility>
 
-#include "base/text.h"
-#include "files/text_lines.h"
-#include "formats/utia_file.h"
-#include "trilobe/base/error.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/objective/weighting.h"
+#include "core/base/text.h"
+#include "core/files/text_lines.h"
+#include "io/formats/utia_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/objective/weighting.h"
 
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
 DEFINE_int64(

@@ -2,7 +2,7 @@
 #include "app/describe.h"
 #include "app/flags.h"
 #include "app/inputs.h"
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

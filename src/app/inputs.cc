@@ -5,11 +5,11 @@
 #include <string_view>
 
 #include "app/flags.h"
-#include "files/file.h"
-#include "trilobe/base/error.h"
-#include "trilobe/files/content.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/materials/load_model.h"
+#include "core/files/file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/materials/load_model.h"
 
 namespace trilobe {
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "trilobe/brdf/measurement.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/results/model_file.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
 

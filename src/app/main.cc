@@ -18,9 +18,9 @@
 #include "app/command_line.h"
 #include "app/flags.h"
 #include "app/solver_flags.h"
-#include "base/nearest_name.h"
-#include "trilobe/base/error.h"
-#include "trilobe/base/printable.h"
+#include "core/base/nearest_name.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
 
 namespace trilobe {
 

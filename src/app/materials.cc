@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "materials/material_files.h"
+#include "model/materials/material_files.h"
 
 namespace trilobe {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "app/command.h"
 #include "app/materials.h"
-#include "reports/print.h"
+#include "fit/reports/print.h"
 
 namespace trilobe {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/flags.h"
-#include "appearance/picture_data.h"
-#include "files/text_lines.h"
-#include "trilobe/base/error.h"
+#include "core/files/text_lines.h"
+#include "model/appearance/picture_data.h"
+#include "trilobe/core/base/error.h"
 
 DEFINE_string(
     model, "shared",

@@ -8,7 +8,7 @@
 #include "app/scene_report.h"
 #include "app/scene_run.h"
 #include "app/solver_flags.h"
-#include "reports/print.h"
+#include "fit/reports/print.h"
 
 namespace trilobe {
 namespace {

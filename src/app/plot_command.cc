@@ -9,12 +9,12 @@
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/result_folder.h"
-#include "files/file.h"
-#include "pictures/plots.h"
-#include "reports/print.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/results/model_file.h"
-#include "trilobe/results/trace_file.h"
+#include "core/files/file.h"
+#include "fit/reports/print.h"
+#include "io/pictures/plots.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/model_files/trace_file.h"
 
 DEFINE_string(trace, "", "trace.csv of a fit, to draw its convergence");
 

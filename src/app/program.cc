@@ -3,9 +3,9 @@
 #include <dlfcn.h>
 #include <gflags/gflags.h>
 
-#include "input/read_file.h"
-#include "scene/fit_cache.h"
-#include "trilobe/base/error.h"
+#include "core/files/read_file.h"
+#include "fit/scene/fit_cache.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

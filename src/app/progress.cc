@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "trilobe/base/printable.h"
+#include "trilobe/core/base/printable.h"
 
 namespace trilobe {
 Progress::Progress(const SolverOptions& options)

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <string>
 
-#include "system/stopwatch.h"
-#include "trilobe/objective/iteration_record.h"
+#include "core/system/stopwatch.h"
+#include "trilobe/model/objective/iteration_record.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

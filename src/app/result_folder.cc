@@ -7,9 +7,9 @@
 #include <iterator>
 #include <utility>
 
-#include "files/file.h"
-#include "trilobe/base/error.h"
-#include "trilobe/formats/source.h"
+#include "core/files/file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
 
 namespace trilobe {
 Inputs::Inputs(const std::vector<std::string>& paths) {

@@ -7,8 +7,8 @@
 
 #include "app/flags.h"
 #include "app/scene_flags.h"
-#include "reports/print.h"
-#include "trilobe/base/printable.h"
+#include "fit/reports/print.h"
+#include "trilobe/core/base/printable.h"
 
 namespace trilobe {
 namespace {

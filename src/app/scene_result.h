@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/material_fit.h"
-#include "scene/scene_file.h"
+#include "fit/scene/material_fit.h"
+#include "fit/scene/scene_file.h"
 
 namespace trilobe {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/scene_result.h"
-#include "scene/scene_fit.h"
+#include "fit/scene/scene_fit.h"
 
 namespace trilobe {
 

@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "app/flags.h"
-#include "trilobe/base/error.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/registry/solvers.h"
 
 DEFINE_string(solver, trilobe::Solvers().front().name, "one of the solvers above");
 

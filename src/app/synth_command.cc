@@ -6,9 +6,9 @@
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/result_folder.h"
-#include "reports/print.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/synth/synth.h"
+#include "fit/reports/print.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/synth/synth.h"
 
 namespace trilobe {
 namespace {

@@ -14,12 +14,12 @@
 #include "app/inputs.h"
 #include "app/result_folder.h"
 #include "app/view_page.h"
-#include "files/file.h"
-#include "reports/print.h"
-#include "trilobe/base/error.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/results/model_file.h"
-#include "trilobe/results/trace_file.h"
+#include "core/files/file.h"
+#include "fit/reports/print.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/model_files/trace_file.h"
 
 DECLARE_string(trace);
 

@@ -1,12 +1,12 @@
 #include "app/view_page.h"
 
 #include "app/fit_name.h"
-#include "appearance/picture_data.h"
-#include "appearance/sample_table.h"
-#include "appearance/verdict.h"
-#include "trilobe/appearance/environment.h"
-#include "trilobe/appearance/material.h"
-#include "view/page.h"
+#include "io/page/page.h"
+#include "model/appearance/picture_data.h"
+#include "model/appearance/sample_table.h"
+#include "model/appearance/verdict.h"
+#include "trilobe/model/appearance/environment.h"
+#include "trilobe/model/appearance/material.h"
 
 namespace trilobe {
 namespace {

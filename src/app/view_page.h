@@ -5,11 +5,11 @@
 #include <span>
 #include <string>
 
-#include "trilobe/appearance/appearance.h"
-#include "trilobe/appearance/seen_error.h"
-#include "trilobe/brdf/measurement.h"
-#include "trilobe/objective/iteration_record.h"
-#include "trilobe/results/model_file.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/appearance/seen_error.h"
+#include "trilobe/model/measurement/measurement.h"
+#include "trilobe/model/objective/iteration_record.h"
 
 namespace trilobe {
 
@@ -18,7 +18,7 @@ struct ViewedPage {
   bool has_measured = false;  // pictures of the measurement, not of the model alone
 };
 
-// The page of a model (view/page.h), beside `measured` where that is not null. `seen` is how the
+// The page of a model (io/page/page.h), beside `measured` where that is not null. `seen` is how the
 // two differ on the sphere; where it is not given it is found out. `path` is what names the
 // material where the model does not say of what it is a fit.
 ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,

@@ -10,11 +10,11 @@
 #include "app/inputs.h"
 #include "app/program.h"
 #include "app/result_folder.h"
-#include "files/file.h"
-#include "reports/print.h"
-#include "trilobe/base/error.h"
-#include "trilobe/convert/convert.h"
-#include "trilobe/formats/source.h"
+#include "core/files/file.h"
+#include "fit/reports/print.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/fit/export/convert.h"
+#include "trilobe/io/formats/source.h"
 
 DEFINE_double(error, 0,
               "of a .bsdf file: how far it may be off the model or the measurement, relative, in "

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/brdf/node_brdf.h"
+#include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {

@@ -1,7 +1,7 @@
 #include "trilobe/fit/as_measurement.h"
 
-#include "appearance/node_reconstruction.h"
-#include "trilobe/lobes/reconstruct.h"
+#include "model/appearance/node_reconstruction.h"
+#include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe {
 

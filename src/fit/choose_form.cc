@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "objective/canonical_form.h"
-#include "system/stopwatch.h"
+#include "core/system/stopwatch.h"
+#include "model/objective/canonical_form.h"
 
 namespace trilobe {
 namespace {

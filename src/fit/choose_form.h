@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "fit/anisotropic_forms.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/prune/model_choice.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/prune/model_choice.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "fit/choose_form.h"
-#include "objective/canonical_form.h"
-#include "prune/unmeasured_prior.h"
+#include "fit/prune/unmeasured_prior.h"
+#include "model/objective/canonical_form.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/prior/reach.h"
+#include "trilobe/fit/prior/reach.h"
 
 namespace trilobe {
 namespace {

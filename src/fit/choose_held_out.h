@@ -2,10 +2,10 @@
 #define TRILOBE_FIT_CHOOSE_HELD_OUT_H_
 
 #include "fit/held_out.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/prune/model_choice.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/prune/model_choice.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

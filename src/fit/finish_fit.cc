@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "fit/choose_held_out.h"
-#include "objective/canonical_form.h"
-#include "objective/robust.h"
-#include "prune/unmeasured_prior.h"
+#include "fit/prune/unmeasured_prior.h"
+#include "model/objective/canonical_form.h"
+#include "model/objective/robust.h"
 #include "solvers/joint/data_edge.h"
 #include "solvers/joint/reflectance.h"
 #include "solvers/smooth/smoothest.h"
-#include "trilobe/appearance/material.h"
-#include "trilobe/objective/score.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/appearance/material.h"
+#include "trilobe/model/objective/score.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

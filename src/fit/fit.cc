@@ -6,21 +6,21 @@
 #include <memory>
 #include <utility>
 
-#include "appearance/node_judge.h"
-#include "appearance/picture_data.h"
-#include "appearance/seen_samples.h"
-#include "brdf/anisotropy.h"
+#include "core/system/stopwatch.h"
 #include "fit/anisotropic_forms.h"
 #include "fit/choose_form.h"
 #include "fit/held_out.h"
-#include "lobes/gauge.h"
-#include "objective/canonical_form.h"
-#include "system/stopwatch.h"
-#include "trilobe/appearance/material.h"
-#include "trilobe/base/check.h"
-#include "trilobe/base/error.h"
-#include "trilobe/lobes/reconstruct.h"
-#include "trilobe/registry/solvers.h"
+#include "model/appearance/node_judge.h"
+#include "model/appearance/picture_data.h"
+#include "model/appearance/seen_samples.h"
+#include "model/lobes/gauge.h"
+#include "model/measurement/anisotropy.h"
+#include "model/objective/canonical_form.h"
+#include "trilobe/core/base/check.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/appearance/material.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/solvers/registry/solvers.h"
 
 namespace trilobe {
 namespace {

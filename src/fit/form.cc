@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "appearance/picture_data.h"
-#include "trilobe/base/error.h"
+#include "model/appearance/picture_data.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "appearance/seen_samples.h"
-#include "brdf/counter_random.h"
-#include "trilobe/base/error.h"
-#include "trilobe/lobes/reconstruct.h"
-#include "trilobe/registry/solvers.h"
+#include "model/appearance/seen_samples.h"
+#include "model/measurement/counter_random.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "trilobe/base/stop_check.h"
-#include "trilobe/brdf/brdf_samples.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

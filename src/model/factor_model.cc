@@ -6,8 +6,8 @@
 #include <limits>
 #include <sstream>
 
-#include "trilobe/base/error.h"
-#include "trilobe/math/catmull_rom.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <string>
 
-#include "trilobe/base/check.h"
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/check.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 

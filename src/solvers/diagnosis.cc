@@ -7,9 +7,9 @@
 #include <sstream>
 #include <vector>
 
-#include "algebra/eigenvalues.h"
-#include "trilobe/base/check.h"
-#include "trilobe/sums/normal_equations.h"
+#include "core/algebra/eigenvalues.h"
+#include "trilobe/core/base/check.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

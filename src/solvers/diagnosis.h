@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/model/objective/quadratic_model.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

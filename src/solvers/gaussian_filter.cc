@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "trilobe/base/check.h"
+#include "trilobe/core/base/check.h"
 
 namespace trilobe {
 

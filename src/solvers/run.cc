@@ -8,8 +8,8 @@
 
 #include "solvers/diagnosis.h"
 #include "solvers/gaussian_filter.h"
-#include "trilobe/base/check.h"
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/check.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

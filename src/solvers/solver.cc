@@ -1,6 +1,6 @@
 #include "trilobe/solvers/solver.h"
 
-#include "trilobe/base/check.h"
+#include "trilobe/core/base/check.h"
 
 namespace trilobe {
 

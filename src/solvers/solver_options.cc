@@ -5,8 +5,8 @@
 #include <sstream>
 #include <type_traits>
 
-#include "base/named.h"
-#include "trilobe/base/error.h"
+#include "core/base/named.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "tests/app/run_program.h"
-#include "tests/formats/tensor_bytes.h"
+#include "tests/io/formats/tensor_bytes.h"
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

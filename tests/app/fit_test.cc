@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "formats/merl_file.h"
+#include "io/formats/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
 #include "tests/paths.h"
-#include "trilobe/math/angles.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/io/model_files/trace_file.h"
 #include "trilobe/model/stretch.h"
-#include "trilobe/results/model_file.h"
-#include "trilobe/results/trace_file.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "formats/merl_file.h"
+#include "io/formats/merl_file.h"
 #include "tests/app/run_on_terminal.h"
 #include "tests/app/run_program.h"
-#include "trilobe/materials/load_model.h"
-#include "trilobe/results/model_file.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/materials/load_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

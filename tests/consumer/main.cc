@@ -1,6 +1,6 @@
 #include <trilobe/fit/fit.h>
-#include <trilobe/formats/source.h>
-#include <trilobe/results/model_file.h>
+#include <trilobe/io/formats/source.h>
+#include <trilobe/io/model_files/model_file.h>
 
 #include <iostream>
 

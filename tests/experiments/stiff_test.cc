@@ -13,9 +13,9 @@
 #include "experiments/stiff/certificate.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"
-#include "lobes/gauge.h"
+#include "model/lobes/gauge.h"
 #include "tests/test_util.h"
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
-#include "appearance/picture_data.h"
-#include "appearance/seen_samples.h"
+#include "model/appearance/picture_data.h"
+#include "model/appearance/seen_samples.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/formats/source.h"
-#include "trilobe/lobes/reconstruct.h"
-#include "trilobe/prior/reach.h"
+#include "trilobe/fit/prior/reach.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <string>
 
-#include "trilobe/base/error.h"
-#include "trilobe/corruption/corruption.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/fit/fit.h"
-#include "trilobe/formats/source.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/corruption/corruption.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/base/error.h"
-#include "trilobe/formats/source.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/base/error.h"
-#include "trilobe/math/angles.h"
-#include "trilobe/objective/weighting.h"
-#include "trilobe/prior/reach.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/fit/prior/reach.h"
+#include "trilobe/model/objective/weighting.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "tests/test_util.h"
-#include "trilobe/brdf/brdf_samples.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {
 

@@ -7,14 +7,14 @@
 #include <set>
 #include <vector>
 
-#include "lobes/gauge.h"
-#include "lobes/lobes.h"
+#include "model/lobes/gauge.h"
+#include "model/lobes/lobes.h"
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
-#include "trilobe/base/error.h"
-#include "trilobe/lobes/lobe_light.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/lobes/lobe_light.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

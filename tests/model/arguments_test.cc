@@ -8,21 +8,21 @@
 #include <utility>
 #include <vector>
 
-#include "lobes/continuation.h"
-#include "lobes/gauge.h"
-#include "lobes/unclamped_model.h"
-#include "objective/canonical_form.h"
-#include "objective/parameter_blocks.h"
+#include "model/lobes/continuation.h"
+#include "model/lobes/gauge.h"
+#include "model/lobes/unclamped_model.h"
+#include "model/objective/canonical_form.h"
+#include "model/objective/parameter_blocks.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/brdf/albedo.h"
-#include "trilobe/brdf/measurement_stats.h"
-#include "trilobe/brdf/node_brdf.h"
-#include "trilobe/brdf/tabulated_brdf.h"
-#include "trilobe/lobes/lobe_light.h"
-#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/model/lobes/lobe_light.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/measurement/measurement_stats.h"
+#include "trilobe/model/measurement/node_brdf.h"
+#include "trilobe/model/measurement/tabulated_brdf.h"
+#include "trilobe/model/objective/score.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/objective/score.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/base/error.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -7,14 +7,14 @@
 #include <thread>
 #include <vector>
 
-#include "scene/scene_fit.h"
+#include "fit/scene/scene_fit.h"
 #include "solvers/joint/data_edge.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/objective/score.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/objective/score.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

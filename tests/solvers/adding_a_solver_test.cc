@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "tests/test_util.h"
-#include "trilobe/base/error.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

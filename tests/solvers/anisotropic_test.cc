@@ -10,11 +10,11 @@
 #include "tests/model/anisotropic_samples.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/start/initial_model.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

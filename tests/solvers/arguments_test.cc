@@ -15,12 +15,12 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/prior/node_choice.h"
-#include "trilobe/prior/synthetic_prior.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/fit/prior/node_choice.h"
+#include "trilobe/fit/prior/synthetic_prior.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

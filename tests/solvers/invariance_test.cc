@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "lobes/gauge.h"
-#include "tests/base/no_threads.h"
+#include "model/lobes/gauge.h"
+#include "tests/core/base/no_threads.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
+#include "trilobe/model/synth/synth.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

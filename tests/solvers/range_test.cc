@@ -12,10 +12,10 @@
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/objective/score.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/objective/score.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -15,10 +15,10 @@
 #include "tests/paths.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/model/synth/synth.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "lobes/gauge.h"
+#include "model/lobes/gauge.h"
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

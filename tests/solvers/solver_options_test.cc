@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "tests/test_directory.h"
-#include "trilobe/base/error.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

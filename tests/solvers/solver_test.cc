@@ -5,8 +5,8 @@
 
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_util.h"
-#include "trilobe/base/error.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/registry/solvers.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

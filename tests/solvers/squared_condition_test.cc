@@ -13,13 +13,13 @@
 #include <span>
 #include <vector>
 
-#include "algebra/cholesky.h"
-#include "objective/cost_functors.h"
-#include "objective/parameter_blocks.h"
+#include "core/algebra/cholesky.h"
+#include "model/objective/cost_functors.h"
+#include "model/objective/parameter_blocks.h"
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -11,10 +11,10 @@
 #include <random>
 #include <string>
 
-#include "trilobe/base/error.h"
-#include "trilobe/evaluate/bsdf.h"
-#include "trilobe/evaluate/read_model.h"
-#include "trilobe/math/angles.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/model/evaluate/bsdf.h"
+#include "trilobe/model/evaluate/read_model.h"
 
 namespace {
 

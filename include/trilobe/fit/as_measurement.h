@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "trilobe/brdf/measurement.h"
-#include "trilobe/brdf/node_brdf.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/measurement.h"
+#include "trilobe/model/measurement/node_brdf.h"
 
 namespace trilobe {
 

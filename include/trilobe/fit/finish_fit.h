@@ -6,14 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "trilobe/appearance/appearance.h"
-#include "trilobe/base/stop_check.h"
-#include "trilobe/brdf/brdf_table.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/prior/synthetic_prior.h"
+#include "trilobe/fit/prune/model_choice.h"
+#include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_table.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/prior/synthetic_prior.h"
-#include "trilobe/prune/model_choice.h"
 
 namespace trilobe {
 

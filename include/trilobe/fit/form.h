@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "trilobe/brdf/measurement.h"
+#include "trilobe/fit/prior/node_choice.h"
 #include "trilobe/model/axis.h"
+#include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/model_spec.h"
 #include "trilobe/model/stretch.h"
-#include "trilobe/prior/node_choice.h"
 
 namespace trilobe {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "trilobe/math/stencil.h"
+#include "trilobe/core/math/stencil.h"
 
 namespace trilobe {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "trilobe/geometry/channels.h"
-#include "trilobe/math/stencil.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/math/stencil.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {

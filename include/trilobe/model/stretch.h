@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "trilobe/geometry/directions.h"
+#include "trilobe/core/geometry/directions.h"
 
 namespace trilobe {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/iteration_record.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/iteration_record.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/solver_options.h"
 
 namespace trilobe {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/iteration_record.h"
+#include "trilobe/model/objective/iteration_record.h"
 
 namespace trilobe {
 

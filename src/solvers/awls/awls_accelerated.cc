@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "algebra/element_step.h"
-#include "lobes/gauge.h"
+#include "core/algebra/element_step.h"
+#include "model/lobes/gauge.h"
 #include "solvers/awls/make_sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "solvers/gaussian_filter.h"
-#include "sums/grid/cell_sums.h"
-#include "trilobe/base/error.h"
-#include "trilobe/objective/folded_grid.h"
-#include "trilobe/objective/spline_cells.h"
+#include "solvers/sums/grid/cell_sums.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/objective/folded_grid.h"
+#include "trilobe/model/objective/spline_cells.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "algebra/element_step.h"
+#include "core/algebra/element_step.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "solvers/awls/sweep.h"
-#include "sums/grid/cell_sums.h"
-#include "sums/grid/shadowing_sums.h"
+#include "solvers/sums/grid/cell_sums.h"
+#include "solvers/sums/grid/shadowing_sums.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "algebra/nonnegative_least_squares.h"
+#include "core/algebra/nonnegative_least_squares.h"
 
 namespace trilobe {
 

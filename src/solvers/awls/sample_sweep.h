@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "solvers/awls/sweep.h"
-#include "sums/block_equations.h"
-#include "sums/cached_lookups.h"
-#include "sums/shadowing_updates.h"
+#include "solvers/sums/block_equations.h"
+#include "solvers/sums/cached_lookups.h"
+#include "solvers/sums/shadowing_updates.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/folded_samples.h"
+#include "trilobe/model/objective/folded_samples.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/iteration_record.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/iteration_record.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
-#include "algebra/element_step.h"
-#include "algebra/openblas.h"
-#include "lobes/gauge.h"
+#include "core/algebra/element_step.h"
+#include "core/algebra/openblas.h"
+#include "model/lobes/gauge.h"
 
 namespace trilobe {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/run.h"
 
 namespace ceres {

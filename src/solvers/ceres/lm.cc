@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "algebra/cholesky.h"
+#include "core/algebra/cholesky.h"
 #include "solvers/ceres/ceres_run.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "objective/cost_functors.h"
-#include "objective/parameter_blocks.h"
+#include "model/objective/cost_functors.h"
+#include "model/objective/parameter_blocks.h"
 #include "solvers/ceres/ceres_run.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"

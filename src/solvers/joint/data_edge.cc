@@ -8,7 +8,7 @@
 
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/table_layout.h"
 
 namespace trilobe {

@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/objective/objective.h"
 
 namespace trilobe {
 

@@ -9,7 +9,7 @@
 
 #include "solvers/awls/make_sweep.h"
 #include "solvers/diagnosis.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

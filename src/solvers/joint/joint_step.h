@@ -9,10 +9,10 @@
 #include "solvers/awls/sweep.h"
 #include "solvers/joint/nonnegative_step.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algebra/cholesky.h"
-#include "algebra/element_step.h"
-#include "trilobe/system/parallel.h"
+#include "core/algebra/cholesky.h"
+#include "core/algebra/element_step.h"
+#include "trilobe/core/system/parallel.h"
 
 namespace trilobe {
 namespace {

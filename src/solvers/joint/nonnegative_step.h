@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/model/objective/quadratic_model.h"
 
 namespace trilobe {
 

@@ -6,8 +6,8 @@
 
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/model_spec.h"
+#include "trilobe/model/objective/quadratic_model.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 

@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "objective/sample_derivatives.h"
-#include "objective/stencils_of.h"
+#include "model/objective/sample_derivatives.h"
+#include "model/objective/stencils_of.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/nonnegative_step.h"
 #include "solvers/joint/reduction.h"
-#include "trilobe/base/stop_check.h"
-#include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/objective/quadratic_model.h"
-#include "trilobe/sums/normal_equations.h"
-#include "trilobe/system/parallel.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/objective/quadratic_model.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 
-#include "trilobe/base/stop_check.h"
-#include "trilobe/geometry/channels.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/model/objective/quadratic_model.h"
 #include "trilobe/model/table_layout.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/objective/quadratic_model.h"
 
 namespace trilobe {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "solvers/joint/stretch_step.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 
 namespace trilobe {
 

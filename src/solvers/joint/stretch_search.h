@@ -2,9 +2,9 @@
 #define TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
 
 #include "solvers/joint/joint_step.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

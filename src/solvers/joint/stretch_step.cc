@@ -8,11 +8,11 @@
 #include <numeric>
 #include <utility>
 
-#include "algebra/cholesky.h"
-#include "lobes/lobes.h"
-#include "objective/sample_derivatives.h"
-#include "trilobe/sums/normal_equations.h"
-#include "trilobe/system/parallel.h"
+#include "core/algebra/cholesky.h"
+#include "model/lobes/lobes.h"
+#include "model/objective/sample_derivatives.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

@@ -4,13 +4,13 @@
 #include <iterator>
 #include <utility>
 
-#include "lobes/gauge.h"
-#include "lobes/with_axes.h"
+#include "model/lobes/gauge.h"
+#include "model/lobes/with_axes.h"
 #include "solvers/multistart/smooth_starts.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/system/parallel.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {

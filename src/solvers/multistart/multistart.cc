@@ -7,16 +7,16 @@
 #include <utility>
 #include <vector>
 
-#include "lobes/gauge.h"
-#include "lobes/lobes.h"
+#include "model/lobes/gauge.h"
+#include "model/lobes/lobes.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/multistart/agreement.h"
 #include "solvers/multistart/coarse_starts.h"
 #include "solvers/multistart/smooth_starts.h"
 #include "solvers/multistart/start_elimination.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -5,12 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include "lobes/gauge.h"
+#include "model/lobes/gauge.h"
 #include "solvers/multistart/agreement.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/system/parallel.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "solvers/smooth/softening.h"
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -6,8 +6,8 @@
 
 #include "solvers/awls/make_sweep.h"
 #include "solvers/joint/joint_step.h"
-#include "trilobe/base/stop_check.h"
-#include "trilobe/system/parallel.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/core/system/parallel.h"
 
 namespace trilobe {
 namespace {

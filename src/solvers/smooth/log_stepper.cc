@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "algebra/cholesky.h"
-#include "trilobe/objective/weighting.h"
+#include "core/algebra/cholesky.h"
+#include "trilobe/model/objective/weighting.h"
 #include "trilobe/solvers/run.h"
 
 namespace trilobe {

@@ -6,10 +6,10 @@
 #include "solvers/joint/reflectance.h"
 #include "solvers/smooth/roughness.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/model/objective/quadratic_model.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
 

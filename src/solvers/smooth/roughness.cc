@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "algebra/cholesky.h"
-#include "trilobe/math/angles.h"
+#include "core/algebra/cholesky.h"
+#include "trilobe/core/math/angles.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/factor_model.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trilobe/model/model_spec.h"
-#include "trilobe/objective/quadratic_model.h"
+#include "trilobe/model/objective/quadratic_model.h"
 
 namespace trilobe {
 

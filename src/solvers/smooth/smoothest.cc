@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "objective/canonical_form.h"
+#include "model/objective/canonical_form.h"
 #include "solvers/smooth/log_stepper.h"
 
 namespace trilobe {

@@ -4,9 +4,9 @@
 #include <functional>
 #include <optional>
 
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
 

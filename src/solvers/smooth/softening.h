@@ -1,9 +1,9 @@
 #ifndef TRILOBE_SOLVERS_SMOOTH_SOFTENING_H_
 #define TRILOBE_SOLVERS_SMOOTH_SOFTENING_H_
 
-#include "trilobe/base/stop_check.h"
+#include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
+#include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

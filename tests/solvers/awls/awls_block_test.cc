@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "lobes/gauge.h"
-#include "sums/grid/cell_sums.h"
+#include "model/lobes/gauge.h"
+#include "solvers/sums/grid/cell_sums.h"
 #include "tests/solvers/iterations.h"
 #include "tests/test_util.h"
-#include "trilobe/base/error.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/synth/synth.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

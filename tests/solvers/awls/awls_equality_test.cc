@@ -8,10 +8,10 @@
 #include <string>
 
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/synth/synth.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

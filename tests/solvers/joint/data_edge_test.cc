@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "lobes/gauge.h"
+#include "model/lobes/gauge.h"
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/lobes/reconstruct.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

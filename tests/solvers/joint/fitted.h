@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "trilobe/model/factor_model.h"
-#include "trilobe/objective/objective.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

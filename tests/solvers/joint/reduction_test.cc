@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/sums/normal_equations.h"
+#include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <vector>
 
-#include "objective/canonical_form.h"
-#include "prune/unmeasured_prior.h"
+#include "fit/prune/unmeasured_prior.h"
+#include "model/objective/canonical_form.h"
 #include "solvers/joint/data_edge.h"
 #include "tests/solvers/joint/fitted.h"
 #include "tests/test_util.h"
-#include "trilobe/brdf/brdf_samples.h"
-#include "trilobe/lobes/reconstruct.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

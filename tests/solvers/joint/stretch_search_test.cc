@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobes/lobes.h"
+#include "model/lobes/lobes.h"
 #include "solvers/joint/stretch_step.h"
 #include "tests/test_util.h"
 #include "trilobe/model/factor_model.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/start/initial_model.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

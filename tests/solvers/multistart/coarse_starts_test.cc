@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/test_util.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/model/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

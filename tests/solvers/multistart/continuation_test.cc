@@ -8,9 +8,9 @@
 #include "solvers/multistart/agreement.h"
 #include "solvers/multistart/smooth_starts.h"
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
+#include "trilobe/model/synth/synth.h"
+#include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
-#include "trilobe/synth/synth.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "solvers/smooth/roughness.h"
 #include "tests/test_util.h"
-#include "trilobe/registry/solvers.h"
-#include "trilobe/start/initial_model.h"
-#include "trilobe/synth/synth.h"
+#include "trilobe/model/synth/synth.h"
+#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -1,0 +1,47 @@
+#ifndef TRILOBE_CORE_BASE_CHECK_H_
+#define TRILOBE_CORE_BASE_CHECK_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "trilobe/core/base/error.h"
+
+// What public functions ask of their arguments. Each throws Error, which names the argument, where
+// it is not so.
+namespace trilobe {
+
+[[noreturn]] void FailNumber(const std::string& name, double value, const std::string& must_be);
+
+// "stride is 0; it must be 1 or more".
+inline void CheckNumber(const std::string& name, double value, bool holds,
+                        const std::string& must_be) {
+  if (!holds) FailNumber(name, value, must_be);
+}
+
+[[noreturn]] void FailIndex(int64_t index, int64_t size, const char* name);
+
+// "the bin is 240; it must be from 0 to 239".
+inline void CheckIndex(int64_t index, int64_t size, const char* name) {
+  if (index < 0 || index >= size) FailIndex(index, size, name);
+}
+
+void CheckSize(const std::string& name, size_t size, size_t expected);
+
+void CheckNumThreads(int num_threads);
+
+template <typename T>
+T& NotNull(T* pointer, const char* name) {
+  if (pointer == nullptr) throw Error(std::string(name) + " must not be null");
+  return *pointer;
+}
+
+template <typename F>
+void CheckNotEmpty(const std::function<F>& function, const char* name) {
+  if (!function) throw Error(std::string(name) + " must be a function, not empty");
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_CORE_BASE_CHECK_H_

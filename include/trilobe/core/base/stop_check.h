@@ -1,0 +1,30 @@
+#ifndef TRILOBE_CORE_BASE_STOP_CHECK_H_
+#define TRILOBE_CORE_BASE_STOP_CHECK_H_
+
+#include <concepts>
+#include <cstddef>
+#include <functional>
+#include <utility>
+
+namespace trilobe {
+
+// What long work asks now and then: true to stop. An empty one never says so.
+class StopCheck {
+ public:
+  StopCheck() = default;
+  StopCheck(std::nullptr_t) {}  // NOLINT(google-explicit-constructor)
+  // Any function is one.
+  template <std::predicate F>
+  requires(!std::same_as<F, StopCheck>)  // NOLINTNEXTLINE(google-explicit-constructor)
+      StopCheck(F ask)
+      : ask_(std::move(ask)) {}
+
+  bool operator()() const { return ask_ && ask_(); }
+
+ private:
+  std::function<bool()> ask_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_CORE_BASE_STOP_CHECK_H_

@@ -1,0 +1,39 @@
+#ifndef TRILOBE_MODEL_APPEARANCE_VIEW_H_
+#define TRILOBE_MODEL_APPEARANCE_VIEW_H_
+
+#include <span>
+#include <vector>
+
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/model/appearance/environment.h"
+
+namespace trilobe {
+
+// The towards-eye direction of all views, in the world (environment.h).
+inline constexpr Direction kEye = {0, 0, 1};
+
+// What a pixel sees of an object: unit vectors at right angles to each other, `x` and `y` along
+// those of the material.
+struct SurfacePoint {
+  int pixel = 0;
+  Direction x{}, y{}, normal{};
+};
+
+// An object as the eye sees it from afar: what is along the middles of the pixels.
+struct View {
+  int width = 0, height = 0;  // pixels, row by row from the top
+  std::vector<SurfacePoint> points;
+};
+
+// A sphere that touches the sides of a square, x along its parallels, to the right. Of its pixels
+// one in `every`, evenly spread.
+View ViewSphere(int size, int every = 1);
+
+// A piece of cloth that leans back, in soft folds, and fills two squares, one above the other. The
+// thread, x, runs along the light in the upper one and across it in the lower; the light's
+// direction is the mean of the lights that are above the cloth, as it lies without folds.
+View ViewCloth(int size, std::span<const Light> lights);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_APPEARANCE_VIEW_H_

@@ -1,0 +1,81 @@
+#ifndef TRILOBE_MODEL_OBJECTIVE_FOLDED_SAMPLES_H_
+#define TRILOBE_MODEL_OBJECTIVE_FOLDED_SAMPLES_H_
+
+#include <array>
+#include <vector>
+
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/math/stencil.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/model_spec.h"
+
+namespace trilobe {
+
+// One measured direction pair as an element of the objective.
+struct WeightedSample {
+  SampleStencils stencils;
+  Rgb weight{};  // w, one a channel
+  Rgb rho{};     // measured BRDF [1/sr]
+};
+
+// Entries of a table that are read together: a stencil without its weights, which differ from
+// sample to sample where the entries do not.
+struct Cell {
+  int size = 0;
+  std::array<int, Stencil::kMaxSize> entry{};  // each once
+};
+
+// A sample's lookups, by number. A lookup is the value of a table at a sample, the sum over the
+// entries e of a cell of weight_e table[e]: of D, once for each of the lobes' stretches, of F, and
+// of G for each direction.
+struct LookupOrder {
+  static constexpr int kMost = kMaxLobes + 3;
+
+  int of_D = 1;  // how many
+
+  int F() const { return of_D; }
+  int G_i() const { return of_D + 1; }
+  int G_o() const { return of_D + 2; }
+  int count() const { return of_D + 3; }
+  Factor factor(int lookup) const {
+    return lookup < F() ? Factor::kD : lookup == F() ? Factor::kF : Factor::kG;
+  }
+};
+
+// Any samples, folded and sorted. Samples that read alike, exchanged directions included, since the
+// model's value does not change with them, become one with
+//   w = w1 + w2,  rho* = (w1 rho1 + w2 rho2) / w,
+// and E = sum w (rho - rho*)^2 + constant, as in FoldedGrid. They are sorted by their cells of G,
+// then those of D and F, so that what lies side by side reads and adds to the same few places.
+struct FoldedSamples {
+  // One of the lookups, of all samples.
+  struct Lookup {
+    std::vector<int> cell;  // [size]
+    // That of the cell's k-th entry, 0 beyond the last. [most entries of a cell of the table][size]
+    std::vector<std::vector<double>> weight;
+  };
+  // Samples [begin, end) share both cells of G.
+  struct Pair {
+    int cell_i, cell_o, begin, end;
+  };
+
+  std::array<std::vector<Cell>, 3> cells;  // of D, F and G
+  LookupOrder order;
+  std::vector<Lookup> lookups;                        // [order.count()]
+  std::vector<double> inverse_cosines;                // [size]
+  std::array<std::vector<double>, kChannels> weight;  // [kChannels][size]
+  std::array<std::vector<double>, kChannels> rho;     // [kChannels][size], [1/sr]
+  std::vector<Pair> pairs;
+  double constant = 0;         // the part of E that no model changes
+  double measured_energy = 0;  // sum w rho*^2 of the unfolded samples
+
+  int size() const { return static_cast<int>(inverse_cosines.size()); }
+  const std::vector<Cell>& cells_of(Factor factor) const { return cells[static_cast<int>(factor)]; }
+  const std::vector<Cell>& cells_of(int lookup) const { return cells_of(order.factor(lookup)); }
+};
+
+FoldedSamples Fold(const std::vector<WeightedSample>& samples);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_OBJECTIVE_FOLDED_SAMPLES_H_

@@ -1,0 +1,37 @@
+#ifndef TRILOBE_MODEL_OBJECTIVE_SPLINE_CELLS_H_
+#define TRILOBE_MODEL_OBJECTIVE_SPLINE_CELLS_H_
+
+#include <array>
+#include <vector>
+
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/model/objective/folded_grid.h"
+
+namespace trilobe {
+
+// The folded samples once more, sorted by cell (knot interval of theta_i, knot interval of
+// theta_o), in which the spline of G is one pair of cubics: for passes that sum products of its
+// weights. Within a cell the samples keep their order.
+struct SplineCells {
+  explicit SplineCells(const FoldedGrid& folded);
+
+  // The samples of one pair of knot intervals; cells without any are left out.
+  struct Cell {
+    int interval_i = 0, interval_o = 0;
+    int begin = 0, end = 0;
+  };
+
+  MerlGrid grid;
+  std::vector<Cell> cells;
+  // As in FoldedGrid, by cell. [size]
+  std::vector<int> row;
+  std::vector<double> t_i, t_o, inverse_cosines;
+  std::array<std::vector<double>, kChannels> weight, rho;
+};
+
+// s D F of every row (theta_h, theta_d). [kChannels][lobes][rows]
+std::vector<double> LobeAmplitudes(const MerlGrid& grid, const FactorModel& model);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_OBJECTIVE_SPLINE_CELLS_H_

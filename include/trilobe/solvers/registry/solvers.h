@@ -1,0 +1,26 @@
+#ifndef TRILOBE_SOLVERS_REGISTRY_SOLVERS_H_
+#define TRILOBE_SOLVERS_REGISTRY_SOLVERS_H_
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "trilobe/solvers/solver.h"
+
+namespace trilobe {
+
+// All solvers, the default one first.
+const std::vector<SolverEntry>& Solvers();
+
+// Adds a solver that is not part of the library (docs/adding-a-solver.md). Not thread-safe: call it
+// before any other use of the list. Throws Error if the name is empty or taken, if there is nothing
+// to make it, or if it reads an option that there is not.
+void RegisterSolver(SolverEntry entry);
+
+// Throws Error that lists the known names.
+const SolverEntry& FindSolver(std::string_view name);
+std::unique_ptr<Solver> MakeSolver(std::string_view name);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_REGISTRY_SOLVERS_H_

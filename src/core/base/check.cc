@@ -1,0 +1,32 @@
+#include "trilobe/core/base/check.h"
+
+#include <sstream>
+
+namespace trilobe {
+
+void FailNumber(const std::string& name, double value, const std::string& must_be) {
+  constexpr int kDigits = 10;  // of any index
+  std::ostringstream message;
+  message.precision(kDigits);
+  message << name << " is " << value << "; it must be " << must_be;
+  throw Error(message.str());
+}
+
+void FailIndex(int64_t index, int64_t size, const char* name) {
+  if (size <= 0) {
+    throw Error(std::string(name) + " is " + std::to_string(index) + ", but there is none");
+  }
+  FailNumber(name, static_cast<double>(index), "from 0 to " + std::to_string(size - 1));
+}
+
+void CheckSize(const std::string& name, size_t size, size_t expected) {
+  if (size == expected) return;
+  throw Error(name + " has " + std::to_string(size) + " values; it must have " +
+              std::to_string(expected));
+}
+
+void CheckNumThreads(int num_threads) {
+  CheckNumber("num_threads", num_threads, num_threads >= 1, "1 or more");
+}
+
+}  // namespace trilobe

@@ -1,0 +1,37 @@
+#ifndef TRILOBE_CORE_FILES_FILE_H_
+#define TRILOBE_CORE_FILES_FILE_H_
+
+#include <functional>
+#include <ostream>
+#include <string>
+
+namespace trilobe {
+
+// 16 hexadecimal digits that nobody else has, for names.
+std::string RandomDigits();
+
+// The ending of a file's name in lower case, as ".csv"; "" if it has none.
+std::string EndingOf(const std::string& path);
+
+// Writes a whole file or nothing: `write` fills a temporary file beside `path`, which is renamed
+// over it once every byte is on it. On any failure (also of `write` itself) the temporary file is
+// removed, an earlier file at `path` is left as it was, and Error says why ("No space left on
+// device"). `before_renaming` is called when the new file is whole but the old one still there.
+void WriteFile(
+    const std::string& path, const std::function<void(std::ostream&)>& write,
+    const std::function<void()>& before_renaming = [] {});
+
+// Throws the Error that WriteFile would throw for this path, as far as can be known before there is
+// anything to write: makes and removes a temporary file, in the nearest folder that exists.
+void CheckWritable(const std::string& path);
+
+// Removes the temporary files that killed runs have left in a folder, and none that a running one
+// still writes. What cannot be removed stays.
+void SweepTemporaryFiles(const std::string& folder);
+
+// Makes a directory and its parents where they are missing. Throws Error.
+void MakeDirectories(const std::string& path);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_CORE_FILES_FILE_H_

@@ -1,0 +1,148 @@
+#include "core/files/text_lines.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <system_error>
+
+#include "core/base/utf8.h"
+#include "trilobe/core/base/error.h"
+
+namespace trilobe {
+namespace {
+
+constexpr std::string_view kSpace = " \t\r";
+
+// What to show of a cell.
+std::string Quoted(std::string_view cell) {
+  constexpr size_t kLongest = 40;
+  std::string quoted = "'";
+  quoted += cell.substr(0, kLongest);
+  return quoted + (cell.size() > kLongest ? "...'" : "'");
+}
+
+// The number that all of a cell is.
+template <typename Number>
+std::optional<Number> Whole(std::string_view cell) {
+  Number number{};
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+std::string_view Trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kSpace);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
+}
+
+TextLines::TextLines(std::string_view text, const std::string& source)
+    : rest_(text), source_(source) {
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+}
+
+bool TextLines::Next() {
+  while (!rest_.empty()) {
+    const size_t end = std::min(rest_.find('\n'), rest_.size());
+    line_ = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++number_;
+    line_ = Trimmed(line_.substr(0, line_.find('#')));
+    if (!line_.empty()) return true;
+  }
+  return false;
+}
+
+void TextLines::Fail(const std::string& problem) const {
+  throw Error(source_ + ": line " + std::to_string(number_) + ": " + problem);
+}
+
+void TextLines::FailAt(size_t column, const std::string& name, const std::string& problem) const {
+  throw Error(source_ + ": line " + std::to_string(number_) + ", column " +
+              std::to_string(column + 1) + " (" + name + "): " + problem);
+}
+
+std::vector<std::string_view> SplitCells(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (size_t begin = 0; begin <= line.size();) {
+    const size_t end = std::min(line.find(',', begin), line.size());
+    cells.push_back(Trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+std::vector<std::string_view> SplitWords(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (size_t begin = line.find_first_not_of(kSpace); begin != std::string_view::npos;) {
+    const size_t end = std::min(line.find_first_of(kSpace, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kSpace, end);
+  }
+  return words;
+}
+
+std::optional<double> ToNumber(std::string_view cell) {
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  return Whole<double>(cell);
+}
+
+std::optional<int> ToInteger(std::string_view cell) { return Whole<int>(cell); }
+
+std::vector<int> IntegersByX(std::string_view text) {
+  std::vector<int> numbers;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find('x', begin), text.size());
+    const std::optional<int> number = ToInteger(text.substr(begin, end - begin));
+    if (!number) return {};
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
+                 const std::vector<std::string>& names, std::vector<double>* numbers) {
+  if (cells.size() != names.size()) {
+    lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
+               "; expected " + std::to_string(names.size()) + ", from " + names.front() + " to " +
+               names.back());
+  }
+  numbers->resize(cells.size());
+  for (size_t k = 0; k < cells.size(); ++k) {
+    const std::optional<double> number = ToNumber(cells[k]);
+    if (!number) lines.FailAt(k, names[k], Quoted(cells[k]) + " is no number");
+    (*numbers)[k] = *number;
+  }
+}
+
+SphericalAngles ReadAngles(const TextLines& lines, const std::vector<std::string>& names,
+                           const std::vector<double>& numbers, const AngleColumns& columns,
+                           double unit) {
+  const bool degrees = unit < 1;
+  const auto read = [&](size_t column, double min_deg, double max_deg) {
+    const double angle = numbers[column] * unit;
+    constexpr double kRounding = 1e-4;  // of angles in files
+    if (angle >= DegreesToRadians(min_deg) - kRounding &&
+        angle <= DegreesToRadians(max_deg) + kRounding) {
+      return angle;
+    }
+    std::ostringstream problem;
+    problem << numbers[column] << " is no such angle; expected "
+            << (degrees ? "degrees from " : "radians from ")
+            << (degrees ? min_deg : DegreesToRadians(min_deg)) << " to "
+            << (degrees ? max_deg : DegreesToRadians(max_deg));
+    lines.FailAt(column, names[column], problem.str());
+  };
+  SphericalAngles angles;
+  angles.theta_i = std::max(read(columns.theta_i, 0, 180), 0.0);
+  angles.phi_i = read(columns.phi_i, -360, 360);
+  angles.theta_o = std::max(read(columns.theta_o, 0, 180), 0.0);
+  angles.phi_o = read(columns.phi_o, -360, 360);
+  return angles;
+}
+
+}  // namespace trilobe

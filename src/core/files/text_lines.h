@@ -1,0 +1,65 @@
+#ifndef TRILOBE_CORE_FILES_TEXT_LINES_H_
+#define TRILOBE_CORE_FILES_TEXT_LINES_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trilobe/core/geometry/directions.h"
+
+namespace trilobe {
+
+// A text, line by line, and where one is in it, for messages.
+class TextLines {
+ public:
+  TextLines(std::string_view text, const std::string& source);
+
+  // Goes to the next line that holds more than white space and a comment (from # on); false where
+  // there is none.
+  bool Next();
+  std::string_view line() const { return line_; }  // without comment and white space at its ends
+
+  // Throws Error: "SOURCE: line 12: PROBLEM", "SOURCE: line 12, column 3 (NAME): PROBLEM".
+  [[noreturn]] void Fail(const std::string& problem) const;
+  [[noreturn]] void FailAt(size_t column, const std::string& name,
+                           const std::string& problem) const;  // column from 0
+
+ private:
+  std::string_view rest_, line_;
+  std::string source_;
+  int number_ = 0;
+};
+
+// Without the white space at its ends.
+std::string_view Trimmed(std::string_view text);
+
+// Cells between commas, or words between white space; without white space at their ends.
+std::vector<std::string_view> SplitCells(std::string_view line);
+std::vector<std::string_view> SplitWords(std::string_view line);
+
+// A number that a cell holds, and nothing else; "nan" and "inf" are numbers.
+std::optional<double> ToNumber(std::string_view cell);
+std::optional<int> ToInteger(std::string_view cell);
+
+// Whole numbers with an x between each two, as "30x30x60"; none where the text is anything else.
+std::vector<int> IntegersByX(std::string_view text);
+
+// The numbers of the line where `lines` is, one for each name. Throws Error where they are more or
+// fewer, or no numbers.
+void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
+                 const std::vector<std::string>& names, std::vector<double>* numbers);
+
+// Directions out of such numbers, in units of `unit` [rad]; `columns` says which are theta_i,
+// phi_i, theta_o and phi_o. Throws Error unless theta is from 0 to 180 degrees (beyond 90 it is
+// below the surface) and phi from -360 to 360.
+struct AngleColumns {
+  size_t theta_i = 0, phi_i = 1, theta_o = 2, phi_o = 3;
+};
+SphericalAngles ReadAngles(const TextLines& lines, const std::vector<std::string>& names,
+                           const std::vector<double>& numbers, const AngleColumns& columns,
+                           double unit);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_CORE_FILES_TEXT_LINES_H_

@@ -1,0 +1,133 @@
+#include "trilobe/fit/export/convert.h"
+
+#include <algorithm>
+#include <cctype>
+#include <ostream>
+
+#include "core/files/file.h"
+#include "core/system/stopwatch.h"
+#include "fit/export/standard_file.h"
+#include "fit/reports/print.h"
+#include "io/formats/completed_measurement.h"
+#include "io/formats/rgl_export.h"
+#include "io/page/glsl_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/fit/fit.h"
+
+namespace trilobe {
+namespace {
+
+constexpr const char* kTensorEnding = ".bsdf";
+constexpr const char* kShaderEnding = ".glsl";
+constexpr const char* kMaterialXEnding = ".mtlx";
+constexpr const char* kPrincipledEnding = ".principled.json";
+
+bool EndsIn(const std::string& path, const std::string& ending) {
+  if (path.size() <= ending.size()) return false;
+  std::string last = path.substr(path.size() - ending.size());
+  std::ranges::transform(last, last.begin(), [](unsigned char c) { return std::tolower(c); });
+  return last == ending;
+}
+
+RglExportOptions RglOptionsOf(const ConvertOptions& options) {
+  if (!(options.error >= 0 && options.error <= 1)) throw Error("error must be from 0 to 1");
+  RglExportOptions rgl{.spectral = options.spectral};
+  if (options.error > 0) rgl.max_error = options.error;
+  return rgl;
+}
+
+double MaxAngleOf(const ModelFile& file) {  // [degrees]
+  return file.fit.max_angle > 0 ? file.fit.max_angle : 90;
+}
+
+// `than`: what the file may be off, "the model".
+std::string WriteTensorFile(const RglExport& file, const std::string& than, double max_angle,
+                            bool spectral, const std::string& path) {
+  WriteFile(path, [&](std::ostream& out) { out << file.bytes; });
+  std::string line = "wrote " + path + ": RGL tensor file of " +
+                     (spectral ? "spectra, " : "RGB, ") +
+                     Text(static_cast<double>(file.bytes.size()) / 1e6, 2) + " MB, off " + than +
+                     " by " + Text(100 * file.median_error, 2) + " % in the median and " +
+                     Text(100 * file.high_error, 2) + " % for one of a hundred directions";
+  if (max_angle < 90) line += ", within the " + Text(max_angle) + " deg that were measured";
+  if (spectral) {
+    line += "; colours of spectra off by " + Text(100 * file.color_error, 2) + " % at most";
+    if (file.colors_off > 0) {
+      line += ", by more than 0.1 % for " + Text(100 * file.colors_off, 2) +
+              " % of them, which are too saturated";
+    }
+  }
+  return line;
+}
+
+// The model by whose help a measurement becomes a function of all directions. Further iterations
+// lower E by little, and the measured values of the file not at all.
+FitResult FitToHelp(const Measurement& measurement, int num_threads) {
+  FitOptions options;
+  options.compare = false;
+  options.solver_options = [](const ModelSpec& /*spec*/) {
+    return SolverOptions{.max_iterations = 4};
+  };
+  options.match_reflectance = false;
+  options.num_threads = num_threads;
+  return Fit(measurement, options);
+}
+
+}  // namespace
+
+bool IsForRenderer(const std::string& path) {
+  const std::string ending = EndingOf(path);
+  return ending == kTensorEnding || ending == kShaderEnding || IsStandardMaterial(path);
+}
+
+bool IsStandardMaterial(const std::string& path) {
+  return EndsIn(path, kMaterialXEnding) || EndsIn(path, kPrincipledEnding);
+}
+
+std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
+                                          const std::string& path, const ConvertOptions& options) {
+  if (IsStandardMaterial(path)) return WriteStandard(file, source, path, options);
+  if (EndingOf(path) == kShaderEnding) {
+    const GlslFile shader = FormatGlsl(file, source);
+    WriteFile(path, [&](std::ostream& out) { out << shader.text; });
+    return {"wrote " + path + ": GLSL ES 3.00 with a texture of " + std::to_string(shader.width) +
+            " x " + std::to_string(shader.height) + ", " +
+            Text(static_cast<double>(shader.text.size()) / 1e6, 2) + " MB"};
+  }
+  RglExportOptions rgl = RglOptionsOf(options);
+  rgl.max_theta = DegreesToRadians(MaxAngleOf(file));
+  return {WriteTensorFile(ExportRgl(file.model, rgl), "the model", MaxAngleOf(file),
+                          options.spectral, path)};
+}
+
+std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
+                                          const ConvertOptions& options) {
+  if (EndingOf(path) == kShaderEnding) {
+    throw Error(path + ": " + measurement.source +
+                " is a measurement, and .glsl files are made of models; fit it first");
+  }
+  RglExportOptions rgl = RglOptionsOf(options);
+  Stopwatch stopwatch;
+  const FitResult fit = FitToHelp(measurement, options.num_threads);
+  const std::string fitted = "fitted " + measurement.source + " by " +
+                             std::to_string(fit.stored_parameters) + " parameters, in " +
+                             Text(stopwatch.Lap(), 2) + " s";
+  if (IsStandardMaterial(path)) {
+    std::vector<std::string> lines = WriteStandard(fit.file, measurement.source, path, options);
+    lines.insert(lines.begin(), fitted);
+    return lines;
+  }
+  const CompletedMeasurement completed = Complete(measurement, fit.model(), options.num_threads);
+  const double measured = MaxAngleDegrees(measurement);
+  rgl.max_theta = DegreesToRadians(measured);
+  return {fitted + ", for where nothing was measured",
+          WriteTensorFile(
+              ExportRgl(fit.model(), completed, rgl),
+              completed.interpolated
+                  ? "the measurement"
+                  : "the measurement (whose samples stand at no grid: it is the fitted model)",
+              measured, options.spectral, path)};
+}
+
+}  // namespace trilobe

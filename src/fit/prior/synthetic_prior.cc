@@ -1,0 +1,240 @@
+#include "trilobe/fit/prior/synthetic_prior.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "fit/prior/lack.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/fit/prior/reach.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/start/initial_model.h"
+
+namespace trilobe {
+namespace {
+
+constexpr int kDataPerSample = 6;  // samples of the data for one of the prior
+// Where these are fewer than kFew for each of the model's parameters, there are kEnough for each,
+// which then count less: few data leave many parameters to the prior.
+constexpr int kFew = 3, kEnough = 6;
+// Of few data, too, it says no more than so many times the largest value.
+constexpr double kMaxOfLargest = 2;
+// A fit that says more than so many times the largest value, where the prior may say half of it at
+// most, overshoots.
+constexpr double kOvershoot = 2 * kMaxOfLargest;
+// With fewer samples than so many for each parameter of a prior it needs one itself, on fewer
+// nodes.
+constexpr int kSamplesPerParameter = 5;
+
+// A second lobe is worth its parameters where it leaves less than this of E: 0.03 and 0.25 where
+// two kinds of threads, or a coat and its base, reflect; 0.49 and more elsewhere, where it gains 2
+// dB between the samples at most and may lose 22 (docs/anisotropic.md).
+constexpr double kWorthALobe = 0.4;
+
+// What a prior is where azimuths were measured, and where not.
+struct PriorKind {
+  std::vector<ModelSpec> specs;  // of one lobe, from fine to coarse
+  const char* start;
+  double weight;  // what it counts
+};
+PriorKind KindFor(const SyntheticPriorOptions& options, int lobes) {
+  lobes = std::min(lobes, 1);  // none for models without
+  PriorKind kind;
+  if (options.isotropic) {
+    kind = {.specs = {}, .start = "analytic", .weight = 0.003 * options.weight};
+    for (const auto& [d, f, g] : {std::array{24, 6, 9}, {12, 4, 6}, {8, 4, 4}}) {
+      ModelSpec& spec = kind.specs.emplace_back(ModelSpec::SharedFactors(lobes));
+      spec.d_axis.size = d;
+      spec.f_axis.size = f;
+      spec.g_axis.size = g;
+    }
+    return kind;
+  }
+  kind = {.specs = {}, .start = "moments", .weight = options.weight};
+  for (const auto& [d_theta, d_phi, f, g_theta, g_phi] :
+       {std::array{12, 24, 6, 6, 8}, {8, 12, 4, 4, 4}, {6, 6, 4, 3, 2}, {6, 2, 4, 3, 2}}) {
+    ModelSpec& spec = kind.specs.emplace_back(ModelSpec::Anisotropic(lobes));
+    spec.d_axis = Axis::EvenPolar(d_theta, Axis::Steps::kOfRoot, d_phi);
+    spec.f_axis.size = f;
+    spec.g_axis = Axis::EvenPolar(g_theta, Axis::Steps::kOfTheta, g_phi);
+  }
+  return kind;
+}
+
+// In each channel, to so many times the largest of the data.
+void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) {
+  for (int c = 0; c < 3; ++c) {
+    double largest = 0;
+    for (const Rgb& value : data) largest = std::max(largest, value[c]);
+    for (Rgb& value : *rho) value[c] = std::min(value[c], times * largest);
+  }
+}
+
+// A prior as it stands, and what it lacks at the nodes of the data, if they have any.
+struct Speaker {
+  const FactorModel& model;
+  const NodeBrdf* lack = nullptr;
+};
+
+// What it says at these directions.
+BrdfSamples SamplesOf(const Speaker& prior, std::vector<SphericalAngles> directions,
+                      const BrdfSamples& measured, int num_threads) {
+  BrdfSamples said;
+  said.source = measured.source;
+  said.grid = measured.grid;
+  said.directions = std::move(directions);
+  for (const SphericalAngles& at : said.directions) {
+    said.angles.push_back(ToHalfDiff(ToDirections(at)));
+  }
+  said.rho.assign(said.directions.size(), {});
+  said.rho = EvaluateSamples(prior.model, said, num_threads);
+  if (prior.lack == nullptr) return said;
+  for (size_t j = 0; j < said.rho.size(); ++j) {
+    const Rgb lack = (*prior.lack)(said.directions[j]);
+    for (int c = 0; c < kChannels; ++c) said.rho[j][c] = std::max(said.rho[j][c] + lack[c], 0.0);
+  }
+  return said;
+}
+
+// Both, the latter of this weight each.
+BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said, double weight) {
+  samples.multiplicity.resize(samples.rho.size(), 1);
+  samples.multiplicity.resize(samples.rho.size() + said.rho.size(), weight);
+  const auto append = [](const auto& from, auto* target) {
+    target->insert(target->end(), from.begin(), from.end());
+  };
+  append(said.angles, &samples.angles);
+  append(said.directions, &samples.directions);
+  append(said.rho, &samples.rho);
+  return samples;
+}
+
+// Directions between the samples where a fit is above so many times their largest value.
+std::vector<SphericalAngles> Above(double times, const Objective& with_prior,
+                                   const FactorModel& fit) {
+  const BrdfSamples& measured = with_prior.data().samples();
+  return DirectionsAbove(times * LargestValue(measured), LargestTheta(measured), fit,
+                         with_prior.num_threads());
+}
+
+// The data and what `prior` says between them, enough for a model of so many parameters.
+BrdfSamples WithSamplesOf(const Speaker& prior, const Objective& data, int num_parameters,
+                          double weight) {
+  const BrdfSamples& measured = data.samples();
+  const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
+  const bool few = share < kFew * num_parameters;
+  const auto count = static_cast<size_t>(few ? kEnough * num_parameters : share);
+  BrdfSamples said =
+      SamplesOf(prior,
+                DirectionsBetween(LargestTheta(measured), count,
+                                  few ? Spread::kRetroreflectionToo : Spread::kByHighlights),
+                measured, data.num_threads());
+  if (said.directions.empty()) return measured;
+  if (few) {
+    LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+    weight *= share / static_cast<double>(count);
+  }
+  return Joined(measured, said, weight);
+}
+
+// The prior of this number, from 0 (the finest), itself fitted with the next where data are few.
+FactorModel FitPrior(const PriorKind& kind, size_t number, const Objective& data,
+                     const StopCheck& stop) {
+  const ModelSpec& spec = kind.specs[number];
+  const int n = spec.num_parameters();
+  const bool with_prior =
+      data.samples().size() < kSamplesPerParameter * n && number + 1 < kind.specs.size();
+  const Objective objective =
+      with_prior ? Objective(WithSamplesOf({FitPrior(kind, number + 1, data, stop)}, data, n,
+                                           /*weight=*/1),
+                             spec, data.weighting(), data.num_threads())
+                 : Objective(data, spec);
+  FactorModel model = FindInitialModel(kind.start).make(objective, 0);
+  SolverOptions options;
+  options.diagnose = false;
+  options.stop = stop;
+  MakeSolver("varpro")->Solve(objective, options, &model);
+  return model;
+}
+
+// With two lobes, if they are worth it.
+void TryTwoLobes(PriorKind* kind, const Objective& data, const StopCheck& stop,
+                 FactorModel* model) {
+  for (ModelSpec& spec : kind->specs) spec.lobes = 2;
+  // Of few samples it would follow the noise.
+  if (data.samples().size() < kSamplesPerParameter * kind->specs.front().num_parameters()) return;
+  FactorModel two = FitPrior(*kind, 0, data, stop);
+  const auto E = [&](const FactorModel& fitted) {
+    return Objective(data, fitted.spec()).Value(fitted);
+  };
+  if (!stop() && E(two) < kWorthALobe * E(*model)) *model = std::move(two);
+}
+
+}  // namespace
+
+SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOptions& options) {
+  const BrdfSamples& measured = data.samples();
+  if (!(options.weight > 0 && std::isfinite(options.weight))) {
+    throw Error(measured.source + ": the weight of a prior must be finite and above 0");
+  }
+  if (measured.directions.empty()) {
+    throw Error(measured.source + ": a prior needs samples with their directions");
+  }
+  PriorKind kind = KindFor(options, data.spec().lobes);
+  weight_ = kind.weight;
+  model_ = FitPrior(kind, 0, data, options.stop);
+  if (!options.isotropic && data.spec().lobes >= 2) TryTwoLobes(&kind, data, options.stop, &model_);
+  if (options.grid) lack_ = LackOf(model_, data, *options.grid);
+}
+
+BrdfSamples SyntheticPrior::With(const Objective& data) const {
+  return WithSamplesOf({model_, lack_ ? &*lack_ : nullptr}, data, data.spec().num_parameters(),
+                       weight_);
+}
+
+std::optional<Objective> SyntheticPrior::WhereLarge(const Objective& with_prior,
+                                                    const FactorModel& fit, double times) const {
+  const BrdfSamples& measured = with_prior.data().samples();
+  const std::vector<SphericalAngles> large = Above(kMaxOfLargest, with_prior, fit);
+  if (large.empty()) return std::nullopt;
+  BrdfSamples said =
+      SamplesOf({model_, lack_ ? &*lack_ : nullptr}, large, measured, with_prior.num_threads());
+  LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+  return Objective(with_prior.data(), Joined(with_prior.samples(), said, times * weight_));
+}
+
+BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& options) {
+  return SyntheticPrior(data, options).With(data);
+}
+
+std::optional<CorrectedOvershoot> CorrectOvershoot(const SyntheticPrior& prior,
+                                                   const StopCheck& stop, Objective* with_prior,
+                                                   FactorModel* model) {
+  constexpr int kRounds = 4, kSteps = 20;
+  constexpr double kMore = 10;  // of what each of the prior's samples there counts, each round
+  if (Above(kOvershoot, *with_prior, *model).empty()) return std::nullopt;
+  const double before = with_prior->data().Value(*model);
+  SolverOptions options;
+  options.max_iterations = kSteps;
+  options.diagnose = false;
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  double times = 1;
+  for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
+    std::optional<Objective> further = prior.WhereLarge(*with_prior, *model, times);
+    if (!further) break;
+    MakeSolver("varpro")->Solve(*further, options, model);
+    *with_prior = *std::move(further);
+  }
+  return CorrectedOvershoot{before, with_prior->data().Value(*model)};
+}
+
+}  // namespace trilobe

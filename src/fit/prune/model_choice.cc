@@ -1,0 +1,408 @@
+#include "trilobe/fit/prune/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/system/stopwatch.h"
+#include "fit/prune/model_forms.h"
+#include "fit/prune/prune.h"
+#include "fit/prune/thinned_objective.h"
+#include "fit/prune/unmeasured_prior.h"
+#include "model/lobes/gauge.h"
+#include "model/objective/canonical_form.h"
+#include "solvers/joint/data_edge.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
+#include "solvers/joint/stretch_search.h"
+#include "trilobe/core/base/check.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/objective/score.h"
+#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/start/initial_model.h"
+
+namespace trilobe {
+namespace {
+
+// What nobody sees of a picture [dB].
+constexpr double kNotSeen = 0.2;
+
+// A stretch that lowers E by less than this fraction is none.
+constexpr double kWorthwhile = 0.05;
+
+// What thinning cannot go below: a node a table, besides d, s and exponents.
+int LeastStored(const ModelSpec& spec) {
+  TableLayout layout = TableLayout::Full(spec);
+  for (const Factor factor : kFactors) {
+    for (int t = 0; t < spec.num_tables(factor); ++t) layout.of(factor, t).resize(1);
+  }
+  return layout.num_parameters(spec);
+}
+
+Objective Thinned(const Objective& objective, const SampleThinning& thinning) {
+  return ThinnedObjective(objective, objective.spec().num_parameters(), thinning);
+}
+
+// Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
+// read may be anything.
+FactorModel GoOn(const Objective& objective, const FactorModel& start, const StopCheck& stop,
+                 const Reduction* reduction = nullptr) {
+  constexpr int kSteps = 2;
+  return JointSteps(objective, start, kSteps, stop, reduction).model;
+}
+
+// Objectives of the same samples for other specs and weightings; what it takes to prepare the
+// samples is made once for a weighting and stretches.
+class Objectives {
+ public:
+  explicit Objectives(const Objective& own) : made_({own}) {}
+
+  const Objective& own() const { return made_.front(); }
+
+  Objective For(const ModelSpec& spec, const Weighting& weighting) {
+    const auto alike = std::ranges::find_if(made_, [&](const Objective& other) {
+      return other.weighting().name == weighting.name &&
+             other.spec().stretches.distinct() == spec.stretches.distinct();
+    });
+    if (alike != made_.end()) return {*alike, spec};
+    const Objective& own = made_.front();
+    made_.push_back(weighting.name == own.weighting().name
+                        ? Objective(own, spec)
+                        : Objective(own.samples(), spec, weighting, own.num_threads()));
+    return made_.back();
+  }
+
+ private:
+  std::vector<Objective> made_;
+};
+
+// What a solver makes of few samples.
+FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& start,
+                  const StopCheck& stop) {
+  FactorModel model = start;
+  SolverOptions options;
+  options.diagnose = false;
+  options.stop = stop;
+  MakeSolver(solver)->Solve(few, options, &model);
+  return model;
+}
+
+// Where highlights widen towards grazing a fit without stretches may let F and G cancel over many
+// decades (docs/stored-model.md), from which no stretch leads back; so a second way begins at the
+// default start. Nothing if it ends no lower on `few` than `stretched`, the way from the fit.
+std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,
+                                             const FactorModel& stretched, const StopCheck& stop) {
+  FactorModel start = InitialModels().front().make(few, /*seed=*/1);
+  CopyUnobservedParameters(few.coverage(), fitted, &start);
+  SteppedModel anew = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
+  if (!anew.model.spec().stretches.any()) return std::nullopt;
+  if (!(anew.E < Objective(few, stretched.spec()).Value(stretched))) return std::nullopt;
+  return anew;
+}
+
+// Whether the data rather have a form that shares less: a stretch may look like one. What more
+// parameters fit of few samples by chance is taken off; those of the prior tell nothing.
+bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
+                const SteppedModel& stretched, const StopCheck& stop) {
+  constexpr int kSteps = 5;
+  const double values = kChannels * num_measured / 2.0;  // exchanged ones say the same
+  const auto expected = [&](double E, const ModelSpec& spec) {
+    const double share = std::min(spec.num_parameters() / values, 0.9);
+    return E * (1 + share) / (1 - share);
+  };
+  return std::ranges::any_of(
+      FormsSharingLess({"", fitted, few.weighting()}), [&](const ModelForm& form) {
+        const ModelSpec& spec = form.start.spec();
+        const double E = JointSteps(Objective(few, spec), form.start, kSteps, stop).E;
+        return expected(E, spec) < expected(stretched.E, stretched.model.spec());
+      });
+}
+
+// The search of ChooseModel. Forms are fitted to some samples; only those that are stored as a
+// whole, to all.
+class ModelSearch {
+ public:
+  ModelSearch(const Objective& objective, const FactorModel& fitted,
+              const ModelChoiceOptions& options)
+      : objective_(objective),
+        fitted_(fitted),
+        options_(options),
+        all_(objective),
+        some_(Thinned(objective, kSomeSamples)),
+        few_(Thinned(objective, kFewSamples)),
+        prior_(objective, fitted),
+        some_with_prior_(prior_.With(some_.own())),
+        few_with_prior_(prior_.With(few_.own())) {}
+
+  ChosenModel Run() {
+    const TableLayout full = TableLayout::Full(fitted_.spec());
+    Judge("as fitted", fitted_, full, objective_.Value(fitted_));
+    some_of_fit_ = some_.own().Value(fitted_);
+    if (options_.judge_beyond) beyond_ = options_.judge_beyond(fitted_);
+    Choose(fitted_, full, objective_.weighting());
+    if (best_.chosen < 0) Thin("as fitted", objective_.weighting(), fitted_);
+    if (best_.chosen < 0) {
+      PruneTheFit();
+    } else if (FitBases() && FitForms()) {
+      FinishBestForms();
+    }
+    return std::move(best_);
+  }
+
+ private:
+  struct Fitted {
+    ModelForm form;  // with the fitted model as its start
+    double score;
+  };
+
+  double Judge(const std::string& name, const FactorModel& model, const TableLayout& layout,
+               double E) {
+    const double seconds = stopwatch_.Lap();
+    double score = options_.judge(model);
+    // Below all others, with which NaN has no order.
+    if (std::isnan(score)) score = -std::numeric_limits<double>::infinity();
+    best_.candidates.push_back({.name = name,
+                                .num_parameters = layout.num_parameters(model.spec()),
+                                .E = E,
+                                .score = score,
+                                .seconds = seconds});
+    stopwatch_.Lap();
+    return score;
+  }
+
+  // The last candidate, if it is the best that keeps to the budget.
+  void Choose(const FactorModel& model, const TableLayout& layout, const Weighting& weighting) {
+    ModelCandidate& last = best_.candidates.back();
+    if (last.num_parameters > options_.max_parameters) return;
+    if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
+    if (options_.judge_beyond && best_.chosen >= 0) {
+      constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
+      const double gain = last.score - best_.candidates.front().score;
+      last.fails_beyond =
+          !(beyond_ - options_.judge_beyond(model) <= std::max(kMayLose, kOfGain * gain));
+      if (last.fails_beyond) return;
+    }
+    best_.chosen = static_cast<int>(best_.candidates.size()) - 1;
+    best_.model = model;
+    best_.layout = layout;
+    best_.weighting = weighting;
+  }
+
+  // E, as it is quoted, is of the objective that was asked for; of a form on its way, as these
+  // samples tell it.
+  double ValueOfSome(const FactorModel& model) {
+    const double E = some_.For(model.spec(), objective_.weighting()).Value(model);
+    return some_of_fit_ > 0 ? E * (best_.candidates.front().E / some_of_fit_) : E;
+  }
+
+  // All samples would have to be prepared for a stretch, which takes longer than to evaluate them
+  // once.
+  double ValueOf(const FactorModel& model) {
+    if (!model.spec().stretches.any()) {
+      return all_.For(model.spec(), objective_.weighting()).Value(model);
+    }
+    const std::vector<Rgb> values =
+        UnclampedSamples(model, objective_.samples(), objective_.num_threads());
+    return ScoreValues(objective_, values).objective;
+  }
+
+  // Beyond the data it goes on about as the whole model does.
+  void Thin(const std::string& name, const Weighting& weighting, const FactorModel& model) {
+    const UnmeasuredPrior prior(objective_, model);
+    PruneOptions prune;
+    prune.lobes = prune.colour = false;
+    prune.max_parameters = options_.max_parameters;
+    // The fit itself has to come down to the budget. Of forms it takes long to see whether G had
+    // better be shared, and hardly ever it had.
+    const bool of_fit = best_.chosen < 0;
+    prune.sharing = of_fit;
+    if (!of_fit) prune.stop = options_.stop;
+    PrunedModel pruned = Prune(prior.With(few_.For(model.spec(), weighting)), model, prune);
+    if (!of_fit && options_.stop()) return;
+    const Objective refitted = prior.With(some_.For(pruned.model.spec(), weighting));
+    const Reduction stored(refitted.spec(), pruned.layout);
+    pruned.model = GoOn(refitted, pruned.model, options_.stop, &stored);
+    // By what was measured, without the prior.
+    const Objective measured = some_.For(pruned.model.spec(), weighting);
+    SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
+    ExpandStored(pruned.layout, &pruned.model);
+    Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
+    Choose(pruned.model, pruned.layout, weighting);
+  }
+
+  // For where one parameter a table is still too much: lobes and colours have to go, and no form
+  // that shares less has a chance.
+  void PruneTheFit() {
+    const PrunedModel pruned =
+        Prune(objective_, fitted_, {.max_parameters = options_.max_parameters});
+    Judge("as fitted, pruned", pruned.model, pruned.layout, pruned.E);
+    Choose(pruned.model, pruned.layout, objective_.weighting());
+    if (best_.chosen >= 0) return;
+    throw Error("no form of the model keeps to " + std::to_string(options_.max_parameters) +
+                " parameters; its values overflow");
+  }
+
+  // This and the next two: false once it is to stop; then what was to be fitted is not among
+  // forms_.
+  bool Fit(ModelForm form) {
+    if (options_.stop()) return false;
+    const ModelSpec& spec = form.start.spec();
+    constexpr int kStepsOnFew = 12;
+    constexpr double kSmall = 2e-3;  // a decrease of E, relative, that no picture shows
+    form.start = JointSteps(few_with_prior_.For(spec, form.weighting), form.start, kStepsOnFew,
+                            options_.stop, /*reduction=*/nullptr, kSmall)
+                     .model;
+    form.start = GoOn(some_with_prior_.For(spec, form.weighting), form.start, options_.stop);
+    // Entries that no measured sample reads are what the prior makes of them, next to others that
+    // have moved far away; a picture reads between the two.
+    Canonicalize(some_.For(spec, form.weighting), &form.start);
+    const double score =
+        Judge(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
+    forms_.push_back({std::move(form), score});
+    return true;
+  }
+
+  // The fit itself, stretched, and weighed by channel, which the others go on from.
+  bool FitBases() {
+    bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
+    bool stretched = false;
+    if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
+        !fitted_.spec().stretches.any()) {
+      const Objective few = few_with_prior_.For(fitted_.spec(), objective_.weighting());
+      SteppedModel stretch = FitStretches(few, fitted_, options_.stop);
+      if (!Fit({"stretched", stretch.model, objective_.weighting()})) return false;
+      double E = best_.candidates.back().E;
+      Fitted best = forms_.back();
+      const Objective* judged = &few;
+      // The prior is what the fit says where nothing was measured, and would lead the second way
+      // back to it. So it goes without, and the picture tells which of both is better.
+      const Objective measured = few_.For(fitted_.spec(), objective_.weighting());
+      std::optional<SteppedModel> anew =
+          FitStretchesAnew(measured, fitted_, stretch.model, options_.stop);
+      if (anew) {
+        if (!Fit({"stretched anew", anew->model, objective_.weighting()})) return false;
+        if (forms_.back().score > best.score) {
+          E = best_.candidates.back().E;
+          best = forms_.back();
+          stretch = *std::move(anew);
+          judged = &measured;
+        }
+      }
+      // Under other weights it may look better even where it does not under these.
+      stretched =
+          stretch.model.spec().stretches.any() &&
+          E < (1 - kWorthwhile) * best_.candidates.front().E &&
+          !SharesLess(*judged, few_.own().samples().size(), fitted_, stretch, options_.stop);
+      if (stretched) bases_.push_back(std::move(best));
+    }
+    if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
+      return true;
+    }
+    // Selections keep the level of the whole.
+    const Weighting by_channel =
+        ForSamples(FindWeighting("appearance_channel"), objective_.samples());
+    if (stretched) {
+      const ModelForm form{"stretched, weighed by channel", bases_.back().form.start, by_channel};
+      if (!Fit(form)) return false;
+      bases_.push_back(forms_.back());
+    }
+    // From starts of its own, since it ends in another minimum.
+    ModelForm form{
+        "weighed by channel anew",
+        FitBy("auto", few_with_prior_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
+        by_channel};
+    if (stretched) {
+      const Objective few = few_with_prior_.For(fitted_.spec(), by_channel);
+      form = {"stretched, weighed by channel anew",
+              FitStretches(few, form.start, options_.stop).model, by_channel};
+    }
+    if (!Fit(form)) return false;
+    bases_.push_back(forms_.back());
+    return true;
+  }
+
+  // Of the best base, and any within 2 dB of it, the form that shares neither F nor D; then the
+  // best of all these with a lobe more. The more nodes there are to choose from, the better those
+  // that thinning leaves.
+  bool FitForms() {
+    constexpr double kNearly = 2;  // [dB]
+    const double best_base = std::ranges::max(bases_, {}, &Fitted::score).score;
+    std::vector<Fitted> good;
+    for (const Fitted& base : bases_) {
+      if (base.score < best_base - kNearly) continue;
+      good.push_back(base);
+      const std::optional<ModelForm> form = FormSharingNeither(base.form);
+      if (!form) continue;
+      if (!Fit(*form)) return false;
+      good.push_back(forms_.back());
+    }
+    const std::optional<ModelForm> form =
+        FormWithALobeMore(std::ranges::max(good, {}, &Fitted::score).form);
+    return !form || Fit(*form);
+  }
+
+  // Takes time, and changes little of what a form has gained: only the best ones.
+  void FinishBestForms() {
+    std::ranges::stable_sort(forms_, std::greater(), &Fitted::score);
+    for (Fitted& fitted_form : forms_) {
+      if (options_.stop()) break;
+      if (fitted_form.score <= best_.candidates[best_.chosen].score + kNotSeen) break;
+      auto& [name, model, weighting] = fitted_form.form;
+      if (LeastStored(model.spec()) > options_.max_parameters) continue;
+      const TableLayout layout = TableLayout::Full(model.spec());
+      if (layout.num_parameters(model.spec()) > options_.max_parameters) {
+        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score,
+                     TieRefit::kUntilBack);
+        Thin(name, weighting, model);
+      } else {
+        const Objective all = all_.For(model.spec(), weighting);
+        model = GoOn(all, model, options_.stop);
+        Canonicalize(all, &model);
+        model = Tied(all, model, options_.judge(model), TieRefit::kUntilSettled);
+        Judge(name + ", finished", model, layout, ValueOf(model));
+        Choose(model, layout, weighting);
+      }
+    }
+  }
+
+  // The model, in canonical form and of this score, with entries at the edge of the data tied,
+  // unless that is seen where data are.
+  FactorModel Tied(const Objective& objective, const FactorModel& model, double score,
+                   TieRefit refit) {
+    FactorModel tied = model;
+    if (!TieEntriesAtDataEdge(objective, &tied, options_.stop, refit)) return model;
+    Canonicalize(objective, &tied);
+    return options_.judge(tied) >= score - kNotSeen ? tied : model;
+  }
+
+  const Objective& objective_;
+  const FactorModel& fitted_;
+  const ModelChoiceOptions& options_;
+  Objectives all_, some_, few_;
+  const UnmeasuredPrior prior_;  // for forms that go on from the fit
+  Objectives some_with_prior_, few_with_prior_;
+  Stopwatch stopwatch_;     // since the last candidate
+  double beyond_ = 0;       // the data, the score of the fit
+  double some_of_fit_ = 0;  // of E of the fit
+  std::vector<Fitted> bases_, forms_;
+  ChosenModel best_;
+};
+
+}  // namespace
+
+ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
+                        const ModelChoiceOptions& options) {
+  CheckNotEmpty(options.judge, "judge");
+  if (options.max_parameters < 1) throw Error("a budget of parameters must be at least 1");
+  return ModelSearch(objective, fitted, options).Run();
+}
+
+}  // namespace trilobe

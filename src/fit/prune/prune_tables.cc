@@ -1,0 +1,244 @@
+#include "fit/prune/prune_tables.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fit/prune/needed_layout.h"
+#include "fit/prune/node_elimination.h"
+#include "fit/prune/reduced_quadratic.h"
+#include "fit/prune/shapes.h"
+#include "solvers/joint/joint_step.h"
+#include "solvers/joint/reduction.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/solvers/run.h"
+
+namespace trilobe {
+namespace {
+
+// Of the fit in the parameters that are left: it ends when a step gains less than this fraction of
+// the budget, or of E where E is what counts; and when so many times what the last step gained
+// would not bring it down to the budget.
+constexpr int kMaxPolish = 8, kHope = 4;
+constexpr double kSmallGain = 0.02, kSmallOfE = 1e-4;
+
+// Giving up nodes and refitting, again and again from where that led: what the errors of the
+// quadratic left of the budget is spent the next time. Where they were too large, a part of it is
+// tried, which grows again. It ends when few parameters went for all that was left.
+constexpr int kMaxAttempts = 8;
+constexpr double kMinCut = 0.1, kMaxCut = 0.6, kGrowth = 1.5;
+constexpr double kFewParameters = 0.04;
+
+// Towards a budget of parameters: this part of those in excess goes at once, if they are more than
+// few.
+constexpr double kExcessAtOnce = 0.75;
+constexpr int kFewInExcess = 10;
+
+EliminationLimits LimitsFor(const Pruning& pruning, double E, int parameters) {
+  EliminationLimits limits;
+  limits.max_rise = pruning.by_parameters() ? kInfinity : pruning.search_limit() - E;
+  limits.max_count = pruning.by_parameters()
+                         ? std::max(parameters - pruning.options().max_parameters, 0)
+                         : parameters;
+  limits.may_thin = pruning.may_thin();
+  return limits;
+}
+
+// Fits the parameters of the state's layout.
+void Polish(const Pruning& pruning, PruneState* state) {
+  const Reduction reduction(state->spec(), state->layout);
+  PhaseSeconds phases;
+  JointStepper stepper(*state->objective, JointStepper::Curvature::kByProgress,
+                       JointStepper::Trial::kAsItIs, &phases, &reduction);
+  stepper.Restart(state->model);
+  const double small = pruning.by_parameters()
+                           ? kSmallOfE * state->E
+                           : kSmallGain * (pruning.search_limit() - pruning.E_full());
+  for (int step = 0; step < kMaxPolish && !stepper.exhausted(); ++step) {
+    if (pruning.options().stop()) break;
+    const double before = stepper.E();
+    if (!stepper.Step()) continue;
+    const double decrease = before - stepper.E();
+    const bool hopeless =
+        !pruning.by_parameters() &&
+        state->Judged(stepper.current(), stepper.E()) - kHope * decrease > pruning.search_limit();
+    if (decrease < small || hopeless) break;
+  }
+  state->model = stepper.current();
+  state->E = state->Judged(state->model, stepper.E());
+}
+
+bool WithinBudget(const Pruning& pruning, const PruneState& next) {
+  return pruning.by_parameters() || (next.E <= pruning.search_limit() && pruning.Keeps(next));
+}
+
+// A shape, with the parameters that would be best by the quadratic.
+struct ShapeOption {
+  ModelShape shape;
+  TableLayout layout;
+  FactorModel model;
+  double E = 0;            // once nodes are given up too, predicted
+  int num_parameters = 0;  // then
+};
+
+// What a shape promises; nothing if it is beyond the budget.
+std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& shape,
+                                   const QuadraticModel& at) {
+  const PruneState& state = pruning.state();
+  const std::span<const double> x = state.model.parameters();
+  const Reduction sharing = Reduction::BySharing(state.spec(), shape.spec);
+  ShapeOption option{.shape = shape, .layout = {}, .model = FactorModel(shape.spec)};
+  double rise = 0;
+  if (shape.name.empty()) {  // as it is
+    option.layout = LayoutOf(shape, state.layout);
+    option.model = state.model;
+  } else {
+    const std::vector<double> coverage = sharing.Transpose(state.objective->coverage());
+    option.layout = LayoutOf(shape, NeededLayout(option.model, coverage, pruning.may_thin(),
+                                                 /*drop_equal=*/false));
+    const Reduction inner(shape.spec, option.layout), reduction = sharing.After(inner);
+    std::vector<double> y0 = reduction.Transpose(x);
+    const std::vector<double> counts = reduction.Transpose(std::vector<double>(x.size(), 1.0));
+    for (size_t j = 0; j < y0.size(); ++j) y0[j] /= counts[j];
+    const ReducedPoint best = LowestWithin(reduction, at, x, y0, state.lobes());
+    rise = best.rise;
+    std::ranges::copy(inner.Expand(best.y), option.model.parameters().begin());
+  }
+  option.E = state.E + rise;
+  if (!pruning.by_parameters() && option.E > pruning.search_limit()) return std::nullopt;
+
+  // The quadratic of the shape's parameters, moved there.
+  QuadraticModel there = sharing(at);
+  const std::vector<double> moved = sharing.Expand(option.model.parameters());
+  std::vector<double> gradient = GradientChange(at, x, moved);
+  for (size_t k = 0; k < x.size(); ++k) gradient[k] += at.gradient[k];
+  there.gradient = sharing.Transpose(gradient);
+  option.num_parameters = option.layout.num_parameters(shape.spec);
+  const std::vector<Elimination> order = OrderOfElimination(
+      there, option.model, option.layout, LimitsFor(pruning, option.E, option.num_parameters));
+  if (!order.empty()) option.E += order.back().rise;
+  option.num_parameters -= static_cast<int>(order.size());
+  return option;
+}
+
+// The state with the first `count` nodes given up, refitted.
+PruneState Without(const Pruning& pruning, const std::vector<Elimination>& order, int count,
+                   const QuadraticModel& at) {
+  PruneState next = pruning.state();
+  for (int k = 0; k < count; ++k) {
+    std::erase(next.layout.of(order[k].factor, order[k].table), order[k].entry);
+  }
+  const Reduction reduction(next.spec(), next.layout);
+  const std::vector<double> y0 = reduction.Restrict(pruning.state().model.parameters());
+  const ReducedPoint best =
+      LowestWithin(reduction, at, pruning.state().model.parameters(), y0, pruning.state().lobes());
+  next.E = kInfinity;
+  for (const std::vector<double>& y : {best.y, y0}) {
+    FactorModel model(next.spec());
+    std::ranges::copy(reduction.Expand(y), model.parameters().begin());
+    const double E = next.objective->Value(model);
+    if (!(E < next.E)) continue;
+    next.E = E;
+    next.model = model;
+  }
+  Polish(pruning, &next);
+  return next;
+}
+
+// How many nodes go before E has risen by more than this, but one.
+int CountWithin(const std::vector<Elimination>& order, double rise) {
+  const auto end = std::ranges::upper_bound(order, rise, {}, &Elimination::rise);
+  return std::max(1, static_cast<int>(end - order.begin()));
+}
+
+}  // namespace
+
+void ChooseShape(Pruning* pruning) {
+  const PruneOptions& limits = pruning->options();
+  if (!limits.sharing) return;
+  const std::vector<ModelShape> shapes = ShapesWithin(
+      pruning->state().spec(), pruning->state().layout, limits.colour, limits.shadowing);
+  // The shape as it is has the most parameters, and comes last.
+  if (shapes.front().name.empty()) return;
+  const QuadraticModel& at = pruning->Linearized();
+  std::vector<std::optional<ShapeOption>> promised(shapes.size());
+  ParallelFor(static_cast<int>(shapes.size()), pruning->state().objective->num_threads(),
+              [&](int k) { promised[k] = Promise(*pruning, shapes[k], at); });
+  std::vector<ShapeOption> options;
+  for (std::optional<ShapeOption>& option : promised) {
+    if (!option) continue;
+    // Where no other is within the budget, it stays.
+    if (option->shape.name.empty() && options.empty()) return;
+    options.push_back(*std::move(option));
+  }
+  std::ranges::stable_sort(options, [&](const ShapeOption& a, const ShapeOption& b) {
+    if (!pruning->by_parameters()) return a.num_parameters < b.num_parameters;
+    const int excess_a = std::max(a.num_parameters - limits.max_parameters, 0);
+    const int excess_b = std::max(b.num_parameters - limits.max_parameters, 0);
+    return std::pair(excess_a, a.E) < std::pair(excess_b, b.E);
+  });
+  for (const ShapeOption& option : options) {
+    if (option.shape.name.empty() || limits.stop()) return;
+    PruneState next = pruning->StateFor(option.shape.spec);
+    next.model = option.model;
+    next.layout = option.layout;
+    next.E = next.data->Value(next.model);
+    Polish(*pruning, &next);
+    const bool taken = WithinBudget(*pruning, next);
+    const std::string why = pruning->Against(next.E, taken);
+    if (pruning->Decide(option.shape.name, std::move(next), taken, why)) return;
+  }
+}
+
+void ThinTables(Pruning* pruning) {
+  const PruneState before = pruning->state();
+  const bool by_parameters = pruning->by_parameters();
+  double share = 1;  // of what is left, to be spent next: less where predictions are too low
+  for (int attempt = 0; attempt < kMaxAttempts && !pruning->options().stop();) {
+    const PruneState from = pruning->state();
+    const QuadraticModel& at = pruning->Linearized();
+    const std::vector<Elimination> order = OrderOfElimination(
+        at, from.model, from.layout, LimitsFor(*pruning, from.E, from.num_parameters()));
+    int count = static_cast<int>(order.size());
+    if (by_parameters && count > kFewInExcess) count = static_cast<int>(kExcessAtOnce * count);
+    const double left = pruning->search_limit() - from.E;
+    bool worth_more = false;
+    for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
+      if (share < 1) count = std::min(count, CountWithin(order, share * left));
+      PruneState next = Without(*pruning, order, count, at);
+      taken = WithinBudget(*pruning, next);
+      if (taken) {
+        const bool few = next.num_parameters() > (1 - kFewParameters) * from.num_parameters();
+        worth_more = by_parameters || share < 1 || !few;
+        share = std::min(1.0, kGrowth * share);
+        pruning->GoOnFrom(std::move(next));
+      } else {
+        share *= std::clamp(left / (next.E - from.E), kMinCut, kMaxCut);
+      }
+    }
+    if (!worth_more) break;
+  }
+  if (pruning->state().num_parameters() == before.num_parameters()) return;
+  PruneState after = pruning->GoOnFrom(before);
+  std::ostringstream what;
+  what << "nodes of";
+  for (const Factor factor : kFactors) {
+    size_t nodes_before = 0, nodes_after = 0;
+    for (const auto& nodes : before.layout.nodes[static_cast<int>(factor)]) {
+      nodes_before += nodes.size();
+    }
+    for (const auto& nodes : after.layout.nodes[static_cast<int>(factor)]) {
+      nodes_after += nodes.size();
+    }
+    what << (factor == Factor::kD ? " " : ", ") << FactorName(factor) << " from " << nodes_before
+         << " to " << nodes_after;
+  }
+  const std::string why = pruning->Against(after.E, /*within=*/true);
+  pruning->Decide(what.str(), std::move(after), true, why);
+}
+
+}  // namespace trilobe

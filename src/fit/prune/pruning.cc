@@ -1,0 +1,182 @@
+#include "fit/prune/pruning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "model/lobes/gauge.h"
+#include "model/objective/canonical_form.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/objective/score.h"
+#include "trilobe/solvers/run.h"
+#include "trilobe/solvers/sums/normal_equations.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of E
+
+// Of E of a black model: so little that nothing can be relative to it.
+constexpr double kPracticallyZero = 1e-9;
+// Of the same: what a good fit of a measurement comes to.
+constexpr double kGoodFit = 1e-4;
+
+// The measure of PSNR that is 0 where a model is right.
+double ErrorByPsnr(const PruneState& state) {
+  return std::pow(10, -ScoreModel(*state.data, state.model).psnr_db / 20);
+}
+
+}  // namespace
+
+std::string LobesText(int lobes) {
+  return lobes == 0 ? "no lobe" : lobes == 1 ? "one lobe" : std::to_string(lobes) + " lobes";
+}
+
+Pruning::Pruning(const Objective& data, const Objective& objective, const FactorModel& full,
+                 const PruneOptions& options)
+    : data_(data),
+      objective_(objective),
+      full_(full),
+      options_(options),
+      state_(MakeState(objective.spec(), full)),
+      E_full_(state_.E),
+      E_of_prior_(&data == &objective ? 0 : objective.Value(state_.model) - E_full_),
+      by_parameters_(options.max_parameters < std::numeric_limits<int>::max()) {
+  if (std::isnan(options.max_relative_rise) || std::isnan(options.max_psnr_drop_db) ||
+      std::isnan(options.max_error) || options.max_parameters < 1) {
+    throw Error(
+        "a budget must be a number, and at least one number must be left to store: check "
+        "max_relative_rise, max_psnr_drop_db, max_error and max_parameters");
+  }
+  if (options.layout) {
+    state_.layout = *options.layout;
+    ExpandStored(state_.layout, &state_.model);
+  }
+  if (by_parameters_) return;
+  limit_ = E_full_ * (1 + std::max(options.max_relative_rise, -1.0));
+  if (options.max_relative_rise > 0) limit_ = std::max(limit_, ExactObjective(data));
+  search_limit_ = limit_;
+  // Where E is the squared error, that grows by as much at this E; elsewhere it is a start.
+  if (options.error) {
+    error_ = [this](const PruneState& state) { return options_.error(state.model); };
+    full_error_ = ErrorOf(state_);
+    max_error_ = options.max_error;
+    const double growth = full_error_ > 0 ? max_error_ / full_error_ : kInfinity;
+    search_limit_ = growth * growth * E_full_;
+    // Of an exact model no multiple says anything: then the E of a good fit is where to begin.
+    if (Exact(E_full_)) search_limit_ = std::max(search_limit_, kGoodFit * data.MeasuredEnergy());
+    search_limit_ = std::min({limit_, search_limit_, data.MeasuredEnergy()});
+  } else if (std::isfinite(options.max_psnr_drop_db)) {
+    error_ = ErrorByPsnr;
+    const double growth = std::pow(10, options.max_psnr_drop_db / 20);
+    full_error_ = ErrorOf(state_);
+    max_error_ = growth * full_error_;
+    search_limit_ = std::min(limit_, growth * growth * E_full_);
+  }
+  const bool relative = !options.error && options.max_relative_rise > 0;
+  if (relative && Exact(E_full_)) {
+    std::ostringstream why;
+    why << std::setprecision(2) << "E of the full model is practically 0, "
+        << (data.MeasuredEnergy() > 0 ? E_full_ / data.MeasuredEnergy() : 0)
+        << " of a black model's, and a fraction of it buys nothing; give a budget in mean_delta_e, "
+           "sphere_psnr_db or bytes";
+    Record("what can be had for more E", state_, false, why.str());
+  }
+}
+
+PruneState Pruning::StateFor(const ModelSpec& spec) const {
+  const auto made = [&spec](const Objective& objective) -> std::shared_ptr<const Objective> {
+    if (spec == objective.spec()) return {std::shared_ptr<const Objective>(), &objective};
+    return std::make_shared<Objective>(objective, spec);
+  };
+  PruneState state{.objective = made(objective_), .data = nullptr};
+  state.data = &data_ == &objective_ ? state.objective : made(data_);
+  return state;
+}
+
+PruneState Pruning::MakeState(const ModelSpec& spec, const FactorModel& model) const {
+  PruneState state = StateFor(spec);
+  state.model = model;
+  state.layout = TableLayout::Full(spec);
+  NormalizeScale(state.objective->coverage(), &state.model);
+  state.E = state.data->Value(state.model);
+  return state;
+}
+
+const QuadraticModel& Pruning::Linearized() {
+  if (!linearized_ || linearized_->spec() != state_.spec() ||
+      !std::ranges::equal(linearized_->parameters(), state_.model.parameters())) {
+    NormalEquations(*state_.objective).Evaluate(state_.model, Hessian::kGaussNewton, &quadratic_);
+    linearized_ = state_.model;
+  }
+  return quadratic_;
+}
+
+bool Pruning::Exact(double E) const { return E <= kPracticallyZero * data_.MeasuredEnergy(); }
+
+bool Pruning::may_rise() const { return search_limit_ > E_full_ * (1 + kRounding); }
+
+bool Pruning::Keeps(const PruneState& state) const {
+  if (by_parameters_) return true;
+  if (!(state.E <= limit_ * (1 + kRounding))) return false;
+  return !limits_error() || ErrorOf(state) <= max_error_;
+}
+
+std::string Pruning::Against(double E, bool within) const {
+  std::ostringstream out;
+  out.precision(3);
+  if (!Exact(E_full_)) {
+    const double rise = 100 * (E / E_full_ - 1);
+    out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
+        << " the full model's";
+  } else {
+    out << "E is " << E << ", and of the full model practically 0";
+  }
+  if (!by_parameters_) out << "; " << (within ? "within" : "beyond") << " the budget";
+  return out.str();
+}
+
+void Pruning::Record(std::string what, const PruneState& next, bool taken, std::string why) {
+  decisions_.push_back({.what = std::move(what),
+                        .parameters_before = state_.num_parameters(),
+                        .parameters_after = next.num_parameters(),
+                        .E_before = state_.E,
+                        .E_after = next.E,
+                        .taken = taken,
+                        .why = std::move(why)});
+}
+
+bool Pruning::Decide(std::string what, PruneState next, bool taken, std::string why) {
+  Record(std::move(what), next, taken, std::move(why));
+  if (taken) state_ = std::move(next);
+  return taken;
+}
+
+PrunedModel Pruning::Result(LobeOrder order) const {
+  PrunedModel result{.model = state_.model,
+                     .layout = state_.layout,
+                     .decisions = decisions_,
+                     .num_parameters = state_.num_parameters()};
+  if (std::ranges::none_of(decisions_, &PruneDecision::taken)) {
+    result.model = full_;
+  } else {
+    Canonicalize(*state_.objective, &result.model, order);
+    ExpandStored(result.layout, &result.model);
+    // What tables are beyond their last nodes counts in the integral of D; and samples of a prior
+    // say what is read, but not what was measured.
+    SetCanonicalScale(state_.data->coverage(), &result.model, state_.data->num_threads());
+    ExpandStored(result.layout, &result.model);
+  }
+  result.E = state_.data->Value(result.model);
+  return result;
+}
+
+void Pruning::Withdraw(size_t begin, size_t end, const std::string& why) {
+  for (size_t k = begin; k < end; ++k) {
+    if (decisions_[k].taken) decisions_[k].why += "; " + why;
+    decisions_[k].taken = false;
+  }
+}
+
+}  // namespace trilobe

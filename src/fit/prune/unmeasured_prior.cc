@@ -1,0 +1,115 @@
+#include "fit/prune/unmeasured_prior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/fit/prior/reach.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/measurement/brdf_table.h"
+
+namespace trilobe {
+namespace {
+
+// Of what it says of a bin, where a measured one counts 1; of directions beyond samples on no grid,
+// where 0.01 costs 1.5 dB where data are (docs/decisions/forms-of-scattered.md).
+constexpr double kWeight = 0.01, kWeightOfScattered = 0.001;
+// Said for so many bins, but by so many samples at least of each theta_h, theta_d, theta_i and
+// theta_o.
+constexpr int kStride = 32, kLeast = 64;
+constexpr double kAbsurd = 100;    // times the largest value that was measured
+constexpr double kLargest = 1e50;  // that an objective takes
+
+std::vector<int> OpenBins(const BrdfSamples& measured) {
+  std::vector<bool> open = BinsAboveSurface(measured.grid);
+  for (const int bin : measured.bins) open[bin] = false;
+  std::vector<int> bins;
+  for (int bin = 0; bin < measured.grid.size(); ++bin) {
+    if (open[bin]) bins.push_back(bin);
+  }
+  return bins;
+}
+
+// Pairs farther from the normal than any that was measured, as dense as these.
+std::vector<SphericalAngles> DirectionsBeyond(const BrdfSamples& measured) {
+  constexpr double kFarthest = DegreesToRadians(89);
+  std::vector<SphericalAngles> pairs =
+      DirectionsBetween(kFarthest, measured.directions.size(), Spread::kRetroreflectionToo);
+  std::erase_if(pairs, [largest = LargestTheta(measured)](const SphericalAngles& at) {
+    return std::max(at.theta_i, at.theta_o) <= largest;
+  });
+  return pairs;
+}
+
+// Scattered ones.
+BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said) {
+  const auto append = [](const auto& from, auto* target) {
+    target->insert(target->end(), from.begin(), from.end());
+  };
+  samples.multiplicity.resize(samples.rho.size(), 1);
+  append(said.multiplicity, &samples.multiplicity);
+  append(said.angles, &samples.angles);
+  append(said.directions, &samples.directions);
+  append(said.rho, &samples.rho);
+  return samples;
+}
+
+}  // namespace
+
+UnmeasuredPrior::UnmeasuredPrior(const Objective& objective, const FactorModel& model)
+    : said_{objective.samples().source, objective.samples().grid, {}, {}, {}} {
+  const BrdfSamples& measured = objective.samples();
+  if (measured.on_grid()) {
+    said_.bins = OpenBins(measured);
+  } else {
+    said_.directions = DirectionsBeyond(measured);
+    for (const SphericalAngles& at : said_.directions) {
+      said_.angles.push_back(ToHalfDiff(ToDirections(at)));
+    }
+  }
+  const size_t places = said_.bins.size() + said_.angles.size();
+  if (places == 0) return;
+  said_.rho.assign(places, {});
+  said_.rho = UnclampedSamples(model, said_, objective.num_threads());
+  Rgb most{};
+  for (const Rgb& rho : measured.rho) {
+    for (int c = 0; c < kChannels; ++c) most[c] = std::max(most[c], rho[c]);
+  }
+  std::vector<int> finite;
+  for (int j = 0; j < said_.size(); ++j) {
+    Rgb& rho = said_.rho[j];
+    if (!std::ranges::all_of(rho, [](double x) { return std::isfinite(x); })) continue;
+    finite.push_back(j);
+    // A spline may undershoot, and a model be absurd.
+    for (int c = 0; c < kChannels; ++c) {
+      rho[c] = std::clamp(rho[c], 0.0, std::min(kAbsurd * most[c], kLargest));
+    }
+  }
+  said_ = ThinnedByPlace(Selected(said_, finite), kStride, kLeast);
+  const double weight = measured.on_grid() ? kWeight : kWeightOfScattered;
+  for (double& times : said_.multiplicity) times *= weight;
+}
+
+Objective UnmeasuredPrior::With(const Objective& objective) const {
+  if (said_.rho.empty()) return objective;
+  const BrdfSamples& measured = objective.samples();
+  if (!measured.on_grid()) {
+    BrdfSamples both = Joined(measured, said_);
+    return {std::move(both), objective.spec(), objective.weighting(), objective.num_threads()};
+  }
+  BrdfSamples both{measured.source, measured.grid, {}, {}, {}};
+  for (int j = 0, k = 0; j < measured.size() || k < said_.size();) {
+    const bool own = k == said_.size() || (j < measured.size() && measured.bins[j] < said_.bins[k]);
+    const BrdfSamples& from = own ? measured : said_;
+    const int number = own ? j++ : k++;
+    both.bins.push_back(from.bins[number]);
+    both.rho.push_back(from.rho[number]);
+    both.multiplicity.push_back(from.Multiplicity(number));
+  }
+  return {std::move(both), objective.spec(), objective.weighting(), objective.num_threads()};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,51 @@
+#include "fit/reports/albedo_table.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "fit/reports/print.h"
+
+namespace trilobe {
+
+AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads, double max_theta) {
+  AlbedoTable table;
+  for (int degrees = 0; degrees < 90 && DegreesToRadians(degrees) <= max_theta; ++degrees) {
+    table.theta_i.push_back(DegreesToRadians(degrees));
+  }
+  table.albedo = DirectionalAlbedos(brdf, table.theta_i, num_threads);
+  return table;
+}
+
+void Print(const AlbedoTable& table, const std::string& title) {
+  std::cout << "\n" << title << "\n  theta_i [deg]       red     green      blue\n";
+  for (const int degrees : {0, 10, 20, 30, 40, 50, 60, 70, 80, 85, 89}) {
+    if (degrees >= static_cast<int>(table.albedo.size())) break;
+    const Rgb& albedo = table.albedo[degrees];
+    std::cout << Right(std::to_string(degrees), 15) << Right(Text(albedo[0], 3), 10)
+              << Right(Text(albedo[1], 3), 10) << Right(Text(albedo[2], 3), 10) << "\n";
+  }
+  std::cout << Right("passes 1 at", 15);
+  for (int c = 0; c < kChannels; ++c) {
+    const auto angle = AlbedoPassesOne(table.theta_i, table.albedo, c);
+    std::cout << Right(angle ? Text(RadiansToDegrees(*angle), 3) : "never", 10);
+  }
+  std::cout << "\n";
+}
+
+nlohmann::ordered_json ToJson(const AlbedoTable& table) {
+  using Json = nlohmann::ordered_json;
+  Json json = {{"theta_i_deg", Json::array()}};
+  for (const double theta_i : table.theta_i) {
+    json["theta_i_deg"].push_back(RadiansToDegrees(theta_i));
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    for (const Rgb& albedo : table.albedo) json[kChannelNames[c]].push_back(albedo[c]);
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    const auto angle = AlbedoPassesOne(table.theta_i, table.albedo, c);
+    json["passes_one_deg"][kChannelNames[c]] = angle ? Json(RadiansToDegrees(*angle)) : Json();
+  }
+  return json;
+}
+
+}  // namespace trilobe

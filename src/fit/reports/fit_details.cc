@@ -1,0 +1,288 @@
+#include "fit/reports/fit_details.h"
+
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <tuple>
+#include <variant>
+
+#include "fit/reports/appearance_report.h"
+#include "fit/reports/bin_counts.h"
+#include "fit/reports/light_report.h"
+#include "fit/reports/print.h"
+#include "fit/reports/stretch_report.h"
+#include "fit/reports/verdict_report.h"
+#include "io/model_files/stretch_json.h"
+#include "trilobe/core/base/printable.h"
+#include "trilobe/solvers/registry/solvers.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const SolverOptions& options, const SolverEntry& solver) {
+  Json json;
+  for (const SolverOption* option : OptionsReadBy(solver.options)) {
+    std::visit([&](const auto& value) { json[option->name] = value; }, option->get(options));
+  }
+  return json;
+}
+
+Json ToJson(const PhaseSeconds& phases) {
+  return {{"reading", phases.reading},
+          {"preparing", phases.preparing},
+          {"evaluating", phases.evaluating},
+          {"tracing", phases.tracing},
+          {"linear_algebra", phases.linear_algebra},
+          {"diagnosing", phases.diagnosing}};
+}
+
+Json ToJson(const std::vector<StartResult>& starts) {
+  Json array = Json::array();
+  for (const StartResult& start : starts) {
+    array.push_back({{"name", start.name}, {"objective", start.objective}});
+  }
+  return array;
+}
+
+Json ToJson(const std::vector<ModelCandidate>& candidates) {
+  Json array = Json::array();
+  for (const ModelCandidate& candidate : candidates) {
+    array.push_back({{"name", candidate.name},
+                     {"parameters", candidate.num_parameters},
+                     {"objective", candidate.E},
+                     {"psnr_db", candidate.score},
+                     {"fails_beyond_data", candidate.fails_beyond},
+                     {"seconds", candidate.seconds}});
+  }
+  return array;
+}
+
+Json ToJson(const NodeChoice& choice) {
+  Json tried = Json::array();
+  for (const NodeCandidate& candidate : choice.tried) {
+    tried.push_back({{"name", candidate.name},
+                     {"parameters", candidate.spec.num_parameters()},
+                     {"relative_objective", candidate.error},
+                     {"seconds", candidate.seconds}});
+  }
+  return {{"chosen", choice.tried[choice.chosen].name},
+          {"held_out_samples", choice.held_out},
+          {"tried", tried}};
+}
+
+// Where it is much of E.
+std::string Irreducible(const ScoreReport& score) {
+  constexpr double kMuch = 0.1;
+  const double share = IrreducibleShare(score);
+  if (share < kMuch) return "";
+  return "reciprocity  " + Text(100 * share, 3) +
+         " % of E is what exchanged directions differ by in the data, noise included; no "
+         "reciprocal model lowers it\n";
+}
+
+std::string StretchLine(const ModelSpec& spec) {
+  if (!spec.stretches.any()) return "";
+  return "stretch      highlights widen with theta_d by 1 / cos^x, x along the plane of both "
+         "directions and across it: " +
+         DescribeStretches(spec) + "\n";
+}
+
+// What was chosen, and what it was chosen from.
+std::string Describe(const NodeChoice& choice) {
+  const NodeCandidate& chosen = choice.tried[choice.chosen];
+  std::string text = "nodes        chosen by error on held-out directions: " + chosen.name +
+                     " (E held out " + Text(100 * chosen.error, 3) + " % of a black model's";
+  const char* before = "; others: ";
+  for (const NodeCandidate& candidate : choice.tried) {
+    if (candidate.name == chosen.name) continue;
+    text += before + candidate.name + " " + Text(100 * candidate.error, 3) + " %";
+    before = "; ";
+  }
+  return text + ")\n";
+}
+
+std::string Describe(const FitReport::Prior& prior) {
+  return "prior        a small model, fitted first, speaks for " + std::to_string(prior.samples) +
+         " directions between the measured ones, each of weight " + Text(prior.weight) +
+         "; E is of the measured directions alone, but where it says otherwise\n";
+}
+
+// What was chosen, and what it was chosen from.
+std::string Describe(const FitReport::Finished& finished) {
+  std::string text;
+  if (finished.overshoot) {
+    text +=
+        "between      the fit reached more than four times the largest measured value between the "
+        "samples, and was drawn to the prior there; E " +
+        Text(finished.overshoot->E_before) + " -> " + Text(finished.overshoot->E_after) + "\n";
+  }
+  if (finished.smoothed) {
+    text += "smooth       the smoothest tables for an E that rose by " +
+            Text(100 * finished.smoothed->rise, 3) + " %\n";
+  }
+  if (finished.tied) {
+    // A fit that was stopped early gains more from the steps of the refit than tying costs.
+    text += "data edge    entries read by few samples follow from their neighbours; E " +
+            std::string(*finished.tied < 0 ? "fell" : "rose") + " by " +
+            Text(100 * std::abs(*finished.tied), 3) + " %\n";
+  }
+  if (finished.held_out > 0) {
+    text +=
+        "held out     " + std::to_string(finished.held_out) +
+        " samples, by which candidates were judged; E of these is of what they were fitted to\n";
+  }
+  for (size_t k = 0; k < finished.candidates.size(); ++k) {
+    const ModelCandidate& candidate = finished.candidates[k];
+    text += (k == 0 ? "candidates   " : "             ") + candidate.name + ": PSNR " +
+            Text(candidate.score) + " dB, " + std::to_string(candidate.num_parameters) +
+            " parameters, E " + Text(candidate.E) +
+            (candidate.fails_beyond ? ", but fails beyond the data" : "") +
+            (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
+  }
+  if (finished.matched) {
+    const FinishedFit::Matched& matched = *finished.matched;
+    text += "reflectance  was off by " + Text(100 * matched.error_before, 3) + " %, now by " +
+            Text(100 * matched.error_after, 3) + " %; E " + (matched.rise < 0 ? "fell" : "rose") +
+            " by " + Text(100 * std::abs(matched.rise), 3) + " %\n";
+  }
+  return text;
+}
+
+Json ToJson(const Diagnosis& diagnosis) {
+  return {{"optimality", diagnosis.optimality},
+          {"live_parameters", diagnosis.observed_parameters},
+          {"rank", diagnosis.rank},
+          {"rank_tolerance", diagnosis.rank_tolerance},
+          {"unresolved", diagnosis.unresolved},
+          {"condition", diagnosis.condition}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const FitReport& report) {
+  const FitInfo& fit = report.fit;
+  const SolverSummary& summary = report.summary;
+  const ScoreReport& score = report.score;
+  const FitReport::Seconds& seconds = report.seconds;
+  const SolverEntry& solver = FindSolver(fit.solver);
+  return {
+      {"verdict", ToJson(VerdictOn(report))},
+      {"source", fit.source},
+      {"noise", report.noise},
+      {"seed", report.seed},
+      {"valid_samples", fit.valid_samples},
+      {"max_angle", fit.max_angle},
+      {"bins", ToJson(report.bins)},
+      {"data_notes", report.data_notes},
+      {"solver", fit.solver},
+      {"init", fit.init},
+      {"weighting", fit.weighting},
+      {"model", ModelName(report.spec)},
+      {"lobes", report.spec.lobes},
+      {"stretch", StretchesToJson<Json>(report.spec)},
+      {"parameters", report.spec.num_parameters()},
+      {"stored_parameters", report.stored_parameters},
+      {"candidates", ToJson(report.finished.candidates)},
+      {"candidates_held_out", report.finished.held_out},
+      {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
+      {"prior", report.prior
+                    ? Json{{"weight", report.prior->weight},
+                           {"samples", report.prior->samples},
+                           {"initial_objective", summary.trace.front().minimised()},
+                           {"objective", summary.trace[summary.BestIteration()].minimised()}}
+                    : Json()},
+      {"matched_reflectance", report.finished.matched
+                                  ? Json{{"error_before", report.finished.matched->error_before},
+                                         {"error_after", report.finished.matched->error_after},
+                                         {"objective_rise", report.finished.matched->rise}}
+                                  : Json()},
+      {"corrected_overshoot", report.finished.overshoot
+                                  ? Json{{"objective_before", report.finished.overshoot->E_before},
+                                         {"objective_after", report.finished.overshoot->E_after}}
+                                  : Json()},
+      {"smoothed", report.finished.smoothed
+                       ? Json{{"objective_rise", report.finished.smoothed->rise},
+                              {"stiffness", report.finished.smoothed->stiffness}}
+                       : Json()},
+      {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
+      {"threads", fit.threads},
+      {"options",
+       {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
+      {"notes", summary.notes},
+      {"starts", ToJson(summary.starts)},
+      {"stop_reason", fit.stop_reason},
+      {"iterations", fit.iterations},
+      {"best_iteration", summary.BestIteration()},
+      {"rejected_steps", summary.RejectedSteps()},
+      {"initial_objective", fit.initial_objective},
+      {"objective", score.objective},
+      {"relative_objective", score.relative_objective},
+      {"irreducible_objective", score.irreducible_objective},
+      {"psnr_db", score.psnr_db},
+      {"psnr_peak", score.psnr_peak},
+      {"rmse", score.rmse},
+      {"mean_relative_error", score.mean_relative_error},
+      {"mean_log_error", score.mean_log_error},
+      {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
+      {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
+      {"reach", report.reach ? Json{{"between_samples", report.reach->between},
+                                    {"beyond_samples", report.reach->beyond}}
+                             : Json()},
+      {"light", ToJson(report.light)},
+      {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
+      {"seconds",
+       {{"read", seconds.read},
+        {"prepare", seconds.prepare},
+        {"init", seconds.init},
+        {"nodes", seconds.nodes},
+        {"solve", seconds.solve},
+        {"finish", seconds.finish},
+        {"score", seconds.score},
+        {"draw", seconds.draw}}},
+      {"phases", ToJson(summary.phases)},
+      {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
+      {"program", fit.program},
+      {"date", fit.date},
+      {"key", report.key},
+      {"interrupted", report.interrupted},
+      {"run", fit.run},
+      {"files", report.files}};
+}
+
+void PrintDetails(const FitReport& report) {
+  const FitInfo& fit = report.fit;
+  const ScoreReport& score = report.score;
+  std::cout << "source       " << Printable(fit.source) << ", " << fit.valid_samples
+            << " valid samples up to " << Text(fit.max_angle) << " deg\n"
+            << "left out     bins " << LeftOutText(report.bins) << "\n"
+            << "model        " << report.spec.lobes << " lobes, " << ParametersText(report)
+            << ", weighting " << fit.weighting << ", from " << fit.init << "\n"
+            << report.summary.FullReport() << "error        E is "
+            << Text(100 * score.relative_objective) << " % of a black model's; PSNR "
+            << Text(score.psnr_db) << " dB (peak " << Text(score.psnr_peak) << " /sr), RMSE "
+            << Text(score.rmse) << " /sr, mean relative error "
+            << RelativeErrorText(score.mean_relative_error) << "\n"
+            << Irreducible(score) << StretchLine(report.spec)
+            << (report.nodes ? Describe(*report.nodes) : "")
+            << (report.prior ? Describe(*report.prior) : "") << Describe(report.finished)
+            << (report.appearance
+                    ? Describe(*report.appearance)
+                    : "appearance   samples on no grid are not compared on a sphere; slices.png "
+                      "holds the fit against them\n")
+            << (report.left_out
+                    ? "azimuths     an isotropic model leaves out " +
+                          Text(100 * *report.left_out, 3) +
+                          " % of the energy: what differs from the mean over all turns of the "
+                          "sample\n"
+                    : "")
+            << "light        " << Describe(report.light) << "\n";
+  if (report.peak_memory) {
+    std::cout << "memory       " << Text(static_cast<double>(*report.peak_memory) / 1e6, 3)
+              << " MB at most\n";
+  }
+}
+
+}  // namespace trilobe

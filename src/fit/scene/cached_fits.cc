@@ -1,0 +1,126 @@
+#include "fit/scene/cached_fits.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/evaluate/read_model.h"
+
+namespace trilobe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Encode(const FullFit& fit) {
+  return {{"model", FormatModel(fit.file)}, {"seconds", fit.seconds}};
+}
+
+FullFit DecodeFullFit(const Json& json) {
+  return {ParseModel(json.at("model").get<std::string>(), "cache"), json.at("seconds"), true};
+}
+
+// JSON has no infinite PSNR, that of an exact fit.
+Json EncodeDecibels(double x) { return std::isfinite(x) ? Json(x) : Json(); }
+
+double DecodeDecibels(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
+Json Encode(const SceneScore& score) {
+  Json json = {{"objective", score.objective}, {"psnr_db", EncodeDecibels(score.psnr_db)}};
+  if (score.mean_delta_e) {
+    json["mean_delta_e"] = *score.mean_delta_e;
+    json["sphere_psnr_db"] = EncodeDecibels(*score.sphere_psnr_db);
+  }
+  return json;
+}
+
+SceneScore DecodeScore(const Json& json) {
+  SceneScore score = {json.at("objective"), DecodeDecibels(json.at("psnr_db"))};
+  if (json.contains("mean_delta_e")) {
+    score.mean_delta_e = json.at("mean_delta_e");
+    score.sphere_psnr_db = DecodeDecibels(json.at("sphere_psnr_db"));
+  }
+  return score;
+}
+
+Json Encode(const MaterialFit& fit) {
+  Json decisions = Json::array();
+  for (const PruneDecision& decision : fit.decisions) {
+    decisions.push_back({{"what", decision.what},
+                         {"numbers_before", decision.parameters_before},
+                         {"numbers_after", decision.parameters_after},
+                         {"E_before", decision.E_before},
+                         {"E_after", decision.E_after},
+                         {"taken", decision.taken},
+                         {"why", decision.why}});
+  }
+  return {{"model", FormatModel(fit.file)},   {"valid_samples", fit.valid_samples},
+          {"used_samples", fit.used_samples}, {"full_numbers", fit.full_parameters},
+          {"full", Encode(fit.full)},         {"pruned", Encode(fit.pruned)},
+          {"numbers", fit.num_parameters},    {"decisions", decisions},
+          {"fit_seconds", fit.fit_seconds},   {"prune_seconds", fit.prune_seconds},
+          {"data_notes", fit.data_notes},     {"verdict", fit.verdict}};
+}
+
+MaterialFit DecodeMaterialFit(const Json& json) {
+  MaterialFit fit;
+  fit.data_notes = json.at("data_notes");
+  fit.verdict = json.at("verdict");
+  fit.valid_samples = json.at("valid_samples");
+  fit.used_samples = json.at("used_samples");
+  fit.full_parameters = json.at("full_numbers");
+  fit.full = DecodeScore(json.at("full"));
+  fit.pruned = DecodeScore(json.at("pruned"));
+  fit.file = ParseModel(json.at("model").get<std::string>(), "cache");
+  fit.num_parameters = json.at("numbers");
+  for (const Json& decision : json.at("decisions")) {
+    fit.decisions.push_back({.what = decision.at("what"),
+                             .parameters_before = decision.at("numbers_before"),
+                             .parameters_after = decision.at("numbers_after"),
+                             .E_before = decision.at("E_before"),
+                             .E_after = decision.at("E_after"),
+                             .taken = decision.at("taken"),
+                             .why = decision.at("why")});
+  }
+  fit.fit_seconds = json.at("fit_seconds");
+  fit.prune_seconds = json.at("prune_seconds");
+  fit.fit_from_cache = fit.prune_from_cache = true;
+  return fit;
+}
+
+template <typename Fit>
+std::optional<Fit> Cached(const FitCache& cache, const std::string& key,
+                          Fit (*decode)(const Json&)) {
+  const std::optional<std::string> content = cache.Find(key);
+  if (!content) return std::nullopt;
+  try {
+    return decode(Json::parse(*content));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::optional<FullFit> CachedFullFit(const FitCache& cache, const std::string& key) {
+  return Cached(cache, key, DecodeFullFit);
+}
+
+std::optional<MaterialFit> CachedMaterialFit(const FitCache& cache, const std::string& key) {
+  return Cached(cache, key, DecodeMaterialFit);
+}
+
+void KeepFit(const FullFit& fit, const std::string& key, const FitCache& cache) {
+  cache.Keep(key, Encode(fit).dump());
+}
+
+void KeepFit(const MaterialFit& fit, const std::string& key, const FitCache& cache) {
+  cache.Keep(key, Encode(fit).dump());
+}
+
+}  // namespace trilobe

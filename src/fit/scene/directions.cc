@@ -1,0 +1,143 @@
+#include "fit/scene/directions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/files/little_endian.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/math/stencil.h"
+
+namespace trilobe {
+namespace {
+
+std::string Text(const MerlGrid& grid) {
+  return std::to_string(grid.theta_h) + " x " + std::to_string(grid.theta_d) + " x " +
+         std::to_string(grid.phi_d);
+}
+
+int BinOf(const BrdfSamples& samples, int j) {
+  return samples.on_grid() ? samples.bins[j] : samples.grid.Bin(samples.angles[j]);
+}
+
+// The numbers of the samples that are used, and how often each counts; empty for always once.
+struct Selection {
+  std::vector<int> numbers;
+  std::vector<double> multiplicity = {};
+};
+
+template <typename Uses>
+Selection Where(const BrdfSamples& samples, const Uses& uses) {
+  Selection selection;
+  for (int j = 0; j < samples.size(); ++j) {
+    if (uses(j)) selection.numbers.push_back(j);
+  }
+  return selection;
+}
+
+Selection Select(const BrdfSamples& samples, const AllDirections& /*all*/) {
+  return Where(samples, [](int) { return true; });
+}
+
+Selection Select(const BrdfSamples& samples, const DirectionRanges& ranges) {
+  const auto in = [](const DirectionRanges::Range& range, double theta) {
+    return range.min <= theta && theta <= range.max;
+  };
+  return Where(samples, [&](int j) {
+    const Cosines cosines = samples.CosinesOf(j);
+    const double i = std::acos(cosines.i), o = std::acos(cosines.o);
+    return (in(ranges.theta_i, i) && in(ranges.theta_o, o)) ||
+           (in(ranges.theta_i, o) && in(ranges.theta_o, i));
+  });
+}
+
+Selection Select(const BrdfSamples& samples, const DirectionList& list) {
+  const MerlGrid& grid = samples.grid;
+  std::vector<bool> used(grid.size(), false);
+  for (const HalfDiffAngles& angles : list.directions) {
+    const Stencil h = LinearStencil(grid.ThetaHCoordinate(angles.theta_h), grid.theta_h);
+    const Stencil d = LinearStencil(grid.ThetaDCoordinate(angles.theta_d), grid.theta_d);
+    const int below = static_cast<int>(std::floor(angles.phi_d / kPi * grid.phi_d - 0.5));
+    for (const int p : {(below + grid.phi_d) % grid.phi_d, (below + 1) % grid.phi_d}) {
+      for (int a = 0; a < h.size; ++a) {
+        for (int b = 0; b < d.size; ++b) {
+          used[grid.Index(h.index[a], d.index[b], p)] = true;
+          used[grid.Index(h.index[a], d.index[b], grid.phi_d - 1 - p)] = true;
+        }
+      }
+    }
+  }
+  return Where(samples, [&](int j) { return used[BinOf(samples, j)]; });
+}
+
+Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram) {
+  if (!(histogram.grid == samples.grid)) {
+    throw Error(histogram.source + ": the histogram has " + Text(histogram.grid) +
+                " bins, but the measurement " + samples.source + " has " + Text(samples.grid) +
+                "; count over theta_h, theta_d, phi_d of the measurement's grid");
+  }
+  const auto count = [&](int j) { return histogram.counts[BinOf(samples, j)]; };
+  Selection selection = Where(samples, [&](int j) { return count(j) > 0; });
+  double sum = 0;
+  for (const int j : selection.numbers) sum += count(j);
+  const double mean = sum / static_cast<double>(selection.numbers.size());
+  for (const int j : selection.numbers) selection.multiplicity.push_back(count(j) / mean);
+  return selection;
+}
+
+}  // namespace
+
+DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source) {
+  constexpr size_t kHeader = 3 * sizeof(int32_t);
+  constexpr int kMaxBins = 1 << 26;
+  const std::string format =
+      "; expected three int32 (theta_h, theta_d and phi_d bins) and then a "
+      "float64 for each bin";
+  if (bytes.size() < kHeader) {
+    throw Error(source + ": not a histogram: it has " + std::to_string(bytes.size()) + " bytes" +
+                format);
+  }
+  int32_t sizes[3];
+  double bins = 1;
+  for (int k = 0; k < 3; ++k) {
+    sizes[k] = LoadLittleEndian<int32_t>(bytes.data() + k * sizeof(int32_t));
+    bins *= sizes[k];
+    if (sizes[k] < 1 || bins > kMaxBins) {
+      throw Error(source + ": not a histogram: it begins with the number of bins " +
+                  std::to_string(sizes[k]) + format);
+    }
+  }
+  DirectionHistogram histogram{source, {sizes[0], sizes[1], sizes[2]}, {}};
+  const size_t expected = kHeader + histogram.grid.size() * sizeof(double);
+  if (bytes.size() != expected) {
+    throw Error(source + ": a histogram of " + Text(histogram.grid) + " bins has " +
+                std::to_string(expected) + " bytes, but the file has " +
+                std::to_string(bytes.size()));
+  }
+  bool any = false;
+  for (int bin = 0; bin < histogram.grid.size(); ++bin) {
+    const auto count = LoadLittleEndian<double>(bytes.data() + kHeader + bin * sizeof(double));
+    if (!(count >= 0 && count <= 1e50)) {
+      throw Error(source + ": the count of bin " + std::to_string(bin) + " is " +
+                  std::to_string(count) + "; counts must be from 0 to 1e50");
+    }
+    any = any || count > 0;
+    histogram.counts.push_back(count);
+  }
+  if (!any) throw Error(source + ": all counts are 0, so no direction would be used");
+  return histogram;
+}
+
+BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions) {
+  const Selection selection =
+      std::visit([&](const auto& form) { return Select(samples, form); }, directions);
+  if (selection.numbers.empty()) {
+    throw Error(samples.source +
+                ": no valid sample lies in the directions that the scene uses; widen them");
+  }
+  BrdfSamples used = Selected(samples, selection.numbers);
+  used.multiplicity = selection.multiplicity;
+  return used;
+}
+
+}  // namespace trilobe

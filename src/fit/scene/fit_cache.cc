@@ -1,0 +1,76 @@
+#include "fit/scene/fit_cache.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <ostream>
+
+#include "core/files/file.h"
+#include "core/files/read_file.h"
+#include "trilobe/core/base/error.h"
+
+namespace trilobe {
+namespace {
+
+// The first line of an entry: this, the hash of what follows, the size of the key, and a newline.
+// What follows is the key, a newline, and the content.
+constexpr std::string_view kMagic = "trilobe-cache 2 ";
+
+std::string Entry(std::string_view key, std::string_view content) {
+  const std::string rest = std::string(key) + "\n" + std::string(content);
+  return std::string(kMagic) + ContentHash(rest) + " " + std::to_string(key.size()) + "\n" + rest;
+}
+
+}  // namespace
+
+std::string ContentHash(std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  std::array<char, 33> text;
+  std::snprintf(text.data(), text.size(), "%016llx%016llx",
+                static_cast<unsigned long long>(hash.high64),  // NOLINT(google-runtime-int)
+                static_cast<unsigned long long>(hash.low64));  // NOLINT(google-runtime-int)
+  return text.data();
+}
+
+FitCache::FitCache(const std::string& folder) : folder_(folder) {
+  MakeDirectories(folder);
+  SweepTemporaryFiles(folder);
+}
+
+std::string FitCache::PathOf(std::string_view key) const {
+  return folder_ + "/" + ContentHash(key) + ".cache";
+}
+
+std::optional<std::string> FitCache::Find(std::string_view key) const {
+  if (folder_.empty()) return std::nullopt;
+  try {
+    const std::string entry = ReadFile(PathOf(key));
+    const size_t begin = Entry(key, "").size();
+    if (entry.size() < begin || entry != Entry(key, entry.substr(begin))) return std::nullopt;
+    return entry.substr(begin);
+  } catch (const Error&) {
+    return std::nullopt;  // not there, or not to be read
+  }
+}
+
+void FitCache::Keep(std::string_view key, std::string_view content) const {
+  if (folder_.empty()) return;
+  try {
+    WriteFile(PathOf(key), [&](std::ostream& out) { out << Entry(key, content); });
+  } catch (const Error&) {
+    return;  // it will be made again
+  }
+}
+
+std::string DefaultCacheFolder() {
+  // As the XDG Base Directory Specification has it, a relative path is no path.
+  const char* const xdg = std::getenv("XDG_CACHE_HOME");
+  if (xdg != nullptr && xdg[0] == '/') return std::string(xdg) + "/trilobe";
+  const char* const home = std::getenv("HOME");
+  return home != nullptr && home[0] == '/' ? std::string(home) + "/.cache/trilobe" : "";
+}
+
+}  // namespace trilobe

@@ -1,0 +1,42 @@
+#ifndef TRILOBE_FIT_SCENE_LOOK_H_
+#define TRILOBE_FIT_SCENE_LOOK_H_
+
+#include <optional>
+
+#include "fit/scene/scene_file.h"
+#include "model/appearance/picture_data.h"
+#include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/measurement.h"
+
+namespace trilobe {
+
+// How a model looks beside its measurement, on the sphere of docs/appearance.md, as far as a scene
+// sees that: in its channels and, of a table, from its directions alone.
+class Look {
+ public:
+  // Throws Error where scattered samples stand on no grid, as these make no picture.
+  Look(const SceneMaterial& material, Measurement measured, const AppearanceOptions& options);
+  Look(const Look&) = delete;
+  Look& operator=(const Look&) = delete;
+
+  // As `trilobe fit` tells it.
+  SphereError Of(const FactorModel& model) const;
+  // On a quarter of the pixels, in a quarter of the time.
+  SphereError Quickly(const FactorModel& model) const;
+
+ private:
+  const Measurement seen_;
+  const PictureData pictured_;
+  const AppearanceOptions options_;
+  std::optional<SphereJudge> judge_;  // of a table
+};
+
+// PruneOptions::error of a budget of look: mean Delta E, or 10^(-PSNR/20).
+double ErrorIn(SceneBudget::Unit unit, const SphereError& error);
+// The same of the budget's amount.
+double MaxError(const SceneBudget& budget);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_SCENE_LOOK_H_

@@ -1,0 +1,479 @@
+#include "fit/scene/scene_fit.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <sstream>
+#include <utility>
+#include <variant>
+
+#include "core/files/read_file.h"
+#include "core/system/stopwatch.h"
+#include "core/system/utc_time.h"
+#include "fit/prune/prune_anisotropic.h"
+#include "fit/prune/thinned_objective.h"
+#include "fit/scene/cached_fits.h"
+#include "fit/scene/look.h"
+#include "fit/scene/luminance.h"
+#include "model/appearance/picture_data.h"
+#include "model/appearance/seen_samples.h"
+#include "model/appearance/verdict.h"
+#include "model/lobes/gauge.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/fit/as_measurement.h"
+#include "trilobe/fit/fit.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/materials/load_model.h"
+#include "trilobe/solvers/registry/solvers.h"
+
+namespace trilobe {
+namespace {
+
+// With a budget of seconds: the share of it after which a fit stops. The rest is for leaving out
+// what is free.
+constexpr double kFitShare = 0.8;
+
+// Lobes where a budget asks for less error than that of the full fit.
+constexpr int kMoreLobes = 5;
+
+// What distinguishes two cached results: one line each.
+class Key {
+ public:
+  explicit Key(const std::string& kind) { Add("result", kind); }
+
+  template <typename T>
+  void Add(const std::string& name, const T& value) {
+    text_ << name << "=" << value << "\n";
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_ = [] {
+    std::ostringstream text;
+    text.precision(17);
+    return text;
+  }();
+};
+
+std::string HashOf(std::span<const double> numbers) {
+  return ContentHash({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
+}
+
+struct DirectionsText {
+  std::string operator()(const AllDirections& /*all*/) const { return "all"; }
+  std::string operator()(const DirectionRanges& ranges) const {
+    const double bounds[] = {ranges.theta_i.min, ranges.theta_i.max, ranges.theta_o.min,
+                             ranges.theta_o.max};
+    return "ranges " + HashOf(bounds);
+  }
+  std::string operator()(const DirectionList& list) const {
+    std::vector<double> angles;
+    for (const HalfDiffAngles& a : list.directions) {
+      angles.insert(angles.end(), {a.theta_h, a.theta_d, a.phi_d});
+    }
+    return "list " + HashOf(angles);
+  }
+  std::string operator()(const DirectionHistogram& histogram) const {
+    return "histogram " + HashOf(histogram.counts);
+  }
+};
+
+PruneOptions PruneOptionsOf(const SceneMaterial& material) {
+  const auto& [unit, amount] = material.budget;
+  PruneOptions options;
+  options.max_relative_rise = 0;
+  switch (unit) {
+    case SceneBudget::Unit::kRelativeRise:
+      options.max_relative_rise = amount;
+      break;
+    case SceneBudget::Unit::kPsnrDrop:
+      options.max_relative_rise = std::numeric_limits<double>::infinity();
+      options.max_psnr_drop_db = amount;
+      break;
+    case SceneBudget::Unit::kMeanDeltaE:
+    case SceneBudget::Unit::kSpherePsnr:
+      options.max_relative_rise = std::numeric_limits<double>::infinity();
+      options.max_error = MaxError(material.budget);
+      break;
+    case SceneBudget::Unit::kBytes:
+      options.max_parameters = static_cast<int>(std::min(amount / sizeof(double), 1e9));
+      break;
+    case SceneBudget::Unit::kSeconds:
+      break;
+  }
+  options.lobes = material.reductions.lobes;
+  options.colour = material.reductions.colour;
+  options.shadowing = material.reductions.shadowing;
+  options.tables = material.reductions.tables;
+  const bool wants_more =
+      amount < 0 || unit == SceneBudget::Unit::kBytes || material.budget.of_look();
+  options.max_lobes = options.lobes && wants_more ? kMoreLobes : 0;
+  return options;
+}
+
+BrdfSamples InChannels(BrdfSamples samples, SceneChannels channels) {
+  if (channels == SceneChannels::kLuminance) return LuminanceOf(std::move(samples));
+  return samples;
+}
+
+SceneScore ScoreOn(const Objective& objective, const FactorModel& model) {
+  const ScoreReport report = ScoreModel(objective, model);
+  return {report.objective, report.psnr_db};
+}
+
+std::string BytesOfSource(const std::string& source) {
+  if (IsSynthetic(source)) return source;
+  return IsMaterial(source) ? std::string(MaterialText(source)) : ReadFile(source);
+}
+
+// One material, of which nothing is read more than once, or without need.
+class MaterialFitter {
+ public:
+  MaterialFitter(const SceneMaterial& material, const SceneFitSettings& settings, int num_threads)
+      : material_(material),
+        settings_(settings),
+        num_threads_(num_threads),
+        bytes_(BytesOfSource(material.source)),
+        bytes_hash_(ContentHash(bytes_)),
+        is_model_(RecogniseContent(bytes_).kind == Content::Kind::kJson) {}
+
+  // `purpose` is for the key alone: fits that are to be timed apart.
+  std::optional<FullFit> Fit(const std::string& purpose) {
+    const std::string key = FitKey(purpose).text();
+    if (auto cached = CachedFullFit(settings_.cache, key)) return cached;
+    std::optional<FullFit> fit = FitAnew();
+    if (fit) KeepFit(*fit, key, settings_.cache);
+    return fit;
+  }
+
+  std::optional<MaterialFit> FitAndPrune() {
+    const std::string key = PruneKey();
+    std::optional<MaterialFit> fit = CachedMaterialFit(settings_.cache, key);
+    if (!fit) {
+      fit = PruneAnew();
+      if (fit) KeepFit(*fit, key, settings_.cache);
+    }
+    if (fit) fit->name = material_.name;
+    return fit;
+  }
+
+  std::vector<SceneScore> Score(std::span<const FactorModel> models) const {
+    const bool grey = material_.channels == SceneChannels::kLuminance;
+    const BrdfSamples used = UsedSamples(SamplesOf(Measured()), material_.directions);
+    const Objective objective(InChannels(used, material_.channels), models.front().spec(),
+                              FindWeighting(settings_.weighting), num_threads_);
+    std::vector<SceneScore> scores;
+    for (const FactorModel& model : models) {
+      const FactorModel judged = grey ? LuminanceOf(model) : model;
+      scores.push_back(ScoreOn(Objective(objective, judged.spec()), judged));
+    }
+    return scores;
+  }
+
+ private:
+  // All that the fit with nothing left out depends on.
+  Key FitKey(const std::string& purpose) const {
+    Key key("fit 3, " + purpose);
+    key.Add("program", settings_.program);
+    key.Add("build", settings_.build);
+    key.Add("source", bytes_hash_);
+    if (IsSynthetic(material_.source)) {
+      key.Add("noise", settings_.noise);
+      key.Add("synth_seed", settings_.seed);
+    }
+    key.Add("max_angle", settings_.max_angle_deg);
+    key.Add("min_theta_d", settings_.min_theta_d_deg);
+    key.Add("extrapolated", settings_.extrapolated);
+    key.Add("directions", material_.reductions.samples
+                              ? std::visit(DirectionsText(), material_.directions)
+                              : "all");
+    key.Add("luminance", material_.channels == SceneChannels::kLuminance);
+    key.Add("weighting", settings_.weighting);
+    key.Add("lobes", settings_.lobes);
+    key.Add("init", settings_.init);
+    key.Add("init_seed", settings_.seed);
+    key.Add("solver", settings_.solver);
+    for (const SolverOption* option : OptionsReadBy(FindSolver(settings_.solver).options)) {
+      std::visit([&](const auto& value) { key.Add(option->name, value); },
+                 option->get(settings_.options));
+    }
+    if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
+      key.Add("seconds", material_.budget.amount);
+    }
+    return key;
+  }
+
+  std::string PruneKey() const {
+    Key key = FitKey("scene");
+    key.Add("then", "prune 6");
+    key.Add("unit", static_cast<int>(material_.budget.unit));
+    key.Add("amount", material_.budget.amount);
+    if (material_.budget.of_look()) {
+      key.Add("lights", settings_.appearance.lights);
+      key.Add("size", settings_.appearance.size);
+    }
+    const SceneReductions& reductions = material_.reductions;
+    key.Add("lobes", reductions.lobes);
+    key.Add("colour", reductions.colour);
+    key.Add("shadowing", reductions.shadowing);
+    key.Add("tables", reductions.tables);
+    key.Add("verdict", settings_.verdicts);
+    return key.text();
+  }
+
+  ModelFile GivenModel() const { return ParseModel(bytes_, material_.source); }
+
+  Measurement Measured() const {
+    if (is_model_) {
+      // Finer than what is measured, lest nodes of D fall between.
+      constexpr HemisphereGrid kNodes = {.thetas = 12, .phis = 48};
+      return AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
+    }
+    const SourceOptions options = {.noise = settings_.noise,
+                                   .seed = settings_.seed,
+                                   .num_threads = num_threads_,
+                                   .max_angle_deg = settings_.max_angle_deg,
+                                   .min_theta_d_deg = settings_.min_theta_d_deg,
+                                   .extrapolated = settings_.extrapolated};
+    return IsSynthetic(material_.source) ? LoadMeasurement(material_.source, options)
+                                         : ParseMeasurement(bytes_, material_.source, options);
+  }
+
+  const Measurement& measured() {
+    if (!measured_) measured_ = Measured();
+    return *measured_;
+  }
+
+  // As `trilobe fit` has them but for what the scene says.
+  FitOptions Options() const {
+    FitOptions options;
+    options.form.lobes = settings_.lobes;
+    options.init = settings_.init;
+    options.solver = settings_.solver;
+    options.solver_options = [this](const ModelSpec& /*spec*/) { return settings_.options; };
+    options.weighting = FindWeighting(settings_.weighting);
+    options.compare = false;
+    options.seed = settings_.seed;
+    options.num_threads = num_threads_;
+    options.stop = settings_.stop;
+    const bool limited = material_.reductions.samples &&
+                         !std::holds_alternative<AllDirections>(material_.directions);
+    if (limited || material_.channels != SceneChannels::kRgb) {
+      options.select = [this, limited](BrdfSamples samples) {
+        if (limited) samples = UsedSamples(samples, material_.directions);
+        return InChannels(std::move(samples), material_.channels);
+      };
+    }
+    return options;
+  }
+
+  std::optional<FullFit> FitAnew() {
+    const Stopwatch stopwatch;
+    const Measurement& source = measured();
+    FullFit fit;
+    if (is_model_) {
+      fit.file = GivenModel();
+      fit.seconds = stopwatch.Seconds();
+      return fit;
+    }
+    FitOptions options = Options();
+    if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
+      options.solver_options = [&](const ModelSpec& /*spec*/) {
+        SolverOptions solver = settings_.options;
+        solver.max_seconds =
+            std::min(solver.max_seconds,
+                     std::max(0.0, kFitShare * material_.budget.amount - stopwatch.Seconds()));
+        return solver;
+      };
+    }
+    FitResult result = trilobe::Fit(source, options);
+    if (result.interrupted) return std::nullopt;
+    fit.file = std::move(result.file);
+    fit.file.fit.source = material_.source;
+    fit.file.fit.program = settings_.program;
+    fit.file.fit.date = UtcNow();
+    fit.seconds = stopwatch.Seconds();
+    return fit;
+  }
+
+  static PrunedModel PruneWithin(const FitProblem& problem, const FactorModel& model,
+                                 const PruneOptions& options) {
+    return model.spec().anisotropic()
+               ? PruneAnisotropic(problem.data, problem.solved(), model, options)
+               : Prune(problem.data, problem.solved(), model, options);
+  }
+
+  static int StoredParameters(const FullFit& fit) {
+    const ModelSpec& spec = fit.file.model.spec();
+    return fit.file.layout ? fit.file.layout->num_parameters(spec) : spec.num_parameters();
+  }
+
+  // Where a picture judges, E says only where to look next: some of the samples are enough for
+  // that.
+  static FitProblem Guide(const FitProblem& problem, const FullFit& fit) {
+    if (problem.with_prior || problem.data.spec().anisotropic()) return problem;
+    return {.data = ThinnedObjective(problem.data, StoredParameters(fit), kFewSamples)};
+  }
+
+  // The search looks at a quarter of the pixels; that the budget is kept on all of them is seen
+  // afterwards, and the search repeated with a little less where it is not.
+  PrunedModel PruneByLook(const Look& look, const FitProblem& problem, const FactorModel& model,
+                          PruneOptions options) const {
+    constexpr int kTries = 3;
+    constexpr double kMargin = 0.98;
+    const SceneBudget& budget = material_.budget;
+    const auto error_of = [&](const SphereError& error) { return ErrorIn(budget.unit, error); };
+    const double most = MaxError(budget);
+    const double full_error = error_of(look.Of(model));
+    // What is beyond the budget on all pixels is so on a quarter of them.
+    double share = full_error > 0 ? error_of(look.Quickly(model)) / full_error : 1;
+    for (int k = 0;; ++k) {
+      options.max_error = share * most;
+      options.error = [&](const FactorModel& judged) { return error_of(look.Quickly(judged)); };
+      PrunedModel pruned = PruneWithin(problem, model, options);
+      const double error = error_of(look.Of(pruned.model));
+      if (error <= most || full_error > most || settings_.stop()) return pruned;
+      if (k == kTries) break;
+      share *= kMargin * most / error;
+    }
+    options.error = nullptr;
+    options.max_relative_rise = 0;
+    return PruneWithin(problem, model, options);  // what is free
+  }
+
+  AppearanceOptions Appearance() const {
+    AppearanceOptions options = settings_.appearance;
+    options.num_threads = num_threads_;
+    return options;
+  }
+
+  // Nothing where the measurement makes no picture.
+  std::unique_ptr<Look> LookIfAny() {
+    if (PictureDataOf(measured()).empty()) return nullptr;
+    return std::make_unique<Look>(material_, measured(), Appearance());
+  }
+
+  // On the sphere, or of samples that make none, or of which no pixel sees one.
+  SeenError SeenOf(const Look* look, const BrdfSamples& samples, const FactorModel& model) const {
+    if (look != nullptr) {
+      const SphereError error = look->Of(model);
+      const auto sees = [](const PlaceError& place) { return place.share > 0; };
+      if (std::ranges::any_of(error.places, sees)) return error;
+    }
+    return CompareSamples(samples, EvaluateSamples(model, samples, num_threads_));
+  }
+
+  std::optional<MaterialFit> PruneAnew() {
+    const std::optional<FullFit> full = Fit("scene");
+    if (!full || settings_.stop()) return std::nullopt;
+    Stopwatch stopwatch;
+    const FactorModel& model = full->file.model;
+    const FitProblem problem = ProblemFor(measured(), Options(), model.spec());
+    const Objective& objective = problem.data;
+    PruneOptions prune_options = PruneOptionsOf(material_);
+    prune_options.stop = settings_.stop;
+    // No lobe more says what a model is better than it does: what its sphere is off is that of
+    // bins.
+    if (is_model_) prune_options.max_lobes = 0;
+    const bool by_look = material_.budget.of_look();
+    std::unique_ptr<Look> look;
+    if (by_look) look = std::make_unique<Look>(material_, measured(), Appearance());
+    if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
+    PrunedModel pruned = by_look ? PruneByLook(*look, Guide(problem, *full), model, prune_options)
+                                 : PruneWithin(problem, model, prune_options);
+    if (settings_.stop()) return std::nullopt;
+    MaterialFit fit;
+    fit.prune_seconds = stopwatch.Lap();
+    fit.fit_seconds = full->seconds;
+    fit.fit_from_cache = full->from_cache;
+    fit.data_notes = measured().notes;
+    fit.valid_samples = CountsOf(measured()).valid;
+    fit.used_samples = objective.samples().size();
+    fit.full_parameters = StoredParameters(*full);
+    fit.full = ScoreOn(objective, full->file.model);
+    const Objective of_pruned(objective, pruned.model.spec());
+    fit.pruned = ScoreOn(of_pruned, pruned.model);
+    if (settings_.verdicts) {
+      if (!look) look = LookIfAny();
+      fit.verdict = Words(VerdictOf(SeenOf(look.get(), of_pruned.samples(), pruned.model)));
+    }
+    if (look) {
+      const auto add = [&](const FactorModel& judged, SceneScore* score) {
+        const SphereError error = look->Of(judged);
+        score->mean_delta_e = error.mean_delta_e;
+        score->sphere_psnr_db = error.psnr_db;
+      };
+      add(model, &fit.full);
+      add(pruned.model, &fit.pruned);
+    }
+    fit.file = {.model = std::move(pruned.model),
+                .unobserved = UnobservedParameters(of_pruned.coverage()),
+                .fit = full->file.fit,
+                .layout = std::move(pruned.layout)};
+    const ModelSpec& spec = fit.file.model.spec();
+    if (fit.file.layout == TableLayout::Full(spec)) fit.file.layout.reset();  // all is stored
+    fit.file.fit.objective = fit.pruned.objective;
+    fit.num_parameters = pruned.num_parameters;
+    fit.decisions = std::move(pruned.decisions);
+    return fit;
+  }
+
+  const SceneMaterial& material_;
+  const SceneFitSettings& settings_;
+  const int num_threads_;
+  const std::string bytes_;
+  const std::string bytes_hash_;
+  const bool is_model_;
+  std::optional<Measurement> measured_;
+};
+
+}  // namespace
+
+std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
+                                       const SceneFitSettings& settings, int num_threads) {
+  return MaterialFitter(material, settings, num_threads).FitAndPrune();
+}
+
+std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings& settings,
+                                     int num_threads,
+                                     const std::function<void(const MaterialFit&)>& on_done) {
+  const int count = static_cast<int>(scene.materials.size());
+  std::vector<MaterialResult> results(count);
+  std::mutex mutex;
+  ParallelJobs(count, num_threads, [&](int k) {
+    if (settings.stop()) return;
+    try {
+      std::optional<MaterialFit> fit = FitMaterial(scene.materials[k], settings, 1);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (fit && on_done) on_done(*fit);
+      results[k].fit = std::move(fit);
+    } catch (const std::exception& exception) {
+      results[k].error = MessageOf(exception);
+    }
+  });
+  return results;
+}
+
+std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,
+                                int num_threads) {
+  SceneMaterial whole;
+  whole.name = material.name;
+  whole.source = material.source;
+  SceneFitSettings diagnosed = settings;
+  diagnosed.options.diagnose = true;
+  return MaterialFitter(whole, diagnosed, num_threads)
+      .Fit("alone on " + std::to_string(num_threads) + " threads");
+}
+
+std::vector<SceneScore> ScoreOnScene(std::span<const FactorModel> models,
+                                     const SceneMaterial& material,
+                                     const SceneFitSettings& settings, int num_threads) {
+  return MaterialFitter(material, settings, num_threads).Score(models);
+}
+
+}  // namespace trilobe

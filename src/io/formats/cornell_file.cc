@@ -1,0 +1,80 @@
+#include "io/formats/cornell_file.h"
+
+#include <optional>
+#include <span>
+#include <sstream>
+#include <vector>
+
+#include "core/files/text_lines.h"
+#include "io/formats/spectrum.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
+#include "trilobe/io/formats/measurement_format.h"
+
+namespace trilobe {
+namespace {
+
+// The number of wavelengths, then as many, on one line or several.
+std::vector<double> ReadWavelengths(TextLines* lines, const std::string& source) {
+  constexpr double kMost = 10000;
+  const auto number = [&](std::string_view word, size_t column, const char* name) {
+    const std::optional<double> value = ToNumber(word);
+    if (!value) lines->FailAt(column, name, "expected a number");
+    return *value;
+  };
+  if (!lines->Next()) throw Error(source + ": no line; expected the number of wavelengths");
+  const double count = number(lines->line(), 0, "number of wavelengths");
+  if (!(count >= 1 && count <= kMost && count == static_cast<int>(count))) {
+    lines->Fail("expected the number of wavelengths, from 1 to 10000");
+  }
+  std::vector<double> wavelengths;
+  while (wavelengths.size() < static_cast<size_t>(count)) {
+    if (!lines->Next()) {
+      throw Error(source + ": the file ends after " + std::to_string(wavelengths.size()) + " of " +
+                  std::to_string(static_cast<int>(count)) + " wavelengths");
+    }
+    const auto words = SplitWords(lines->line());
+    for (size_t k = 0; k < words.size(); ++k) {
+      wavelengths.push_back(number(words[k], k, "wavelength"));
+    }
+    if (wavelengths.size() > static_cast<size_t>(count)) {
+      lines->Fail("more wavelengths than the " + std::to_string(static_cast<int>(count)) +
+                  " announced");
+    }
+  }
+  return wavelengths;
+}
+
+}  // namespace
+
+Measurement ParseCornell(std::string_view text, const std::string& source) {
+  TextLines lines(text, source);
+  const std::vector<double> wavelengths = ReadWavelengths(&lines, source);
+  const SpectralColor color(wavelengths, source);
+  std::vector<std::string> names = {"theta_i", "phi_i", "theta_o", "phi_o"};
+  const size_t angles = names.size();
+  for (const double wavelength : wavelengths) {
+    std::ostringstream name;
+    name << wavelength << " nm";
+    names.push_back(name.str());
+  }
+  SampleCollector collector(source, "Cornell file of scattered spectra");
+  std::vector<double> numbers;
+  while (lines.Next()) {
+    ReadNumbers(lines, SplitWords(lines.line()), names, &numbers);
+    AddSpectrum(ReadAngles(lines, names, numbers, {}, 1), std::span(numbers).subspan(angles), color,
+                &collector);
+  }
+  return collector.Take();
+}
+
+MeasurementFormat CornellFormat() {
+  return {.name = "cornell",
+          .description = "a Cornell .brdf file of spectra",
+          .ending = ".brdf",
+          .is_text = true,
+          .recognise = IsContent<Content::Kind::kCornell>,
+          .read = ReadBy<ParseCornell>};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,121 @@
+#include "io/formats/mbsdf_file.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "core/files/little_endian.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
+#include "trilobe/io/formats/measurement_format.h"
+
+namespace trilobe {
+namespace {
+
+constexpr std::string_view kData = "MBSDF_DATA=\n";  // of files before there was transmission
+constexpr std::string_view kReflection = "MBSDF_DATA_REFLECTION=\n";
+constexpr std::string_view kTransmission = "MBSDF_DATA_TRANSMISSION=\n";
+
+struct Grid {
+  uint32_t channels, theta, phi;
+  size_t cells() const { return size_t{theta} * theta * phi; }
+};
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, const std::string& source) : rest_(bytes), source_(source) {}
+
+  // After the magic come lines of metadata, then the data.
+  void FindReflection() {
+    if (!rest_.starts_with(kMbsdfMagic)) Fail("this does not begin as an MBSDF file does");
+    do {
+      const size_t end = rest_.find('\n');
+      if (end == std::string_view::npos) Fail("it ends before its data");
+      rest_.remove_prefix(end + 1);
+      if (rest_.starts_with(kTransmission)) Fail("it has transmission only, and no reflection");
+    } while (!rest_.starts_with(kData) && !rest_.starts_with(kReflection));
+    rest_.remove_prefix(rest_.find('\n') + 1);
+  }
+
+  Grid TakeGrid() {
+    const uint32_t type = TakeUint32(), theta = TakeUint32(), phi = TakeUint32();
+    if (type > 1) {
+      Fail("type " + std::to_string(type) + " of data; it must be 0 (one value) or 1 (RGB)");
+    }
+    constexpr uint32_t kMost = 1 << 14;
+    if (theta == 0 || phi == 0 || theta > kMost || phi > kMost) {
+      Fail("a grid of " + std::to_string(theta) + " x " + std::to_string(theta) + " x " +
+           std::to_string(phi) + "; each must be from 1 to " + std::to_string(kMost));
+    }
+    return {type == 0 ? 1U : 3U, theta, phi};
+  }
+
+  std::string_view TakeValues(const Grid& grid) {
+    const size_t size = grid.cells() * grid.channels * sizeof(float);
+    if (rest_.size() < size) {
+      Fail("truncated: " + std::to_string(rest_.size()) + " bytes of reflection data, and its " +
+           "header announces " + std::to_string(size) + "; get it once more");
+    }
+    if (grid.cells() > static_cast<size_t>(std::numeric_limits<int>::max())) {
+      Fail("it has more samples than any measurement");
+    }
+    const std::string_view values = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    if (!rest_.empty() && !rest_.starts_with(kTransmission)) {
+      Fail(std::to_string(rest_.size()) + " bytes too many after the reflection data");
+    }
+    return values;
+  }
+
+ private:
+  uint32_t TakeUint32() {
+    if (rest_.size() < sizeof(uint32_t)) Fail("it ends within the header of its data");
+    const auto value = LoadLittleEndian<uint32_t>(rest_.data());
+    rest_.remove_prefix(sizeof(uint32_t));
+    return value;
+  }
+
+  [[noreturn]] void Fail(const std::string& problem) const {
+    throw Error(source_ + ": " + problem);
+  }
+
+  std::string_view rest_;
+  const std::string& source_;
+};
+
+}  // namespace
+
+Measurement ParseMbsdf(std::string_view bytes, const std::string& source) {
+  Reader reader(bytes, source);
+  reader.FindReflection();
+  const Grid grid = reader.TakeGrid();
+  const std::string_view values = reader.TakeValues(grid);
+  SampleCollector collector(source, "MBSDF file of scattered samples");
+  const char* at = values.data();
+  for (uint32_t i = 0; i < grid.theta; ++i) {
+    for (uint32_t o = 0; o < grid.theta; ++o) {
+      for (uint32_t p = 0; p < grid.phi; ++p) {
+        Rgb rho{};
+        for (int c = 0; c < kChannels; ++c) {
+          rho[c] = LoadLittleEndian<float>(at + (grid.channels == 1 ? 0 : c) * sizeof(float));
+        }
+        at += grid.channels * sizeof(float);
+        collector.Add({(i + 0.5) / grid.theta * (kPi / 2), 0, (o + 0.5) / grid.theta * (kPi / 2),
+                       (p + 0.5) / grid.phi * kPi},
+                      rho);
+      }
+    }
+  }
+  return collector.Take();
+}
+
+MeasurementFormat MbsdfFormat() {
+  return {.name = "mbsdf",
+          .description = "an MDL .mbsdf file",
+          .ending = ".mbsdf",
+          .is_text = false,
+          .recognise = IsContent<Content::Kind::kMbsdf>,
+          .read = ReadBy<ParseMbsdf>};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,117 @@
+#include "io/formats/merl_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "core/files/file.h"
+#include "core/files/little_endian.h"
+#include "core/files/read_file.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
+#include "trilobe/io/formats/measurement_format.h"
+#include "trilobe/model/measurement/measurement_stats.h"
+
+namespace trilobe {
+namespace {
+
+using Dimensions = std::array<int32_t, 3>;  // theta_h, theta_d, phi_d
+constexpr size_t kHeaderSize = sizeof(Dimensions);
+
+Dimensions DimensionsOf(const MerlGrid& grid) { return {grid.theta_h, grid.theta_d, grid.phi_d}; }
+
+size_t PlaneSize(const MerlGrid& grid) { return sizeof(double) * grid.size(); }
+
+std::string ToString(const Dimensions& n) {
+  return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
+}
+
+// Why `bytes` is no MERL file, or nothing if it is one.
+std::string Defect(std::string_view bytes, const MerlGrid& grid) {
+  const size_t file_size = kHeaderSize + kChannels * PlaneSize(grid);
+  const std::string size = std::to_string(bytes.size()) + " bytes";
+  const std::string expected = "a MERL file has " + std::to_string(file_size) + " bytes";
+  if (bytes.empty()) return "the file is empty; " + expected;
+  if (const Content content = RecogniseContent(bytes);
+      content.kind != Content::Kind::kUnknown && content.kind != Content::Kind::kMerl) {
+    return "this is " + content.name + "; " + expected;
+  }
+  if (bytes.size() < kHeaderSize) return "truncated: " + size + "; " + expected;
+  Dimensions n;
+  std::memcpy(n.data(), bytes.data(), kHeaderSize);
+  if (n != DimensionsOf(grid)) {
+    return "the header says " + ToString(n) + " bins in a file of " + size + "; a MERL file has " +
+           ToString(DimensionsOf(grid)) + " bins";
+  }
+  if (bytes.size() < file_size) {
+    return "truncated: " + size + "; " + expected + "; get it once more";
+  }
+  if (bytes.size() > file_size) {
+    return std::to_string(bytes.size() - file_size) + " bytes too many: " + size + "; " + expected;
+  }
+  return "";
+}
+
+}  // namespace
+
+BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid) {
+  CheckGrid(grid);
+  if (const std::string defect = Defect(bytes, grid); !defect.empty()) {
+    throw Error(source + ": " + defect);
+  }
+  BrdfTable table{source, grid, {}};
+  const char* data = bytes.data() + kHeaderSize;
+  for (std::vector<double>& plane : table.stored) {
+    plane.resize(grid.size());
+    std::memcpy(plane.data(), data, PlaneSize(grid));
+    data += PlaneSize(grid);
+  }
+  return table;
+}
+
+BrdfTable ReadMerl(const std::string& path) { return ParseMerl(ReadFile(path), path); }
+
+void WriteMerl(const BrdfTable& table, const std::string& path) {
+  CheckTable(table);
+  const Dimensions dimensions = DimensionsOf({});
+  if (DimensionsOf(table.grid) != dimensions) {
+    throw Error("cannot write '" + path + "': a MERL file has " + ToString(dimensions) +
+                " bins, this table has " + ToString(DimensionsOf(table.grid)));
+  }
+  WriteFile(path, [&](std::ostream& out) {
+    std::array<char, kHeaderSize> header{};
+    std::memcpy(header.data(), dimensions.data(), kHeaderSize);
+    out.write(header.data(), kHeaderSize);
+    for (std::vector<double> plane : table.stored) {
+      for (int bin = 0; bin < table.grid.size(); ++bin) {
+        if (ReasonOf(table, bin) != Unmeasured::kNo) plane[bin] = -1;
+      }
+      out.write(reinterpret_cast<const char*>(plane.data()),
+                static_cast<std::streamsize>(PlaneSize(table.grid)));
+    }
+  });
+}
+
+MeasurementFormat MerlFormat() {
+  return {.name = "merl",
+          .description = "a MERL .binary file",
+          .ending = ".binary",
+          .is_text = false,
+          .recognise = IsContent<Content::Kind::kMerl>,
+          .read =
+              [](std::string_view bytes, const std::string& source, const SourceOptions&) {
+                return Measurement{.source = source,
+                                   .kind = "MERL measurement",
+                                   .table = ParseMerl(bytes, source)};
+              },
+          .written_as = "MERL layout",
+          .write =
+              [](const Measurement& measurement, const std::string& path, int) {
+                const BrdfTable& table = TableOf(measurement);
+                WriteMerl(table, path);
+                return ValidText(CountBins(table), "bins");
+              }};
+}
+
+}  // namespace trilobe

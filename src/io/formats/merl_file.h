@@ -1,0 +1,22 @@
+#ifndef TRILOBE_IO_FORMATS_MERL_FILE_H_
+#define TRILOBE_IO_FORMATS_MERL_FILE_H_
+
+#include <string>
+#include <string_view>
+
+#include "trilobe/model/measurement/brdf_table.h"
+
+namespace trilobe {
+
+// MERL `.binary` (docs/samples.md): 3 little-endian int32 (90, 90, 180), then float64 planes R, G,
+// B. All throw Error on bad input: too short, other dimensions, trailing bytes, ... Writing what
+// was read gives the same bytes; only bins that count as not measured are written as -1, as the
+// format has no other mark for them. ParseMerl reads the same format on another grid, too, if told
+// so.
+BrdfTable ParseMerl(std::string_view bytes, const std::string& source, const MerlGrid& grid = {});
+BrdfTable ReadMerl(const std::string& path);
+void WriteMerl(const BrdfTable& table, const std::string& path);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_MERL_FILE_H_

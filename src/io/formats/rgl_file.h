@@ -1,0 +1,60 @@
+#ifndef TRILOBE_IO_FORMATS_RGL_FILE_H_
+#define TRILOBE_IO_FORMATS_RGL_FILE_H_
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/model/measurement/brdf_table.h"
+#include "trilobe/model/measurement/measurement.h"
+
+namespace trilobe {
+
+// A material measured at RGL/EPFL (`*_rgb.bsdf` and `*_spec.bsdf`, Dupuy and Jakob 2018), as a
+// function.
+class RglBrdf {
+ public:
+  // Throws Error on anything that is not a whole, consistent tensor file of a material.
+  static RglBrdf Parse(std::string_view bytes, const std::string& source);
+  RglBrdf(RglBrdf&&) noexcept;
+  RglBrdf& operator=(RglBrdf&&) noexcept;
+  ~RglBrdf();
+
+  bool isotropic() const;  // one phi_i in the file
+
+  // An anisotropic material as scattered samples, at the nodes of the file itself: from each
+  // theta_i and phi_i the outgoing directions that the nodes of `rgb` stand for, with what the file
+  // leaves out since a symmetry repeats it. Those that were not measured are left out, unless
+  // `extrapolated`.
+  Measurement Sample(const std::string& source, bool extrapolated) const;
+
+  // theta_i of the last nodes that were measured, at most 90 degrees [rad]. Beyond it the material
+  // was not measured.
+  double max_theta() const;
+
+  // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
+  Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
+
+  // The same, and whether all nodes of `rgb` that it takes with weight were measured.
+  MeasuredValue LookUp(const DirectionPair& directions) const;
+
+ private:
+  struct Tables;
+  explicit RglBrdf(std::unique_ptr<const Tables> tables);
+  std::unique_ptr<const Tables> tables_;
+};
+
+// True if the bytes begin with the tensor file's magic.
+bool LooksLikeRgl(std::string_view bytes);
+
+// The BRDF at the centres of all bins above the surface, others invalid, and which of them were
+// measured (docs/samples.md). Throws Error for an anisotropic material.
+BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},
+                      int num_threads = 1);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_RGL_FILE_H_

@@ -1,0 +1,275 @@
+#include "trilobe/io/formats/source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/base/named.h"
+#include "core/files/file.h"
+#include "core/files/read_file.h"
+#include "core/files/text_lines.h"
+#include "io/formats/utia_file.h"
+#include "model/measurement/symptoms.h"
+#include "trilobe/core/base/check.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/files/content.h"
+#include "trilobe/model/corruption/corruption.h"
+#include "trilobe/model/synth/synth.h"
+
+// The formats of the library, in the order in which they are asked whether a file is theirs. NAME
+// stands for the function NAMEFormat(), which the reader's own file defines: to add a format is one
+// file, and one line here.
+#define TRILOBE_FOR_EACH_FORMAT(X) \
+  X(Merl)                          \
+  X(Rgl)                           \
+  X(Mbsdf)                         \
+  X(Utia)                          \
+  X(Zemax)                         \
+  X(Cornell)                       \
+  X(Astm)                          \
+  X(Csv)
+
+namespace trilobe {
+
+#define TRILOBE_DECLARE(NAME) MeasurementFormat NAME##Format();
+TRILOBE_FOR_EACH_FORMAT(TRILOBE_DECLARE)
+#undef TRILOBE_DECLARE
+
+namespace {
+
+constexpr std::string_view kSynth = "synth:";
+
+// "30x30x60".
+MerlGrid ParseMerlGrid(std::string_view text) {
+  std::vector<int> numbers = IntegersByX(text);
+  if (numbers.size() != 3) numbers.assign(3, 0);
+  const MerlGrid grid = {numbers[0], numbers[1], numbers[2]};
+  constexpr int kFewest = 4, kMost = 360;
+  const auto [fewest, most] = std::minmax({grid.theta_h, grid.theta_d, grid.phi_d});
+  if (fewest < kFewest || most > kMost || 1.0 * grid.theta_h * grid.theta_d * grid.phi_d > 1e7) {
+    throw Error("'" + std::string(text) +
+                "' is no grid of bins; give the numbers of theta_h, theta_d and phi_d, as "
+                "30x30x60, each from " +
+                std::to_string(kFewest) + " to " + std::to_string(kMost) +
+                ", and no more than ten million in all");
+  }
+  return grid;
+}
+
+// "a MERL .binary file, ... or synth:NAME".
+std::string WhatMeasurementsAre() {
+  std::string text;
+  for (const MeasurementFormat& format : MeasurementFormats()) text += format.description + ", ";
+  return text + "or synth:NAME";
+}
+
+const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source) {
+  const std::vector<MeasurementFormat>& formats = MeasurementFormats();
+  auto found = std::ranges::find_if(
+      formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
+  if (found != formats.end()) return *found;
+  const Content content = RecogniseContent(bytes);
+  const bool is_text = content.kind == Content::Kind::kText;
+  if (is_text || content.kind == Content::Kind::kUnknown) {
+    const std::string ending = EndingOf(source);
+    found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
+      return (bytes.empty() || format.is_text == is_text) && format.ending == ending;
+    });
+    // Of a text format that this cannot be: its reader says what is wrong.
+    if (found == formats.end() && !is_text) {
+      found = std::ranges::find(formats, ending, &MeasurementFormat::ending);
+    }
+    if (found != formats.end()) return *found;
+  }
+  if (content.kind != Content::Kind::kUnknown) {
+    throw Error(source + ": this is " + content.name + "; a measurement is " +
+                WhatMeasurementsAre());
+  }
+  return formats.front();  // MERL: it says what is wrong with its header
+}
+
+// Says which of the options that were given this kind of source does not read.
+void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement* measurement) {
+  const auto note = [&](bool given, std::string_view reader, const std::string& what) {
+    if (given && kind != reader) measurement->notes.push_back(what + ", and changes nothing here");
+  };
+  note(options.noise != 0, kSynth, "--noise is of synth: sources");
+  note(options.extrapolated, "rgl", "--extrapolated is of RGL files");
+  note(options.radiometry != SourceOptions().radiometry, "utia", "--radiometry is of UTIA files");
+}
+
+// The tilt that the highlight shows, 0 if it shows none, with a note that says so.
+double ShownTilt(Measurement* measurement) {
+  const std::string& source = measurement->source;
+  if (!measurement->table) {
+    throw Error(source + ": --tilt=auto goes by the highlight of a table, and this is a " +
+                measurement->kind + "; give degrees");
+  }
+  const TiltSymptom tilt = TiltOf(*measurement->table);
+  if (!tilt.highlight) {
+    throw Error(source +
+                ": --tilt=auto goes by the highlight, and there is none that is three times as "
+                "bright as what is around it; give degrees");
+  }
+  std::ostringstream note;
+  note.precision(2);
+  note << "the highlight is " << std::abs(tilt.degrees) << " deg off the mirror direction"
+       << (tilt.IsThere() ? ", which --tilt=auto takes out"
+                          : ", too little or too unsteadily for a tilt: --tilt=auto changes "
+                            "nothing");
+  measurement->notes.push_back(note.str());
+  return tilt.IsThere() ? tilt.degrees : 0;
+}
+
+}  // namespace
+
+void CorruptBy(const SourceOptions& options, Measurement* measurement) {
+  Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
+  // What undoes a corruption is the same, the other way round.
+  std::vector<Corruption> corruptions;
+  const auto undo = [&](const char* kind, double strength) {
+    if (strength == 0) return;
+    corruptions.push_back(
+        {.kind = &FindNamed("kind", kind, CorruptionKinds()), .strength = -strength});
+  };
+  undo("tilt", options.tilt_deg ? *options.tilt_deg : ShownTilt(measurement));
+  undo("cosine", options.cosine);
+  Corrupt(corruptions, options.seed, options.num_threads, measurement);
+}
+
+void CheckSourceOptions(const SourceOptions& options) {
+  const double angle = options.max_angle_deg, theta_d = options.min_theta_d_deg;
+  CheckNumThreads(options.num_threads);
+  CheckNumber("--noise", options.noise, options.noise >= 0 && options.noise <= 1, "from 0 to 1");
+  CheckNumber("--missing", options.missing, options.missing >= 0 && options.missing < 1,
+              "from 0 up to 1");
+  CheckNumber("--max_angle", angle, angle > 0 && angle <= 90, "in degrees above 0, up to 90");
+  CheckNumber("--min_theta_d", theta_d, theta_d == -1 || (theta_d >= 0 && theta_d < 90),
+              "in degrees from 0 to below 90, or -1 to go by the data");
+  FindNamed("radiometry", options.radiometry, UtiaRadiometries());
+  ParseCorruptions(options.corrupt);
+  const double tilt = options.tilt_deg.value_or(0);
+  CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
+  CheckNumber("--cosine", options.cosine, options.cosine >= -2 && options.cosine <= 2,
+              "from -2 to 2");
+}
+
+const std::vector<MeasurementFormat>& MeasurementFormats() {
+  static const std::vector<MeasurementFormat> formats = {
+#define TRILOBE_LIST(NAME) NAME##Format(),
+      TRILOBE_FOR_EACH_FORMAT(TRILOBE_LIST)
+#undef TRILOBE_LIST
+  };
+  return formats;
+}
+
+const MeasurementFormat& WritableFormat(const std::string& path) {
+  const std::string ending = EndingOf(path);
+  std::string known;
+  for (const MeasurementFormat& format : MeasurementFormats()) {
+    if (format.write == nullptr) continue;
+    if (ending.empty() || ending == format.ending) return format;
+    known += (known.empty() ? "" : ", ") + format.ending + " for " + format.written_as;
+  }
+  throw Error(path + ": trilobe writes no '" + ending + "'; end the name in " + known);
+}
+
+std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
+                             int num_threads) {
+  const MeasurementFormat& format = WritableFormat(path);
+  return format.written_as + ", " + format.write(measurement, path, num_threads);
+}
+
+bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
+
+SynthSource SynthSourceOf(std::string_view source) {
+  const std::string_view name = source.substr(kSynth.size());
+  const size_t at = name.find('@');
+  const SynthMaterial& material = FindSynthMaterial(name.substr(0, at));
+  if (at == std::string_view::npos) {
+    if (material.anisotropic) return {material, kUtiaGrid};
+    return {material, MerlGrid()};
+  }
+  const std::string_view grid = name.substr(at + 1);
+  if (std::ranges::count(grid, 'x') == 2) {
+    if (material.anisotropic) {
+      throw Error("synth:" + std::string(name) + ": " + material.name +
+                  " is anisotropic, which a table by theta_h, theta_d and phi_d cannot hold; give "
+                  "the numbers of theta and phi of its directions, as 6x48");
+    }
+    return {material, ParseMerlGrid(grid)};
+  }
+  return {material, ParseHemisphereGrid(grid)};
+}
+
+void DecideMeasured(const SourceOptions& options, BrdfTable* table) {
+  CheckSourceOptions(options);
+  NotNull(table, "the table");
+  if (options.extrapolated) {
+    table->unmeasured.clear();
+    table->max_theta = kPi / 2;
+  }
+  LimitAngles(DegreesToRadians(options.max_angle_deg), Unmeasured::kBeyondMaxAngle, table);
+  LimitThetaD(DegreesToRadians(options.min_theta_d_deg), table);
+}
+
+void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
+  CheckSourceOptions(options);
+  LeaveOutAtRandom(options.missing, options.seed, measurement);
+  if (measurement->table) {
+    DecideMeasured(options, &*measurement->table);
+    return;
+  }
+  LimitAngles(DegreesToRadians(options.max_angle_deg), measurement);
+  LimitThetaD(DegreesToRadians(options.min_theta_d_deg), measurement);
+}
+
+Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
+                             const SourceOptions& options) {
+  CheckSourceOptions(options);
+  const MeasurementFormat& format = FormatOf(bytes, source);
+  Measurement measurement = format.read(bytes, source, options);
+  NoteUnread(options, format.name, &measurement);
+  CorruptBy(options, &measurement);
+  // Of all that was measured: within a limit there may be no light to hold the shadow against.
+  if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
+  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
+  if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
+  DecideMeasured(options, &measurement);
+  return measurement;
+}
+
+BrdfTable ParseSource(std::string_view bytes, const std::string& source,
+                      const SourceOptions& options) {
+  return TableOf(ParseMeasurement(bytes, source, options));
+}
+
+Measurement LoadMeasurement(const std::string& source, const SourceOptions& options) {
+  CheckSourceOptions(options);  // before a large file is read
+  if (!IsSynthetic(source)) return ParseMeasurement(ReadFile(source), source, options);
+  const auto [material, grid] = SynthSourceOf(source);
+  Measurement measurement;
+  if (const auto* const directions = std::get_if<HemisphereGrid>(&grid)) {
+    measurement =
+        SynthesizeSamples(material, options.noise, options.seed, *directions, options.num_threads);
+    measurement.source = measurement.samples.source = source;
+  } else {
+    measurement = {.source = source,
+                   .kind = "synthetic measurement",
+                   .table = Synthesize(material, options.noise, options.seed,
+                                       std::get<MerlGrid>(grid), options.num_threads)};
+    measurement.table->source = source;
+  }
+  NoteUnread(options, kSynth, &measurement);
+  CorruptBy(options, &measurement);
+  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
+  if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
+  DecideMeasured(options, &measurement);
+  return measurement;
+}
+
+BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
+  return TableOf(LoadMeasurement(source, options));
+}
+
+}  // namespace trilobe

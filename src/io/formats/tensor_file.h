@@ -1,0 +1,78 @@
+#ifndef TRILOBE_IO_FORMATS_TENSOR_FILE_H_
+#define TRILOBE_IO_FORMATS_TENSOR_FILE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trilobe {
+
+// A dense array of finite numbers, last dimension fastest.
+struct Tensor {
+  std::vector<int> shape;
+  std::vector<double> values;
+};
+
+// The container of the RGL database: named arrays. All little-endian:
+//   char[12] "tensor_file\0", uint8 version[2] = {1, 0}, uint32 field count; for each field
+//   uint16 name length, name, uint16 ndim, uint8 dtype, uint64 offset, uint64 shape[ndim];
+//   then the arrays, where the offsets, counted from the start of the file, say.
+// It views the bytes it was made from, which must outlive it.
+class TensorFile {
+ public:
+  // Checks that every field lies inside the file, in bytes of its own, and has a name of its own.
+  // Throws Error.
+  TensorFile(std::string_view bytes, const std::string& source);
+
+  // A float32 array with `ndim` dimensions. Throws Error if it is missing, of another type or
+  // shape, or has an entry that is not finite.
+  Tensor Float32(std::string_view name, int ndim) const;
+
+  bool Has(std::string_view name) const;
+
+  // A uint8 array with one dimension, whose bytes are those of the file. Throws Error as above.
+  std::string_view Bytes(std::string_view name) const;
+
+  // The single byte of a uint8 array of one entry. Throws Error as above.
+  uint8_t Byte(std::string_view name) const;
+
+  // Throws Error: file, field, what is wrong.
+  [[noreturn]] void Fail(std::string_view field, const std::string& problem) const;
+
+ private:
+  struct Field {
+    std::string name;
+    uint8_t dtype = 0;
+    std::vector<int> shape;
+    std::string_view data;  // product of shape x item size bytes
+  };
+  void CheckApart(std::string_view bytes, size_t header_size) const;
+  const Field& Find(std::string_view name, uint8_t dtype, int ndim) const;
+
+  std::string source_;
+  std::vector<Field> fields_;
+};
+
+// Makes such a file: fields in the order in which they are added, each aligned to its items.
+class TensorFileWriter {
+ public:
+  void AddFloat32(const std::string& name, const std::vector<int>& shape,
+                  const std::vector<float>& values);
+  void AddBytes(const std::string& name, std::string_view bytes);
+  std::string Bytes() const;
+
+ private:
+  struct Field {
+    std::string name;
+    uint8_t dtype;
+    std::vector<int> shape;
+    std::string data;
+  };
+  std::vector<Field> fields_;
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_TENSOR_FILE_H_

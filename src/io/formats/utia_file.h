@@ -1,0 +1,39 @@
+#ifndef TRILOBE_IO_FORMATS_UTIA_FILE_H_
+#define TRILOBE_IO_FORMATS_UTIA_FILE_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trilobe/model/measurement/hemisphere_grid.h"
+#include "trilobe/model/measurement/measurement.h"
+
+namespace trilobe {
+
+// UTIA BRDF database `.bin` (Filip and Vavra 2014, docs/file-formats.md): planes R, G, B of
+// 288 x 288 little-endian float64, without a header: row 48 a + b is the incident, column 48 a + b
+// the outgoing direction with theta = 15 a and phi = 7.5 b degrees.
+inline constexpr HemisphereGrid kUtiaGrid = {.thetas = 6, .phis = 48};
+
+// How stored numbers become a BRDF: public readers disagree.
+struct UtiaRadiometry {
+  std::string name;         // "brdf"
+  std::string description;  // what the numbers are taken for, and by whom
+  double (*to_brdf)(double stored, double cos_theta_i) = nullptr;  // [1/sr]
+};
+const std::vector<UtiaRadiometry>& UtiaRadiometries();  // the default first
+
+// Scattered samples, with phi as in the file, at theta = 0, too. A note says where the numbers look
+// as if they stood in another order. Throws Error for other sizes and unknown radiometries. Reads
+// the same format on another grid, too, if told so.
+Measurement ParseUtia(std::string_view bytes, const std::string& source,
+                      std::string_view radiometry = UtiaRadiometries().front().name,
+                      const HemisphereGrid& grid = kUtiaGrid);
+
+// Writes samples at these directions as BRDF [1/sr]; -1 where there is none. Throws Error where one
+// is at another direction, or two are at the same.
+void WriteUtia(const Measurement& scattered, const std::string& path);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_UTIA_FILE_H_

@@ -1,0 +1,161 @@
+#include "trilobe/io/model_files/model_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "core/files/file.h"
+#include "io/model_files/stretch_json.h"
+#include "model/evaluate/model_format.h"
+#include "trilobe/core/base/error.h"
+
+namespace trilobe {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+// Tables in the order of their numbers, nested as the file has them: a list a lobe, or a list of
+// lists where channels differ.
+OrderedJson Nest(const std::vector<OrderedJson>& tables, const TableSharing& sharing, int lobes) {
+  if (lobes == 0) return OrderedJson::array();
+  OrderedJson nest = OrderedJson::array();
+  const size_t channels = sharing.per_channel ? kChannels : 1;
+  for (size_t begin = 0; begin < tables.size(); begin += channels) {
+    const std::vector<OrderedJson> group(tables.begin() + begin, tables.begin() + begin + channels);
+    nest.push_back(sharing.per_channel ? OrderedJson(group) : group[0]);
+  }
+  return sharing.per_lobe ? nest : nest[0];
+}
+
+OrderedJson FiniteNumbers(std::span<const double> values, const char* key) {
+  for (const double value : values) {
+    if (!std::isfinite(value) || value < 0) {
+      throw Error("cannot store the model: '" + std::string(key) + "' has the entry " +
+                  std::to_string(value) + "; all must be finite and >= 0");
+    }
+  }
+  return OrderedJson(std::vector<double>(values.begin(), values.end()));
+}
+
+// The first alone where it stands for all.
+OrderedJson ChannelsToJson(std::span<const double> values, bool coloured, const char* key) {
+  return FiniteNumbers(coloured ? values : values.first(1), key);
+}
+
+OrderedJson TablesToJson(const FactorModel& model, const TableLayout& layout, Factor factor) {
+  const ModelSpec& spec = model.spec();
+  std::vector<OrderedJson> tables;
+  for (int k = 0; k < spec.num_tables(factor); ++k) {
+    const std::span<const double> table = model.table(factor, k);
+    const std::vector<int>& nodes = layout.of(factor, k);
+    std::vector<double> values;
+    for (const int entry : nodes) values.push_back(table[entry]);
+    OrderedJson numbers = FiniteNumbers(values, FactorName(factor));
+    const Axis& axis = spec.axis(factor);
+    if (nodes.size() == table.size() && axis.polar()) {
+      numbers = OrderedJson::array();
+      for (size_t begin = 0; begin < table.size(); begin += axis.phi_nodes) {
+        numbers.push_back(FiniteNumbers(table.subspan(begin, axis.phi_nodes), FactorName(factor)));
+      }
+    }
+    if (nodes.size() < table.size()) {
+      numbers = {{"size", table.size()}, {"nodes", nodes}, {"values", std::move(numbers)}};
+    }
+    tables.push_back(std::move(numbers));
+  }
+  return Nest(tables, spec.sharing(factor), spec.lobes);
+}
+
+OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
+  const ModelSpec& spec = file.model.spec();
+  OrderedJson lists = OrderedJson::array();
+  for (int table = 0; table < spec.num_tables(factor); ++table) {
+    OrderedJson list = OrderedJson::array();
+    for (int entry = 0; entry < spec.table_size(factor); ++entry) {
+      if (file.unobserved[file.model.TableOffset(factor, table) + entry]) list.push_back(entry);
+    }
+    lists.push_back(std::move(list));
+  }
+  return lists;
+}
+
+// Indented by two, but arrays of numbers each on one line.
+void Print(const OrderedJson& json, const std::string& indent, std::string* text) {
+  const bool nested = json.is_object() ||
+                      (json.is_array() && std::ranges::any_of(json, &OrderedJson::is_structured));
+  if (!nested || json.empty()) {
+    // A source name need not be UTF-8, but JSON must.
+    *text += json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    return;
+  }
+  *text += json.is_object() ? "{" : "[";
+  const char* separator = "\n";
+  for (const auto& [key, value] : json.items()) {
+    *text += separator + indent + "  ";
+    if (json.is_object()) *text += OrderedJson(key).dump() + ": ";
+    Print(value, indent + "  ", text);
+    separator = ",\n";
+  }
+  *text += "\n" + indent + (json.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
+std::string FormatModel(const ModelFile& file) {
+  const FactorModel& model = file.model;
+  const ModelSpec& spec = model.spec();
+  OrderedJson json;
+  json["format"] = kModelFormat;
+  json["version"] = spec.stretches.any() ? kStretchedVersion : kModelVersion;
+  json["kind"] = spec.anisotropic() ? kAnisotropicKind : kIsotropicKind;
+  json["lobes"] = spec.lobes;
+  for (const Factor factor : kFactors) {
+    const auto [per_lobe, per_channel] = spec.sharing(factor);
+    json["sharing"][FactorName(factor)] = {{"per_lobe", per_lobe}, {"per_channel", per_channel}};
+  }
+  if (spec.anisotropic()) {
+    for (const Factor factor : {Factor::kD, Factor::kG}) {
+      const Axis& axis = spec.axis(factor);
+      if (!axis.polar()) throw Error("cannot store a model that is anisotropic in part only");
+      std::vector<double> phi(axis.phi_nodes);
+      for (int b = 0; b < axis.phi_nodes; ++b) phi[b] = 360.0 * b / axis.phi_nodes;
+      json["theta_nodes"][FactorName(factor)] = axis.theta;
+      json["phi_nodes"][FactorName(factor)] = std::move(phi);
+    }
+  }
+  if (spec.stretches.any()) json["stretch"] = StretchesToJson<OrderedJson>(spec);
+  const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
+  CheckLayout(layout, spec);
+  json["d"] = ChannelsToJson(model.d(), layout.coloured_d, "d");
+  json["s"] = OrderedJson::array();
+  for (int m = 0; m < spec.lobes; ++m) {
+    json["s"].push_back(ChannelsToJson(model.s(m), layout.coloured_s, "s"));
+  }
+  for (const Factor factor : kFactors) {
+    json[FactorName(factor)] = TablesToJson(model, layout, factor);
+  }
+  if (!file.unobserved.empty()) {
+    for (const Factor factor : kFactors) {
+      json["unobserved"][FactorName(factor)] = UnobservedToJson(file, factor);
+    }
+  }
+  json["fit"] = OrderedJson::object();
+  VisitFitInfo(&file.fit, [&](const char* key, const auto* value) {
+    if constexpr (std::is_same_v<decltype(value), const double*>) {
+      if (!std::isfinite(*value)) return;  // JSON cannot say it: unknown
+    }
+    json["fit"][key] = *value;
+  });
+  std::string text;
+  Print(json, "", &text);
+  return text + "\n";
+}
+
+void WriteModel(const ModelFile& file, const std::string& path) {
+  WriteFile(path, [&](std::ostream& out) { out << FormatModel(file); });
+}
+
+}  // namespace trilobe

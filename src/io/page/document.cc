@@ -1,0 +1,107 @@
+#include "io/page/document.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/base/markup.h"
+#include "io/page/web_files.h"
+#include "trilobe/core/base/error.h"
+
+namespace trilobe {
+namespace {
+
+// So that no text ends the element that it stands in: "<" occurs in JSON within strings alone.
+std::string InScript(std::string_view json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string DataElement(std::string_view id, std::string_view json) {
+  return R"(<script type="application/json" id=")" + std::string(id) + R"(">)" + InScript(json) +
+         "</script>";
+}
+
+std::string Shaders() {
+  nlohmann::ordered_json json;
+  for (const EmbeddedFile& file : WebFiles()) {
+    if (file.name.ends_with(".glsl")) json[std::string(file.name)] = file.text;
+  }
+  return json.dump();
+}
+
+// `text` without its imports and exports, after the modules that these name. An import is a line
+// `import {a, b} from './c.js';`.
+void AddModule(std::string_view name, std::vector<std::string>* added, std::string* script) {
+  if (std::ranges::find(*added, name) != added->end()) return;
+  added->emplace_back(name);
+  const std::string_view text = WebText(name);
+  std::string own;
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    std::string_view line = text.substr(at, end - at);
+    at = end;
+    if (line.starts_with("import ")) {
+      const size_t from = line.find("'./"), quote = line.rfind('\'');
+      if (from == std::string_view::npos || quote < from + 3) {
+        throw Error("web/" + std::string(name) + ": an import that is not of one line");
+      }
+      AddModule(line.substr(from + 3, quote - from - 3), added, script);
+      continue;
+    }
+    if (line.starts_with("export ")) line.remove_prefix(std::string_view("export ").size());
+    own += line;
+  }
+  *script += own + "\n";
+}
+
+std::string Module(std::string_view name) {
+  std::vector<std::string> added;
+  std::string script;
+  AddModule(name, &added, &script);
+  return "<script type=\"module\">\n" + script + "</script>";
+}
+
+}  // namespace
+
+std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json,
+                           std::string_view body) {
+  constexpr std::string_view kBegin = "<!-- ", kEnd = " -->";
+  std::string_view rest = WebText(name);
+  std::string page;
+  while (true) {
+    const size_t begin = rest.find(kBegin), end = rest.find(kEnd, begin);
+    if (begin == std::string_view::npos || end == std::string_view::npos) break;
+    page += rest.substr(0, begin);
+    const std::string_view what = rest.substr(begin + kBegin.size(), end - begin - kBegin.size());
+    rest.remove_prefix(end + kEnd.size());
+    const std::string_view file = what.substr(std::min(what.find(": ") + 2, what.size()));
+    if (what == "title") {
+      page += EscapedMarkup(title);
+    } else if (what == "body") {
+      page += body;
+    } else if (what == "data") {
+      page += DataElement("data", json);
+    } else if (what == "shaders") {
+      page += DataElement("shaders", Shaders());
+    } else if (what.starts_with("style: ")) {
+      page += "<style>\n" + std::string(WebText(file)) + "</style>";
+    } else if (what.starts_with("module: ")) {
+      page += Module(file);
+    } else {
+      throw Error("web/" + std::string(name) + ": nothing is known to stand for " +
+                  std::string(what));
+    }
+  }
+  return page.append(rest);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,244 @@
+#include "io/pictures/plot_factors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/pictures/gnuplot.h"
+#include "io/pictures/plots.h"
+#include "model/lobes/gauge.h"
+#include "trilobe/model/lobes/lobe_light.h"
+
+namespace trilobe {
+namespace {
+
+// Of the light through a table: what its first or its last entries have together, for them not to
+// be drawn as the others are. They may be anything.
+constexpr double kHardlyAny = 2e-3;
+
+// Of the panels of D, F and G.
+constexpr const char* kPanelTitles[] = {"D, distribution of facets", "F, Fresnel factor",
+                                        "G, shadowing and masking"};
+constexpr const char* kPanelSetups[] = {
+    ("set xlabel 'θ_h [°], spaced by its root'\nset ylabel 'D [1/sr]'\nset xrange [0:sqrt(90)]\n"
+     "set xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), '60' sqrt(60), "
+     "'90' sqrt(90))\n"),
+    "set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_d [°]'\nset ylabel 'F, mean 1'\n",
+    ("set xrange [0:90]\nset xtics 0,15,90\nset xlabel 'θ_i, θ_o [°]'\n"
+     "set ylabel 'G, mean 1'\n")};
+
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+
+// "62 %", "<0.1 %", for gnuplot, which takes the labels of tics for formats.
+std::string Percent(double share) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), share >= 0.0995 ? "%.0f" : "%.1f", 100 * share);
+  return (share > 0 && share < 0.0005 ? "<0.1" : std::string(text.data())) + " %%";
+}
+
+std::string LobeName(int lobe) { return "lobe " + std::to_string(lobe + 1); }
+
+// What stands behind the name of a lobe that is dark.
+const char* AbsenceOf(const FactorModel& model, int lobe) {
+  return Absent(model, lobe) ? " (s = 0)" : "";
+}
+
+// Which entries matter: those that data were seen of, and through which light goes. Those of D near
+// theta_h = 0 have little light, as they are few directions, and are what is seen of a highlight.
+std::vector<bool> EntriesThatMatter(const ModelFile& file, const LobeLight& light, Factor factor,
+                                    int index) {
+  const int size = file.model.spec().table_size(factor);
+  const size_t offset = file.model.TableOffset(factor, index);
+  const auto through = std::span(light.through).subspan(offset, size);
+  const double hardly_any = kHardlyAny * std::accumulate(through.begin(), through.end(), 0.0);
+  std::vector<bool> matters(size);
+  for (int i = 0; i < size; ++i) matters[i] = !file.unobserved[offset + i];
+  double sum = 0;
+  for (int i = size - 1; i >= 0 && (sum += through[i]) <= hardly_any; --i) matters[i] = false;
+  sum = 0;
+  for (int i = 0; i < size && factor != Factor::kD && (sum += through[i]) <= hardly_any; ++i) {
+    matters[i] = false;
+  }
+  return matters;
+}
+
+}  // namespace
+
+bool Absent(const FactorModel& model, int lobe) {
+  return std::ranges::all_of(model.s(lobe), [](double s) { return s == 0; });
+}
+
+TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index) {
+  const TableSharing& sharing = spec.sharing(factor);
+  const int channels = sharing.per_channel ? kChannels : 1;
+  return {sharing.per_lobe ? index / channels : 0, sharing.per_channel ? index % channels : 0};
+}
+
+std::string TableName(const FactorModel& model, Factor factor, int index) {
+  const ModelSpec& spec = model.spec();
+  const TableSharing& sharing = spec.sharing(factor);
+  const auto [lobe, channel] = OwnerOf(spec, factor, index);
+  std::string name;
+  if (sharing.per_lobe && (spec.lobes > 1 || !sharing.per_channel)) name = LobeName(lobe);
+  if (sharing.per_channel) name += (name.empty() ? "" : ", ") + std::string(kChannelNames[channel]);
+  if (name.empty()) name = "all lobes";
+  return sharing.per_lobe ? name + AbsenceOf(model, lobe) : name;
+}
+
+namespace {
+
+// The plot command of these tables, and their data.
+std::string Curves(const ModelFile& file, const LobeLight& light, Factor factor,
+                   const std::vector<int>& tables) {
+  const ModelSpec& spec = file.model.spec();
+  std::vector<double> values;
+  std::vector<std::vector<bool>> matters;
+  for (const int t : tables) {
+    const std::span<const double> table = file.model.table(factor, t);
+    matters.push_back(EntriesThatMatter(file, light, factor, t));
+    for (size_t i = 0; i < table.size(); ++i) {
+      if (matters.back()[i]) values.push_back(table[i]);
+    }
+  }
+  if (values.empty()) return "";
+  // Linear as in the paper, unless a peak would flatten all the rest.
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  const double top = sorted.back(), median = sorted[sorted.size() / 2];
+  const bool logarithmic = top > 0 && (factor == Factor::kD || top > 10 * median);
+  const AxisRange range = logarithmic ? LogRange(values, factor == Factor::kD ? 6 : 3)
+                                      : AxisRange{0, top > 0 ? 1.08 * top : 1};
+  std::string data, plot;
+  bool any_dotted = false;
+  for (size_t k = 0; k < tables.size(); ++k) {
+    const int t = tables[k];
+    const std::span<const double> table = file.model.table(factor, t);
+    const int size = static_cast<int>(table.size());
+    std::vector<std::vector<double>> rows;  // abscissa, value, value where it does not matter
+    for (int i = 0; i < size; ++i) {
+      const double degrees = RadiansToDegrees(spec.axis(factor).Theta(i));
+      // What is less than the axis shows runs along it.
+      const double value = std::max(table[i], range.low);
+      const bool dotted =
+          !matters[k][i] || (i > 0 && !matters[k][i - 1]) || (i + 1 < size && !matters[k][i + 1]);
+      any_dotted = any_dotted || dotted;
+      rows.push_back({factor == Factor::kD ? std::sqrt(degrees) : degrees,
+                      matters[k][i] ? value : kGap, dotted ? value : kGap});
+    }
+    const std::string block = std::string(FactorName(factor)) + std::to_string(t);
+    data += GnuplotData(block, rows);
+    const auto [lobe, channel] = OwnerOf(spec, factor, t);
+    const std::string color =
+        spec.sharing(factor).per_channel ? kChannelColors[channel] : kLobeColors[lobe];
+    const bool named_by_panel = tables.size() <= kChannels && spec.sharing(factor).per_channel;
+    plot += (k == 0 ? "plot $" : ", $") + block +
+            " using 1:2 with lines linewidth 2.5 linecolor '" + color + "' title '" +
+            (named_by_panel ? kChannelNames[channel] : TableName(file.model, factor, t)) +
+            "', '' " + "using 1:3 with lines linewidth 2 dashtype (2,3) linecolor '" + color +
+            "' notitle";
+  }
+  if (any_dotted) {
+    plot +=
+        ", NaN with lines linewidth 2 dashtype (2,3) linecolor '#555555' title 'no data or light'";
+  }
+  return data +
+         (logarithmic ? "set logscale y\n" + LogTics(range, 'y')
+                      : std::string("unset logscale y\nset format y '%g'\n")) +
+         "set yrange [" + GnuplotNumber(range.low) + ":" + GnuplotNumber(range.high) + "]\n" + plot;
+}
+
+}  // namespace
+
+std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Factor factor) {
+  const std::string title = kPanelTitles[static_cast<int>(factor)];
+  const ModelSpec& spec = file.model.spec();
+  const TableSharing& sharing = spec.sharing(factor);
+  std::vector<Panel> panels;
+  // Of many curves, as many panels as there are lobes.
+  const bool by_lobe = sharing.per_lobe && sharing.per_channel && spec.lobes > 1;
+  for (int m = 0; m < (by_lobe ? spec.lobes : 1); ++m) {
+    std::vector<int> tables;
+    for (int t = 0; t < spec.num_tables(factor); ++t) {
+      const int lobe = OwnerOf(spec, factor, t).lobe;
+      if ((!by_lobe || lobe == m) && !(sharing.per_lobe && Absent(file.model, lobe))) {
+        tables.push_back(t);
+      }
+    }
+    panels.push_back({title + (by_lobe ? ", " + LobeName(m) : ""),
+                      kPanelSetups[static_cast<int>(factor)], Curves(file, light, factor, tables)});
+  }
+  return panels;
+}
+
+Panel AlbedoPanel(const LobeLight& light) {
+  const int groups = 1 + static_cast<int>(light.lobes.size());
+  std::string data[kChannels], tics;
+  double top = 0;
+  for (int g = 0; g < groups; ++g) {
+    const Rgb& values = g == 0 ? light.diffuse : light.lobes[g - 1];
+    for (int c = 0; c < kChannels; ++c) {
+      data[c] += GnuplotNumber(g + 0.28 * (c - 1)) + " " + GnuplotNumber(values[c]) + "\n";
+      top = std::max(top, values[c]);
+    }
+    const std::string name = g == 0 ? "diffuse" : LobeName(g - 1);
+    const double share = g == 0 ? light.DiffuseShare() : light.Share(g - 1);
+    tics += (g == 0 ? "\"" : ", \"") + name + "\\n" + Percent(share) + "\" " + std::to_string(g);
+  }
+  std::string script, plot;
+  const std::string font = groups <= 4 ? ",14" : ",11";
+  const std::string tic_font = groups <= 6 ? "" : " font ',12'";
+  for (int c = 0; c < kChannels; ++c) {
+    const std::string block = "$coefficient" + std::to_string(c);
+    script += block + " << EOD\n" + data[c] + "EOD\n";
+    plot += (c == 0 ? "plot " : ", ") + block + " using 1:2 with boxes linecolor '" +
+            kChannelColors[c] + "' title '" + kChannelNames[c] + "', '' using 1:2:" +
+            "(sprintf('%.3g', $2)) with labels rotate by 90 left offset 0,0.4 font '" + font +
+            "' notitle";
+  }
+  return {.title = "albedo, and share of all that is reflected",
+          .setup = script + "unset logscale y\nset format y '%g'\nset yrange [0:" +
+                   GnuplotNumber(top > 0 ? 1.35 * top : 1) + "]\nset xrange [-0.6:" +
+                   GnuplotNumber(groups - 0.4) + "]\nset xtics (" + tics + ")" + tic_font +
+                   "\nset boxwidth 0.26\nset style fill solid 0.85 noborder\nset xlabel ''\n"
+                   "set ylabel ''\nunset grid\nset grid ytics\n",
+          .plot = plot};
+}
+
+void DrawFactors(const ModelFile& file, const std::string& path) {
+  CheckDrawable(file, {});
+  const ModelSpec& spec = file.model.spec();
+  const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
+  const LobeLight light = ComputeLobeLight(ObservedEntries(file.unobserved), file.model);
+  if (spec.anisotropic()) {
+    DrawPolarFactors(file, light, path);
+    return;
+  }
+  constexpr int kWidth = 1800, kTop = 70;
+  PanelRows rows(kWidth);
+  std::vector<Panel> single;  // those of one panel share rows
+  for (const Factor factor : kFactors) {
+    std::vector<Panel> panels = CurvePanels(file, light, factor);
+    if (panels.size() == 1) {
+      single.push_back(std::move(panels[0]));
+    } else {
+      rows.Add(std::move(panels), spec.lobes == 3 ? 3 : 2);
+    }
+  }
+  single.push_back(AlbedoPanel(light));
+  rows.Add(std::move(single), 2);
+  const int height = kTop + rows.height();
+  DrawPng(path, kWidth, height,
+          "set multiplot\nset label 99 " +
+              GnuplotTitle("Factors: " + PictureName(name), kWidth, 22) +
+              " at screen 0.5, screen " + GnuplotNumber(1 - 36.0 / height) + " center\n" +
+              rows.Script(kTop, height));
+}
+
+}  // namespace trilobe

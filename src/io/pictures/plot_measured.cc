@@ -1,0 +1,50 @@
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/pictures/gnuplot.h"
+#include "io/pictures/plots.h"
+#include "trilobe/model/measurement/measurement_stats.h"
+
+namespace trilobe {
+namespace {
+
+// Dashed lines where nothing is measured any more, and the angle on the upper one.
+std::string LimitLines(double max_theta) {
+  const std::string limit = GnuplotNumber(RadiansToDegrees(max_theta));
+  const std::string style = " nohead front dashtype 2 linewidth 2 linecolor '#000000'\n";
+  return "set arrow from " + limit + ",0 to " + limit + "," + limit + style + "set arrow from 0," +
+         limit + " to " + limit + "," + limit + style + "set label sprintf('%.4g°', " + limit +
+         ") at 1.5," + limit + " offset 0,0.7 front textcolor '#000000'\n";
+}
+
+}  // namespace
+
+void DrawMeasured(const BrdfTable& table, const std::string& path) {
+  constexpr int kCells = 90;
+  const std::vector<double> shares = ValidShares(table);
+  std::vector<std::vector<double>> rows;  // of theta_o, with theta_i in columns
+  for (int o = 0; o < kCells; ++o) {
+    std::vector<double>& row = rows.emplace_back();
+    for (int i = 0; i < kCells; ++i) row.push_back(shares[i * kCells + o]);
+  }
+  const std::string name = std::filesystem::path(table.source).filename().string();
+  std::string script = GnuplotData("cells", rows);
+  script += "set title " + GnuplotQuote("What was measured of " + name) +
+            " noenhanced font ',22' offset 0,0.4\n"
+            "set xlabel 'θ_i [°]'\nset ylabel 'θ_o [°]'\n"
+            "set xrange [0:90]\nset yrange [0:90]\nset size ratio 1\n"
+            "set xtics 15\nset ytics 15\nunset grid\nset border 15\n"
+            "set lmargin at screen 0.10\nset rmargin at screen 0.80\n"
+            "set tmargin at screen 0.91\nset bmargin at screen 0.12\n"
+            // No end is white, which is for cells without a bin; the ends differ in brightness.
+            "set palette defined (0 '#F6CFA8', 0.5 '#6FA3C8', 1 '#0B3C6F')\n"
+            "set cbrange [0:1]\nset cbtics ('none' 0, '25 %%' 0.25, '50 %%' 0.5, '75 %%' 0.75, "
+            "'all' 1)\nset cblabel 'valid of the bins above the surface (white: no bin)' "
+            "offset 1.5,0\n";
+  if (table.max_theta < kPi / 2) script += LimitLines(table.max_theta);
+  script += "plot $cells matrix using ($1+0.5):($2+0.5):3 with image notitle\n";
+  DrawPng(path, 1200, 1080, script);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,117 @@
+#ifndef TRILOBE_MODEL_APPEARANCE_MIRRORED_ENVIRONMENT_H_
+#define TRILOBE_MODEL_APPEARANCE_MIRRORED_ENVIRONMENT_H_
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/math/lanes.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/model/appearance/environment.h"
+
+namespace trilobe {
+
+// The channels, and what else goes the same way, in the lanes of a vector.
+struct alignas(4 * sizeof(double)) Pixel {
+  double lane[kChannels + 1] = {};
+};
+
+// An environment as the eye (kEye, +z) sees it in mirrors: by the normal h of the mirror, which
+// reflects the light from l = 2 (h z) h - z. (h_x, h_y) is a map of all l, a disc, that keeps
+// areas: d omega_l = 4 h_z d omega_h = 4 dh_x dh_y. So its pixels, and their means over 2 x 2, 4 x
+// 4, ... of them, each stand for the same solid angle.
+class MirroredEnvironment {
+ public:
+  // Throws Error as CheckEnvironment does.
+  explicit MirroredEnvironment(const Environment& environment);
+
+  // The mean radiance of what mirrors reflect whose normals are within a solid angle [sr] around
+  // `half`, above the eye's horizon.
+  Rgb Mean(const Direction& half, double solid_angle) const;
+
+  // The same, and its luminance, of `half` turned about the eye by 0, 1, ... quarters, from x
+  // towards y.
+  template <int kTurns>
+  void SetMeans(const Direction& half, double solid_angle, Four<double>* means) const;
+
+ private:
+  struct Level {
+    int size = 0;
+    std::vector<Pixel> radiance;  // [size * size]
+    template <int kTurns>
+    void AddAt(double x, double y, double share, Four<double>* sums) const;
+  };
+  std::vector<Level> levels_;  // finest first
+  double finest_pixels_ = 0;   // the side of a square as wide as a mean over the area 1, in pixels
+};
+
+// Linear between the middles of pixels; x and y from -1 to 1. A quarter turn makes the row the
+// column, and the column the row counted from the other end; so the corners of the square around
+// (x, y) keep their weights, and the first one becomes the last.
+template <int kTurns>
+TRILOBE_ALWAYS_INLINE void MirroredEnvironment::Level::AddAt(double x, double y, double share,
+                                                             Four<double>* sums) const {
+  const double column = std::clamp((x + 1) / 2 * size - 0.5, 0.0, size - 1.0);
+  const double row = std::clamp((1 - y) / 2 * size - 0.5, 0.0, size - 1.0);
+  const int last = size - 2;  // a square begins there or before
+  const int c = std::min(static_cast<int>(column), last);
+  const int r = std::min(static_cast<int>(row), last);
+  const double s = column - c, t = row - r;
+  // Of the corners, from the upper left one clockwise.
+  const double weights[] = {share * (1 - t) * (1 - s), share * (1 - t) * s, share * t * s,
+                            share * t * (1 - s)};
+  const int squares[] = {r * size + c, (last - c) * size + r, (last - r) * size + last - c,
+                         c * size + last - r};
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const Pixel* const above = &radiance[squares[turn]];
+    const Pixel* const below = above + size;
+    const auto weight = [&](int corner) __attribute__((always_inline)) {
+      return weights[(corner + turn) % 4];
+    };
+    sums[turn] += (weight(0) * Load(above[0].lane) + weight(1) * Load(above[1].lane)) +
+                  (weight(3) * Load(below[0].lane) + weight(2) * Load(below[1].lane));
+  }
+}
+
+template <int kTurns>
+TRILOBE_ALWAYS_INLINE void MirroredEnvironment::SetMeans(const Direction& half, double solid_angle,
+                                                         Four<double>* means) const {
+  const double area = std::max(half[2] * solid_angle, 1e-12);
+  const double level = std::clamp(std::log2(finest_pixels_ * finest_pixels_ * area) / 2, 0.0,
+                                  static_cast<double>(levels_.size() - 1));
+  const int finer = std::min(static_cast<int>(level), static_cast<int>(levels_.size()) - 2);
+  const double t = level - finer;
+  for (int turn = 0; turn < kTurns; ++turn) means[turn] = Four<double>{};
+  levels_[finer].AddAt<kTurns>(half[0], half[1], 1 - t, means);
+  levels_[finer + 1].AddAt<kTurns>(half[0], half[1], t, means);
+}
+
+// A piece of the half vectors about a normal, which is z here.
+struct HalfCell {
+  Direction half{};
+  double theta = 0, sine = 0;  // from the normal [rad]
+  double solid_angle = 0;      // [sr]
+
+  // `half` about another normal, by the smallest turn that takes z there, which is no sudden one
+  // where the eye looks.
+  Direction About(const Direction& n) const {
+    const double along = (n[0] * half[0] + n[1] * half[1]) / (1 + n[2]);
+    return {half[0] - n[0] * along + n[0] * half[2], half[1] - n[1] * along + n[1] * half[2],
+            n[2] * half[2] - n[0] * half[0] - n[1] * half[1]};
+  }
+};
+
+// The light that a mirror sends to the eye comes from there.
+inline Direction MirroredEye(const Direction& half) {
+  return {2 * half[2] * half[0], 2 * half[2] * half[1], 2 * half[2] * half[2] - 1};
+}
+
+// All half vectors in rings, narrow where highlights are, theta_h being in proportion to the power
+// 5/2 of a ring's number, and cut into a few cells each: what a picture of a material of any gloss
+// is summed over. Turned by a quarter about the normal they are the same.
+const std::vector<HalfCell>& HalfCells();
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_APPEARANCE_MIRRORED_ENVIRONMENT_H_

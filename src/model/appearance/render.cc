@@ -1,0 +1,34 @@
+#include "trilobe/model/appearance/render.h"
+
+#include <cmath>
+
+#include "trilobe/core/base/check.h"
+
+namespace trilobe {
+RenderedImages Render(const View& view, std::span<const SphericalBrdf> materials,
+                      std::span<const Light> lights,
+                      const std::function<bool(const SphericalAngles&)>& counts, bool whole_too,
+                      int num_threads) {
+  for (const SphericalBrdf& material : materials) CheckNotEmpty(material, "a material");
+  CheckNotEmpty(counts, "counts");
+  std::vector<PolarAngles> eye;  // [view.points.size()]
+  for (const SurfacePoint& point : view.points) {
+    eye.push_back({std::acos(std::min(Dot(point.normal, kEye), 1.0)), PhiOver(point, kEye)});
+  }
+  return RenderBy(
+      view, static_cast<int>(lights.size()), static_cast<int>(materials.size()),
+      [&](int k, int l) {
+        const Light& light = lights[l];
+        Incident<SphericalAngles> incident{.cosines = CosinesOver(view.points[k], light.direction)};
+        if (!(incident.cosines.i > 0)) return incident;
+        incident.angles = {std::acos(incident.cosines.i), PhiOver(view.points[k], light.direction),
+                           eye[k].theta, eye[k].phi};
+        incident.irradiance = light.irradiance;
+        return incident;
+      },
+      [&](int m, const SphericalAngles& at, const Cosines&) { return materials[m](at); },
+      [&](const SphericalAngles& at, const Cosines&) { return counts(at); }, whole_too,
+      num_threads);
+}
+
+}  // namespace trilobe

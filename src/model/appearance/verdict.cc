@@ -1,0 +1,172 @@
+#include "model/appearance/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilobe {
+namespace {
+
+Visibility VisibilityOf(const SeenError& error) {
+  const auto within = [&error](double mean, double at_95) {
+    return error.mean_delta_e <= mean && error.delta_e_95 <= at_95;
+  };
+  if (within(1, 2.3)) return Visibility::kNone;
+  if (within(2.3, 5)) return Visibility::kHardly;
+  return within(5, 10) ? Visibility::kVisible : Visibility::kPlain;
+}
+
+// How many times the mean difference elsewhere that of a place is.
+double StandsOut(const SeenError& error, SeenPlace place) {
+  const PlaceError& at = error.at(place);
+  const double elsewhere = error.mean_delta_e - at.share * at.mean_delta_e;
+  return elsewhere > 0 ? at.mean_delta_e * (1 - at.share) / elsewhere : 0;
+}
+
+// Where differences are larger by half than elsewhere, and enough to matter.
+SeenPlace PlaceOf(const SeenError& error) {
+  constexpr double kMore = 1.5, kMatters = 0.2;
+  SeenPlace place = SeenPlace::kRest;
+  double most = kMore;
+  for (const SeenPlace other : {SeenPlace::kHighlights, SeenPlace::kGrazing}) {
+    const double stands_out = StandsOut(error, other);
+    if (stands_out < most || error.at(other).squares < kMatters) continue;
+    most = stands_out;
+    place = other;
+  }
+  return place;
+}
+
+// In one place, or in all.
+Fault FaultAt(const SeenError& error, SeenPlace place) {
+  constexpr double kMost = 0.5;
+  PlaceError at = error.at(place);
+  if (place == SeenPlace::kRest) {
+    at = {.mean_delta_e = error.mean_delta_e};
+    for (const PlaceError& one : error.places) {
+      at.lightness += one.share * one.lightness;
+      at.color += one.squares * one.color;
+    }
+  }
+  if (at.color > kMost) return Fault::kWrongColor;
+  if (std::abs(at.lightness) <= kMost * at.mean_delta_e) return Fault::kDifferent;
+  return at.lightness < 0 ? Fault::kTooDark : Fault::kTooBright;
+}
+
+std::string Where(SeenPlace place) {
+  switch (place) {
+    case SeenPlace::kHighlights:
+      return "in highlights";
+    case SeenPlace::kGrazing:
+      return "at grazing angles";
+    case SeenPlace::kRest:
+      return "all over";
+  }
+  return "";
+}
+
+std::string What(Fault fault) {
+  switch (fault) {
+    case Fault::kDifferent:
+      return "";
+    case Fault::kTooDark:
+      return ": too dark";
+    case Fault::kTooBright:
+      return ": too bright";
+    case Fault::kWrongColor:
+      return ": wrong colour";
+  }
+  return "";
+}
+
+}  // namespace
+
+Verdict VerdictOf(const SeenError& error) {
+  const Visibility visibility = VisibilityOf(error);
+  if (visibility == Visibility::kNone) return {};
+  const SeenPlace place = PlaceOf(error);
+  return {visibility, place, FaultAt(error, place)};
+}
+
+std::string Words(const Verdict& verdict) {
+  const std::string place = Where(verdict.place), what = What(verdict.fault);
+  switch (verdict.visibility) {
+    case Visibility::kNone:
+      return "cannot be told apart";
+    case Visibility::kHardly:
+      return "hardly visible side by side" +
+             (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);
+    case Visibility::kVisible:
+      return "visible " + place + what;
+    case Visibility::kPlain:
+      return "plainly visible " + place + what;
+  }
+  return "";
+}
+
+std::string NameOf(Visibility visibility) {
+  switch (visibility) {
+    case Visibility::kNone:
+      return "none";
+    case Visibility::kHardly:
+      return "hardly";
+    case Visibility::kVisible:
+      return "visible";
+    case Visibility::kPlain:
+      return "plain";
+  }
+  return "";
+}
+
+std::string NameOf(Fault fault) {
+  switch (fault) {
+    case Fault::kDifferent:
+      return "different";
+    case Fault::kTooDark:
+      return "too_dark";
+    case Fault::kTooBright:
+      return "too_bright";
+    case Fault::kWrongColor:
+      return "wrong_color";
+  }
+  return "";
+}
+
+std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts) {
+  constexpr double kMuchLeftOut = 0.01, kMuchIrreducible = 0.3, kMuchReach = 10;
+  std::vector<Advice> advice;
+  if (facts.interrupted) advice.push_back(Advice::kGoOn);
+  if (facts.reach_beyond > kMuchReach) advice.push_back(Advice::kKeepWithin);
+  if (verdict.visibility == Visibility::kNone) return advice;
+  if (!facts.ended) {
+    if (!facts.interrupted) advice.push_back(Advice::kIterate);
+    return advice;
+  }
+  if (facts.left_out && *facts.left_out > kMuchLeftOut) advice.push_back(Advice::kAnisotropic);
+  if (facts.may_choose_form) {
+    advice.push_back(facts.default_solver ? Advice::kChooseForm : Advice::kChooseSolver);
+  }
+  if (facts.irreducible > kMuchIrreducible) advice.push_back(Advice::kDataDiffer);
+  return advice;
+}
+
+std::string NameOf(Advice advice) {
+  switch (advice) {
+    case Advice::kGoOn:
+      return "go_on";
+    case Advice::kIterate:
+      return "iterate";
+    case Advice::kAnisotropic:
+      return "anisotropic";
+    case Advice::kChooseSolver:
+      return "choose_solver";
+    case Advice::kChooseForm:
+      return "choose_form";
+    case Advice::kDataDiffer:
+      return "data_differ";
+    case Advice::kKeepWithin:
+      return "keep_within";
+  }
+  return "";
+}
+
+}  // namespace trilobe

@@ -1,0 +1,75 @@
+#ifndef TRILOBE_MODEL_APPEARANCE_VERDICT_H_
+#define TRILOBE_MODEL_APPEARANCE_VERDICT_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trilobe/model/appearance/seen_error.h"
+
+namespace trilobe {
+
+// What a person would say who sees the fit beside its measurement, by the CIELAB difference of
+// 1976. Thresholds are those of the mean, and of what 95 % of the pixels stay below:
+//
+//   kNone     1, 2.3   1 is about the least that a trained eye tells apart of two patches side by
+//                      side; 2.3 is what is just noticeable by Mahy, Van Eycken and Oosterlinck,
+//                      Evaluation of Uniform Color Spaces, Color Research & Application 19(2), 1994
+//   kHardly   2.3, 5   from 5 on two patches pass for two colours: Mokrzycki and Tatol, Colour
+//                      difference Delta E: a survey, Machine Graphics & Vision 20(4), 2011
+//   kVisible  5, 10
+//   kPlain    beyond
+//
+// They were measured of patches, not of spheres; docs/appearance.md has what pictures say of them.
+enum class Visibility { kNone, kHardly, kVisible, kPlain };
+
+// The place that differs most, where one stands out: kRest is all over.
+// What is wrong there, where the differences have something in common.
+enum class Fault { kDifferent, kTooDark, kTooBright, kWrongColor };
+
+struct Verdict {
+  Visibility visibility = Visibility::kNone;
+  SeenPlace place = SeenPlace::kRest;
+  Fault fault = Fault::kDifferent;
+
+  bool operator==(const Verdict&) const = default;
+};
+
+Verdict VerdictOf(const SeenError& error);
+
+// "cannot be told apart", "visible in highlights, which are too dark", ...
+std::string Words(const Verdict& verdict);
+std::string NameOf(Visibility visibility);  // "none", "hardly", "visible", "plain"
+std::string NameOf(Fault fault);            // "different", "too_dark", ...
+
+// What is known of a fit besides, on which advice depends.
+struct FitFacts {
+  bool interrupted = false;
+  bool ended = true;  // the solver found what it looks for; false: a limit stopped it
+  // The form is the default one of an isotropic table, and --model=auto could be asked for.
+  bool may_choose_form = false;
+  bool default_solver = true;
+  double irreducible = 0;  // of E: what exchanged directions differ by in the data
+  // Of the energy: what an isotropic model of anisotropic data leaves out; nothing where it is
+  // none.
+  std::optional<double> left_out = {};
+  // The largest value of the model where nothing was measured, over the largest measured one.
+  double reach_beyond = 0;
+};
+
+// What to do about it, or to know; the first is the most urgent.
+enum class Advice {
+  kGoOn,          // it was interrupted
+  kIterate,       // a limit stopped it
+  kAnisotropic,   // the form leaves the azimuth out
+  kChooseSolver,  // another solver than the default one may be the limit
+  kChooseForm,    // the form is the limit
+  kDataDiffer,    // what is left is in good part noise, or not reciprocal: no model follows it
+  kKeepWithin,    // what it says beyond the measured directions is not usable
+};
+std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts);
+std::string NameOf(Advice advice);  // "go_on", "iterate", ...
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_APPEARANCE_VERDICT_H_

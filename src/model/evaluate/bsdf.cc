@@ -1,0 +1,298 @@
+#include "trilobe/model/evaluate/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/math/arc_functions.h"
+#include "model/evaluate/nodes_of_y.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/core/math/angles.h"
+
+namespace trilobe {
+namespace {
+
+// Of the half vectors, at least so much is drawn by the cosine, too, lest something that the table
+// has no node at is never drawn: of what the lobes reflect.
+constexpr double kCosineShare = 0.01;
+
+// The azimuth between the half vector and wi up to which wo is above the surface, for
+//   0 < cos theta_o = 2 (wi . h) cos theta_h - cos theta_i. [rad]
+template <typename Real>
+Real MaxPhi(Real cos_i, Real sin_i, Real cos_h, Real sin_h) {
+  const Real denominator = 2 * sin_h * cos_h * sin_i;
+  const Real numerator = -cos_i * (2 * cos_h * cos_h - 1);
+  if (numerator <= -denominator) return static_cast<Real>(kPi);
+  return numerator >= denominator ? Real{0} : AngleOfCosine(numerator / denominator);
+}
+
+[[noreturn]] void Overflow() {
+  throw Error("the model's values overflow; its factors are too large");
+}
+
+// Of many samples, so many go from step to step together: a processor does the same step of some at
+// once, where it waits from step to step of one.
+constexpr size_t kBlock = 32;
+
+void CheckAsMany(size_t wi, size_t others, size_t results) {
+  if (wi == results && others == results) return;
+  throw Error("there are " + std::to_string(wi) + " wi, " + std::to_string(others) +
+              " of what goes with them, and room for " + std::to_string(results) +
+              " results; give as many of each");
+}
+
+// Above the surface, and a number.
+template <typename Vector>
+bool IsAbove(const Vector& w) {
+  return w[2] > 0 && std::isfinite(w[0]) && std::isfinite(w[1]) && std::isfinite(w[2]);
+}
+
+template <typename Colour>
+auto MeanOf(const Colour& colour) {
+  return (colour[0] + colour[1] + colour[2]) / 3;
+}
+
+}  // namespace
+
+// theta_i closer together towards grazing, where the lobes change most.
+template <typename Real>
+struct Bsdf<Real>::Nodes : HalfVectorTable<Real>::Nodes {
+  explicit Nodes(const ModelSpec& spec) {
+    const bool anisotropic = spec.anisotropic();
+    this->y = NodesOfY(spec);
+    this->s = anisotropic || spec.stretches.any() ? 33 : 17;
+    this->phi_i = anisotropic ? std::max({spec.d_axis.phi_nodes, spec.g_axis.phi_nodes, 12}) : 1;
+    const int rings = anisotropic ? 16 : 24;
+    for (int k = 0; k < rings; ++k) {
+      const double left = 1 - static_cast<double>(k) / (rings - 1);
+      this->theta_i.push_back(kGrazingTheta * (1 - left * left));
+    }
+  }
+};
+
+template <typename Real>
+Bsdf<Real>::Bsdf(const FactorModel& model) : model_(model) {
+  diffuse_albedo_ = MeanOf(model_.diffuse()) * static_cast<Real>(kPi);
+  if (!(diffuse_albedo_ <= std::numeric_limits<float>::max())) Overflow();
+  MakeTables(Nodes(model.spec()));
+}
+
+// Over y and s, the density of wo by solid angle is multiplied by
+//   d omega_o = 4 (wi . h) d omega_h,  cos theta_h d omega_h = dy d phi / 2,  d phi = 2 phi_max ds:
+// s goes once through [-phi_max, phi_max], or through both halves of it, which are alike where the
+// material is isotropic.
+template <typename Real>
+void Bsdf<Real>::MakeTables(const Nodes& nodes) {
+  const bool anisotropic = model_.anisotropic();
+  std::vector<float> values;
+  values.reserve(nodes.theta_i.size() * nodes.phi_i * nodes.y.size() * nodes.s);
+  std::vector<std::array<double, kChannels>> albedos;
+  const double least_cosine = std::cos(kGrazingTheta);
+  std::vector<Colour> lobes(std::max(model_.lobes(), 1));
+  for (const double theta_i : nodes.theta_i) {
+    const double cos_i = std::cos(theta_i), sin_i = std::sin(theta_i);
+    for (int p = 0; p < nodes.phi_i; ++p) {
+      const double phi_i = 2 * kPi * p / nodes.phi_i;
+      const Vector wi = {static_cast<Real>(sin_i * std::cos(phi_i)),
+                         static_cast<Real>(sin_i * std::sin(phi_i)), static_cast<Real>(cos_i)};
+      std::array<double, kChannels> albedo{}, before{};
+      for (size_t row = 0; row < nodes.y.size(); ++row) {
+        const double cos_h = std::sqrt(1 - nodes.y[row]), sin_h = std::sqrt(nodes.y[row]);
+        const double phi_max = MaxPhi(cos_i, sin_i, cos_h, sin_h);
+        std::array<double, kChannels> of_row{};
+        for (int k = 0; k < nodes.s; ++k) {
+          const double s = static_cast<double>(k) / (nodes.s - 1);
+          const double phi = (anisotropic ? 2 * s - 1 : s) * phi_max;
+          const double wi_h = cos_i * cos_h + sin_i * sin_h * std::cos(phi);
+          const double phi_h = phi_i + phi;
+          const double h[] = {sin_h * std::cos(phi_h), sin_h * std::sin(phi_h), cos_h};
+          Vector wo;
+          for (int a = 0; a < 3; ++a) wo[a] = static_cast<Real>(2 * wi_h * h[a] - wi[a]);
+          wo[2] = std::max(wo[2], static_cast<Real>(least_cosine));
+          const double scale =
+              phi_max > 0 ? wo[2] * 4 * wi_h * phi_max / std::max(cos_h, least_cosine) : 0;
+          model_.LobeValues(wi, wo, lobes.data());
+          std::array<double, kChannels> value{};
+          for (int m = 0; m < model_.lobes(); ++m) {
+            for (int c = 0; c < kChannels; ++c) value[c] += lobes[m][c] * scale;
+          }
+          for (double& x : value) x = std::max(x, 0.0);
+          const double end = k == 0 || k == nodes.s - 1 ? 0.5 : 1;
+          for (int c = 0; c < kChannels; ++c) of_row[c] += value[c] * end / (nodes.s - 1);
+          values.push_back(static_cast<float>(MeanOf(value)));
+          if (!(values.back() <= std::numeric_limits<float>::max())) {
+            Overflow();
+          }
+        }
+        for (int c = 0; row > 0 && c < kChannels; ++c) {
+          albedo[c] += (before[c] + of_row[c]) / 2 * (nodes.y[row] - nodes.y[row - 1]);
+        }
+        before = of_row;
+      }
+      Colour& rounded = albedo_.emplace_back();
+      for (int c = 0; c < kChannels; ++c) rounded[c] = static_cast<Real>(albedo[c]);
+    }
+  }
+  half_vectors_ = HalfVectorTable<Real>(nodes, values);
+}
+
+template <typename Real>
+typename Bsdf<Real>::Incident Bsdf<Real>::Prepare(const Vector& wi) const {
+  Incident incident;
+  incident.sin = std::sqrt(wi[0] * wi[0] + wi[1] * wi[1]);
+  const bool at_normal = !(incident.sin > static_cast<Real>(1e-9));
+  incident.cos_phi = at_normal ? Real{1} : wi[0] / incident.sin;
+  incident.sin_phi = at_normal ? Real{0} : wi[1] / incident.sin;
+  // No half vector further than half of theta_i + 90 degrees has a wo above the surface.
+  const Real phi_i =
+      anisotropic() ? std::copysign(AngleOfCosine(incident.cos_phi), incident.sin_phi) : Real{0};
+  incident.at = half_vectors_.At(AngleOfSine2(incident.sin * incident.sin), phi_i,
+                                 std::min((1 + incident.sin) / 2, Real{1}));
+  const Real lobes = incident.at.total;
+  const Real diffuse = diffuse_albedo_ + static_cast<Real>(kCosineShare) * lobes;
+  incident.cosine_part = lobes > 0 ? diffuse / (diffuse + lobes) : Real{1};
+  return incident;
+}
+
+template <typename Real>
+typename Bsdf<Real>::Colour Bsdf<Real>::Albedo(const Vector& w) const {
+  if (!IsAbove(w)) return {};
+  const Incident incident = Prepare(w);
+  Colour albedo;
+  for (int c = 0; c < kChannels; ++c) {
+    albedo[c] = model_.diffuse()[c] * static_cast<Real>(kPi);
+    for (int k = 0; k < incident.at.count; ++k) {
+      albedo[c] += incident.at.weight[k] * albedo_[incident.at.node[k]][c];
+    }
+  }
+  return albedo;
+}
+
+template <typename Real>
+Real Bsdf<Real>::LobesPdf(const Vector& wi, const Incident& incident, const Vector& wo) const {
+  const auto& at = incident.at;
+  Vector h = {wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
+  const Real length = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+  for (Real& x : h) x /= length;
+  const Real y = h[0] * h[0] + h[1] * h[1], sin_h = std::sqrt(y);
+  const Real phi_max = MaxPhi(wi[2], incident.sin, h[2], sin_h);
+  const Real wi_h = length / 2;  // |wo + wi| = 2 (wi . h)
+  if (!(at.total > 0 && phi_max > 0 && wi_h > 0)) return 0;
+  const Real along = h[0] * incident.cos_phi + h[1] * incident.sin_phi;
+  const Real across = h[1] * incident.cos_phi - h[0] * incident.sin_phi;
+  const Real phi = sin_h > 0 ? AngleOfCosine(along / sin_h) : Real{0};
+  const Real s = anisotropic() ? (std::copysign(phi, across) / phi_max + 1) / 2 : phi / phi_max;
+  return half_vectors_.Value(at, y, s) / at.total * h[2] / (4 * wi_h * phi_max);
+}
+
+template <typename Real>
+Real Bsdf<Real>::Pdf(const Vector& wi, const Vector& wo) const {
+  return IsAbove(wi) && IsAbove(wo) ? PdfOf(wi, Prepare(wi), wo) : Real{0};
+}
+
+template <typename Real>
+Real Bsdf<Real>::PdfOf(const Vector& wi, const Incident& incident, const Vector& wo) const {
+  const Real cosine = wo[2] * static_cast<Real>(1 / kPi);
+  return incident.cosine_part * cosine + (1 - incident.cosine_part) * LobesPdf(wi, incident, wo);
+}
+
+template <typename Real>
+typename Bsdf<Real>::Sample Bsdf<Real>::SampleWo(const Vector& wi,
+                                                 const std::array<Real, 2>& u) const {
+  Sample sample;
+  if (!IsAbove(wi)) return sample;
+  Propose(wi, Prepare(wi), u, &sample);
+  if (sample.pdf > 0) Weigh(Value(wi, sample.wo), &sample);
+  return sample;
+}
+
+// The direction and its density.
+template <typename Real>
+void Bsdf<Real>::Propose(const Vector& wi, const Incident& incident, const std::array<Real, 2>& u,
+                         Sample* proposed) const {
+  Sample& sample = *proposed;
+  const Real below_one = 1 - std::numeric_limits<Real>::epsilon();
+  const Real part = incident.cosine_part;
+  const auto inside = [&](Real x) { return x > 0 ? std::min(x, below_one) : Real{0}; };
+  const Real u0 = inside(u[0]), u1 = inside(u[1]);
+  Real lobes_pdf = 0;
+  if (u0 < part) {
+    const Real r2 = u0 / part, phi = static_cast<Real>(2 * kPi) * u1, r = std::sqrt(r2);
+    sample.wo = {r * std::cos(phi), r * std::sin(phi),
+                 std::sqrt(std::max(1 - r2, std::numeric_limits<Real>::min()))};
+    lobes_pdf = part < 1 ? LobesPdf(wi, incident, sample.wo) : Real{0};
+  } else {
+    const Real around = 2 * u1 - 1;
+    const auto drawn = half_vectors_.Draw(incident.at, inside((u0 - part) / (1 - part)),
+                                          anisotropic() ? u1 : std::abs(around));
+    const Real sin_h = std::sqrt(drawn.y), cos_h = std::sqrt(std::max(1 - drawn.y, Real{0}));
+    const Real phi_max = MaxPhi(wi[2], incident.sin, cos_h, sin_h);
+    const Real phi = phi_max * (anisotropic() ? 2 * drawn.s - 1 : std::copysign(drawn.s, around));
+    const Real x = sin_h * std::cos(phi), y = sin_h * std::sin(phi);
+    const Vector h = {x * incident.cos_phi - y * incident.sin_phi,
+                      x * incident.sin_phi + y * incident.cos_phi, cos_h};
+    const Real twice = 2 * (wi[0] * h[0] + wi[1] * h[1] + wi[2] * h[2]);
+    for (int a = 0; a < 3; ++a) sample.wo[a] = twice * h[a] - wi[a];
+    lobes_pdf = phi_max > 0 && twice > 0
+                    ? drawn.value / incident.at.total * cos_h / (2 * twice * phi_max)
+                    : Real{0};
+  }
+  if (!(sample.wo[2] > 0)) return;  // by rounding, at the horizon
+  sample.pdf = part * sample.wo[2] * static_cast<Real>(1 / kPi) + (1 - part) * lobes_pdf;
+}
+
+template <typename Real>
+void Bsdf<Real>::Weigh(const Colour& value, Sample* sample) {
+  for (int c = 0; c < kChannels; ++c) {
+    sample->weight[c] = value[c] * (sample->wo[2] / sample->pdf);
+  }
+}
+
+template <typename Real>
+void Bsdf<Real>::SamplesOfWo(std::span<const Vector> wi, std::span<const std::array<Real, 2>> u,
+                             std::span<Sample> samples) const {
+  CheckAsMany(wi.size(), u.size(), samples.size());
+  std::array<Incident, kBlock> incident;
+  std::array<Vector, kBlock> wo;
+  std::array<Colour, kBlock> values;
+  for (size_t begin = 0; begin < samples.size(); begin += kBlock) {
+    const size_t size = std::min(samples.size() - begin, kBlock);
+    const std::span<Sample> block = samples.subspan(begin, size);
+    const auto in = wi.subspan(begin, size);
+    for (size_t k = 0; k < size; ++k) {
+      block[k] = {};
+      if (IsAbove(in[k])) incident[k] = Prepare(in[k]);
+    }
+    for (size_t k = 0; k < size; ++k) {
+      if (IsAbove(in[k])) Propose(in[k], incident[k], u[begin + k], &block[k]);
+      wo[k] = block[k].wo;
+    }
+    Values(in, std::span(wo).first(size), std::span(values).first(size));
+    for (size_t k = 0; k < size; ++k) {
+      if (block[k].pdf > 0) Weigh(values[k], &block[k]);
+    }
+  }
+}
+
+template <typename Real>
+void Bsdf<Real>::Pdfs(std::span<const Vector> wi, std::span<const Vector> wo,
+                      std::span<Real> pdfs) const {
+  CheckAsMany(wi.size(), wo.size(), pdfs.size());
+  std::array<Incident, kBlock> incident;
+  for (size_t begin = 0; begin < pdfs.size(); begin += kBlock) {
+    const size_t size = std::min(pdfs.size() - begin, kBlock);
+    const auto above = [&](size_t k) { return IsAbove(wi[begin + k]) && IsAbove(wo[begin + k]); };
+    for (size_t k = 0; k < size; ++k) {
+      if (above(k)) incident[k] = Prepare(wi[begin + k]);
+    }
+    for (size_t k = 0; k < size; ++k) {
+      pdfs[begin + k] = above(k) ? PdfOf(wi[begin + k], incident[k], wo[begin + k]) : Real{0};
+    }
+  }
+}
+
+template class Bsdf<double>;
+template class Bsdf<float>;
+
+}  // namespace trilobe

@@ -1,0 +1,37 @@
+#ifndef TRILOBE_MODEL_EVALUATE_MODEL_FORMAT_H_
+#define TRILOBE_MODEL_EVALUATE_MODEL_FORMAT_H_
+
+namespace trilobe {
+
+// What the reader and the writer of model files share.
+
+inline constexpr const char* kModelFormat = "trilobe-model";
+inline constexpr int kModelVersion = 1;
+// Of models whose highlights are stretched, which readers of version 1 would evaluate wrongly.
+inline constexpr int kStretchedVersion = 2;
+inline constexpr const char* kIsotropicKind = "isotropic";
+inline constexpr const char* kAnisotropicKind = "anisotropic";
+
+// Calls visit(key, member) for every member.
+template <typename Info, typename Visitor>
+void VisitFitInfo(Info* fit, const Visitor& visit) {
+  visit("solver", &fit->solver);
+  visit("init", &fit->init);
+  visit("weighting", &fit->weighting);
+  visit("objective", &fit->objective);
+  visit("initial_objective", &fit->initial_objective);
+  visit("stop_reason", &fit->stop_reason);
+  visit("iterations", &fit->iterations);
+  visit("seconds", &fit->seconds);
+  visit("threads", &fit->threads);
+  visit("source", &fit->source);
+  visit("valid_samples", &fit->valid_samples);
+  visit("max_angle", &fit->max_angle);
+  visit("program", &fit->program);
+  visit("date", &fit->date);
+  visit("run", &fit->run);
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_EVALUATE_MODEL_FORMAT_H_

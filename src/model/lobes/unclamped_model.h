@@ -1,0 +1,40 @@
+#ifndef TRILOBE_MODEL_LOBES_UNCLAMPED_MODEL_H_
+#define TRILOBE_MODEL_LOBES_UNCLAMPED_MODEL_H_
+
+#include <span>
+#include <vector>
+
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/catmull_rom.h"
+#include "trilobe/core/math/stencil.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// The sum of an isotropic model's lobes without its bound at 0, at angles or at bins of a grid, as
+// E compares it with a measurement (UnclampedValue), prepared for many calls: what PreparedModel,
+// the bounded value of two directions, cannot say.
+class UnclampedModel {
+ public:
+  // Keeps a reference to `model`, which must outlive it. Throws Error for an anisotropic one.
+  explicit UnclampedModel(const FactorModel& model);
+
+  // [1/sr], where D, by the number of the stretch, and F are read through these stencils. Cosines
+  // in (0, 1].
+  Rgb operator()(std::span<const Stencil> D, const Stencil& F, const Cosines& cosines) const;
+
+  // D and F linear between bin centres. `cosines` are those of `angles`.
+  Rgb operator()(const HalfDiffAngles& angles, const Cosines& cosines) const;
+
+ private:
+  const FactorModel& model_;
+  MerlGrid grid_;  // whose bins D and F are
+  CatmullRom spline_;
+  std::vector<CatmullRom::Piece> cosine_;          // [interval]
+  std::vector<std::vector<CatmullRom::Piece>> g_;  // [G table][interval]
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_LOBES_UNCLAMPED_MODEL_H_

@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "core/geometry/grid_cosines.h"
+#include "core/math/quantile.h"
+#include "model/measurement/symptoms.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/tabulated_brdf.h"
+
+// Symptoms that show in how values change with the directions.
+namespace trilobe {
+namespace {
+
+double MeanOfBin(const BrdfTable& table, int bin) {
+  return Mean({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
+}
+
+// A bin and the one with its directions exchanged, both above 0, whose cosines are far apart.
+struct ExchangedPair {
+  Cosines cosines;       // of the first
+  double first, second;  // means over the channels
+  double LogRatio() const { return std::log(first / second); }
+};
+
+constexpr size_t kFewestPairs = 100;
+
+std::vector<ExchangedPair> ExchangedPairsOf(const BrdfTable& table) {
+  const MerlGrid& grid = table.grid;
+  const std::vector<bool> valid = ValidBins(table);
+  const GridCosines cosines(grid);
+  std::vector<ExchangedPair> pairs;
+  constexpr double kApart = 1.5;
+  for (int h = 0; h < grid.theta_h; h += 2) {
+    for (int d = h % 3; d < grid.theta_d; d += 3) {
+      for (int p = 0; p < grid.phi_d / 2; ++p) {
+        const int a = grid.Index(h, d, p), b = grid.Index(h, d, grid.phi_d - 1 - p);
+        if (!valid[a] || !valid[b]) continue;
+        const ExchangedPair pair = {cosines(h, d, p), MeanOfBin(table, a), MeanOfBin(table, b)};
+        if (!(std::abs(std::log(pair.cosines.i / pair.cosines.o)) > std::log(kApart))) continue;
+        if (pair.first > 0 && pair.second > 0) pairs.push_back(pair);
+      }
+    }
+  }
+  return pairs;
+}
+
+// The median over pairs of some number.
+template <typename Number>
+double MedianOf(const std::vector<ExchangedPair>& pairs, const Number& number) {
+  std::vector<double> numbers(pairs.size());
+  std::ranges::transform(pairs, numbers.begin(), number);
+  return Quantile(&numbers, 0.5);
+}
+
+double ErrorOf(const std::vector<ExchangedPair>& pairs) {
+  return MedianOf(pairs, [](const ExchangedPair& pair) { return std::abs(pair.LogRatio()); });
+}
+
+// Of the bins that are valid, of which there is one; looks at some of them.
+double MedianSignalOf(const BrdfTable& table) {
+  const std::vector<bool> valid = ValidBins(table);
+  const GridCosines cosines(table.grid);
+  std::vector<double> signals;
+  const int stride = table.grid.phi_d + 1;  // visits all phi_d
+  for (int skipped = 0; skipped < stride && signals.size() < kFewestPairs; ++skipped) {
+    for (int bin = skipped; bin < table.grid.size(); bin += stride) {
+      if (valid[bin]) signals.push_back(MeanOfBin(table, bin) * cosines(bin).i);
+    }
+  }
+  return Quantile(&signals, 0.5);
+}
+
+}  // namespace
+
+CosineSymptom CosineOf(const BrdfTable& table) {
+  const std::vector<ExchangedPair> pairs = ExchangedPairsOf(table);
+  if (pairs.size() < kFewestPairs) return {};
+  const auto apart = [](const ExchangedPair& pair) {
+    return std::log(pair.cosines.i / pair.cosines.o);
+  };
+  CosineSymptom symptom{
+      .exponent = MedianOf(pairs, [&](const auto& pair) { return pair.LogRatio() / apart(pair); }),
+      .error = ErrorOf(pairs)};
+  const double nearer = symptom.exponent > 0 ? 1 : -1;
+  symptom.error_without = MedianOf(
+      pairs, [&](const auto& pair) { return std::abs(pair.LogRatio() - nearer * apart(pair)); });
+  return symptom;
+}
+
+StrayLightSymptom StrayLightOf(const BrdfTable& table) {
+  const std::vector<ExchangedPair> pairs = ExchangedPairsOf(table);
+  if (pairs.size() < kFewestPairs) return {};
+  const double signal = MedianSignalOf(table);
+  if (!(signal > 0)) return {};
+  const double light = MedianOf(pairs, [](const ExchangedPair& pair) {
+    return (pair.first - pair.second) / (1 / pair.cosines.i - 1 / pair.cosines.o);
+  });
+  const auto error_without = [light](const ExchangedPair& pair) {
+    const double first = pair.first - light / pair.cosines.i;
+    const double second = pair.second - light / pair.cosines.o;
+    return first > 0 && second > 0 ? std::abs(std::log(first / second))
+                                   : std::numeric_limits<double>::infinity();
+  };
+  return {.share = light / signal,
+          .error = ErrorOf(pairs),
+          .error_without = MedianOf(pairs, error_without)};
+}
+
+RepetitionSymptom RepetitionOf(const BrdfTable& table) {
+  constexpr int kFirst = 40, kStep = 2, kSteps = 24;  // of theta_i [deg]
+  constexpr size_t kFewest = 20;                      // pairs of neighbours that tell of a step
+  const std::vector<bool> valid = ValidBins(table);
+  if (std::ranges::find(valid, true) == valid.end()) return {};
+  const TabulatedBrdf brdf(table);
+  // By how much values change from one theta_i to the next, in the median over the other angles.
+  std::vector<double> changes;
+  for (int k = 0; k < kSteps; ++k) {
+    std::vector<double> of_step;
+    for (int theta_o = 10; theta_o <= 45; theta_o += 5) {
+      for (int phi = 20; phi < 180; phi += 20) {
+        const auto value = [&](int theta_i) {
+          const HalfDiffAngles at = ToHalfDiff(ToDirections({.theta_i = DegreesToRadians(theta_i),
+                                                             .phi_i = 0,
+                                                             .theta_o = DegreesToRadians(theta_o),
+                                                             .phi_o = DegreesToRadians(phi)}));
+          return valid[table.grid.Bin(at)] ? Mean(brdf.Interpolate(at)) : 0;
+        };
+        const double first = value(kFirst + k * kStep), second = value(kFirst + (k + 1) * kStep);
+        if (first > 0 && second > 0) of_step.push_back(std::abs(std::log(second / first)));
+      }
+    }
+    if (of_step.size() < kFewest) break;
+    changes.push_back(Quantile(&of_step, 0.5));
+  }
+  constexpr size_t kFewestRepeated = 3, kBefore = 5;
+  constexpr double kLess = 0.1;
+  for (size_t begin = kBefore + 1; begin + kFewestRepeated <= changes.size(); ++begin) {
+    // The step before is between: it begins before the last angle.
+    std::vector<double> before(changes.begin() + static_cast<std::ptrdiff_t>(begin - kBefore - 1),
+                               changes.begin() + static_cast<std::ptrdiff_t>(begin - 1));
+    const double most =
+        *std::max_element(changes.begin() + static_cast<std::ptrdiff_t>(begin), changes.end());
+    if (most < kLess * Quantile(&before, 0.5)) {
+      return {.degrees = static_cast<double>(kFirst + kStep * static_cast<int>(begin))};
+    }
+  }
+  return {};
+}
+
+TiltSymptom TiltOf(const BrdfTable& table) {
+  const MerlGrid& grid = table.grid;
+  const std::vector<bool> valid = ValidBins(table);
+  const double within = DegreesToRadians(15);
+  std::vector<double> middles;
+  for (int d = 0; d < grid.theta_d; ++d) {
+    const double theta_d = grid.ThetaD(d + 0.5);
+    if (theta_d < DegreesToRadians(10) || theta_d > DegreesToRadians(60)) continue;
+    double largest = 0;
+    for (int h = 0; h < grid.theta_h && grid.ThetaH(h + 0.5) < within; ++h) {
+      for (int p = 0; p < grid.phi_d; ++p) {
+        const int bin = grid.Index(h, d, p);
+        if (valid[bin]) largest = std::max(largest, MeanOfBin(table, bin));
+      }
+    }
+    double light = 0, along = 0, rim = 0;
+    int at_rim = 0;
+    for (int h = 0; h < grid.theta_h && grid.ThetaH(h + 0.5) < within; ++h) {
+      const bool last = !(grid.ThetaH(h + 1.5) < within);
+      const double area = grid.ThetaH(h + 0.5) * (grid.ThetaH(h + 1) - grid.ThetaH(h));
+      for (int p = 0; p < grid.phi_d; ++p) {
+        const int bin = grid.Index(h, d, p);
+        if (!valid[bin]) continue;
+        const double rho = MeanOfBin(table, bin);
+        if (last) {
+          rim += rho;
+          ++at_rim;
+        }
+        const double above = std::max(rho - largest / 2, 0.0) * area;
+        light += above;
+        // wi is at phi_d from the direction in which h is off the normal.
+        const HalfDiffAngles at = grid.Center(bin);
+        along += above * at.theta_h * std::cos(at.phi_d);
+      }
+    }
+    // A highlight, and not the light of all directions.
+    if (!(light > 0 && at_rim > 0 && rim / at_rim < largest / 3)) continue;
+    middles.push_back(RadiansToDegrees(along / light));
+  }
+  constexpr size_t kFewest = 10;
+  if (middles.size() < kFewest) return {};
+  return {.highlight = true,
+          .degrees = Quantile(&middles, 0.5),
+          .spread = Quantile(&middles, 0.75) - Quantile(&middles, 0.25)};
+}
+
+}  // namespace trilobe

@@ -1,0 +1,109 @@
+#include "model/measurement/own_shadow.h"
+
+#include <gsl/gsl_statistics_double.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "trilobe/core/geometry/directions.h"
+
+namespace trilobe {
+namespace {
+
+constexpr int kShadowedDegrees = 5;                // theta_d where a shadow is looked for
+constexpr int kLitDegrees = 20, kEndDegrees = 30;  // theta_d that it is held against
+constexpr int kStepsPerDegree = 10;                // of theta_h
+constexpr int kSteps = 2 * kStepsPerDegree;        // the highlight's
+constexpr int kFurther = 5;                        // steps further out: held against for a shadow
+constexpr int kAround = 2;                         // steps in and out: held against for its end
+constexpr size_t kFewest = 10;                     // samples that tell of a shadow, or of its end
+constexpr size_t kFewestLit = 3;                   // samples that tell how bright a window is
+constexpr double kDark = 0.25, kBright = 0.5;      // ratios
+constexpr double kBrightShare = 0.8;               // of the samples, where the shadow has ended
+
+constexpr double kStepRounding = 1e-6;  // of degrees that became radians and back
+
+// The value below which this share of them lies.
+double Quantile(double share, std::vector<double> values) {
+  std::ranges::sort(values);
+  return gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), share);
+}
+
+int WholeSteps(double angle, double per_degree) {
+  return static_cast<int>(RadiansToDegrees(angle) * per_degree + kStepRounding);
+}
+
+using LitSamples = std::array<std::vector<double>, kSteps + kFurther>;  // by steps of theta_h
+
+// The median of the light from the step `first` to the step `last`; 0 where too little is known.
+double Brightness(const LitSamples& lit, int first, int last) {
+  std::vector<double> values;
+  for (int step = std::max(first, 0); step <= last; ++step) {
+    values.insert(values.end(), lit[step].begin(), lit[step].end());
+  }
+  return values.size() < kFewestLit ? 0 : Quantile(0.5, std::move(values));
+}
+
+}  // namespace
+
+OwnShadow FindOwnShadow(const BrdfSamples& samples) {
+  struct Sample {
+    int degree, step;
+    double value;
+  };
+  std::vector<Sample> highlight;
+  LitSamples lit;
+  for (int j = 0; j < samples.size(); ++j) {
+    const HalfDiffAngles at = samples.Angles(j);
+    const int degree = WholeSteps(at.theta_d, 1), step = WholeSteps(at.theta_h, kStepsPerDegree);
+    if (degree >= kEndDegrees || step >= kSteps + kFurther) continue;
+    const Rgb& rho = samples.rho[j];
+    const double value = rho[0] / kChannels + rho[1] / kChannels + rho[2] / kChannels;
+    if (degree >= kLitDegrees) {
+      lit[step].push_back(value);
+    } else if (step < kSteps) {
+      highlight.push_back({degree, step, value});
+    }
+  }
+
+  std::array<double, kSteps> further, around;
+  for (int step = 0; step < kSteps; ++step) {
+    further[step] = Brightness(lit, step, step + kFurther);
+    around[step] = Brightness(lit, step - kAround, step + kAround);
+  }
+
+  // The middle, 1 where it is as bright as the light there and further out: a highlight falls with
+  // theta_h, so one that is narrow for the samples' steps is no shadow.
+  std::vector<double> middle;
+  for (const auto& [degree, step, value] : highlight) {
+    if (degree < kShadowedDegrees && further[step] > 0) middle.push_back(value / further[step]);
+  }
+  if (middle.size() < kFewest) return {};
+  const double ratio = Quantile(0.5, middle);
+  if (!(ratio < kDark)) return {};
+
+  // By theta_d: the highlight, 1 where it is as bright as the light at the same theta_h.
+  std::array<std::vector<double>, kLitDegrees> ratios;
+  for (const auto& [degree, step, value] : highlight) {
+    const double bright = around[step] > 0 ? around[step] : further[step];
+    if (bright > 0) ratios[degree].push_back(value / bright);
+  }
+  // The samples next below `end`, of as many degrees as it takes to have enough.
+  const auto below = [&](int end) {
+    std::vector<double> found;
+    while (end > 0 && found.size() < kFewest) {
+      --end;
+      found.insert(found.end(), ratios[end].begin(), ratios[end].end());
+    }
+    return found;
+  };
+  int end = kLitDegrees;
+  while (end > kShadowedDegrees && Quantile(1 - kBrightShare, below(end)) > kBright) --end;
+  constexpr double kMost = 1000;  // where nothing is left of it
+  return {.theta_d_deg = static_cast<double>(end),
+          .darker = std::min(kMost, 1 / std::max(ratio, 1 / kMost))};
+}
+
+}  // namespace trilobe

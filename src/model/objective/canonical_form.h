@@ -1,0 +1,17 @@
+#ifndef TRILOBE_MODEL_OBJECTIVE_CANONICAL_FORM_H_
+#define TRILOBE_MODEL_OBJECTIVE_CANONICAL_FORM_H_
+
+#include "model/lobes/gauge.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective/objective.h"
+
+namespace trilobe {
+
+// Brings a model of the objective's spec into the canonical form (gauge.h), by what its samples
+// cover and with its threads.
+void Canonicalize(const Objective& objective, FactorModel* model,
+                  LobeOrder order = LobeOrder::kByLight);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_OBJECTIVE_CANONICAL_FORM_H_

@@ -1,0 +1,226 @@
+#include "trilobe/model/objective/folded_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace trilobe {
+namespace {
+
+// The cells of one table, each once.
+class CellIndex {
+ public:
+  int Find(const Stencil& stencil) {
+    const size_t first = stencil.index[0];
+    if (first >= by_first_entry_.size()) by_first_entry_.resize(first + 1);
+    for (const int id : by_first_entry_[first]) {
+      const Cell& cell = cells_[id];
+      if (cell.size == stencil.size &&
+          std::equal(cell.entry.begin(), cell.entry.begin() + cell.size, stencil.index.begin())) {
+        return id;
+      }
+    }
+    const int id = static_cast<int>(cells_.size());
+    by_first_entry_[first].push_back(id);
+    Cell& cell = cells_.emplace_back();
+    cell.size = stencil.size;
+    std::copy_n(stencil.index.begin(), stencil.size, cell.entry.begin());
+    return id;
+  }
+
+  // Orders the cells by their entries; returns what each number became.
+  std::vector<int> Sort() {
+    std::vector<int> order(cells_.size()), rank(cells_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, [&](int a, int b) { return Key(a) < Key(b); });
+    std::vector<Cell> sorted;
+    for (const int id : order) {
+      rank[id] = static_cast<int>(sorted.size());
+      sorted.push_back(cells_[id]);
+    }
+    cells_ = std::move(sorted);
+    return rank;
+  }
+
+  std::vector<Cell>& cells() { return cells_; }
+
+ private:
+  std::pair<std::array<int, Stencil::kMaxSize>, int> Key(int id) const {
+    return {cells_[id].entry, cells_[id].size};
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<std::vector<int>> by_first_entry_;
+};
+
+// Between and at neighbouring nodes of a table there are at most four kinds of cells a node.
+static_assert(4 * kMaxTableSize <= std::numeric_limits<uint16_t>::max());
+
+// A sample on its way into the order.
+struct Item {
+  std::array<uint16_t, LookupOrder::kMost> cell{};  // G first: theta_i, theta_o, D, F
+  uint64_t hash = 0;                                // of the weights, rounded
+  int sample = 0;
+  bool exchanged = false;  // theta_i and theta_o
+
+  auto Key() const { return std::tie(cell, hash, sample); }
+};
+
+LookupOrder OrderOf(const SampleStencils& at) {
+  return {.of_D = 1 + static_cast<int>(at.more_D.size())};
+}
+
+const Stencil& StencilOf(const SampleStencils& at, const LookupOrder& order, int lookup,
+                         bool exchanged) {
+  if (lookup < order.F()) return at.DOf(lookup);
+  if (lookup == order.F()) return at.F;
+  return (lookup == order.G_i()) != exchanged ? at.G_i : at.G_o;
+}
+
+// Where an item has a lookup's cell: those of G are first.
+int PlaceInItem(const LookupOrder& order, int lookup) { return (lookup + 2) % order.count(); }
+
+// The same for weights that differ by rounding errors, but for a few of a million.
+uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
+  uint64_t hash = 0;
+  const LookupOrder order = OrderOf(at);
+  for (int r = 0; r < order.count(); ++r) {
+    const Stencil& stencil = StencilOf(at, order, r, exchanged);
+    for (int k = 0; k < stencil.size; ++k) {
+      const auto rounded = static_cast<uint64_t>(std::llround(stencil.weight[k] * 0x1p36));
+      hash = (hash ^ rounded) * 0x9e3779b97f4a7c15U;
+      hash ^= hash >> 29;
+    }
+  }
+  return hash;
+}
+
+// True where the values of all models are the same but for rounding: that of computing the
+// directions of an exchanged pair.
+bool ReadAlike(const WeightedSample& a, bool a_exchanged, const WeightedSample& b,
+               bool b_exchanged) {
+  constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+  const LookupOrder order = OrderOf(a.stencils);
+  for (int r = 0; r < order.count(); ++r) {
+    const Stencil& of_a = StencilOf(a.stencils, order, r, a_exchanged);
+    const Stencil& of_b = StencilOf(b.stencils, order, r, b_exchanged);
+    if (of_a.size != of_b.size) return false;
+    for (int k = 0; k < of_a.size; ++k) {
+      if (of_a.index[k] != of_b.index[k]) return false;
+      if (!(std::abs(of_a.weight[k] - of_b.weight[k]) <= kRounding)) return false;
+    }
+  }
+  const double cosines = a.stencils.inverse_cosines;
+  return std::abs(cosines - b.stencils.inverse_cosines) <= kRounding * cosines;
+}
+
+std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSamples* folded) {
+  std::array<CellIndex, 3> index;
+  const auto find = [&](Factor factor, const Stencil& stencil) {
+    return static_cast<uint16_t>(index[static_cast<int>(factor)].Find(stencil));
+  };
+  const LookupOrder& order = folded->order;
+  std::vector<Item> items(samples.size());
+  for (size_t j = 0; j < samples.size(); ++j) {
+    const SampleStencils& at = samples[j].stencils;
+    for (int r = 0; r < order.count(); ++r) {
+      items[j].cell[PlaceInItem(order, r)] =
+          find(order.factor(r), StencilOf(at, order, r, /*exchanged=*/false));
+    }
+    items[j].sample = static_cast<int>(j);
+  }
+  std::array<std::vector<int>, 3> rank;
+  for (int f = 0; f < 3; ++f) {
+    rank[f] = index[f].Sort();
+    folded->cells[f] = std::move(index[f].cells());
+  }
+  for (Item& item : items) {
+    for (int r = 0; r < order.count(); ++r) {
+      uint16_t& cell = item.cell[PlaceInItem(order, r)];
+      cell = static_cast<uint16_t>(rank[static_cast<int>(order.factor(r))][cell]);
+    }
+    const SampleStencils& at = samples[item.sample].stencils;
+    item.exchanged = std::tie(item.cell[0], at.G_i.weight) < std::tie(item.cell[1], at.G_o.weight);
+    if (item.exchanged) std::swap(item.cell[0], item.cell[1]);
+    item.hash = RoundedHash(at, item.exchanged);
+  }
+  std::ranges::sort(items, [](const Item& a, const Item& b) { return a.Key() < b.Key(); });
+  return items;
+}
+
+}  // namespace
+
+FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
+  FoldedSamples folded;
+  if (!samples.empty()) folded.order = OrderOf(samples.front().stencils);
+  const LookupOrder& order = folded.order;
+  const std::vector<Item> items = Sorted(samples, &folded);
+  // Where those begin that read alike.
+  std::vector<int> begin;
+  for (size_t n = 0; n < items.size(); ++n) {
+    if (n > 0) {
+      const Item &item = items[n], &first = items[begin.back()];
+      if (item.cell == first.cell && item.hash == first.hash &&
+          ReadAlike(samples[first.sample], first.exchanged, samples[item.sample], item.exchanged)) {
+        continue;
+      }
+    }
+    begin.push_back(static_cast<int>(n));
+  }
+  const size_t size = begin.size();
+  begin.push_back(static_cast<int>(items.size()));
+
+  folded.inverse_cosines.resize(size);
+  folded.lookups.resize(order.count());
+  for (int r = 0; r < order.count(); ++r) {
+    FoldedSamples::Lookup& lookup = folded.lookups[r];
+    int width = 0;
+    for (const Cell& cell : folded.cells_of(r)) width = std::max(width, cell.size);
+    lookup.cell.resize(size);
+    lookup.weight.assign(width, std::vector<double>(size));
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    folded.weight[c].resize(size);
+    folded.rho[c].resize(size);
+  }
+  for (size_t n = 0; n < size; ++n) {
+    const Item& first = items[begin[n]];
+    const SampleStencils& at = samples[first.sample].stencils;
+    folded.inverse_cosines[n] = at.inverse_cosines;
+    for (int r = 0; r < order.count(); ++r) {
+      FoldedSamples::Lookup& lookup = folded.lookups[r];
+      const Stencil& stencil = StencilOf(at, order, r, first.exchanged);
+      lookup.cell[n] = first.cell[PlaceInItem(order, r)];
+      for (int k = 0; k < stencil.size; ++k) lookup.weight[k][n] = stencil.weight[k];
+    }
+    for (int c = 0; c < kChannels; ++c) {
+      double w = 0, rho = 0;
+      for (int i = begin[n]; i < begin[n + 1]; ++i) {
+        const WeightedSample& sample = samples[items[i].sample];
+        const double more = sample.weight[c];
+        folded.measured_energy += more * sample.rho[c] * sample.rho[c];
+        // As the old mean plus a share of the difference: exact when the two agree.
+        const double share = i == begin[n] ? 1 : w + more > 0 ? more / (w + more) : 0;
+        const double difference = sample.rho[c] - rho;
+        folded.constant += w * share * difference * difference;
+        rho += share * difference;
+        w += more;
+      }
+      folded.weight[c][n] = w;
+      folded.rho[c][n] = rho;
+    }
+    const int j = static_cast<int>(n);
+    if (n == 0 || folded.pairs.back().cell_i != first.cell[0] ||
+        folded.pairs.back().cell_o != first.cell[1]) {
+      folded.pairs.push_back({first.cell[0], first.cell[1], j, j});
+    }
+    ++folded.pairs.back().end;
+  }
+  return folded;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,77 @@
+#ifndef TRILOBE_SOLVERS_SUMS_BLOCK_EQUATIONS_H_
+#define TRILOBE_SOLVERS_SUMS_BLOCK_EQUATIONS_H_
+
+#include <span>
+#include <vector>
+
+#include "solvers/sums/cached_lookups.h"
+#include "solvers/sums/kind.h"
+#include "trilobe/model/factor_model.h"
+
+namespace trilobe {
+
+// The normal equations of one block of parameters x in which E is quadratic: of d and s, or of
+// tables of D or F that every sample reads once, by one stencil:
+//   E(x + delta) - E(x) = delta'H delta + 2 g'delta,
+//   g = sum over samples and channels of w v r,  H = of w v v',  r = rho - rho*,  v = d rho / d x,
+// which AWLS solves parameter by parameter, and moves with each (ScatteredEquations has the
+// equations of all parameters). Only entries of one cell have a product in H, so it is kept cell by
+// cell. Amplitudes are tables, too: d, then s of each lobe, with an entry for each channel, which
+// is a cell of its own.
+class BlockEquations {
+ public:
+  // Of the tables [first, last) of a kind, which one lookup reads; of amplitudes of all.
+  BlockEquations(const CachedLookups& lookups, Kind kind, int first, int last);
+
+  // The sums around a model whose tables are read. The same bits for any number of threads.
+  void Accumulate(const FactorModel& model);
+
+  // Puts the parameters at an entry of these tables, which ascend, where E is lowest with all
+  // others held, and moves the sums with them. E: of the model as it was read, of which more than
+  // one table needs to know (MoveToMinimum).
+  void Update(int entry, std::span<const int> tables, double E, FactorModel* model);
+
+  Kind kind() const { return kind_; }
+  int entries() const { return static_cast<int>(readers_.size()); }
+  int first() const { return first_; }
+  int last() const { return last_; }
+
+ private:
+  // Two tables that serve some of the same channels, t <= u: their numbers from first_.
+  struct Pair {
+    int t, u;
+    ModelSpec::ChannelRange channels;
+  };
+  // An entry is the cell's k-th.
+  struct Reader {
+    int cell, k;
+  };
+
+  static int PairOf(int k, int l) { return k >= l ? k * (k + 1) / 2 + l : PairOf(l, k); }
+  int tables() const { return last_ - first_; }
+  // What H has for a cell's k-th entry and its l-th: [pair_lanes_].
+  size_t InCell(int cell, int k, int l) const {
+    return of_cells_ + (static_cast<size_t>(cell) * pairs_in_cell_ + PairOf(k, l)) * pair_lanes_;
+  }
+  void AddBatch(int begin, int end, const CachedLookups::Batch& batch,
+                std::vector<double>* sums) const;
+  void AddAmplitudes(int begin, int end, const CachedLookups::Batch& batch,
+                     std::vector<double>* sums) const;
+
+  const CachedLookups& lookups_;
+  const Kind kind_;
+  const int first_, last_;
+  std::vector<Cell> cells_;
+  std::vector<std::vector<Reader>> readers_;  // [entry]
+  std::vector<Pair> pairs_;
+  std::vector<int> pair_of_;  // by numbers of two tables; -1: of none. [tables][tables]
+  int table_lanes_, pair_lanes_, pairs_in_cell_;
+  // The gradient is [entries][table_lanes_], and after it, from of_cells_ on, is H:
+  // [cells][pairs_in_cell_][pair_lanes_].
+  size_t of_cells_;
+  std::vector<std::vector<double>> sums_;  // of parts of the samples; all are in the first
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_SUMS_BLOCK_EQUATIONS_H_

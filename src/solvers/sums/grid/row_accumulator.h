@@ -1,0 +1,70 @@
+#ifndef TRILOBE_SOLVERS_SUMS_GRID_ROW_ACCUMULATOR_H_
+#define TRILOBE_SOLVERS_SUMS_GRID_ROW_ACCUMULATOR_H_
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "solvers/sums/grid/row_kernels.h"
+#include "solvers/sums/grid/row_layout.h"
+#include "trilobe/model/model_spec.h"
+
+namespace trilobe {
+
+// Doubles from the start of a cache line, which no vector of them straddles then.
+class AlignedSums {
+ public:
+  explicit AlignedSums(size_t size) : lines_((size + 7) / 8) {}
+  void Clear() { std::ranges::fill(lines_, CacheLine()); }
+  double* data() { return lines_.empty() ? nullptr : lines_[0].values; }
+  size_t size() const { return 8 * lines_.size(); }
+
+ private:
+  struct alignas(64) CacheLine {
+    double values[8] = {};
+  };
+  std::vector<CacheLine> lines_;
+};
+
+// What a share of the rows adds up to, and the row at hand.
+struct RowAccumulator {
+  RowAccumulator(const RowLayout& layout, int theta_d);
+
+  void Clear();
+  double* ThetaDSums(const RowLayout& layout, int d) {
+    return theta_d_sums.data() + static_cast<size_t>(d) * kChannels * layout.sums_size;
+  }
+  double* ThetaDG(const RowLayout& layout, int d) {
+    return theta_d_G.data() + d * layout.theta_d_size;
+  }
+
+  double objective = 0;
+  // Of all rows for d and s, of those of the present theta_h for D.
+  std::vector<double> theta_h_H;         // [of theta_h][of theta_h], from the diagonal
+  std::vector<double> theta_h_gradient;  // [of theta_h]
+  // AddRowSums of the rows of the present theta_h, with f the factors F; of those of each theta_d,
+  // with g the factors D.
+  std::vector<double> theta_h_sums;  // [kChannels][sums_size]
+  std::vector<double> D_F;           // H of the present theta_h. [theta_d][of theta_h][of theta_d]
+  std::vector<double> theta_d_sums;  // [theta_d][kChannels][sums_size]
+  AlignedSums theta_h_G;             // by table: [padded_nodes][theta_h lines]
+  AlignedSums theta_d_G;             // [theta_d], by table: [padded_nodes][theta_d lines]
+
+  // Of one row, padded to whole batches.
+  int size = 0, padded_size = 0;
+  const int16_t *interval_i = nullptr, *interval_o = nullptr;
+  std::array<LobesOfRow, kChannels> lobes;
+  std::vector<double> B_i, B_o;                              // [line_size][4]
+  std::vector<std::vector<double>> K, H_i, H_o;              // [tables][line_size]
+  std::array<std::vector<double>, kChannels> w, w_residual;  // 0 beyond the row
+  std::vector<double> phi_lines;                             // [basis][line_size]
+  AlignedSums phi;                                           // [line_size][basis]
+  std::vector<double> q_lines;                               // [lines][line_size]
+  AlignedSums q;                                             // [line_size][lines]
+};
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_SOLVERS_SUMS_GRID_ROW_ACCUMULATOR_H_

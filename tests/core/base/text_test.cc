@@ -1,0 +1,19 @@
+#include "core/base/text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+TEST(Text, HasSoManyDigitsAtMost) {
+  EXPECT_EQ(Text(0.0123456), "0.01235");
+  EXPECT_EQ(Text(1234567.0), "1.235e+06");
+  EXPECT_EQ(Text(0.25, 6), "0.25");
+  EXPECT_EQ(Text(1e-7, 6), "1e-07");
+  EXPECT_EQ(Text(-std::numeric_limits<double>::infinity()), "-infinite");
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -1,0 +1,100 @@
+#include "io/formats/cornell_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/paths.h"
+#include "tests/test_directory.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+
+const std::string kHeader = "# a paint\n\n# num wls\n7\n400 450 500 550\n600 650 700\n";
+
+std::string ParseError(const std::string& text) {
+  return ErrorOf([&] { ParseCornell(text, "x.brdf"); });
+}
+
+TEST(CornellFile, ReadsSpectraInRadians) {
+  const Measurement measurement =
+      ParseCornell(kHeader +
+                       "# theta i, phi i, theta s, phi_s, values\n"
+                       "0.5 0.0 0.25 3.1415926535 .2 .2 .2 .2 .2 .2 .2\n"
+                       "0.5 0.0 0.25 -3.0 0 0 0 0 0 0 -1e-5\n",
+                   "x.brdf");
+  EXPECT_EQ(measurement.counts.total, 2);
+  EXPECT_EQ(measurement.counts.negative, 1);
+  ASSERT_EQ(measurement.samples.size(), 1);
+  EXPECT_THAT(measurement.samples.rho[0], Each(testing::DoubleNear(0.2, 1e-15)));
+  EXPECT_NEAR(measurement.samples.angles[0].theta_h, 0.125, 1e-9);
+  EXPECT_NEAR(measurement.samples.angles[0].theta_d, 0.375, 1e-9);
+}
+
+TEST(CornellFile, ErrorsSayWhereAndWhatIsExpected) {
+  EXPECT_EQ(ParseError("# none\n"), "x.brdf: no line; expected the number of wavelengths");
+  EXPECT_THAT(ParseError("2.5\n"), HasSubstr("line 1: expected the number of wavelengths, from 1"));
+  EXPECT_EQ(ParseError("3\n400 500\n"), "x.brdf: the file ends after 2 of 3 wavelengths");
+  EXPECT_EQ(ParseError("3\n400 500\n550 600\n"),
+            "x.brdf: line 3: more wavelengths than the 3 announced");
+  EXPECT_EQ(ParseError("3\n400 x\n"), "x.brdf: line 2, column 2 (wavelength): expected a number");
+  EXPECT_EQ(ParseError(kHeader + "0 0 0 0 1 1 1 1 1 1\n"),
+            "x.brdf: line 7: 10 columns; expected 11, from theta_i to 700 nm");
+  EXPECT_EQ(ParseError(kHeader + "0 0 0 0 1 1 1 1 1 1 z\n"),
+            "x.brdf: line 7, column 11 (700 nm): 'z' is no number");
+  EXPECT_THAT(
+      ParseError(kHeader + "30 0 0 0 1 1 1 1 1 1 1\n"),
+      HasSubstr("column 1 (theta_i): 30 is no such angle; expected radians from 0 to 3.14"));
+}
+
+// The samples and what is wrong with them, counted by another program. Blue enamel is mostly out of
+// the gamut of sRGB, but its spectra are all valid.
+TEST(CornellFile, ReadsPublishedMeasurements) {
+  const std::string folder = MeasuredData("cornell/");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  struct Expected {
+    const char* name;
+    int out_of_gamut;
+    Rgb mean;  // of the channels, before clipping them at 0, by numpy
+  };
+  for (const Expected& expected : {Expected{"garnet_red", 101, {0.101737, 0.062740, 0.063837}},
+                                   Expected{"krylon_blue", 1063, {0.058535, 0.077665, 0.153173}},
+                                   Expected{"mystique", 760, {0.454939, 0.472093, 0.483729}}}) {
+    SCOPED_TRACE(expected.name);
+    const Measurement measurement = LoadMeasurement(folder + expected.name + std::string(".brdf"));
+    EXPECT_EQ(measurement.counts.total, 1439);
+    EXPECT_EQ(measurement.counts.valid, 1439);
+    // Beyond 400 to 700 nm numpy left the spectrum out, and here it is constant.
+    EXPECT_NEAR(measurement.out_of_gamut, expected.out_of_gamut, 12);
+    Rgb mean{};
+    for (const Rgb& rho : measurement.samples.rho) {
+      for (int c = 0; c < kChannels; ++c) mean[c] += rho[c] / measurement.samples.size();
+    }
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_NEAR(mean[c], expected.mean[c], 0.01 * expected.mean[c] + 0.005);
+    }
+    EXPECT_NEAR(MaxAngleDegrees(measurement), 80, 1e-4);
+    EXPECT_NO_THROW(CheckSamples(SamplesOf(measurement)));
+    // The mirror direction, at the far side, is the brightest of 50 degrees.
+    int brightest = -1;
+    for (int j = 0; j < measurement.samples.size(); ++j) {
+      if (std::abs(measurement.samples.directions[j].theta_i - DegreesToRadians(50)) > 1e-4) {
+        continue;
+      }
+      if (brightest < 0 || measurement.samples.rho[j][1] > measurement.samples.rho[brightest][1]) {
+        brightest = j;
+      }
+    }
+    ASSERT_GE(brightest, 0);
+    EXPECT_LT(measurement.samples.angles[brightest].theta_h, DegreesToRadians(8));
+  }
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

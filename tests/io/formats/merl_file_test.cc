@@ -1,0 +1,173 @@
+#include "io/formats/merl_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/test_directory.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/brdf_table.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr size_t kBins = 1458000;
+constexpr size_t kFileSize = 12 + 3 * 8 * kBins;
+
+std::string Header(int32_t a, int32_t b, int32_t c) {
+  const std::array<int32_t, 3> dimensions = {a, b, c};
+  std::string bytes(12, '\0');
+  std::memcpy(bytes.data(), dimensions.data(), 12);
+  return bytes;
+}
+
+// A whole file with the same number everywhere.
+std::string FileOf(double value) {
+  const std::vector<double> numbers(3 * kBins, value);
+  return Header(90, 90, 180) +
+         std::string(reinterpret_cast<const char*>(numbers.data()), 8 * numbers.size());
+}
+
+void SetNumber(size_t index, uint64_t bits, std::string* bytes) {
+  std::memcpy(bytes->data() + 12 + 8 * index, &bits, 8);
+}
+
+std::string ParseError(const std::string& bytes) {
+  return ErrorOf([&] { ParseMerl(bytes, "chrome.binary"); });
+}
+
+TEST(MerlFile, PutsPlanesAndBinsWhereTheFormatSays) {
+  std::string bytes = FileOf(-1);
+  const int h = 3, d = 50, p = 170;  // index = phi_d + 180 (theta_d + 90 theta_h)
+  const size_t bin = 170 + 180 * (50 + 90 * 3);
+  for (size_t plane = 0; plane < 3; ++plane) {
+    SetNumber(plane * kBins + bin, std::bit_cast<uint64_t>(1500.0 * static_cast<double>(plane + 1)),
+              &bytes);
+  }
+  const BrdfTable table = ParseMerl(bytes, "chrome.binary");
+  EXPECT_EQ(table.source, "chrome.binary");
+  EXPECT_EQ(table.grid, MerlGrid());
+  const int index = table.grid.Index(h, d, p);
+  EXPECT_DOUBLE_EQ(table.Value(0, index), 1);
+  EXPECT_DOUBLE_EQ(table.Value(1, index), 2 * 1.15);
+  EXPECT_DOUBLE_EQ(table.Value(2, index), 3 * 1.66);
+  EXPECT_LT(table.Value(0, index + 1), 0);
+}
+
+TEST(MerlFile, ReadsAnotherGridIfToldSo) {
+  const MerlGrid grid{.theta_h = 1, .theta_d = 2, .phi_d = 3};
+  std::string bytes = Header(1, 2, 3);
+  for (int k = 0; k < 18; ++k) {
+    const double value = k;
+    bytes.append(reinterpret_cast<const char*>(&value), 8);
+  }
+  const BrdfTable table = ParseMerl(bytes, "tiny", grid);
+  EXPECT_EQ(table.grid, grid);
+  EXPECT_THAT(table.stored[1], ElementsAre(6, 7, 8, 9, 10, 11));
+  EXPECT_THAT(ErrorOf([&] { ParseMerl(bytes + "x", "tiny", grid); }),
+              HasSubstr("1 bytes too many: 157 bytes; a MERL file has 156 bytes"));
+  EXPECT_THAT(ParseError(bytes), HasSubstr("1 x 2 x 3 bins in a file of 156 bytes"));
+}
+
+TEST(MerlFile, KeepsEveryBit) {
+  std::string bytes = FileOf(-1);
+  const std::vector<uint64_t> patterns = {
+      0x7ff8000000001234,  // quiet NaN with a payload
+      0xfff0000000000001,  // signalling NaN
+      0x7ff0000000000000,  // infinity
+      0xfff0000000000000,  // -infinity
+      0x8000000000000000,  // -0
+      0x0000000000000001,  // the smallest number
+      0x7fefffffffffffff,  // the largest
+      0x3ff0000000000001,
+  };
+  for (size_t k = 0; k < patterns.size(); ++k) SetNumber(k * 540001, patterns[k], &bytes);
+  const TestDirectory directory;
+  const std::string path = directory.Make("in.binary", bytes);
+  const std::string copy = directory.Path("out.binary");
+  WriteMerl(ReadMerl(path), copy);
+  EXPECT_TRUE(TestDirectory::Content(copy) == bytes);
+  EXPECT_THAT(directory.Names(), ElementsAre("in.binary", "out.binary"));
+}
+
+TEST(MerlFile, RefusesAnotherGridOnWriting) {
+  const TestDirectory directory;
+  const BrdfTable table = MakeInvalidTable("small", {.theta_h = 8, .theta_d = 9, .phi_d = 10});
+  EXPECT_THAT(ErrorOf([&] { WriteMerl(table, directory.Path("out.binary")); }),
+              HasSubstr("8 x 9 x 10"));
+  EXPECT_THAT(directory.Names(), testing::IsEmpty());
+}
+
+TEST(MerlFile, RefusesWrongLengths) {
+  EXPECT_THAT(ParseError(""), AllOf(HasSubstr("chrome.binary"), HasSubstr("empty")));
+  EXPECT_THAT(ParseError(Header(90, 90, 180).substr(0, 11)), HasSubstr("truncated: 11 bytes"));
+  EXPECT_THAT(ParseError(Header(90, 90, 180)),
+              AllOf(HasSubstr("truncated: 12 bytes"), HasSubstr(std::to_string(kFileSize))));
+  std::string bytes = FileOf(0);
+  ASSERT_EQ(bytes.size(), kFileSize);
+  bytes += "xyz";
+  EXPECT_THAT(ParseError(bytes), HasSubstr("3 bytes too many"));
+  bytes.resize(kFileSize - 1);
+  EXPECT_THAT(ParseError(bytes), HasSubstr("truncated: 34992011 bytes"));
+}
+
+TEST(MerlFile, RefusesOtherDimensions) {
+  const std::string body(24, '\0');
+  EXPECT_THAT(ParseError(Header(90, 90, 360) + body), HasSubstr("90 x 90 x 360"));
+  EXPECT_THAT(ParseError(Header(0, 0, 0)), HasSubstr("0 x 0 x 0"));
+  EXPECT_THAT(ParseError(Header(-90, -90, 180) + body), HasSubstr("-90 x -90 x 180"));
+  // Products far past the file, past 2^32 and past 2^64.
+  constexpr int32_t kMax = std::numeric_limits<int32_t>::max();
+  EXPECT_THAT(ParseError(Header(180, 90, 90) + body), HasSubstr("180 x 90 x 90"));
+  EXPECT_THAT(ParseError(Header(65536, 65536, 1) + body), HasSubstr("65536 x 65536 x 1"));
+  EXPECT_THAT(ParseError(Header(kMax, kMax, kMax) + body), HasSubstr("in a file of 36 bytes"));
+  // The right number of bins does not make the right dimensions.
+  EXPECT_THAT(ParseError(Header(180, 90, 90) + FileOf(0).substr(12)), HasSubstr("180 x 90 x 90"));
+}
+
+TEST(MerlFile, RecognisesText) {
+  EXPECT_THAT(ParseError("{\"format\": \"trilobe-model\"}"), HasSubstr("this is a JSON file"));
+  EXPECT_THAT(ParseError("hi\n"), HasSubstr("this is text"));
+  EXPECT_THAT(ParseError(std::string(kFileSize, 'x')), HasSubstr("this is text"));
+}
+
+TEST(MerlFile, NonFiniteAndNegativeBinsAreJustInvalid) {
+  std::string bytes = FileOf(300);
+  const BrdfTable clean = ParseMerl(bytes, "clean");
+  const int valid = ValidSamples(clean).size();
+  EXPECT_EQ(valid, 1096216);  // all with both directions above the surface
+  const size_t bin = clean.grid.Index(10, 10, 90);
+  SetNumber(bin, std::bit_cast<uint64_t>(std::numeric_limits<double>::quiet_NaN()), &bytes);
+  SetNumber(kBins + bin + 1, std::bit_cast<uint64_t>(std::numeric_limits<double>::infinity()),
+            &bytes);
+  SetNumber(2 * kBins + bin + 2, std::bit_cast<uint64_t>(-0.5), &bytes);
+  SetNumber(bin + 3, std::bit_cast<uint64_t>(-std::numeric_limits<double>::infinity()), &bytes);
+  EXPECT_EQ(ValidSamples(ParseMerl(bytes, "spoilt")).size(), valid - 4);
+}
+
+TEST(MerlFile, AFileNeedsOneValidBin) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::string bytes = FileOf(nan);
+  EXPECT_THAT(ErrorOf([&] { ValidSamples(ParseMerl(bytes, "chrome.binary")); }),
+              AllOf(HasSubstr("chrome.binary"), HasSubstr("no valid bin")));
+  const size_t bin = MerlGrid().Index(10, 10, 90);
+  for (size_t plane = 0; plane < 3; ++plane) {
+    SetNumber(plane * kBins + bin, std::bit_cast<uint64_t>(1.0), &bytes);
+  }
+  EXPECT_THAT(ValidSamples(ParseMerl(bytes, "one")).bins, ElementsAre(static_cast<int>(bin)));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

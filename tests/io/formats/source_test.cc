@@ -1,0 +1,216 @@
+#include "trilobe/io/formats/source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/formats/merl_file.h"
+#include "io/formats/rgl_file.h"
+#include "tests/io/formats/tensor_bytes.h"
+#include "tests/test_directory.h"
+#include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/measurement/measurement_stats.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(LoadSource, TellsFilesApartByContent) {
+  const TestDirectory directory;
+  BrdfTable table = MakeInvalidTable("white", {});
+  table.SetValue(1, 5, 0.25);
+  WriteMerl(table, directory.Path("a.bsdf"));  // the name says RGL, the content does not
+  const BrdfTable merl = LoadSource(directory.Path("a.bsdf"));
+  EXPECT_EQ(merl.stored, table.stored);
+  EXPECT_EQ(merl.source, directory.Path("a.bsdf"));
+
+  TinyRgl file;
+  file.FillConstant(4, 1, 1);
+  const std::string path = directory.Make("b.binary", file.Bytes());
+  const BrdfTable rgl = LoadSource(path, {.num_threads = 2, .outliers = true});
+  EXPECT_EQ(rgl.source, path);
+  EXPECT_EQ(rgl.grid, MerlGrid());
+  EXPECT_EQ(rgl.stored, TabulateRgl(RglBrdf::Parse(file.Bytes(), path), path).stored);
+}
+
+TEST(LoadSource, MakesSyntheticMaterials) {
+  const BrdfTable table = LoadSource("synth:plastic", {.noise = 0.1, .seed = 3, .num_threads = 2});
+  EXPECT_EQ(table.source, "synth:plastic");
+  EXPECT_EQ(table.stored,
+            LoadSource("synth:plastic", {.noise = 0.1, .seed = 3, .num_threads = 1}).stored);
+  EXPECT_NE(table.stored, LoadSource("synth:plastic", {.noise = 0.1, .seed = 4}).stored);
+}
+
+TEST(LoadSource, DecidesWhatCountsAsMeasured) {
+  const TestDirectory directory;
+  TinyRgl file;
+  file.theta_i = {0, 1.2F, 1.5707964F};
+  file.FillConstant(4, 1, 1);
+  file.MaskAll();
+  for (int row = 0; row < file.rgb_rows; ++row) file.SetMask(0, row, 3, false);
+  const std::string path = directory.Make("masked.bsdf", file.Bytes());
+  const BrdfTable whole = LoadSource(path, {.extrapolated = true});
+  EXPECT_TRUE(whole.unmeasured.empty());
+  EXPECT_EQ(whole.max_theta, kPi / 2);
+  const BinCounts all = CountBins(LoadSource(path));
+  EXPECT_GT(all.extrapolated, 0);
+  EXPECT_GT(all.beyond_nodes, 0);
+  // What was left out before keeps its reason.
+  const BrdfTable part = LoadSource(path, {.max_angle_deg = 40});
+  EXPECT_DOUBLE_EQ(RadiansToDegrees(part.max_theta), 40);
+  EXPECT_EQ(CountBins(part).extrapolated, all.extrapolated);
+  EXPECT_EQ(CountBins(part).beyond_nodes, all.beyond_nodes);
+  EXPECT_GT(CountBins(part).beyond_max_angle, 0);
+  EXPECT_EQ(part.stored, whole.stored);
+  const BinCounts both = CountBins(LoadSource(path, {.max_angle_deg = 40, .extrapolated = true}));
+  EXPECT_EQ(both.extrapolated + both.beyond_nodes, 0);
+  EXPECT_EQ(both.beyond_max_angle + both.valid, 1096216);
+  // Other sources, too; a limit beyond the last node of an RGL file changes nothing.
+  EXPECT_EQ(CountBins(LoadSource("synth:foam", {.max_angle_deg = 40})).valid, both.valid);
+  EXPECT_EQ(LoadSource(path, {.max_angle_deg = 80}).unmeasured, LoadSource(path).unmeasured);
+  // A MERL file can say no more than that a bin is lost.
+  WriteMerl(part, directory.Path("part.binary"));
+  const BinCounts merl = CountBins(LoadSource(directory.Path("part.binary")));
+  EXPECT_EQ(merl.valid, CountBins(part).valid);
+  EXPECT_EQ(merl.negative, 1096216 - merl.valid);
+}
+
+TEST(LoadSource, ErrorsSayWhatToDo) {
+  const TestDirectory directory;
+  EXPECT_THAT(ErrorOf([] { LoadSource("synth:cheese"); }),
+              AllOf(HasSubstr("'cheese'"), HasSubstr("known: plastic")));
+  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Path("missing")); }), HasSubstr("No such file"));
+  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.path()); }), HasSubstr("directory"));
+  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Make("empty", "")); }), HasSubstr("empty"));
+  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Make("text", "BRDF of a cheese\n")); }),
+              HasSubstr("this is text"));
+  WriteModel(ModelFile(), directory.Path("model.json"));
+  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Path("model.json")); }),
+              AllOf(HasSubstr("model.json"), HasSubstr("this is a JSON file; a measurement is a")));
+}
+
+const char kCsv[] = "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,70,0,1,2,3\n10,0,20,0,4,5,6\n";
+
+TEST(LoadMeasurement, IsATableOrScattered) {
+  const TestDirectory directory;
+  const Measurement synthetic = LoadMeasurement("synth:foam", {.max_angle_deg = 40});
+  EXPECT_EQ(synthetic.kind, "synthetic measurement");
+  EXPECT_EQ(synthetic.source, "synth:foam");
+  ASSERT_TRUE(synthetic.table);
+  EXPECT_EQ(SamplesOf(synthetic).size(), CountsOf(synthetic).valid);
+  EXPECT_EQ(MaxAngleDegrees(synthetic), 40);
+  WriteMerl(*synthetic.table, directory.Path("foam.binary"));
+  EXPECT_EQ(LoadMeasurement(directory.Path("foam.binary")).kind, "MERL measurement");
+
+  TinyRgl file;
+  file.FillConstant(4, 1, 1);
+  const Measurement rgl = LoadMeasurement(directory.Make("b.bsdf", file.Bytes()));
+  EXPECT_EQ(rgl.kind, "RGL measurement, at MERL bins");
+  ASSERT_TRUE(rgl.table && rgl.look_up);
+
+  const std::string path = directory.Make("x", kCsv);  // told by its content
+  const Measurement csv = LoadMeasurement(path);
+  EXPECT_FALSE(csv.table);
+  EXPECT_EQ(csv.kind, "CSV file of scattered samples");
+  EXPECT_EQ(SamplesOf(csv).source, path);
+  EXPECT_EQ(SamplesOf(csv).size(), 2);
+  const Measurement limited = LoadMeasurement(path, {.max_angle_deg = 60});
+  EXPECT_EQ(CountsOf(limited).valid, 1);
+  EXPECT_EQ(CountsOf(limited).beyond_max_angle, 1);
+  EXPECT_EQ(MaxAngleDegrees(limited), 20);
+  EXPECT_EQ(SamplesOf(limited).rho, (std::vector<Rgb>{{4, 5, 6}}));
+}
+
+TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
+  const TestDirectory directory;
+  const std::string text = "theta,phi\n1,2\n";
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.CSV", text)); }),
+              HasSubstr("line 1: the header has no column theta_i"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.astm", text)); }),
+              HasSubstr("no line VARS"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.brdf", text)); }),
+              HasSubstr("line 1, column 1 (number of wavelengths): expected a number"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.bsdf", text)); }),
+              HasSubstr("line 1: expected a key and its value, or DataBegin"));
+  const std::string binary(100, '\1');
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.bin", binary)); }),
+              HasSubstr("100 bytes; a UTIA file has 1990656"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.dat", binary)); }),
+              HasSubstr("a MERL file has"));
+  for (const char* name : {"x.txt", "x.binary"}) {
+    EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make(name, text)); }),
+                HasSubstr("this is text; a measurement is a MERL .binary file, "))
+        << name;
+  }
+}
+
+TEST(LoadSource, NeedsATable) {
+  const TestDirectory directory;
+  const std::string path = directory.Make("x.csv", kCsv);
+  EXPECT_EQ(ErrorOf([&] { LoadSource(path); }),
+            path +
+                ": this command needs a table on the MERL grid, and this is a CSV file of "
+                "scattered samples; take a MERL or RGL file, or synth:NAME");
+  EXPECT_THAT(ErrorOf([&] { ParseSource(kCsv, "x.csv"); }), HasSubstr("needs a table"));
+}
+
+TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
+  TinyRgl file;
+  file.FillConstant(4, 1, 1);
+  const std::map<std::string, std::string> begins = {
+      {"merl", std::string("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12)},
+      {"rgl", file.Bytes()},
+      {"mbsdf", "NVIDIA ARC MBSDF V1\n"},
+      {"utia", std::string(1990656, '\0')},
+      {"zemax", "Source\tMeasured\n"},
+      {"cornell", "31\n400 410\n"},
+      {"astm", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n"},
+      {"csv", kCsv}};
+  ASSERT_EQ(MeasurementFormats().size(), begins.size());
+  for (const MeasurementFormat& format : MeasurementFormats()) {
+    for (const auto& [name, bytes] : begins) {
+      EXPECT_EQ(format.recognise(bytes), format.name == name) << format.name << " of " << name;
+    }
+  }
+}
+
+// By what the highlight shows, which is within a tenth of the tilt.
+TEST(LoadMeasurement, TakesOutTheTiltThatTheHighlightShows) {
+  const std::string source = "synth:aluminium@60x30x60";
+  const SourceOptions shown = {.corrupt = "tilt:1", .tilt_deg = std::nullopt, .outliers = true};
+  const Measurement by_highlight = LoadMeasurement(source, shown);
+  ASSERT_EQ(by_highlight.notes.size(), 1);
+  EXPECT_THAT(by_highlight.notes[0], HasSubstr("deg off the mirror direction, which --tilt=auto"));
+  const auto difference = [&](double degrees) {
+    const SourceOptions given = {.corrupt = "tilt:1", .tilt_deg = degrees, .outliers = true};
+    const std::vector<double>& a = by_highlight.table->stored[1];
+    const std::vector<double> b = LoadMeasurement(source, given).table->stored[1];
+    double sum = 0;
+    for (size_t k = 0; k < a.size(); ++k) sum += std::abs(a[k] - b[k]);
+    return sum;
+  };
+  EXPECT_LT(difference(1), difference(0.8));
+  EXPECT_LT(difference(1), difference(1.2));
+}
+
+TEST(LoadMeasurement, SaysWhereNoTiltIsShown) {
+  const SourceOptions shown = {.tilt_deg = std::nullopt};
+  const Measurement straight = LoadMeasurement("synth:aluminium@60x30x60", shown);
+  EXPECT_THAT(straight.notes, testing::ElementsAre(HasSubstr("--tilt=auto changes nothing")));
+  EXPECT_EQ(straight.table->stored, LoadMeasurement("synth:aluminium@60x30x60").table->stored);
+  EXPECT_THAT(
+      ErrorOf([&] { LoadMeasurement("synth:felt@60x30x60", shown); }),
+      HasSubstr("synth:felt@60x30x60: --tilt=auto goes by the highlight, and there is none"));
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement("synth:plastic@4x8", shown); }),
+              HasSubstr("give degrees"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

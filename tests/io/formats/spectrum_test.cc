@@ -1,0 +1,110 @@
+#include "io/formats/spectrum.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tests/test_directory.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<double> Wavelengths(double first, double last, double step) {
+  std::vector<double> wavelengths;
+  for (double x = first; x <= last + 1e-9; x += step) wavelengths.push_back(x);
+  return wavelengths;
+}
+
+// Of linear sRGB (IEC 61966-2-1, Annex).
+std::array<double, 3> ToXyz(const Rgb& rgb) {
+  return {0.4124564 * rgb[0] + 0.3575761 * rgb[1] + 0.1804375 * rgb[2],
+          0.2126729 * rgb[0] + 0.7151522 * rgb[1] + 0.0721750 * rgb[2],
+          0.0193339 * rgb[0] + 0.1191920 * rgb[1] + 0.9503041 * rgb[2]};
+}
+
+// The colour of light of one wavelength: a band of 5 nm.
+std::array<double, 3> XyzAt(double wavelength) {
+  const std::vector<double> wavelengths = Wavelengths(380, 780, 5);
+  std::vector<double> spectrum(wavelengths.size());
+  for (size_t k = 0; k < spectrum.size(); ++k) spectrum[k] = wavelengths[k] == wavelength;
+  return ToXyz(SpectralColor(wavelengths, "test")(spectrum));
+}
+
+TEST(SpectralColor, HasThePublishedSpectralLocus) {
+  struct Point {
+    double wavelength, x, y;
+  };
+  // CIE 15:2004, table T.4.
+  for (const Point& point :
+       {Point{450, 0.1566, 0.0177}, Point{480, 0.0913, 0.1327}, Point{520, 0.0743, 0.8338},
+        Point{550, 0.3016, 0.6923}, Point{600, 0.6270, 0.3725}, Point{650, 0.7260, 0.2740}}) {
+    const auto [x, y, z] = XyzAt(point.wavelength);
+    EXPECT_NEAR(x / (x + y + z), point.x, 5e-4) << point.wavelength;
+    EXPECT_NEAR(y / (x + y + z), point.y, 5e-4) << point.wavelength;
+  }
+}
+
+TEST(SpectralColor, IsLitByD65) {
+  // Power (table T.1) times y-bar, relative to 560 nm.
+  EXPECT_NEAR(XyzAt(450)[1] / XyzAt(560)[1], 117.008 * 0.038 / 99.5, 1e-4);
+  EXPECT_NEAR(XyzAt(600)[1] / XyzAt(560)[1], 90.0062 * 0.631 / 99.5, 1e-4);
+  EXPECT_NEAR(XyzAt(650)[1] / XyzAt(560)[1], 80.0268 * 0.107 / 99.5, 1e-4);
+}
+
+TEST(SpectralColor, AConstantSpectrumIsGreyOnAnyWavelengths) {
+  for (const auto& wavelengths : {Wavelengths(400, 700, 10), Wavelengths(380, 780, 1),
+                                  std::vector<double>{431, 455, 500.5, 540, 590, 640, 655}}) {
+    const std::vector<double> spectrum(wavelengths.size(), 0.3);
+    for (const double x : SpectralColor(wavelengths, "test")(spectrum)) EXPECT_NEAR(x, 0.3, 1e-15);
+  }
+}
+
+TEST(SpectralColor, TakesASpectrumAsLinearBetweenAndConstantBeyondWavelengths) {
+  const auto coarse = Wavelengths(400, 700, 50), fine = Wavelengths(380, 780, 5);
+  const auto at = [](double x) { return 1 + 0.01 * (std::clamp(x, 400.0, 700.0) - 400); };
+  std::vector<double> few, many;
+  for (const double x : coarse) few.push_back(at(x));
+  for (const double x : fine) many.push_back(at(x));
+  const Rgb a = SpectralColor(coarse, "test")(few), b = SpectralColor(fine, "test")(many);
+  for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(a[c], b[c], 1e-12);
+}
+
+TEST(SpectralColor, NegativeChannelsAreCountedAndBecomeZero) {
+  const auto wavelengths = Wavelengths(400, 700, 10);
+  const SpectralColor color(wavelengths, "test");
+  std::vector<double> spectrum(wavelengths.size());
+  spectrum[12] = 1;  // 520 nm, which sRGB cannot show
+  ASSERT_LT(color(spectrum)[0], 0);
+  SampleCollector collector("test", "test");
+  AddSpectrum({}, spectrum, color, &collector);
+  AddSpectrum({.theta_i = 2}, spectrum, color, &collector);  // below the surface
+  spectrum[3] = -1e-6;  // noise, which makes the whole spectrum invalid
+  AddSpectrum({}, spectrum, color, &collector);
+  const Measurement measurement = collector.Take();
+  EXPECT_EQ(measurement.counts.total, 3);
+  EXPECT_EQ(measurement.counts.valid, 1);
+  EXPECT_EQ(measurement.counts.below_surface, 1);
+  EXPECT_EQ(measurement.counts.negative, 1);
+  EXPECT_EQ(measurement.out_of_gamut, 1);
+  EXPECT_EQ(measurement.samples.rho[0][0], 0);
+  EXPECT_GT(measurement.samples.rho[0][1], 0);
+}
+
+TEST(SpectralColor, RejectsWavelengthsThatMakeNoColour) {
+  const auto error = [](const std::vector<double>& wavelengths) {
+    return ErrorOf([&] { SpectralColor(wavelengths, "x.brdf"); });
+  };
+  EXPECT_EQ(error({400, 450, 440}),
+            "x.brdf: wavelength 440 nm comes after 450 nm; wavelengths must ascend");
+  EXPECT_THAT(error({400, 450, 550, 600, 650}), HasSubstr("no wavelength between 450 and 550 nm"));
+  EXPECT_THAT(error({633}), HasSubstr("do not reach from 450 to 650 nm"));
+  EXPECT_THAT(error({}), HasSubstr("do not reach"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -1,0 +1,146 @@
+#include "io/formats/zemax_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "tests/paths.h"
+#include "tests/test_directory.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kBegin =
+    "# a comment\nSource\tMeasured\nSymmetry\tAsymmetrical4D\nSpectralContent\tMonochrome\n"
+    "ScatterType\tBRDF\n";
+const std::string kAngles =
+    "SampleRotation\t2\n0\t90\nAngleOfIncidence\t1\n30\nScatterAzimuth\t3\n0\t90\t180\n"
+    "ScatterRadial\t3\n0\t20\t100\n";
+const std::string kData =
+    "\nMonochrome\nDataBegin\nTIS\t0.5\n1\t2\t0\n1\t3\t0\t\n1\t4\t0\n"
+    "TIS\t0.5\n5\t6\t0\n5\t0\t0\n5\t8\t0\nDataEnd\n";
+
+Measurement Parse(const std::string& text) { return ParseZemax(text, "x.bsdf"); }
+std::string ParseError(const std::string& text) {
+  return ErrorOf([&] { Parse(text); });
+}
+
+Direction At(double theta_deg, double phi_deg) {
+  const double theta = DegreesToRadians(theta_deg), phi = DegreesToRadians(phi_deg);
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+void ExpectNear(const Direction& a, const Direction& b) {
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-12);
+}
+
+TEST(ZemaxFile, AnglesAreAboutTheMirrorDirection) {
+  const Measurement measurement = Parse(kBegin + kAngles + kData);
+  EXPECT_EQ(measurement.kind, "Zemax BSDF file of scattered samples");
+  EXPECT_TRUE(measurement.anisotropic);
+  // A rotation has 1 + 3 samples around the mirror direction and 3 far from it, of which azimuth 0
+  // is above the surface; in all, 3 gaps.
+  EXPECT_EQ(measurement.counts.total, 14);
+  EXPECT_EQ(measurement.counts.valid, 7);
+  EXPECT_EQ(measurement.counts.missing, 3);
+  EXPECT_EQ(measurement.counts.below_surface, 4);
+  std::vector<double> values;
+  for (const Rgb& rho : measurement.samples.rho) {
+    EXPECT_THAT(rho, ElementsAre(rho[0], rho[0], rho[0]));
+    values.push_back(rho[0]);
+  }
+  EXPECT_THAT(values, ElementsAre(1, 2, 3, 4, 5, 6, 8));
+  const auto pair = [&](int j) { return ToDirections(measurement.samples.directions[j]); };
+  // Unturned, the mirror direction lies over +x; azimuth 0 leads to the normal, 180 away from it,
+  // and 90 to where the direction of azimuth 0 comes by a quarter turn about the mirror direction.
+  ExpectNear(pair(0).wi, At(30, 180));
+  ExpectNear(pair(0).wo, At(30, 0));
+  ExpectNear(pair(1).wo, At(10, 0));
+  ExpectNear(pair(3).wo, At(50, 0));
+  const Direction mirror = At(30, 0), side = {0, -1, 0};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(pair(2).wo[k], std::cos(kPi / 9) * mirror[k] + std::sin(kPi / 9) * side[k], 1e-12);
+  }
+  // With the sample turned by 90 degrees the light moves by -90 degrees in its frame.
+  ExpectNear(pair(4).wi, At(30, 90));
+  ExpectNear(pair(4).wo, At(30, 270));
+  ExpectNear(pair(5).wo, At(10, 270));
+}
+
+TEST(ZemaxFile, LeavesOutWhatIsThereTwice) {
+  const Measurement measurement =
+      Parse(kBegin +
+            "SampleRotation\t2\n0\t360\nAngleOfIncidence\t1\n0\nScatterAzimuth\t3\n0\t180\t360\n"
+            "ScatterRadial\t2\n0\t20\nMonochrome\nDataBegin\n"
+            "TIS 1\n1 2\n1 3\n1 2\nTIS 1\n1 2\n1 3\n1 2\nDataEnd\n");
+  EXPECT_EQ(measurement.counts.total, 3);
+  EXPECT_EQ(measurement.counts.valid, 3);
+  EXPECT_FALSE(measurement.anisotropic);
+  ExpectNear(ToDirections(measurement.samples.directions[1]).wo, At(20, 180));
+}
+
+TEST(ZemaxFile, IsToldByItsContentOrEnding) {
+  const TestDirectory directory;
+  const std::string text = kBegin + kAngles + kData;
+  EXPECT_EQ(LoadMeasurement(directory.Make("any", text)).counts.valid, 7);
+  EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.bsdf", "Sauce Measured\n")); }),
+              HasSubstr("line 1: 'Sauce' is no key of this format"));
+}
+
+TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
+  EXPECT_EQ(ParseError(""), "x.bsdf: line 0: the file ends before DataBegin");
+  EXPECT_THAT(ParseError(kBegin + kData), HasSubstr("the header has no SampleRotation"));
+  EXPECT_THAT(ParseError(kAngles + kData), HasSubstr("the header has no ScatterType"));
+  const auto changed = [](const std::string& from, const std::string& after) {
+    std::string text = kBegin + kAngles + kData;
+    text.replace(text.find(from), from.size(), after);
+    return ParseError(text);
+  };
+  EXPECT_EQ(changed("BRDF", "BTDF"), "x.bsdf: line 5: ScatterType is BTDF; only BRDF can be read");
+  EXPECT_THAT(changed("Content\tMonochrome", "Content\tXYZ"),
+              HasSubstr("line 4: SpectralContent is XYZ; only Monochrome can be read"));
+  EXPECT_THAT(changed("Rotation\t2", "Rotation\t2.5"),
+              HasSubstr("line 6: expected the number of angles after SampleRotation"));
+  EXPECT_THAT(changed("Rotation\t2", "Rotation\t1000000000"), HasSubstr("the number of angles"));
+  EXPECT_THAT(changed("Rotation\t2", "Rotation\t3"),
+              HasSubstr("line 7: 2 columns; expected 3, from SampleRotation"));
+  EXPECT_THAT(changed("0\t90\t180", "0\t90\t90"),
+              HasSubstr("(ScatterAzimuth): 90 must be above the angle before it, 90"));
+  EXPECT_THAT(changed("0\t20\t100", "0\t20\t200"),
+              HasSubstr("200 is no such angle; expected degrees from 0 to 180"));
+  EXPECT_THAT(changed("0\t20\t100", "0\t20\tnan"), HasSubstr("nan is no such angle"));
+  EXPECT_THAT(changed("TIS", "TES"), HasSubstr("expected TIS"));
+  EXPECT_THAT(changed("1\t2\t0", "1\t2"), HasSubstr("2 columns; expected 3"));
+  EXPECT_THAT(changed("1\t2\t0", "1\tx\t0"), HasSubstr("'x' is no number"));
+  EXPECT_THAT(changed("DataEnd\n", ""), HasSubstr("the file ends before DataEnd"));
+  EXPECT_THAT(changed("DataEnd", "1 2 3"), HasSubstr("there are more data than angles"));
+  EXPECT_THAT(changed("TIS\t0.5\n5\t6\t0\n5\t0\t0\n5\t8\t0\n", ""), HasSubstr("expected TIS"));
+  // Values are samples like any other's.
+  EXPECT_EQ(Parse([] {
+              std::string text = kBegin + kAngles + kData;
+              return text.replace(text.find("1\t2\t0"), 5, "-1\tnan\t0");
+            }())
+                .counts.negative,
+            1);
+}
+
+TEST(ZemaxFile, ReadsARealMeasurement) {
+  const std::string path = MeasuredData("aniso/IMX455.bsdf");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const Measurement measurement = LoadMeasurement(path);
+  EXPECT_TRUE(measurement.anisotropic);
+  EXPECT_EQ(measurement.counts.total, 36 * 4 * (1 + 36 * 20));
+  EXPECT_EQ(measurement.counts.valid, 47556);
+  EXPECT_EQ(measurement.counts.missing, 6768);
+  EXPECT_EQ(measurement.counts.below_surface, 49500);
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -1,0 +1,145 @@
+#include "model/appearance/verdict.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "trilobe/model/appearance/seen_error.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// The same differences everywhere: a tenth of the pixels in highlights, a fifth grazing.
+SeenError Even(double mean, double at_95) {
+  SeenError error{.psnr_db = 30, .mean_delta_e = mean, .delta_e_95 = at_95};
+  const double shares[] = {0.1, 0.2, 0.7};
+  for (size_t k = 0; k < kNumPlaces; ++k) {
+    error.places[k] = {.share = shares[k], .squares = shares[k], .mean_delta_e = mean};
+  }
+  return error;
+}
+
+PlaceError& At(SeenPlace place, SeenError* error) {
+  return error->places[static_cast<size_t>(place)];
+}
+
+// Three times the mean in one place, which has half of the squares.
+SeenError MostIn(SeenPlace place, double mean, double at_95) {
+  SeenError error = Even(mean, at_95);
+  At(place, &error).mean_delta_e = 3 * mean;
+  At(place, &error).squares = 0.5;
+  return error;
+}
+
+TEST(Verdict, SaysHowMuchIsSeenByTheMeanAndByTheWorstOfIt) {
+  const auto visibility = [](double mean, double at_95) {
+    return VerdictOf(Even(mean, at_95)).visibility;
+  };
+  EXPECT_EQ(visibility(0, 0), Visibility::kNone);
+  EXPECT_EQ(visibility(1, 2.3), Visibility::kNone);
+  EXPECT_EQ(visibility(1.01, 1.5), Visibility::kHardly);
+  EXPECT_EQ(visibility(0.5, 2.4), Visibility::kHardly);
+  EXPECT_EQ(visibility(2.3, 5), Visibility::kHardly);
+  EXPECT_EQ(visibility(2.4, 5), Visibility::kVisible);
+  EXPECT_EQ(visibility(0.5, 9), Visibility::kVisible);  // a small highlight, far off
+  EXPECT_EQ(visibility(5, 10), Visibility::kVisible);
+  EXPECT_EQ(visibility(5.1, 9), Visibility::kPlain);
+  EXPECT_EQ(visibility(2, 30), Visibility::kPlain);
+}
+
+TEST(Verdict, SaysWhere) {
+  EXPECT_EQ(Words(VerdictOf(Even(0.4, 1))), "cannot be told apart");
+  EXPECT_EQ(Words(VerdictOf(Even(2, 4))), "hardly visible side by side");
+  EXPECT_EQ(Words(VerdictOf(Even(4, 8))), "visible all over");
+  EXPECT_EQ(Words(VerdictOf(MostIn(SeenPlace::kGrazing, 2, 4))),
+            "hardly visible side by side, most at grazing angles");
+  EXPECT_EQ(Words(VerdictOf(MostIn(SeenPlace::kHighlights, 4, 8))), "visible in highlights");
+  EXPECT_EQ(Words(VerdictOf(MostIn(SeenPlace::kGrazing, 6, 20))),
+            "plainly visible at grazing angles");
+  // Of two the one that stands out more.
+  SeenError both = MostIn(SeenPlace::kHighlights, 4, 8);
+  At(SeenPlace::kGrazing, &both) = {.share = 0.2, .squares = 0.4, .mean_delta_e = 8};
+  EXPECT_EQ(VerdictOf(both).place, SeenPlace::kHighlights);
+  // A few pixels are no place, however wrong they are.
+  SeenError few = MostIn(SeenPlace::kHighlights, 4, 8);
+  At(SeenPlace::kHighlights, &few).squares = 0.1;
+  EXPECT_EQ(VerdictOf(few).place, SeenPlace::kRest);
+}
+
+TEST(Verdict, SaysWhatIsWrong) {
+  SeenError error = MostIn(SeenPlace::kHighlights, 4, 8);
+  PlaceError& highlights = At(SeenPlace::kHighlights, &error);
+  highlights.lightness = -8;
+  EXPECT_EQ(Words(VerdictOf(error)), "visible in highlights: too dark");
+  highlights.lightness = 8;
+  EXPECT_EQ(Words(VerdictOf(error)), "visible in highlights: too bright");
+  highlights.lightness = 3;  // in some too dark, in others too bright
+  EXPECT_EQ(Words(VerdictOf(error)), "visible in highlights");
+  highlights.color = 0.8;
+  EXPECT_EQ(Words(VerdictOf(error)), "visible in highlights: wrong colour");
+  // What is wrong elsewhere does not matter then.
+  error = MostIn(SeenPlace::kGrazing, 4, 8);
+  At(SeenPlace::kRest, &error).color = 1;
+  EXPECT_EQ(VerdictOf(error).fault, Fault::kDifferent);
+  // All over, all count.
+  error = Even(4, 8);
+  for (PlaceError& place : error.places) place.color = 0.6;
+  EXPECT_EQ(Words(VerdictOf(error)), "visible all over: wrong colour");
+  for (PlaceError& place : error.places) place = {place.share, place.squares, 4, -3, 0.1};
+  EXPECT_EQ(Words(VerdictOf(error)), "visible all over: too dark");
+}
+
+// What nobody sees is neither here nor there.
+TEST(Verdict, OfWhatCannotBeSeenSaysNoMore) {
+  SeenError error = MostIn(SeenPlace::kHighlights, 0.3, 1);
+  At(SeenPlace::kHighlights, &error).color = 1;
+  EXPECT_EQ(VerdictOf(error), Verdict());
+}
+
+TEST(Advice, IsToChooseAFormWhereTheFormIsTheLimit) {
+  const Verdict seen{Visibility::kHardly}, same;
+  const FitFacts facts{.may_choose_form = true};
+  EXPECT_THAT(AdviceOn(seen, facts), ElementsAre(Advice::kChooseForm));
+  EXPECT_THAT(AdviceOn(same, facts), IsEmpty());
+  EXPECT_THAT(AdviceOn(seen, {}), IsEmpty());  // it has been chosen, or there is no choice
+}
+
+TEST(Advice, IsToChooseTheSolverBeforeTheForm) {
+  EXPECT_THAT(AdviceOn({Visibility::kHardly}, {.may_choose_form = true, .default_solver = false}),
+              ElementsAre(Advice::kChooseSolver));
+}
+
+TEST(Advice, IsToKeepWithinWhatWasMeasuredHoweverGoodThatIs) {
+  EXPECT_THAT(AdviceOn({}, {.reach_beyond = 7000}), ElementsAre(Advice::kKeepWithin));
+  EXPECT_THAT(AdviceOn({}, {.reach_beyond = 3}), IsEmpty());
+}
+
+TEST(Advice, IsToGoOnBeforeAnythingElse) {
+  const Verdict seen{Visibility::kVisible}, same;
+  EXPECT_THAT(AdviceOn(seen, {.ended = false, .may_choose_form = true}),
+              ElementsAre(Advice::kIterate));
+  EXPECT_THAT(AdviceOn(same, {.ended = false}), IsEmpty());  // good enough
+  const FitFacts interrupted{.interrupted = true, .ended = false, .may_choose_form = true};
+  EXPECT_THAT(AdviceOn(seen, interrupted), ElementsAre(Advice::kGoOn));
+  EXPECT_THAT(AdviceOn(same, interrupted), ElementsAre(Advice::kGoOn));
+}
+
+TEST(Advice, TellsWhatNoModelFollows) {
+  const Verdict seen{Visibility::kVisible}, same;
+  EXPECT_THAT(AdviceOn(seen, {.irreducible = 0.45}), ElementsAre(Advice::kDataDiffer));
+  EXPECT_THAT(AdviceOn(same, {.irreducible = 0.5}), IsEmpty());  // nor need one
+  EXPECT_THAT(AdviceOn(seen, {.irreducible = 0.1}), IsEmpty());
+  EXPECT_THAT(AdviceOn(seen, {.may_choose_form = true, .irreducible = 0.45}),
+              ElementsAre(Advice::kChooseForm, Advice::kDataDiffer));
+  // How much it is of the rest is not known before the end.
+  EXPECT_THAT(AdviceOn(seen, {.ended = false, .irreducible = 0.45}), ElementsAre(Advice::kIterate));
+  EXPECT_THAT(AdviceOn(seen, {.left_out = 0.12}), ElementsAre(Advice::kAnisotropic));
+  EXPECT_THAT(AdviceOn(seen, {.left_out = 0.001}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
