@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -17,6 +18,18 @@
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
+
+// Whether something comes to hold; a thread that waits for what never comes fails its test after a
+// minute instead of hanging.
+template <typename Condition>
+bool ComesToHold(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
 
 TEST(ParallelFor, CallsEveryItemOnce) {
   for (const int threads : {1, 2, 7, 1000}) {
@@ -54,7 +67,7 @@ TEST(ParallelFor, RunsOnSeveralThreadsAtOnce) {
   ParallelFor(2, 2, [&](int i) {
     ids[i] = std::this_thread::get_id();
     ++begun;
-    while (begun < 2) std::this_thread::yield();
+    EXPECT_TRUE(ComesToHold([&] { return begun == 2; }));
   });
   EXPECT_NE(ids[0], ids[1]);
 }
@@ -99,12 +112,12 @@ TEST(ParallelJobs, CallsEveryItemOnce) {
   }
 }
 
-// Two items, each of which waits until the other has begun; with one thread alone it would hang.
+// Two items, each of which waits until the other has begun, as one thread alone never could.
 void TwoAtOnce() {
   std::atomic<int> begun{0};
   ParallelFor(2, 1, [&](int) {
     ++begun;
-    while (begun < 2) std::this_thread::yield();
+    EXPECT_TRUE(ComesToHold([&] { return begun == 2; }));
   });
 }
 
@@ -128,16 +141,17 @@ TEST(ParallelJobs, ThreadsThatHaveEndedHelpTheOthers) {
       ended = true;
       return;
     }
-    while (!ended) std::this_thread::yield();
+    EXPECT_TRUE(ComesToHold([&] { return ended.load(); }));
     // The other thread has ended its item, and is idle soon.
     std::set<std::thread::id> ids;
     std::mutex mutex;
-    while (ids.size() < 2) {
+    EXPECT_TRUE(ComesToHold([&] {
       ParallelFor(2, 1, [&](int) {
         const std::lock_guard<std::mutex> lock(mutex);
         ids.insert(std::this_thread::get_id());
       });
-    }
+      return ids.size() == 2;
+    }));
   });
 }
 
@@ -146,7 +160,7 @@ TEST(ParallelJobs, JobsWithinAJobShareItsHelpers) {
     std::atomic<int> begun{0};
     ParallelJobs(2, 1, [&](int i) {
       ++begun;
-      while (begun < 2) std::this_thread::yield();
+      EXPECT_TRUE(ComesToHold([&] { return begun == 2; }));
       if (i == 0) TwoAtOnce();  // with the third thread
     });
     TwoAtOnce();
