@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "fit/choose_form.h"
+#include "fit/finish/data_edge.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
-#include "solvers/joint/data_edge.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/fit/prior/reach.h"

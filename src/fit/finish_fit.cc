@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "fit/choose_held_out.h"
+#include "fit/finish/data_edge.h"
+#include "fit/finish/reflectance.h"
+#include "fit/finish/smoothest.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
 #include "model/objective/robust.h"
-#include "solvers/joint/data_edge.h"
-#include "solvers/joint/reflectance.h"
-#include "solvers/smooth/smoothest.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/registry/solvers.h"

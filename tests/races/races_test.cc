@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "fit/finish/data_edge.h"
 #include "fit/scene/scene_fit.h"
-#include "solvers/joint/data_edge.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/model/objective/score.h"

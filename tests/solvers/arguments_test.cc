@@ -10,13 +10,9 @@
 
 #include "solvers/diagnosis.h"
 #include "solvers/gaussian_filter.h"
-#include "solvers/joint/data_edge.h"
-#include "solvers/joint/reflectance.h"
 #include "tests/solvers/solver_kinds.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
-#include "trilobe/fit/prior/node_choice.h"
-#include "trilobe/fit/prior/synthetic_prior.h"
 #include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
@@ -130,9 +126,6 @@ TEST(SolverRoom, NullsAndEmptyFunctions) {
   EXPECT_THAT(
       ErrorOf([&] { NormalEquations(objective).Evaluate(model, Hessian::kNewton, nullptr); }),
       HasSubstr("null"));
-  // One that is asked whether to stop says no.
-  EXPECT_FALSE(TieEntriesAtDataEdge(objective, &model, nullptr));
-  EXPECT_NO_THROW(MatchReflectance(objective, objective, model, TableLayout::Full(spec), 30, {}));
 }
 
 TEST(SolverRoom, NumbersOutOfTheirRange) {
@@ -142,17 +135,7 @@ TEST(SolverRoom, NumbersOutOfTheirRange) {
   for (const double bad : {0.0, -1.0, kNaN}) {
     EXPECT_THAT(ErrorOf([&] { SmoothG(bad, objective.coverage(), &model); }), HasSubstr("sigma"));
   }
-  for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
-    EXPECT_THAT(ErrorOf([&] { WithPrior(objective, {.weight = bad}); }), HasSubstr("weight"));
-  }
   EXPECT_THAT(ErrorOf([&] { SmoothG(1, std::vector<double>(3), &model); }), HasSubstr("coverage"));
-  for (const double bad : {-1.0, kNaN, kInfinity}) {
-    EXPECT_THAT(ErrorOf([&] {
-                  ChooseNodes(objective, {NodeCandidate{.name = "own", .spec = spec}},
-                              {.prior = bad});
-                }),
-                HasSubstr("prior"));
-  }
   const std::vector<double> x(3);
   EXPECT_THAT(ErrorOf([&] { ScaledProjectedGradient(QuadraticModel(), x); }),
               HasSubstr("gradient"));
@@ -161,25 +144,8 @@ TEST(SolverRoom, NumbersOutOfTheirRange) {
 TEST(SolverRoom, ModelsOfAnotherSpec) {
   const Objective objective =
       MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(2, kGrid));
-  FactorModel other(ModelSpec::SharedFactors(1, kGrid));
+  const FactorModel other(ModelSpec::SharedFactors(1, kGrid));
   EXPECT_THAT(ErrorOf([&] { Diagnose(objective, other); }), HasSubstr("another spec"));
-  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &other); }), HasSubstr("another spec"));
-  FactorModel bad(objective.spec());
-  bad.d()[1] = kNaN;
-  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("parameter 1"));
-  EXPECT_THAT(ErrorOf([&] { ReflectanceOf(objective, other); }), HasSubstr("another spec"));
-  const TableLayout layout = TableLayout::Full(other.spec());
-  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, other, layout, 30); }),
-              HasSubstr("another spec"));
-  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
-              HasSubstr("parameter 1"));
-  bad.d()[1] = 1;
-  EXPECT_THAT(ErrorOf([&] {
-                MatchReflectance(objective, Objective(objective, other.spec()), bad, layout, 30);
-              }),
-              HasSubstr("another spec"));
-  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
-              HasSubstr("layout"));
 }
 
 }  // namespace

@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "core/system/stopwatch.h"
+#include "fit/finish/data_edge.h"
+#include "fit/finish/stretch_search.h"
 #include "fit/prune/model_forms.h"
 #include "fit/prune/prune.h"
 #include "fit/prune/thinned_objective.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/lobes/gauge.h"
 #include "model/objective/canonical_form.h"
-#include "solvers/joint/data_edge.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
-#include "solvers/joint/stretch_search.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/stop_check.h"

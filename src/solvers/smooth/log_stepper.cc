@@ -44,7 +44,7 @@ void LogStepper::Restart(const FactorModel& model) {
   y_ = Logarithms(current_);
   const ScopedTimer timer(&phases_->evaluating);
   E_ = objective_.Value(current_);
-  light_ = PriceOf(current_);
+  added_ = AddedAt(current_);
   roughness_value_ = roughness_(y_);
   linearized_ = false;
   damping_ = kInitialDamping;
@@ -81,8 +81,8 @@ void LogStepper::LiftZeros() {
   }
 }
 
-double LogStepper::PriceOf(const FactorModel& model) const {
-  return price_ != nullptr ? (*price_)(model) : 0;
+double LogStepper::AddedAt(const FactorModel& model) const {
+  return added_term_ != nullptr ? (*added_term_)(model) : 0;
 }
 
 std::vector<double> LogStepper::Logarithms(const FactorModel& model) const {
@@ -106,7 +106,7 @@ void LogStepper::Linearize() {
   {
     const ScopedTimer timer(&phases_->evaluating);
     equations_.Evaluate(current_, Hessian::kGaussNewton, &at_);
-    if (price_ != nullptr) price_->AddTo(current_, &at_);
+    if (added_term_ != nullptr) added_term_->AddTo(current_, &at_);
   }
   const ScopedTimer timer(&phases_->linear_algebra);
   const std::span<const double> x = current_.parameters();
@@ -155,14 +155,14 @@ bool LogStepper::Step() {
     if (moves_[k]) trial.parameters()[k] *= std::exp(step[k]);
   }
   std::vector<double> y = Logarithms(trial);
-  double E = 0, light = 0;
+  double E = 0, added = 0;
   {
     const ScopedTimer timer(&phases_->evaluating);
     E = objective_.Value(trial);
-    light = PriceOf(trial);
+    added = AddedAt(trial);
   }
   const double roughness = roughness_(y);
-  const double before = minimised(), after = E + stiffness_ * energy_ * roughness + light;
+  const double before = minimised(), after = E + stiffness_ * energy_ * roughness + added;
   const double gain = (before - after) / (2 * decrease);
   if (!(after < before && (gain > kMinGain || !(decrease > 0)))) {
     damping_ *= growth_;
@@ -175,7 +175,7 @@ bool LogStepper::Step() {
   current_ = std::move(trial);
   y_ = std::move(y);
   E_ = E;
-  light_ = light;
+  added_ = added;
   roughness_value_ = roughness;
   linearized_ = false;
   return true;

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "solvers/joint/reflectance.h"
 #include "solvers/smooth/roughness.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
@@ -13,8 +12,18 @@
 
 namespace trilobe {
 
+// A term that is minimised beside E.
+class AddedTerm {
+ public:
+  virtual ~AddedTerm() = default;
+
+  virtual double operator()(const FactorModel& model) const = 0;
+  // Makes E + this term of E, to second order around a model, in all its parameters.
+  virtual void AddTo(const FactorModel& model, QuadraticModel* at) const = 0;
+};
+
 // Damped Gauss-Newton steps in the logarithms y of all parameters, which lower
-//   E + lambda E0 R(y) + a price of light,  E0 = Objective::MeasuredEnergy(),  R = Roughness,
+//   E + lambda E0 R(y) + an added term,  E0 = Objective::MeasuredEnergy(),  R = Roughness,
 // the latter none by default, one trial step at a time. With x = exp(y),
 //   g_y = x g_x,   H_y = diag(x) J'J diag(x) + diag(max(0, x g_x)):
 // the last term, the part of the second derivative that logarithms bring in, is left out where it
@@ -30,7 +39,7 @@ class LogStepper {
 
   void set_stiffness(double lambda);
   // From the next Restart on. Outlives the stepper; null: none.
-  void set_price(const ReflectancePrice* price) { price_ = price; }
+  void set_added_term(const AddedTerm* term) { added_term_ = term; }
 
   // Tries one step; false if it did not lower what is minimised, so that the point stayed where
   // it was.
@@ -42,12 +51,12 @@ class LogStepper {
   double E() const { return E_; }
   double roughness() const { return roughness_value_; }
   double penalty() const { return stiffness_ * energy_ * roughness_value_; }  // lambda E0 R
-  double minimised() const { return E_ + penalty() + light_; }
+  double minimised() const { return E_ + penalty() + added_; }
   double stiffness() const { return stiffness_; }  // lambda
 
  private:
   void LiftZeros();
-  double PriceOf(const FactorModel& model) const;
+  double AddedAt(const FactorModel& model) const;
   void Linearize();
   std::vector<double> Logarithms(const FactorModel& model) const;
 
@@ -57,11 +66,11 @@ class LogStepper {
   const Roughness roughness_;
   const double energy_;  // E0
   double stiffness_ = 0;
-  const ReflectancePrice* price_ = nullptr;
+  const AddedTerm* added_term_ = nullptr;
   FactorModel current_;
   std::vector<double> y_;    // of the tables of current_; 0 for what does not move
   std::vector<bool> moves_;  // observed, and above 0
-  double E_ = 0, roughness_value_ = 0, light_ = 0;  // light_: what the price makes of it
+  double E_ = 0, roughness_value_ = 0, added_ = 0;
   bool linearized_ = false;
   QuadraticModel at_;           // of E + penalty at current_, in y
   std::vector<double> factor_;  // scratch: A, and its Cholesky factor

@@ -1,9 +1,10 @@
-#ifndef TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
-#define TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
+#ifndef TRILOBE_FIT_FINISH_REFLECTANCE_H_
+#define TRILOBE_FIT_FINISH_REFLECTANCE_H_
 
 #include <memory>
 #include <optional>
 
+#include "solvers/smooth/log_stepper.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/factor_model.h"
@@ -32,15 +33,15 @@ class SampledLight;
 
 // price |fitted - target|^2 / |target|^2, to be minimised beside E, so that steps that care for
 // something else keep the light.
-class ReflectancePrice {
+class ReflectancePrice : public AddedTerm {
  public:
   // The target: what `model` reflects.
   ReflectancePrice(const Objective& objective, const FactorModel& model, double price);
-  ~ReflectancePrice();
+  ~ReflectancePrice() override;
 
-  double operator()(const FactorModel& model) const;
-  // Makes E + that of E, to second order around a model, in all its parameters. Gauss-Newton.
-  void AddTo(const FactorModel& model, QuadraticModel* at) const;
+  double operator()(const FactorModel& model) const override;
+  // Gauss-Newton.
+  void AddTo(const FactorModel& model, QuadraticModel* at) const override;
 
  private:
   const std::unique_ptr<const SampledLight> light_;
@@ -69,4 +70,4 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_JOINT_REFLECTANCE_H_
+#endif  // TRILOBE_FIT_FINISH_REFLECTANCE_H_

@@ -1,4 +1,4 @@
-#include "solvers/joint/data_edge.h"
+#include "fit/finish/data_edge.h"
 
 #include <algorithm>
 #include <cmath>

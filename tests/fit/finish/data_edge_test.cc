@@ -1,4 +1,4 @@
-#include "solvers/joint/data_edge.h"
+#include "fit/finish/data_edge.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/lobes/gauge.h"
-#include "tests/solvers/joint/fitted.h"
+#include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/solvers/registry/solvers.h"

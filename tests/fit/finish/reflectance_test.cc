@@ -1,4 +1,4 @@
-#include "solvers/joint/reflectance.h"
+#include "fit/finish/reflectance.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "fit/finish/data_edge.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
-#include "solvers/joint/data_edge.h"
-#include "tests/solvers/joint/fitted.h"
+#include "tests/fit/finish/fitted.h"
 #include "tests/test_util.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/brdf_samples.h"

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_TESTS_SOLVERS_JOINT_FITTED_H_
-#define TRILOBE_TESTS_SOLVERS_JOINT_FITTED_H_
+#ifndef TRILOBE_TESTS_FIT_FINISH_FITTED_H_
+#define TRILOBE_TESTS_FIT_FINISH_FITTED_H_
 
 #include <algorithm>
 #include <cmath>
@@ -27,4 +27,4 @@ inline FactorModel Fitted(const Objective& objective, int max_iterations) {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_TESTS_SOLVERS_JOINT_FITTED_H_
+#endif  // TRILOBE_TESTS_FIT_FINISH_FITTED_H_

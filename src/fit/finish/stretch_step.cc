@@ -1,4 +1,4 @@
-#include "solvers/joint/stretch_step.h"
+#include "fit/finish/stretch_step.h"
 
 #include <algorithm>
 #include <array>

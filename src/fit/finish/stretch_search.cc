@@ -1,10 +1,10 @@
-#include "solvers/joint/stretch_search.h"
+#include "fit/finish/stretch_search.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "solvers/joint/stretch_step.h"
+#include "fit/finish/stretch_step.h"
 #include "trilobe/core/base/stop_check.h"
 
 namespace trilobe {

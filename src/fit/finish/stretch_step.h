@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SOLVERS_JOINT_STRETCH_STEP_H_
-#define TRILOBE_SOLVERS_JOINT_STRETCH_STEP_H_
+#ifndef TRILOBE_FIT_FINISH_STRETCH_STEP_H_
+#define TRILOBE_FIT_FINISH_STRETCH_STEP_H_
 
 #include <optional>
 #include <vector>
@@ -37,4 +37,4 @@ class StretchStepper {
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_JOINT_STRETCH_STEP_H_
+#endif  // TRILOBE_FIT_FINISH_STRETCH_STEP_H_

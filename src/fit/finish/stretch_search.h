@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
-#define TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
+#ifndef TRILOBE_FIT_FINISH_STRETCH_SEARCH_H_
+#define TRILOBE_FIT_FINISH_STRETCH_SEARCH_H_
 
 #include "solvers/joint/joint_step.h"
 #include "trilobe/core/base/stop_check.h"
@@ -18,4 +18,4 @@ SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_JOINT_STRETCH_SEARCH_H_
+#endif  // TRILOBE_FIT_FINISH_STRETCH_SEARCH_H_

@@ -1,4 +1,4 @@
-#include "solvers/smooth/smoothest.h"
+#include "fit/finish/smoothest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "solvers/joint/stretch_search.h"
+#include "fit/finish/stretch_search.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "fit/finish/stretch_step.h"
 #include "model/lobes/lobes.h"
-#include "solvers/joint/stretch_step.h"
 #include "tests/test_util.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/solvers/registry/solvers.h"

@@ -1,10 +1,11 @@
-#include "solvers/smooth/smoothest.h"
+#include "fit/finish/smoothest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "fit/finish/reflectance.h"
 #include "model/objective/canonical_form.h"
 #include "solvers/smooth/log_stepper.h"
 
@@ -23,7 +24,7 @@ std::optional<SmoothedModel> Smoothest(const Objective& objective, const FactorM
   PhaseSeconds phases;
   const ReflectancePrice price(objective, model, kPriceOfLight * E);
   LogStepper stepper(objective, &phases, kSlope);
-  stepper.set_price(&price);
+  stepper.set_added_term(&price);
   stepper.Restart(model);
   struct Passed {
     FactorModel model;

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SOLVERS_JOINT_DATA_EDGE_H_
-#define TRILOBE_SOLVERS_JOINT_DATA_EDGE_H_
+#ifndef TRILOBE_FIT_FINISH_DATA_EDGE_H_
+#define TRILOBE_FIT_FINISH_DATA_EDGE_H_
 
 #include <span>
 
@@ -39,4 +39,4 @@ TableLayout UntiedEntries(std::span<const double> coverage, const FactorModel& m
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_JOINT_DATA_EDGE_H_
+#endif  // TRILOBE_FIT_FINISH_DATA_EDGE_H_

@@ -1,5 +1,5 @@
-#ifndef TRILOBE_SOLVERS_SMOOTH_SMOOTHEST_H_
-#define TRILOBE_SOLVERS_SMOOTH_SMOOTHEST_H_
+#ifndef TRILOBE_FIT_FINISH_SMOOTHEST_H_
+#define TRILOBE_FIT_FINISH_SMOOTHEST_H_
 
 #include <functional>
 #include <optional>
@@ -29,4 +29,4 @@ std::optional<SmoothedModel> Smoothest(const Objective& objective, const FactorM
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_SOLVERS_SMOOTH_SMOOTHEST_H_
+#endif  // TRILOBE_FIT_FINISH_SMOOTHEST_H_

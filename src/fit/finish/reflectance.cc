@@ -1,4 +1,4 @@
-#include "solvers/joint/reflectance.h"
+#include "fit/finish/reflectance.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,72 @@
+// What a caller may give to what finishes a fit, or to its prior, that is no such thing: an Error
+// in one line, and no crash.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "fit/finish/data_edge.h"
+#include "fit/finish/reflectance.h"
+#include "tests/test_directory.h"
+#include "tests/test_util.h"
+#include "trilobe/fit/prior/node_choice.h"
+#include "trilobe/fit/prior/synthetic_prior.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr MerlGrid kGrid{.theta_h = 6, .theta_d = 5, .phi_d = 8};
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// One that is asked whether to stop says no.
+TEST(FitArguments, EmptyFunctions) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
+  FactorModel model = RandomModel(spec, 1);
+  EXPECT_FALSE(TieEntriesAtDataEdge(objective, &model, nullptr));
+  EXPECT_NO_THROW(MatchReflectance(objective, objective, model, TableLayout::Full(spec), 30, {}));
+}
+
+TEST(FitArguments, NumbersOutOfTheirRange) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
+  const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
+  for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(ErrorOf([&] { WithPrior(objective, {.weight = bad}); }), HasSubstr("weight"));
+  }
+  for (const double bad : {-1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(ErrorOf([&] {
+                  ChooseNodes(objective, {NodeCandidate{.name = "own", .spec = spec}},
+                              {.prior = bad});
+                }),
+                HasSubstr("prior"));
+  }
+}
+
+TEST(FitArguments, ModelsOfAnotherSpec) {
+  const Objective objective =
+      MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(2, kGrid));
+  FactorModel other(ModelSpec::SharedFactors(1, kGrid));
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &other); }), HasSubstr("another spec"));
+  FactorModel bad(objective.spec());
+  bad.d()[1] = kNaN;
+  EXPECT_THAT(ErrorOf([&] { TieEntriesAtDataEdge(objective, &bad); }), HasSubstr("parameter 1"));
+  EXPECT_THAT(ErrorOf([&] { ReflectanceOf(objective, other); }), HasSubstr("another spec"));
+  const TableLayout layout = TableLayout::Full(other.spec());
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, other, layout, 30); }),
+              HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
+              HasSubstr("parameter 1"));
+  bad.d()[1] = 1;
+  EXPECT_THAT(ErrorOf([&] {
+                MatchReflectance(objective, Objective(objective, other.spec()), bad, layout, 30);
+              }),
+              HasSubstr("another spec"));
+  EXPECT_THAT(ErrorOf([&] { MatchReflectance(objective, objective, bad, layout, 30); }),
+              HasSubstr("layout"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
