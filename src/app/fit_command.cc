@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/fit_many.h"
-#include "app/fit_name.h"
+#include "app/fit_page.h"
 #include "app/fit_run.h"
 #include "app/flags.h"
 #include "app/inputs.h"
@@ -19,7 +18,7 @@
 #include "app/model_flags.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
-#include "app/scene_run.h"
+#include "app/scene_plan.h"
 #include "app/solver_flags.h"
 #include "core/algebra/openblas.h"
 #include "core/files/read_file.h"

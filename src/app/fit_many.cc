@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "app/command.h"
-#include "app/fit_name.h"
 #include "app/fit_page.h"
 #include "app/flags.h"
 #include "app/inputs.h"

@@ -1,6 +1,7 @@
 #include "app/fit_page.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <limits>
 #include <locale>
@@ -12,6 +13,7 @@
 #include "fit/reports/print.h"
 #include "io/page/document.h"
 #include "trilobe/core/base/printable.h"
+#include "trilobe/io/formats/source.h"
 
 namespace trilobe {
 namespace {
@@ -128,6 +130,15 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
   body << "</main>";
   return FormatDocument("catalogue.html", "Fits",
                         json.dump(-1, ' ', false, Json::error_handler_t::replace), body.str());
+}
+
+std::string FitNameOf(const std::string& source) {
+  if (IsSynthetic(source)) return SynthSourceOf(source).material.name;
+  const std::filesystem::path file = std::filesystem::path(source).filename();
+  const std::string name = file.stem().string();
+  // As "." is of "..csv": then the whole name will do.
+  const bool taken = name == "." || name == ".." || name == kTableName || name == kPageName;
+  return taken ? file.string() : name;
 }
 
 }  // namespace trilobe

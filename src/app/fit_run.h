@@ -6,15 +6,35 @@
 #include <string>
 #include <vector>
 
-#include "app/convergence_curve.h"
 #include "app/result_folder.h"
 #include "fit/reports/fit_report.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective/iteration_record.h"
 #include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
+
+// How a fit's errors go down with time, measured without delaying the fit: it keeps copies of
+// models at seconds that grow by a constant factor, and scores them when the fit is over.
+class ConvergenceCurve {
+ public:
+  // The first model, and each that comes when enough time has gone by since the one before.
+  void Keep(const IterationRecord& record, const FactorModel& model);
+
+  // Writes convergence.csv (docs/file-formats.md): those kept, and the last model of the fit.
+  void Write(const std::string& path, const Objective& objective) const;
+
+ private:
+  struct Point {
+    IterationRecord record;
+    FactorModel model;
+  };
+  std::vector<Point> points_;
+  Point last_;
+};
 
 // How `trilobe fit` fits, whatever it is given.
 struct FitSettings {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
-#include <string>
 #include <thread>
 #include <utility>
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
 #include "io/formats/utia_file.h"
+#include "io/pictures/image_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/weighting.h"
@@ -62,6 +62,11 @@ DEFINE_string(out, "", "where to write: a file or, for fit, info and plot, a fol
 DEFINE_bool(json, false, "print one JSON object instead of a table");
 DEFINE_bool(verbose, false,
             "print all there is to say, and not only the verdict and what it rests on");
+
+DEFINE_string(
+    probe, "",
+    "light probe for the spheres, a lat-long Radiance .hdr file; without it a built-in sky "
+    "with a sun and area lights");
 
 namespace trilobe {
 
@@ -142,6 +147,14 @@ void RefuseForModel(const std::string& path, const std::vector<std::string>& fla
   for (const auto& [flag, value] : GivenFlags(flags)) {
     throw Error("--" + flag + " is for measurements, and " + path + " is a model; leave it out");
   }
+}
+
+AppearanceOptions AppearanceOptionsFromFlags() {
+  static const Environment probe =
+      FLAGS_probe.empty() ? StudioEnvironment() : ReadProbe(FLAGS_probe);
+  // For tests, which would spend most of their time under its lights.
+  const int lights = google::Int32FromEnv("TRILOBE_TEST_LIGHTS", AppearanceOptions().lights);
+  return {.environment = &probe, .lights = lights, .num_threads = ThreadsFromFlags()};
 }
 
 }  // namespace trilobe

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "trilobe/model/appearance/appearance.h"
+
 // Flags that several commands take.
 DECLARE_int32(threads);
 DECLARE_int32(lobes);
@@ -24,6 +26,9 @@ DECLARE_bool(outliers);
 DECLARE_bool(dark_noise);
 DECLARE_string(weighting);
 DECLARE_string(out);
+
+// What lights the spheres of fit, score and plot.
+DECLARE_string(probe);
 
 // What `score` and `info` print: a table for people, or one JSON object.
 DECLARE_bool(json);
@@ -56,6 +61,9 @@ std::vector<std::string> MeasurementFlags();
 
 // Throws Error where one of these flags is given, since `path` is a model and no measurement.
 void RefuseForModel(const std::string& path, const std::vector<std::string>& flags);
+
+// The light of --probe, or the built-in one, and --threads. Reads the probe at the first call.
+AppearanceOptions AppearanceOptionsFromFlags();
 
 }  // namespace trilobe
 

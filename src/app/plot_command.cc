@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"

@@ -3,30 +3,16 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <iostream>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 #include <utility>
 
-#include "app/appearance_flags.h"
-#include "app/command.h"
 #include "app/flags.h"
-#include "app/inputs.h"
 #include "app/interrupt.h"
 #include "app/program.h"
 #include "app/progress.h"
-#include "app/result_folder.h"
-#include "app/scene_flags.h"
-#include "app/scene_report.h"
 #include "app/solver_flags.h"
-#include "core/files/json_value.h"
 #include "core/system/stopwatch.h"
-#include "fit/reports/appearance_report.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/base/printable.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/objective/weighting.h"
 #include "trilobe/solvers/start/initial_model.h"
 
@@ -37,9 +23,6 @@ DEFINE_bool(nocache, false, "neither use nor keep fits");
 
 namespace trilobe {
 namespace {
-
-constexpr const char* kPlanName = "plan.json";
-constexpr const char* kPlanTextName = "plan.txt";
 
 FitCache CacheFromFlags() {
   if (FLAGS_nocache) {
@@ -55,35 +38,32 @@ FitCache CacheFromFlags() {
   }
 }
 
-// Names of the files that the scene leaves in its folder, and of those that an earlier one has left
-// there by what its plan says.
-std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& folder) {
-  std::set<std::string> names = {kPlanTextName};
-  for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
-  const std::string plan = folder + "/" + kPlanName;
-  try {
-    const auto earlier = nlohmann::json::parse(ReadJsonText(plan, plan + ": not a plan"));
-    if (earlier.contains("files")) {
-      for (const std::string file : earlier.at("files")) {
-        if (file.find('/') == std::string::npos) names.insert(file);
-      }
-    } else {  // of an earlier version
-      for (const auto& material : earlier.at("materials")) {
-        names.insert(material.at("name").get<std::string>() + ".json");
-      }
-    }
-    names.erase(kPlanName);
-  } catch (const Error&) {
-    // There was none.
-  } catch (const nlohmann::json::exception&) {
-    throw Error("'" + plan + "' is not a plan of `trilobe fit --scene`; give another --out");
-  }
-  std::vector<std::string> in_order = {kPlanName};
-  in_order.insert(in_order.end(), names.begin(), names.end());
-  return in_order;
+}  // namespace
+
+std::vector<std::string> SceneFlags() {
+  return {"solver",
+          "weighting",
+          "lobes",
+          "max_iterations",
+          "max_seconds",
+          "tolerance",
+          "optimality_tolerance",
+          "threads",
+          "noise",
+          "seed",
+          "max_angle",
+          "min_theta_d",
+          "extrapolated",
+          "cache",
+          "nocache"};
 }
 
-}  // namespace
+std::vector<std::string> SceneModelFlags() {
+  std::vector<std::string> flags = SceneFlags();
+  for (const char* const flag : {"threads", "cache", "nocache"}) std::erase(flags, flag);
+  for (const std::string& flag : ParticularSolverFlags()) flags.push_back(flag);
+  return flags;
+}
 
 SceneFitSettings SceneSettingsFromFlags() {
   const SolverEntry& solver = SolverFromFlags();
@@ -135,50 +115,6 @@ SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
   }
   run.interrupted = InterruptGuard::signal();
   return run;
-}
-
-int RunSceneFit(const std::string& path) {
-  const std::string out = RequiredOut("fit --scene", "DIR");
-  const SceneFitSettings settings = SceneSettingsFromFlags();
-  Scene scene = ReadScene(path);
-  const std::vector<std::string> names = SceneFileNames(scene, out);
-  ResultFolder folder(out, names, {kPlanName}, Inputs(FilesOf(scene)));
-  folder.Open();
-  const auto plan_text = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
-    plan["run"] = folder.run();
-    plan["files"] = files;
-    return plan.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-  };
-  bool begun = false;
-  const InterruptGuard guard;  // until the plan says what there is
-  const SceneRun run = RunScene(std::move(scene), settings, [&](const MaterialFit& fit) {
-    ModelFile file = fit.file;
-    file.fit.run = folder.run();
-    const std::string text = FormatModel(file);
-    // Should the program be killed, the next run knows by this what there may be.
-    if (!begun) {
-      const std::string plan = plan_text({{"unfinished", true}}, names);
-      folder.WriteAhead(kPlanName, [&](std::ostream& out) { out << plan; });
-      begun = true;
-    }
-    folder.Write(fit.name + ".json", [&](std::ostream& out) { out << text; });
-  });
-  std::ostringstream text;
-  PrintPlan(run, text);
-  std::cout << text.str();
-  if (!run.fits.empty()) {
-    folder.Write(kPlanTextName, [&](std::ostream& out) { out << text.str(); });
-    const std::string plan = plan_text(PlanToJson(run), folder.Files());
-    folder.Write(kPlanName, [&](std::ostream& out) { out << plan; });
-    std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
-              << kPlanTextName << " in " << Printable(out) << "\n";
-  }
-  if (run.interrupted != 0) {
-    std::cout << "interrupted"
-              << (FLAGS_nocache ? "" : ": the same command goes on with the others") << "\n";
-    return 128 + run.interrupted;
-  }
-  return run.failures.empty() ? 0 : kSomeFailed;
 }
 
 }  // namespace trilobe

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/inputs.h"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/appearance_flags.h"
 #include "app/command.h"
 #include "app/fit_many.h"
 #include "app/fit_page.h"

@@ -1,6 +1,6 @@
 #include "app/view_page.h"
 
-#include "app/fit_name.h"
+#include "app/fit_page.h"
 #include "io/page/page.h"
 #include "model/appearance/picture_data.h"
 #include "model/appearance/sample_table.h"

@@ -1,19 +1,32 @@
-#include "app/scene_report.h"
+#include "app/scene_plan.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
-#include <string>
+#include <set>
+#include <sstream>
+#include <utility>
+#include <vector>
 
+#include "app/command.h"
 #include "app/flags.h"
-#include "app/scene_flags.h"
+#include "app/inputs.h"
+#include "app/interrupt.h"
+#include "app/result_folder.h"
+#include "core/files/json_value.h"
 #include "fit/reports/print.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
+#include "trilobe/io/model_files/model_file.h"
 
 namespace trilobe {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kPlanName = "plan.json";
+constexpr const char* kPlanTextName = "plan.txt";
 
 std::string BudgetText(const SceneBudget& budget) {
   const std::string amount = Text(budget.amount);
@@ -129,6 +142,34 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   return json;
 }
 
+// Names of the files that the scene leaves in its folder, and of those that an earlier one has left
+// there by what its plan says.
+std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& folder) {
+  std::set<std::string> names = {kPlanTextName};
+  for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
+  const std::string plan = folder + "/" + kPlanName;
+  try {
+    const auto earlier = nlohmann::json::parse(ReadJsonText(plan, plan + ": not a plan"));
+    if (earlier.contains("files")) {
+      for (const std::string file : earlier.at("files")) {
+        if (file.find('/') == std::string::npos) names.insert(file);
+      }
+    } else {  // of an earlier version
+      for (const auto& material : earlier.at("materials")) {
+        names.insert(material.at("name").get<std::string>() + ".json");
+      }
+    }
+    names.erase(kPlanName);
+  } catch (const Error&) {
+    // There was none.
+  } catch (const nlohmann::json::exception&) {
+    throw Error("'" + plan + "' is not a plan of `trilobe fit --scene`; give another --out");
+  }
+  std::vector<std::string> in_order = {kPlanName};
+  in_order.insert(in_order.end(), names.begin(), names.end());
+  return in_order;
+}
+
 }  // namespace
 
 void PrintPlan(const SceneRun& run, std::ostream& out) {
@@ -182,6 +223,50 @@ Json PlanToJson(const SceneRun& run) {
           {"reused", run.reused},
           {"materials", materials},
           {"failed", failed}};
+}
+
+int RunSceneFit(const std::string& path) {
+  const std::string out = RequiredOut("fit --scene", "DIR");
+  const SceneFitSettings settings = SceneSettingsFromFlags();
+  Scene scene = ReadScene(path);
+  const std::vector<std::string> names = SceneFileNames(scene, out);
+  ResultFolder folder(out, names, {kPlanName}, Inputs(FilesOf(scene)));
+  folder.Open();
+  const auto plan_text = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
+    plan["run"] = folder.run();
+    plan["files"] = files;
+    return plan.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  };
+  bool begun = false;
+  const InterruptGuard guard;  // until the plan says what there is
+  const SceneRun run = RunScene(std::move(scene), settings, [&](const MaterialFit& fit) {
+    ModelFile file = fit.file;
+    file.fit.run = folder.run();
+    const std::string text = FormatModel(file);
+    // Should the program be killed, the next run knows by this what there may be.
+    if (!begun) {
+      const std::string plan = plan_text({{"unfinished", true}}, names);
+      folder.WriteAhead(kPlanName, [&](std::ostream& out) { out << plan; });
+      begun = true;
+    }
+    folder.Write(fit.name + ".json", [&](std::ostream& out) { out << text; });
+  });
+  std::ostringstream text;
+  PrintPlan(run, text);
+  std::cout << text.str();
+  if (!run.fits.empty()) {
+    folder.Write(kPlanTextName, [&](std::ostream& out) { out << text.str(); });
+    const std::string plan = plan_text(PlanToJson(run), folder.Files());
+    folder.Write(kPlanName, [&](std::ostream& out) { out << plan; });
+    std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
+              << kPlanTextName << " in " << Printable(out) << "\n";
+  }
+  if (run.interrupted != 0) {
+    std::cout << "interrupted"
+              << (FLAGS_nocache ? "" : ": the same command goes on with the others") << "\n";
+    return 128 + run.interrupted;
+  }
+  return run.failures.empty() ? 0 : kSomeFailed;
 }
 
 }  // namespace trilobe

@@ -1,10 +1,11 @@
-#ifndef TRILOBE_APP_SCENE_REPORT_H_
-#define TRILOBE_APP_SCENE_REPORT_H_
+#ifndef TRILOBE_APP_SCENE_PLAN_H_
+#define TRILOBE_APP_SCENE_PLAN_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
+#include <string>
 
-#include "app/scene_result.h"
+#include "app/scene_run.h"
 
 namespace trilobe {
 
@@ -14,6 +15,10 @@ void PrintPlan(const SceneRun& run, std::ostream& out);
 // plan.json (docs/scene.md).
 nlohmann::ordered_json PlanToJson(const SceneRun& run);
 
+// `trilobe fit --scene=SCENE --out=DIR`: a model file a material, plan.json and plan.txt. Returns
+// the exit status.
+int RunSceneFit(const std::string& path);
+
 }  // namespace trilobe
 
-#endif  // TRILOBE_APP_SCENE_REPORT_H_
+#endif  // TRILOBE_APP_SCENE_PLAN_H_
