@@ -11,7 +11,7 @@
 #include "app/flags.h"
 #include "app/result_folder.h"
 #include "core/files/file.h"
-#include "fit/reports/albedo_table.h"
+#include "fit/reports/model_report.h"
 #include "fit/reports/bin_counts.h"
 #include "fit/reports/print.h"
 #include "io/formats/rgl_file.h"

@@ -24,7 +24,6 @@
 #include "core/files/read_file.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
-#include "fit/reports/fit_summary.h"
 #include "fit/reports/print.h"
 #include "fit/scene/fit_cache.h"
 #include "io/pictures/gnuplot.h"

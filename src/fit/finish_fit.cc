@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "fit/choose_held_out.h"
+#include "fit/held_out.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/system/stopwatch.h"
-#include "fit/anisotropic_forms.h"
 #include "fit/choose_form.h"
 #include "fit/held_out.h"
 #include "model/appearance/node_judge.h"

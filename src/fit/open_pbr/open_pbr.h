@@ -2,6 +2,7 @@
 #define TRILOBE_FIT_OPEN_PBR_OPEN_PBR_H_
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "trilobe/core/geometry/channels.h"
@@ -57,6 +58,21 @@ class OpenPbrBrdf {
   Ggx specular_, coat_;
   double cos_turn_ = 1, sin_turn_ = 0;
 };
+
+// What a file says about itself: for people, any text.
+struct MaterialNotes {
+  std::string name;   // of the material; other than letters and digits become _
+  std::string made;   // what it was made of, by which program
+  std::string error;  // how far off it looks
+  std::string lost;   // against the model
+};
+
+// A document of MaterialX 1.39 with an open_pbr_surface.
+std::string FormatMaterialX(const OpenPbr& material, const MaterialNotes& notes);
+
+// What Blender's node Principled BSDF (4.0 and later) takes, as JSON: "inputs" by their names
+// there.
+std::string FormatPrincipled(const OpenPbr& material, const MaterialNotes& notes);
 
 }  // namespace trilobe
 

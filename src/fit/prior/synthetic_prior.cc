@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fit/prior/lack.h"
+#include "fit/prior/node_residual.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/core/geometry/directions.h"

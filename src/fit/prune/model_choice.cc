@@ -25,9 +25,6 @@
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/objective/score.h"
-#include "trilobe/solvers/registry/solvers.h"
-#include "trilobe/solvers/solver.h"
-#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {
@@ -83,48 +80,6 @@ class Objectives {
  private:
   std::vector<Objective> made_;
 };
-
-// What a solver makes of few samples.
-FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& start,
-                  const StopCheck& stop) {
-  FactorModel model = start;
-  SolverOptions options;
-  options.diagnose = false;
-  options.stop = stop;
-  MakeSolver(solver)->Solve(few, options, &model);
-  return model;
-}
-
-// Where highlights widen towards grazing a fit without stretches may let F and G cancel over many
-// decades (docs/stored-model.md), from which no stretch leads back; so a second way begins at the
-// default start. Nothing if it ends no lower on `few` than `stretched`, the way from the fit.
-std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,
-                                             const FactorModel& stretched, const StopCheck& stop) {
-  FactorModel start = InitialModels().front().make(few, /*seed=*/1);
-  CopyUnobservedParameters(few.coverage(), fitted, &start);
-  SteppedModel anew = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
-  if (!anew.model.spec().stretches.any()) return std::nullopt;
-  if (!(anew.E < Objective(few, stretched.spec()).Value(stretched))) return std::nullopt;
-  return anew;
-}
-
-// Whether the data rather have a form that shares less: a stretch may look like one. What more
-// parameters fit of few samples by chance is taken off; those of the prior tell nothing.
-bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
-                const SteppedModel& stretched, const StopCheck& stop) {
-  constexpr int kSteps = 5;
-  const double values = kChannels * num_measured / 2.0;  // exchanged ones say the same
-  const auto expected = [&](double E, const ModelSpec& spec) {
-    const double share = std::min(spec.num_parameters() / values, 0.9);
-    return E * (1 + share) / (1 - share);
-  };
-  return std::ranges::any_of(
-      FormsSharingLess({"", fitted, few.weighting()}), [&](const ModelForm& form) {
-        const ModelSpec& spec = form.start.spec();
-        const double E = JointSteps(Objective(few, spec), form.start, kSteps, stop).E;
-        return expected(E, spec) < expected(stretched.E, stretched.model.spec());
-      });
-}
 
 // The search of ChooseModel. Forms are fitted to some samples; only those that are stored as a
 // whole, to all.
@@ -250,7 +205,7 @@ class ModelSearch {
                 " parameters; its values overflow");
   }
 
-  // This and the next two: false once it is to stop; then what was to be fitted is not among
+  // This and what calls it: false once it is to stop; then what was to be fitted is not among
   // forms_.
   bool Fit(ModelForm form) {
     if (options_.stop()) return false;
@@ -270,42 +225,51 @@ class ModelSearch {
     return true;
   }
 
-  // The fit itself, stretched, and weighed by channel, which the others go on from.
+  // What the forms go on from: the fit itself, stretched, and weighed by channel.
   bool FitBases() {
     bases_ = {{{"", fitted_, objective_.weighting()}, best_.candidates.front().score}};
-    bool stretched = false;
-    if (fitted_.spec().lobes > 0 && !fitted_.spec().anisotropic() &&
-        !fitted_.spec().stretches.any()) {
-      const Objective few = few_with_prior_.For(fitted_.spec(), objective_.weighting());
-      SteppedModel stretch = FitStretches(few, fitted_, options_.stop);
-      if (!Fit({"stretched", stretch.model, objective_.weighting()})) return false;
-      double E = best_.candidates.back().E;
-      Fitted best = forms_.back();
-      const Objective* judged = &few;
-      // The prior is what the fit says where nothing was measured, and would lead the second way
-      // back to it. So it goes without, and the picture tells which of both is better.
-      const Objective measured = few_.For(fitted_.spec(), objective_.weighting());
-      std::optional<SteppedModel> anew =
-          FitStretchesAnew(measured, fitted_, stretch.model, options_.stop);
-      if (anew) {
-        if (!Fit({"stretched anew", anew->model, objective_.weighting()})) return false;
-        if (forms_.back().score > best.score) {
-          E = best_.candidates.back().E;
-          best = forms_.back();
-          stretch = *std::move(anew);
-          judged = &measured;
-        }
+    return FitStretchedBase() && FitBasesByChannel();
+  }
+
+  // The second base, where highlights stretch. Under other weights it may look better even where it
+  // does not under these.
+  bool FitStretchedBase() {
+    const ModelSpec& spec = fitted_.spec();
+    if (spec.lobes == 0 || spec.anisotropic() || spec.stretches.any()) return true;
+    const Objective few = few_with_prior_.For(spec, objective_.weighting());
+    SteppedModel stretch = FitStretches(few, fitted_, options_.stop);
+    if (!Fit({"stretched", stretch.model, objective_.weighting()})) return false;
+    double E = best_.candidates.back().E;
+    Fitted best = forms_.back();
+    const Objective* judged = &few;
+    // The prior is what the fit says where nothing was measured, and would lead the second way back
+    // to it. So it goes without, and the picture tells which of both is better.
+    const Objective measured = few_.For(spec, objective_.weighting());
+    std::optional<SteppedModel> anew =
+        FitStretchesAnew(measured, fitted_, stretch.model, options_.stop);
+    if (anew) {
+      if (!Fit({"stretched anew", anew->model, objective_.weighting()})) return false;
+      if (forms_.back().score > best.score) {
+        E = best_.candidates.back().E;
+        best = forms_.back();
+        stretch = *std::move(anew);
+        judged = &measured;
       }
-      // Under other weights it may look better even where it does not under these.
-      stretched =
-          stretch.model.spec().stretches.any() &&
-          E < (1 - kWorthwhile) * best_.candidates.front().E &&
-          !SharesLess(*judged, few_.own().samples().size(), fitted_, stretch, options_.stop);
-      if (stretched) bases_.push_back(std::move(best));
     }
+    const bool stretched =
+        stretch.model.spec().stretches.any() &&
+        E < (1 - kWorthwhile) * best_.candidates.front().E &&
+        !SharesLess(*judged, few_.own().samples().size(), fitted_, stretch, options_.stop);
+    if (stretched) bases_.push_back(std::move(best));
+    return true;
+  }
+
+  // Where pictures show what weights by the mean of the channels hide.
+  bool FitBasesByChannel() {
     if (objective_.weighting().name != "appearance" || !IsSaturated(objective_.samples())) {
       return true;
     }
+    const bool stretched = bases_.size() > 1;
     // Selections keep the level of the whole.
     const Weighting by_channel =
         ForSamples(FindWeighting("appearance_channel"), objective_.samples());

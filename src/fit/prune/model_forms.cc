@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "fit/finish/stretch_search.h"
+#include "model/lobes/gauge.h"
 #include "model/lobes/lobes.h"
 #include "solvers/joint/reduction.h"
+#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {
@@ -53,6 +58,42 @@ std::optional<ModelForm> FormWithALobeMore(const ModelForm& base) {
   if (own.lobes == 0 || own.lobes >= kMaxLobes || !own.D.per_lobe) return std::nullopt;
   return ModelForm{NameOf(base, "a lobe more"), SplitLobe(base.start, StrongestLobe(base.start)),
                    base.weighting};
+}
+
+FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& start,
+                  const StopCheck& stop) {
+  FactorModel model = start;
+  SolverOptions options;
+  options.diagnose = false;
+  options.stop = stop;
+  MakeSolver(solver)->Solve(few, options, &model);
+  return model;
+}
+
+std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,
+                                             const FactorModel& stretched, const StopCheck& stop) {
+  FactorModel start = InitialModels().front().make(few, /*seed=*/1);
+  CopyUnobservedParameters(few.coverage(), fitted, &start);
+  SteppedModel anew = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
+  if (!anew.model.spec().stretches.any()) return std::nullopt;
+  if (!(anew.E < Objective(few, stretched.spec()).Value(stretched))) return std::nullopt;
+  return anew;
+}
+
+bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
+                const SteppedModel& stretched, const StopCheck& stop) {
+  constexpr int kSteps = 5;
+  const double values = kChannels * num_measured / 2.0;  // exchanged ones say the same
+  const auto expected = [&](double E, const ModelSpec& spec) {
+    const double share = std::min(spec.num_parameters() / values, 0.9);
+    return E * (1 + share) / (1 - share);
+  };
+  return std::ranges::any_of(
+      FormsSharingLess({"", fitted, few.weighting()}), [&](const ModelForm& form) {
+        const ModelSpec& spec = form.start.spec();
+        const double E = JointSteps(Objective(few, spec), form.start, kSteps, stop).E;
+        return expected(E, spec) < expected(stretched.E, stretched.model.spec());
+      });
 }
 
 bool IsSaturated(const BrdfSamples& samples) {

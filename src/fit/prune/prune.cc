@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "fit/prune/lobe_search.h"
-#include "fit/prune/needed_layout.h"
+#include "fit/prune/stored_layouts.h"
 #include "fit/prune/prune_tables.h"
 #include "fit/prune/pruning.h"
-#include "fit/prune/shapes.h"
 #include "model/lobes/gauge.h"
 #include "model/lobes/lobes.h"
 #include "solvers/joint/reduction.h"

@@ -8,10 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "fit/prune/needed_layout.h"
+#include "fit/prune/stored_layouts.h"
 #include "fit/prune/node_elimination.h"
 #include "fit/prune/reduced_quadratic.h"
-#include "fit/prune/shapes.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/core/system/parallel.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fit/prune/needed_layout.h"
+#include "fit/prune/stored_layouts.h"
 #include "fit/prune/prune_options.h"
 #include "model/lobes/gauge.h"
 #include "trilobe/model/factor_model.h"

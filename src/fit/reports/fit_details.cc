@@ -9,9 +9,8 @@
 
 #include "fit/reports/appearance_report.h"
 #include "fit/reports/bin_counts.h"
-#include "fit/reports/light_report.h"
+#include "fit/reports/model_report.h"
 #include "fit/reports/print.h"
-#include "fit/reports/stretch_report.h"
 #include "fit/reports/verdict_report.h"
 #include "io/model_files/stretch_json.h"
 #include "trilobe/core/base/printable.h"

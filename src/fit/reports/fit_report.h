@@ -71,6 +71,12 @@ std::string ReachText(const Reach& reach);
 
 ReportedVerdict VerdictOn(const FitReport& report);
 
+// The verdict, then a few lines that need no knowledge of the method, on standard output.
+void PrintSummary(const FitReport& report);
+
+// Where the time went, in parts that sum to the total.
+void PrintSeconds(const FitReport& report);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_FIT_REPORTS_FIT_REPORT_H_

@@ -3,13 +3,92 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <variant>
+#include <vector>
 
 #include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/solvers/registry/solvers.h"
 
 namespace trilobe {
 namespace {
+
+// What distinguishes two cached results: one line each.
+class Key {
+ public:
+  explicit Key(const std::string& kind) { Add("result", kind); }
+
+  template <typename T>
+  void Add(const std::string& name, const T& value) {
+    text_ << name << "=" << value << "\n";
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_ = [] {
+    std::ostringstream text;
+    text.precision(17);
+    return text;
+  }();
+};
+
+std::string HashOf(std::span<const double> numbers) {
+  return ContentHash({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
+}
+
+struct DirectionsText {
+  std::string operator()(const AllDirections& /*all*/) const { return "all"; }
+  std::string operator()(const DirectionRanges& ranges) const {
+    const double bounds[] = {ranges.theta_i.min, ranges.theta_i.max, ranges.theta_o.min,
+                             ranges.theta_o.max};
+    return "ranges " + HashOf(bounds);
+  }
+  std::string operator()(const DirectionList& list) const {
+    std::vector<double> angles;
+    for (const HalfDiffAngles& a : list.directions) {
+      angles.insert(angles.end(), {a.theta_h, a.theta_d, a.phi_d});
+    }
+    return "list " + HashOf(angles);
+  }
+  std::string operator()(const DirectionHistogram& histogram) const {
+    return "histogram " + HashOf(histogram.counts);
+  }
+};
+
+Key KeyOfFullFit(const SceneMaterial& material, const SceneFitSettings& settings,
+                 const std::string& source_hash, const std::string& purpose) {
+  Key key("fit 3, " + purpose);
+  key.Add("program", settings.program);
+  key.Add("build", settings.build);
+  key.Add("source", source_hash);
+  if (IsSynthetic(material.source)) {
+    key.Add("noise", settings.noise);
+    key.Add("synth_seed", settings.seed);
+  }
+  key.Add("max_angle", settings.max_angle_deg);
+  key.Add("min_theta_d", settings.min_theta_d_deg);
+  key.Add("extrapolated", settings.extrapolated);
+  key.Add("directions",
+          material.reductions.samples ? std::visit(DirectionsText(), material.directions) : "all");
+  key.Add("luminance", material.channels == SceneChannels::kLuminance);
+  key.Add("weighting", settings.weighting);
+  key.Add("lobes", settings.lobes);
+  key.Add("init", settings.init);
+  key.Add("init_seed", settings.seed);
+  key.Add("solver", settings.solver);
+  for (const SolverOption* option : OptionsReadBy(FindSolver(settings.solver).options)) {
+    std::visit([&](const auto& value) { key.Add(option->name, value); },
+               option->get(settings.options));
+  }
+  if (material.budget.unit == SceneBudget::Unit::kSeconds) {
+    key.Add("seconds", material.budget.amount);
+  }
+  return key;
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -106,6 +185,30 @@ std::optional<Fit> Cached(const FitCache& cache, const std::string& key,
 }
 
 }  // namespace
+
+std::string FullFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
+                       const std::string& source_hash, const std::string& purpose) {
+  return KeyOfFullFit(material, settings, source_hash, purpose).text();
+}
+
+std::string MaterialFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
+                           const std::string& source_hash) {
+  Key key = KeyOfFullFit(material, settings, source_hash, "scene");
+  key.Add("then", "prune 6");
+  key.Add("unit", static_cast<int>(material.budget.unit));
+  key.Add("amount", material.budget.amount);
+  if (material.budget.of_look()) {
+    key.Add("lights", settings.appearance.lights);
+    key.Add("size", settings.appearance.size);
+  }
+  const SceneReductions& reductions = material.reductions;
+  key.Add("lobes", reductions.lobes);
+  key.Add("colour", reductions.colour);
+  key.Add("shadowing", reductions.shadowing);
+  key.Add("tables", reductions.tables);
+  key.Add("verdict", settings.verdicts);
+  return key.text();
+}
 
 std::optional<FullFit> CachedFullFit(const FitCache& cache, const std::string& key) {
   return Cached(cache, key, DecodeFullFit);

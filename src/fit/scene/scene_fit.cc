@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <span>
-#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -15,8 +14,7 @@
 #include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
 #include "fit/scene/cached_fits.h"
-#include "fit/scene/look.h"
-#include "fit/scene/luminance.h"
+#include "fit/scene/scene_appearance.h"
 #include "model/appearance/picture_data.h"
 #include "model/appearance/seen_samples.h"
 #include "model/appearance/verdict.h"
@@ -29,7 +27,6 @@
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/materials/load_model.h"
-#include "trilobe/solvers/registry/solvers.h"
 
 namespace trilobe {
 namespace {
@@ -40,48 +37,6 @@ constexpr double kFitShare = 0.8;
 
 // Lobes where a budget asks for less error than that of the full fit.
 constexpr int kMoreLobes = 5;
-
-// What distinguishes two cached results: one line each.
-class Key {
- public:
-  explicit Key(const std::string& kind) { Add("result", kind); }
-
-  template <typename T>
-  void Add(const std::string& name, const T& value) {
-    text_ << name << "=" << value << "\n";
-  }
-  std::string text() const { return text_.str(); }
-
- private:
-  std::ostringstream text_ = [] {
-    std::ostringstream text;
-    text.precision(17);
-    return text;
-  }();
-};
-
-std::string HashOf(std::span<const double> numbers) {
-  return ContentHash({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
-}
-
-struct DirectionsText {
-  std::string operator()(const AllDirections& /*all*/) const { return "all"; }
-  std::string operator()(const DirectionRanges& ranges) const {
-    const double bounds[] = {ranges.theta_i.min, ranges.theta_i.max, ranges.theta_o.min,
-                             ranges.theta_o.max};
-    return "ranges " + HashOf(bounds);
-  }
-  std::string operator()(const DirectionList& list) const {
-    std::vector<double> angles;
-    for (const HalfDiffAngles& a : list.directions) {
-      angles.insert(angles.end(), {a.theta_h, a.theta_d, a.phi_d});
-    }
-    return "list " + HashOf(angles);
-  }
-  std::string operator()(const DirectionHistogram& histogram) const {
-    return "histogram " + HashOf(histogram.counts);
-  }
-};
 
 PruneOptions PruneOptionsOf(const SceneMaterial& material) {
   const auto& [unit, amount] = material.budget;
@@ -144,7 +99,7 @@ class MaterialFitter {
 
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
-    const std::string key = FitKey(purpose).text();
+    const std::string key = FullFitKey(material_, settings_, bytes_hash_, purpose);
     if (auto cached = CachedFullFit(settings_.cache, key)) return cached;
     std::optional<FullFit> fit = FitAnew();
     if (fit) KeepFit(*fit, key, settings_.cache);
@@ -152,7 +107,7 @@ class MaterialFitter {
   }
 
   std::optional<MaterialFit> FitAndPrune() {
-    const std::string key = PruneKey();
+    const std::string key = MaterialFitKey(material_, settings_, bytes_hash_);
     std::optional<MaterialFit> fit = CachedMaterialFit(settings_.cache, key);
     if (!fit) {
       fit = PruneAnew();
@@ -176,56 +131,6 @@ class MaterialFitter {
   }
 
  private:
-  // All that the fit with nothing left out depends on.
-  Key FitKey(const std::string& purpose) const {
-    Key key("fit 3, " + purpose);
-    key.Add("program", settings_.program);
-    key.Add("build", settings_.build);
-    key.Add("source", bytes_hash_);
-    if (IsSynthetic(material_.source)) {
-      key.Add("noise", settings_.noise);
-      key.Add("synth_seed", settings_.seed);
-    }
-    key.Add("max_angle", settings_.max_angle_deg);
-    key.Add("min_theta_d", settings_.min_theta_d_deg);
-    key.Add("extrapolated", settings_.extrapolated);
-    key.Add("directions", material_.reductions.samples
-                              ? std::visit(DirectionsText(), material_.directions)
-                              : "all");
-    key.Add("luminance", material_.channels == SceneChannels::kLuminance);
-    key.Add("weighting", settings_.weighting);
-    key.Add("lobes", settings_.lobes);
-    key.Add("init", settings_.init);
-    key.Add("init_seed", settings_.seed);
-    key.Add("solver", settings_.solver);
-    for (const SolverOption* option : OptionsReadBy(FindSolver(settings_.solver).options)) {
-      std::visit([&](const auto& value) { key.Add(option->name, value); },
-                 option->get(settings_.options));
-    }
-    if (material_.budget.unit == SceneBudget::Unit::kSeconds) {
-      key.Add("seconds", material_.budget.amount);
-    }
-    return key;
-  }
-
-  std::string PruneKey() const {
-    Key key = FitKey("scene");
-    key.Add("then", "prune 6");
-    key.Add("unit", static_cast<int>(material_.budget.unit));
-    key.Add("amount", material_.budget.amount);
-    if (material_.budget.of_look()) {
-      key.Add("lights", settings_.appearance.lights);
-      key.Add("size", settings_.appearance.size);
-    }
-    const SceneReductions& reductions = material_.reductions;
-    key.Add("lobes", reductions.lobes);
-    key.Add("colour", reductions.colour);
-    key.Add("shadowing", reductions.shadowing);
-    key.Add("tables", reductions.tables);
-    key.Add("verdict", settings_.verdicts);
-    return key.text();
-  }
-
   ModelFile GivenModel() const { return ParseModel(bytes_, material_.source); }
 
   Measurement Measured() const {

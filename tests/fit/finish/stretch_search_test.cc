@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/finish/stretch_step.h"
 #include "model/lobes/lobes.h"
 #include "tests/test_util.h"
 #include "trilobe/model/factor_model.h"

@@ -4,11 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "trilobe/fit/export/convert_options.h"
 #include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
+
+// How files for renderers are made.
+struct ConvertOptions {
+  double error = 0;          // of .bsdf: RglExportOptions::max_error, 0 to 1; 0 for its default
+  bool spectral = false;     // of .bsdf: spectra in place of RGB
+  std::string program = {};  // what the file says it was written by, "trilobe 0.1.0"
+  std::string picture = {};  // of standard materials: draws both side by side there, if given
+  AppearanceOptions appearance = {};  // by which the nearest standard material is judged
+  int num_threads = 1;
+};
 
 // Whether the path ends as one of these files does: .bsdf (RGL tensor file), .glsl, .mtlx
 // (MaterialX) and .principled.json (Blender's Principled BSDF).

@@ -1,13 +1,25 @@
-#ifndef TRILOBE_FIT_REPORTS_ALBEDO_TABLE_H_
-#define TRILOBE_FIT_REPORTS_ALBEDO_TABLE_H_
+#ifndef TRILOBE_FIT_REPORTS_MODEL_REPORT_H_
+#define TRILOBE_FIT_REPORTS_MODEL_REPORT_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "trilobe/model/lobes/lobe_light.h"
 #include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/model_spec.h"
 
 namespace trilobe {
+
+// "along 0.5, across -0.2", or that of each lobe where they differ.
+std::string DescribeStretches(const ModelSpec& spec);
+
+// "lobe 1 62 %, lobe 2 20 %, diffuse 18 %".
+std::string Describe(const LobeLight& light);
+
+// "light" in report.json and of `info --json`: albedo and share of the diffuse term and of each
+// lobe.
+nlohmann::ordered_json ToJson(const LobeLight& light);
 
 // Directional albedo at every whole degree from 0 to 89, or to the last one that was measured.
 struct AlbedoTable {
@@ -26,4 +38,4 @@ nlohmann::ordered_json ToJson(const AlbedoTable& table);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FIT_REPORTS_ALBEDO_TABLE_H_
+#endif  // TRILOBE_FIT_REPORTS_MODEL_REPORT_H_

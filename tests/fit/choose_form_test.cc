@@ -1,4 +1,4 @@
-#include "fit/anisotropic_forms.h"
+#include "fit/choose_form.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

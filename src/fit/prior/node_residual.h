@@ -1,5 +1,5 @@
-#ifndef TRILOBE_FIT_PRIOR_LACK_H_
-#define TRILOBE_FIT_PRIOR_LACK_H_
+#ifndef TRILOBE_FIT_PRIOR_NODE_RESIDUAL_H_
+#define TRILOBE_FIT_PRIOR_NODE_RESIDUAL_H_
 
 #include <optional>
 
@@ -19,4 +19,4 @@ std::optional<NodeBrdf> LackOf(const FactorModel& model, const Objective& data,
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FIT_PRIOR_LACK_H_
+#endif  // TRILOBE_FIT_PRIOR_NODE_RESIDUAL_H_

@@ -1,4 +1,4 @@
-#include "fit/prior/lack.h"
+#include "fit/prior/node_residual.h"
 
 #include <gtest/gtest.h>
 

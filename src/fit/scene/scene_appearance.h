@@ -1,15 +1,24 @@
-#ifndef TRILOBE_FIT_SCENE_LOOK_H_
-#define TRILOBE_FIT_SCENE_LOOK_H_
+#ifndef TRILOBE_FIT_SCENE_SCENE_APPEARANCE_H_
+#define TRILOBE_FIT_SCENE_SCENE_APPEARANCE_H_
 
 #include <optional>
 
 #include "fit/scene/scene_file.h"
 #include "model/appearance/picture_data.h"
+#include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
+
+// The samples in grey: all three channels are the luminance.
+BrdfSamples LuminanceOf(BrdfSamples samples);
+
+// The model in grey, whose values are the luminance of the model's. F becomes one table a lobe,
+// sum_C y_C s_C F_C, so D and G must be shared by the channels; throws Error if they are not.
+FactorModel LuminanceOf(const FactorModel& model);
 
 // How a model looks beside its measurement, on the sphere of docs/appearance.md, as far as a scene
 // sees that: in its channels and, of a table, from its directions alone.
@@ -39,4 +48,4 @@ double MaxError(const SceneBudget& budget);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FIT_SCENE_LOOK_H_
+#endif  // TRILOBE_FIT_SCENE_SCENE_APPEARANCE_H_

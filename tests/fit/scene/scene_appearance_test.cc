@@ -1,4 +1,4 @@
-#include "fit/scene/luminance.h"
+#include "fit/scene/scene_appearance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,13 @@
-#ifndef TRILOBE_FIT_PRUNE_NEEDED_LAYOUT_H_
-#define TRILOBE_FIT_PRUNE_NEEDED_LAYOUT_H_
+#ifndef TRILOBE_FIT_PRUNE_STORED_LAYOUTS_H_
+#define TRILOBE_FIT_PRUNE_STORED_LAYOUTS_H_
 
 #include <array>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/model_spec.h"
 #include "trilobe/model/table_layout.h"
 
 namespace trilobe {
@@ -21,6 +24,22 @@ TableLayout NeededLayout(const FactorModel& model, TableLayout stored,
 TableLayout NeededLayout(const FactorModel& model, std::span<const double> coverage,
                          const ThinnedFactors& may_thin, bool drop_equal);
 
+// What lobes and channels share, whatever nodes the tables have.
+struct ModelShape {
+  std::string name;  // what is shared that was not; empty for a model's own shape
+  ModelSpec spec;
+  bool coloured_d = true, coloured_s = true;
+  bool constant_G = false;
+};
+
+// The layout with the shape's colour, and its G.
+TableLayout LayoutOf(const ModelShape& shape, TableLayout layout);
+
+// The model's own shape, and those that share more of what may be shared; the one with the fewest
+// parameters first.
+std::vector<ModelShape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
+                                     bool shadowing);
+
 }  // namespace trilobe
 
-#endif  // TRILOBE_FIT_PRUNE_NEEDED_LAYOUT_H_
+#endif  // TRILOBE_FIT_PRUNE_STORED_LAYOUTS_H_

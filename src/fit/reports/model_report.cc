@@ -1,4 +1,4 @@
-#include "fit/reports/albedo_table.h"
+#include "fit/reports/model_report.h"
 
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -6,6 +6,37 @@
 #include "fit/reports/print.h"
 
 namespace trilobe {
+
+std::string DescribeStretches(const ModelSpec& spec) {
+  const auto describe = [](const Stretch& stretch) {
+    return "along " + Text(stretch.along, 3) + ", across " + Text(stretch.across, 3);
+  };
+  if (!spec.stretches.several()) return describe(spec.stretches.of(0));
+  std::string text;
+  for (int m = 0; m < spec.lobes; ++m) {
+    text += (m > 0 ? "; lobe " : "lobe ") + std::to_string(m + 1) + " " +
+            describe(spec.stretches.of(m));
+  }
+  return text;
+}
+
+std::string Describe(const LobeLight& light) {
+  std::string text;
+  for (size_t m = 0; m < light.lobes.size(); ++m) {
+    text += "lobe " + std::to_string(m + 1) + " " +
+            Text(100 * light.Share(static_cast<int>(m)), 3) + " %, ";
+  }
+  return text + "diffuse " + Text(100 * light.DiffuseShare(), 3) + " %";
+}
+
+nlohmann::ordered_json ToJson(const LobeLight& light) {
+  nlohmann::ordered_json lobes = nlohmann::ordered_json::array();
+  for (size_t m = 0; m < light.lobes.size(); ++m) {
+    lobes.push_back({{"albedo", light.lobes[m]}, {"share", light.Share(static_cast<int>(m))}});
+  }
+  return {{"diffuse", {{"albedo", light.diffuse}, {"share", light.DiffuseShare()}}},
+          {"lobes", lobes}};
+}
 
 AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads, double max_theta) {
   AlbedoTable table;
