@@ -3,7 +3,8 @@
 
 Adds a made-up subcommand, format, form of the model, solver and weighting to a copy of the working tree by the
 files that the page names, counts them against its numbers, and compiles what was touched; with --build the whole
-program, and runs it: scripts/check_what_to_touch.py [--build]
+program, and runs it. Counts the files that name each real subcommand, and a real form, too.
+scripts/check_what_to_touch.py [--build]
 """
 import json
 import pathlib
@@ -147,6 +148,26 @@ def numbers_of_the_page():
     return {row[1].split(":")[0]: int(row[2]) for row in re.finditer(r"^\| (an? [^|]*) \| (\d+) \|", page, re.M)}
 
 
+def files_naming(pattern):
+    """The files of src and include in which the pattern is found."""
+    return {path.relative_to(ROOT).as_posix() for folder in ("src", "include") for path in (ROOT / folder).rglob("*")
+            if path.suffix in (".h", ".cc") and re.search(pattern, path.read_text())}
+
+
+def check_real_commands(wanted):
+    for command in re.findall(r"^Command (\w+)\(\);", (ROOT / "src/app/command.h").read_text(), re.M):
+        check_real(command, files_naming(rf"\b{command}\b"), wanted)
+
+
+def check_real_form(wanted):
+    check_real("--model=independent", files_naming(r'\b(IndependentG|kIndependent)\b|"independent"'), wanted)
+
+
+def check_real(name, files, wanted):
+    if len(files) != wanted:
+        sys.exit(f"docs/architecture.md says {wanted} files, and {name} is named by {', '.join(sorted(files))}")
+
+
 def compile_touched(tree):
     """Without code: the sources of the touched files, as the tidy preset compiles them."""
     build = tree.folder / "build/tidy"
@@ -163,6 +184,8 @@ def compile_touched(tree):
 
 def main():
     wanted = numbers_of_the_page()
+    check_real_commands(wanted["a subcommand"])
+    check_real_form(wanted["a form of the model"])
     with tempfile.TemporaryDirectory() as folder:
         tree = Copy(folder)
         everything = set()

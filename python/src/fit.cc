@@ -246,7 +246,7 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   report.data_notes = data->notes;
   report.bins = CountsOf(*data);
   report.fit = file.fit;
-  TellFit(fit, &report);
+  FillReport(fit, &report);
   report.summary.phases.reading = report.seconds.read;
   report.peak_memory = PeakMemory();
   outcome.model_text = FormatModel(file);

@@ -67,7 +67,7 @@ void CheckOut(const Scene& scene, std::vector<std::string> others) {
   CheckPictureOut();
 }
 
-PrunedScene FromRun(const std::string& path) {
+PrunedScene PruneScene(const std::string& path) {
   PrunedScene pruned{.settings = SceneSettingsFromFlags()};
   Scene scene = ReadScene(path);
   CheckOut(scene, {});
@@ -98,7 +98,7 @@ void TakeFlags(const Json& flags) {
   }
 }
 
-PrunedScene FromFolder(const std::string& folder) {
+PrunedScene ReadPrunedScene(const std::string& folder) {
   const std::string path = folder + "/plan.json";
   try {
     const Json plan = Json::parse(ReadJsonText(path, path + ": not a plan"));
@@ -157,7 +157,7 @@ Comparison Compare(const PrunedScene& pruned) {
 }
 
 template <typename Value>
-auto Total(const Comparison& comparison, const Value& value) {
+auto SumOver(const Comparison& comparison, const Value& value) {
   decltype(value(comparison.rows[0])) sum = 0;
   for (const Row& row : comparison.rows) sum += value(row);
   return sum;
@@ -177,8 +177,8 @@ Json ToJson(const Comparison& comparison) {
                          {"pruned", SideToJson(row.pruned)},
                          {"relative_rise", row.Rise()}});
   }
-  const int full = Total(comparison, [](const Row& row) { return row.full.num_parameters; });
-  const int pruned = Total(comparison, [](const Row& row) { return row.pruned.num_parameters; });
+  const int full = SumOver(comparison, [](const Row& row) { return row.full.num_parameters; });
+  const int pruned = SumOver(comparison, [](const Row& row) { return row.pruned.num_parameters; });
   const auto count = static_cast<double>(comparison.rows.size());
   return {{"threads", comparison.threads},
           {"materials", materials},
@@ -190,11 +190,11 @@ Json ToJson(const Comparison& comparison) {
               {"pruned", comparison.pruned_seconds},
               {"pruned_reckoned", comparison.reckoned}}},
             {"mean_relative_rise",
-             Total(comparison, [](const Row& row) { return row.Rise(); }) / count},
+             SumOver(comparison, [](const Row& row) { return row.Rise(); }) / count},
             {"mean_psnr_db",
              {{"full",
-               Total(comparison, [](const Row& row) { return row.full.score.psnr_db; }) / count},
-              {"pruned", Total(comparison, [](const Row& row) {
+               SumOver(comparison, [](const Row& row) { return row.full.score.psnr_db; }) / count},
+              {"pruned", SumOver(comparison, [](const Row& row) {
                            return row.pruned.score.psnr_db;
                          }) / count}}}}}};
 }
@@ -208,12 +208,13 @@ void Print(const Comparison& comparison) {
                             double pruned_psnr) {
     const std::string name = Printable(material);
     std::cout << name << std::string(name.size() < width ? width - name.size() : 1, ' ')
-              << Right(std::to_string(full), 7) << Right(std::to_string(pruned), 8)
-              << Right(std::to_string(BytesOf(full)), 9)
-              << Right(std::to_string(BytesOf(pruned)), 8) << Right(Text(full_seconds, 3), 8)
-              << Right(Text(pruned_seconds, 3), 8) << Right(full_E, 11) << Right(pruned_E, 11)
-              << Right(Text(100 * rise, 3), 9) << Right(Text(full_psnr), 8)
-              << Right(Text(pruned_psnr), 8) << "\n";
+              << AlignRight(std::to_string(full), 7) << AlignRight(std::to_string(pruned), 8)
+              << AlignRight(std::to_string(BytesOf(full)), 9)
+              << AlignRight(std::to_string(BytesOf(pruned)), 8)
+              << AlignRight(Text(full_seconds, 3), 8) << AlignRight(Text(pruned_seconds, 3), 8)
+              << AlignRight(full_E, 11) << AlignRight(pruned_E, 11)
+              << AlignRight(Text(100 * rise, 3), 9) << AlignRight(Text(full_psnr), 8)
+              << AlignRight(Text(pruned_psnr), 8) << "\n";
   };
   std::cout << std::string(width, ' ')
             << "  parameters            bytes          seconds              E          E rises     "
@@ -227,10 +228,10 @@ void Print(const Comparison& comparison) {
          row.Rise(), row.full.score.psnr_db, row.pruned.score.psnr_db);
   }
   const auto mean = [&](const auto& value) {
-    return Total(comparison, value) / static_cast<double>(comparison.rows.size());
+    return SumOver(comparison, value) / static_cast<double>(comparison.rows.size());
   };
-  line("all", Total(comparison, [](const Row& row) { return row.full.num_parameters; }),
-       Total(comparison, [](const Row& row) { return row.pruned.num_parameters; }),
+  line("all", SumOver(comparison, [](const Row& row) { return row.full.num_parameters; }),
+       SumOver(comparison, [](const Row& row) { return row.pruned.num_parameters; }),
        comparison.full_seconds, comparison.pruned_seconds, "", "",
        mean([](const Row& row) { return row.Rise(); }),
        mean([](const Row& row) { return row.full.score.psnr_db; }),
@@ -257,7 +258,7 @@ int RunCompare(std::span<const std::string> arguments) {
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(arguments[0], ignored);
   const Comparison comparison =
-      Compare(is_folder ? FromFolder(arguments[0]) : FromRun(arguments[0]));
+      Compare(is_folder ? ReadPrunedScene(arguments[0]) : PruneScene(arguments[0]));
   if (FLAGS_json) {
     PrintJson(ToJson(comparison));
   } else {

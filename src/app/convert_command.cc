@@ -96,7 +96,7 @@ void WriteForRenderer(const std::string& source) {
     CheckOut(source);
     const ConvertOptions options = OptionsFromFlags(source);
     const Measurement measurement = LoadMeasurement(source, SourceOptionsFromFlags());
-    TellNotes(measurement);
+    PrintNotes(measurement);
     lines = WriteForRenderer(measurement, out, options);
   }
   for (const std::string& line : lines) PrintLine(line);
@@ -139,7 +139,7 @@ int RunConvert(std::span<const std::string> arguments) {
   SourceOptions options = SourceOptionsFromFlags();
   options.outliers = options.dark_noise = true;  // what is copied stays as it is
   const Measurement measurement = MeasurementOf(source, out, options);
-  TellNotes(measurement);
+  PrintNotes(measurement);
   const std::string written = WriteMeasurement(measurement, out, options.num_threads);
   PrintLine("wrote " + out + ": " + written);
   return 0;

@@ -206,7 +206,7 @@ int RunFitOfOne(const std::string& source) {
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
     try {
-      WriteRest(&run, settings, into);
+      WriteOtherFiles(&run, settings, into);
     } catch (const Error& error) {
       throw Error(std::string(error.what()) + "; the model is in '" + into->PathOf("model.json") +
                   "'");
@@ -251,7 +251,7 @@ int RunFit(std::span<const std::string> arguments) {
 
 // "  name  description" a line, from a registry.
 template <typename T>
-std::string List(const std::vector<T>& entries) {
+std::string ListEntries(const std::vector<T>& entries) {
   size_t width = 0;
   for (const T& entry : entries) width = std::max(width, entry.name.size());
   std::string text;
@@ -290,8 +290,8 @@ Command FitCommand() {
           "materials of a scene file, side by side, and\nwrites DIR/NAME.json (a model) for "
           "each, DIR/plan.json and DIR/plan.txt. Ctrl-C keeps what is\nfinished; the same "
           "command goes on with the others.\n\nsolvers:\n" +
-          List(Solvers()) + "\nstarting points (--init):\n" + List(InitialModels()) +
-          "\nweightings:\n" + List(Weightings()) +
+          ListEntries(Solvers()) + "\nstarting points (--init):\n" + ListEntries(InitialModels()) +
+          "\nweightings:\n" + ListEntries(Weightings()) +
           "\n`trilobe help fit --solver=NAME` shows the flags of another solver than this:",
       .flags = FitFlags(),
       .particular_flags = ParticularSolverFlags(),

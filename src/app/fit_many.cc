@@ -95,7 +95,7 @@ std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
 }
 
 // Those that --shard leaves.
-std::vector<FitOutcome> InShard(const std::vector<FitOutcome>& outcomes) {
+std::vector<FitOutcome> SelectShard(const std::vector<FitOutcome>& outcomes) {
   if (FLAGS_shard.empty()) return outcomes;
   int first = 0, count = 0;
   char slash = 0;
@@ -166,7 +166,7 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
   std::optional<FitRun> run = RunOneFit(
       outcome->source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
   if (!run) return;
-  WriteRest(&*run, settings, folder);
+  WriteOtherFiles(&*run, settings, folder);
   TakeReport(ToJson(run->report), outcome);
   outcome->state =
       run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
@@ -207,7 +207,7 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
 
 }  // namespace
 
-std::vector<FitOutcome> FitsIn(const std::string& folder) {
+std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (fs::exists(entry.path() / "report.json") && fs::exists(entry.path() / "model.json")) {
@@ -252,7 +252,7 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   std::vector<std::string> read = settings.inputs;
   for (const FitOutcome& outcome : all) read.push_back(outcome.source);
   const Inputs inputs(read);
-  std::vector<FitOutcome> outcomes = InShard(all);
+  std::vector<FitOutcome> outcomes = SelectShard(all);
   std::vector<ResultFolder> folders;
   for (const FitOutcome& outcome : outcomes) {
     folders.emplace_back(out + "/" + outcome.name, FitFileNames(), FitFolderMarks(), inputs);

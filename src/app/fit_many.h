@@ -12,7 +12,7 @@ namespace trilobe {
 
 // What the folders of fits in a folder say of them, by their names. Throws Error where there is
 // none.
-std::vector<FitOutcome> FitsIn(const std::string& folder);
+std::vector<FitOutcome> ReadFitsIn(const std::string& folder);
 
 // `trilobe fit SOURCE... --out=DIR`, where a SOURCE may be a folder of measurements: fits each, on
 // a thread of its own, into the folder DIR/NAME, leaves out those of which that folder already has

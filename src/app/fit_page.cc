@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A name as part of an address: what is not a letter, a digit or one of -._~ as %XX (RFC 3986).
-std::string Address(const std::string& name) {
+std::string EncodeAddress(const std::string& name) {
   std::ostringstream address;
   address << std::hex << std::uppercase << std::setfill('0');
   for (const unsigned char c : name) {
@@ -44,8 +44,8 @@ std::string CsvField(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string Figure(const FitOutcome& outcome) {
-  const std::string folder = Address(outcome.name);
+std::string FormatFigure(const FitOutcome& outcome) {
+  const std::string folder = EncodeAddress(outcome.name);
   std::ostringstream figure;
   figure << R"(<figure><a href=")" << folder << '/' << outcome.page << R"("><img src=")" << folder
          << '/' << outcome.picture << R"(" loading="lazy" alt=")" << EscapedMarkup(outcome.name)
@@ -126,7 +126,7 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
          << (outcome.error.empty() ? "" : ": ") << EscapedMarkup(outcome.error) << "</p>\n";
   }
   body << "<main>\n";
-  for (const FitOutcome& outcome : fits) body << Figure(outcome);
+  for (const FitOutcome& outcome : fits) body << FormatFigure(outcome);
   body << "</main>";
   return FormatDocument("catalogue.html", "Fits",
                         json.dump(-1, ' ', false, Json::error_handler_t::replace), body.str());

@@ -159,7 +159,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
   NoteSymptoms(num_threads, &measured);
-  TellNotes(measured);
+  PrintNotes(measured);
   report.data_notes = measured.notes;
   report.bins = CountsOf(measured);
   const std::string run = folder == nullptr ? "" : folder->run();
@@ -195,7 +195,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (!begun) return std::nullopt;
   ModelFile file = file_of(fit);
   report.fit = file.fit;
-  TellFit(fit, &report);
+  FillReport(fit, &report);
   report.summary.phases.reading = report.seconds.read;
   report.peak_memory = PeakMemory();
   return FitRun{.measured = std::move(measured),
@@ -205,7 +205,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                 .convergence = std::move(convergence)};
 }
 
-void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
+void WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   const Objective& objective = run->objective;
   const int threads = objective.num_threads();
   FitReport& report = run->report;

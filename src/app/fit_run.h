@@ -79,7 +79,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
 
 // Writes the other files, the report last: where it is, all are. If a picture cannot be drawn, the
 // others are written before Error is thrown.
-void WriteRest(FitRun* run, const FitSettings& settings, ResultFolder* folder);
+void WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder);
 
 }  // namespace trilobe
 

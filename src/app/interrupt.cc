@@ -18,13 +18,13 @@ std::atomic<bool> on_terminal = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 // As if nobody had caught it; from a handler it arrives when the handler is through.
-void EndBy(int signal) {
+void EndBySignal(int signal) {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
 
 // On a terminal in the place of a line of progress.
-void Say(std::string_view line) {
+void WriteLine(std::string_view line) {
   const int error = errno;
   if (on_terminal) static_cast<void>(!write(STDERR_FILENO, "\r\033[K", 4));
   static_cast<void>(!write(STDERR_FILENO, line.data(), line.size()));
@@ -35,21 +35,21 @@ extern "C" void OnSignal(int signal) {
   caught_signal = signal;
   switch (++signals_caught) {
     case 1:
-      return Say(
+      return WriteLine(
           "trilobe: stopping: the best so far is kept; a second Ctrl-C ends at once, but not "
           "before a model is on disk\n");
     case 2:
       if (unsaved_models == 0) break;
-      return Say(
+      return WriteLine(
           "trilobe: stopping: a model is not on disk yet; a third Ctrl-C ends at once, and loses "
           "it\n");
     default:
       break;
   }
-  EndBy(signal);
+  EndBySignal(signal);
 }
 
-void Catch(int signal, struct sigaction* old) {
+void InstallHandler(int signal, struct sigaction* old) {
   struct sigaction action {};
   action.sa_handler = OnSignal;
   action.sa_flags = SA_RESTART;
@@ -62,9 +62,9 @@ void Catch(int signal, struct sigaction* old) {
 InterruptGuard::InterruptGuard() {
   caught_signal = signals_caught = 0;
   on_terminal = isatty(STDERR_FILENO) != 0;
-  Catch(SIGINT, &old_int_);
-  Catch(SIGTERM, &old_term_);
-  Catch(SIGHUP, &old_hup_);
+  InstallHandler(SIGINT, &old_int_);
+  InstallHandler(SIGTERM, &old_term_);
+  InstallHandler(SIGHUP, &old_hup_);
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, &old_pipe_);
@@ -84,7 +84,7 @@ UnsavedModel::UnsavedModel() { ++unsaved_models; }
 UnsavedModel::~UnsavedModel() {
   // An error on its way ends the program anyway, and says where the model is.
   const bool failed = std::uncaught_exceptions() > 0;
-  if (--unsaved_models == 0 && signals_caught > 1 && !failed) EndBy(caught_signal);
+  if (--unsaved_models == 0 && signals_caught > 1 && !failed) EndBySignal(caught_signal);
 }
 
 }  // namespace trilobe

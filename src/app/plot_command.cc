@@ -34,7 +34,7 @@ int RunPlot(std::span<const std::string> arguments) {
   PictureData data;
   if (arguments.size() > 1) {
     measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
-    TellNotes(*measured);
+    PrintNotes(*measured);
     data = PictureDataOf(*measured);
   }
   std::vector<IterationRecord> trace;

@@ -187,20 +187,21 @@ void PrintPlan(const SceneRun& run, std::ostream& out) {
     full += fit.full_parameters;
     pruned += fit.num_parameters;
     seconds += fit.fit_seconds + fit.prune_seconds;
-    out << name(fit.name) << Right(std::to_string(fit.file.model.spec().lobes), 6)
-        << Right(std::to_string(fit.num_parameters), 9)
-        << Right(std::to_string(fit.full_parameters), 9)
-        << Right(std::to_string(BytesOf(fit.num_parameters)), 9) << Right(RiseText(fit), 12)
-        << Right(Text(PsnrFall(fit.full.psnr_db, fit.pruned.psnr_db), 3) + " dB", 15)
-        << Right(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
+    out << name(fit.name) << AlignRight(std::to_string(fit.file.model.spec().lobes), 6)
+        << AlignRight(std::to_string(fit.num_parameters), 9)
+        << AlignRight(std::to_string(fit.full_parameters), 9)
+        << AlignRight(std::to_string(BytesOf(fit.num_parameters)), 9)
+        << AlignRight(RiseText(fit), 12)
+        << AlignRight(Text(PsnrFall(fit.full.psnr_db, fit.pruned.psnr_db), 3) + " dB", 15)
+        << AlignRight(Text(fit.fit_seconds + fit.prune_seconds, 3), 9)
         << (fit.prune_from_cache ? "  from the cache"
             : fit.fit_from_cache ? "  the fit from the cache"
                                  : "")
         << "\n";
   }
-  out << name("all") << Right("", 6) << Right(std::to_string(pruned), 9)
-      << Right(std::to_string(full), 9) << Right(std::to_string(BytesOf(pruned)), 9)
-      << Right("", 27) << Right(Text(seconds, 3), 9) << "\n"
+  out << name("all") << AlignRight("", 6) << AlignRight(std::to_string(pruned), 9)
+      << AlignRight(std::to_string(full), 9) << AlignRight(std::to_string(BytesOf(pruned)), 9)
+      << AlignRight("", 27) << AlignRight(Text(seconds, 3), 9) << "\n"
       << Text(run.seconds, 3) << " seconds side by side on " << run.threads << " threads"
       << (run.reused > 0 ? ", reckoned from what the parts took when they were made" : "") << "\n";
   for (const MaterialFit& fit : run.fits) PrintDecisions(run, fit, out);

@@ -92,7 +92,7 @@ int RunScore(std::span<const std::string> arguments) {
     other = LoadSource(arguments[0], SourceOptionsFromFlags());
   }
   const Measurement measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
-  TellNotes(measured);
+  PrintNotes(measured);
   const PictureData pictured = PictureDataOf(measured);
   if (!FLAGS_out.empty() && pictured.empty()) TableOf(measured);  // its error
   BrdfSamples samples = SamplesOf(measured);

@@ -46,7 +46,7 @@ int ViewFolder(const std::string& folder) {
                 ": the page of a folder is a .html file in it, as it shows the "
                 "pictures that lie there");
   }
-  const std::vector<FitOutcome> fits = FitsIn(folder);
+  const std::vector<FitOutcome> fits = ReadFitsIn(folder);
   Inputs().CheckOutput(path);
   const bool table = std::filesystem::exists(folder + "/fits.csv", ignored);
   Write(path, FitsPage(fits, table ? "fits.csv" : ""),
@@ -71,7 +71,7 @@ int RunView(std::span<const std::string> arguments) {
   std::optional<Measurement> measured;
   if (arguments.size() > 1) {
     measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
-    TellNotes(*measured);
+    PrintNotes(*measured);
   }
   const AppearanceOptions appearance = AppearanceOptionsFromFlags();
   const ViewedPage page = ViewPage(model, arguments[0], measured ? &*measured : nullptr,

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "fit/held_out.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
+#include "fit/held_out.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
 #include "model/objective/robust.h"
@@ -36,20 +36,21 @@ Objective FitRobustly(const Objective& objective, const FinishOptions& options,
   return reweighted;
 }
 
-// How models look on a sphere: of what was measured and, where some was not, of all directions.
-// Made when it is first asked for.
-class Looks {
+// How much a model looks like the measurement on a sphere [dB]: of what was measured and, where
+// some was not, of all directions. The measured spheres are rendered when they are first asked for.
+class SphereScores {
  public:
-  Looks(const BrdfTable& measured, const AppearanceOptions& options)
+  SphereScores(const BrdfTable& measured, const AppearanceOptions& options)
       : table_(measured), options_(options) {}
 
+  // Whether there are directions beyond those that were measured.
   bool has_beyond() const { return !table_.unmeasured.empty(); }
 
-  double Measured(const FactorModel& model) {
+  double ScoreMeasured(const FactorModel& model) {
     if (!measured_) measured_.emplace(table_, options_);
     return (*measured_)(MaterialOf(model).angular).psnr_db;
   }
-  double Beyond(const FactorModel& model) {
+  double ScoreBeyond(const FactorModel& model) {
     if (!beyond_) beyond_.emplace(SphereJudge::OfAllDirections(table_, options_));
     return (*beyond_)(MaterialOf(model).angular).psnr_db;
   }
@@ -63,19 +64,19 @@ class Looks {
 // Whether one model is as good as another in all but E.
 class NoHarm {
  public:
-  NoHarm(const Objective& objective, const FactorModel& before, Looks* looks)
+  NoHarm(const Objective& objective, const FactorModel& before, SphereScores* scores)
       : samples_(EvenlySpread(objective.samples(), kSamples)),
         num_threads_(objective.num_threads()),
-        looks_(*looks),
-        measured_(looks->Measured(before)),
-        beyond_(looks->has_beyond() ? looks->Beyond(before) : 0),
+        scores_(*scores),
+        measured_(scores->ScoreMeasured(before)),
+        beyond_(scores->has_beyond() ? scores->ScoreBeyond(before) : 0),
         log_error_(LogError(before)) {}
 
   bool operator()(const FactorModel& after) const {
     constexpr double kMayLose = 0.2, kMayLoseBeyond = 1;  // [dB]
     constexpr double kMayGrow = 0.1;
-    return looks_.Measured(after) >= measured_ - kMayLose &&
-           (!looks_.has_beyond() || looks_.Beyond(after) >= beyond_ - kMayLoseBeyond) &&
+    return scores_.ScoreMeasured(after) >= measured_ - kMayLose &&
+           (!scores_.has_beyond() || scores_.ScoreBeyond(after) >= beyond_ - kMayLoseBeyond) &&
            LogError(after) <= (1 + kMayGrow) * log_error_;
   }
 
@@ -87,13 +88,13 @@ class NoHarm {
   static constexpr int kSamples = 1 << 16;  // tell the same as a million would
   const BrdfSamples samples_;
   const int num_threads_;
-  Looks& looks_;
+  SphereScores& scores_;
   double measured_, beyond_, log_error_;
 };
 
 // As far as it does no harm, if that is worth it. `of`: whose E has been minimised, for models of
 // the fit's spec.
-void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* looks,
+void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereScores* scores,
                         FinishedFit* fit) {
   constexpr double kPrices[] = {30, 10, 3};
   constexpr double kWorthwhile = 0.75;  // what remains of the error
@@ -103,7 +104,7 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
   const TableLayout layout = thinned ? *fit->layout : UntiedEntries(solved.coverage(), model);
   // What a thinned table stores beyond the data stays, as it was fitted to more than these; and
   // entries that hardly a sample reads are held by what the model says where nothing was measured.
-  const Objective held = thinned ? UnmeasuredPrior(solved, model).With(solved) : solved;
+  const Objective held = thinned ? UnmeasuredPrior(solved, model).JoinTo(solved) : solved;
   std::optional<NoHarm> no_harm;
   for (const double price : kPrices) {
     std::optional<MatchedModel> matched =
@@ -115,7 +116,7 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
     } else {
       Canonicalize(solved, &matched->model);
     }
-    if (!no_harm) no_harm.emplace(fit->objective, model, looks);
+    if (!no_harm) no_harm.emplace(fit->objective, model, scores);
     if (!(*no_harm)(matched->model)) continue;
     const double E = fit->objective.Value(model);
     fit->matched = {.error_before = matched->error_before,
@@ -126,26 +127,28 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, Looks* l
   }
 }
 
-ModelChoiceOptions ByLooks(Looks* looks, const FinishOptions& options) {
+ModelChoiceOptions ChoiceByScores(SphereScores* scores, const FinishOptions& options) {
   ModelChoiceOptions choice;
   choice.max_parameters = options.max_parameters;
   choice.stop = options.stop;
-  choice.judge = [looks](const FactorModel& candidate) { return looks->Measured(candidate); };
-  if (looks->has_beyond()) {
-    choice.judge_beyond = [looks](const FactorModel& candidate) {
-      return looks->Beyond(candidate);
+  choice.judge = [scores](const FactorModel& candidate) {
+    return scores->ScoreMeasured(candidate);
+  };
+  if (scores->has_beyond()) {
+    choice.judge_beyond = [scores](const FactorModel& candidate) {
+      return scores->ScoreBeyond(candidate);
     };
   }
   return choice;
 }
 
 // As far as the share allows and does no harm.
-void SmoothOut(const Objective& solved, const FinishOptions& options, Looks* looks,
+void SmoothOut(const Objective& solved, const FinishOptions& options, SphereScores* scores,
                FinishedFit* fit) {
   std::optional<NoHarm> no_harm;
   const auto is_harmless = [&](const FactorModel& smooth) {
-    if (looks == nullptr) return true;
-    if (!no_harm) no_harm.emplace(fit->objective, fit->model, looks);
+    if (scores == nullptr) return true;
+    if (!no_harm) no_harm.emplace(fit->objective, fit->model, scores);
     return (*no_harm)(smooth);
   };
   std::optional<SmoothedModel> smoothest =
@@ -176,13 +179,13 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   Canonicalize(objective, &model);
   FinishedFit fit{
       .objective = objective, .model = std::move(model), .overshoot = overshoot, .tied = tied};
-  std::optional<Looks> looks;
-  if (measured != nullptr) looks.emplace(*measured, options.appearance);
+  std::optional<SphereScores> scores;
+  if (measured != nullptr) scores.emplace(*measured, options.appearance);
   Weighting weighting = objective.weighting();
   if (options.max_parameters > 0 && !options.stop()) {
     ChosenModel chosen;
-    if (looks) {
-      chosen = ChooseModel(solved, fit.model, ByLooks(&*looks, options));
+    if (scores) {
+      chosen = ChooseModel(solved, fit.model, ChoiceByScores(&*scores, options));
     } else {
       const HeldOutPart held_out(objective.data().samples(), options.seed, objective.num_threads());
       fit.held_out = held_out.size();
@@ -190,7 +193,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     }
     fit.objective = Objective(objective, chosen.model.spec());
     fit.model = std::move(chosen.model);
-    if (looks || chosen.chosen > 0) {
+    if (scores || chosen.chosen > 0) {
       // Forms were judged by some of the samples, which may leave entries unread.
       SetCanonicalScale(fit.objective.coverage(), &fit.model, objective.num_threads());
       fit.layout = std::move(chosen.layout);
@@ -200,17 +203,17 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     weighting = chosen.weighting;
   }
   // A robust fit has given up on some of the light.
-  if (options.match_reflectance && options.robust == 0 && looks &&
+  if (options.match_reflectance && options.robust == 0 && scores &&
       !fit.model.spec().anisotropic() && !options.stop()) {
     const Objective weighed =
         weighting.name == objective.weighting().name
             ? fit.objective
             : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
-    MatchReflectanceOf(weighed, options.stop, &*looks, &fit);
+    MatchReflectanceOf(weighed, options.stop, &*scores, &fit);
   }
   // Tables of a form that was chosen are thinned.
   if (options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) && !options.stop()) {
-    SmoothOut(solved, options, looks ? &*looks : nullptr, &fit);
+    SmoothOut(solved, options, scores ? &*scores : nullptr, &fit);
   }
   return fit;
 }

@@ -76,7 +76,7 @@ bool HasEnded(StopReason reason) {
 }
 
 // With numbers in their ranges, and functions that can be called.
-FitOptions Checked(FitOptions options) {
+FitOptions CheckOptions(FitOptions options) {
   CheckNumber("robust", options.robust, options.robust >= 0 && std::isfinite(options.robust),
               "finite and 0 or more");
   CheckNumber("smoothness", options.smoothness, options.smoothness >= 0 && options.smoothness <= 1,
@@ -100,7 +100,7 @@ class Fitting {
  public:
   Fitting(const Measurement& measurement, const FitOptions& options)
       : measurement_(measurement),
-        options_(Checked(options)),
+        options_(CheckOptions(options)),
         table_(measurement.table && !options.select ? &*measurement.table : nullptr) {}
 
   FitResult Run() {
@@ -181,7 +181,7 @@ class Fitting {
     const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, fit->objective);
     SolvedForm form = SolveForm(fit->objective, prior, std::move(*model), /*is_first=*/true);
     fit->seconds.solve = stopwatch_.Lap();
-    Tell(form, fit);
+    ReportForm(form, fit);
     // As the solver left it; what follows may take longer than somebody who ends it waits.
     if (!options_.stop()) {
       fit->file.model = form.model;
@@ -191,7 +191,7 @@ class Fitting {
     }
     if (forms_.size() > 1 && !options_.stop()) {
       Choose(prior, &form, fit);
-      Tell(form, fit);
+      ReportForm(form, fit);
     }
     Finish(form.solved, prior ? &*prior : nullptr, std::move(form.model), fit);
     options_.on_model(*fit);
@@ -201,7 +201,7 @@ class Fitting {
     fit->interrupted = options_.stop();
   }
 
-  void Tell(const SolvedForm& form, FitResult* fit) const {
+  void ReportForm(const SolvedForm& form, FitResult* fit) const {
     fit->objective = form.data;
     const int added = form.solved.samples().size() - form.data.samples().size();
     if (added > 0) fit->prior = {form.solved.samples().multiplicity.back(), added};
@@ -211,7 +211,7 @@ class Fitting {
 
   SolvedForm SolveForm(Objective data, const std::optional<SyntheticPrior>& prior,
                        FactorModel model, bool is_first) const {
-    Objective solved = prior ? Objective(data, prior->With(data)) : data;
+    Objective solved = prior ? Objective(data, prior->JoinTo(data)) : data;
     SolverOptions solver = options_.solver_options(solved.spec());
     solver.on_iteration = [this, is_first](const IterationRecord& record,
                                            const FactorModel& current) {
@@ -246,8 +246,8 @@ class Fitting {
     }
     const HeldOutPart held_out(form->data.samples(), options_.seed, options_.num_threads);
     fit->finished.held_out = held_out.size();
-    SolvedForm first = {held_out.Without(form->data), held_out.Without(form->solved), form->model,
-                        form->summary};
+    SolvedForm first = {held_out.RemoveFrom(form->data), held_out.RemoveFrom(form->solved),
+                        form->model, form->summary};
     first.model = FitToPart(first.solved, std::move(first.model), options_.stop);
     first.summary.final_objective = first.data.Value(first.model);
     const SolvedForm chosen =
@@ -357,7 +357,7 @@ FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
   FitProblem problem{.data = Objective(SamplesToFit(measurement, options), spec, options.weighting,
                                        options.num_threads)};
   const std::optional<SyntheticPrior> prior = PriorOf(measurement, options, problem.data);
-  if (prior) problem.with_prior.emplace(problem.data, prior->With(problem.data));
+  if (prior) problem.with_prior.emplace(problem.data, prior->JoinTo(problem.data));
   return problem;
 }
 

@@ -1,6 +1,7 @@
 #include "trilobe/fit/form.h"
 
 #include <string>
+#include <tuple>
 
 #include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"
@@ -84,6 +85,17 @@ ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, in
   const ModelSpec spec = IsotropicSpec(options, measurement.samples.grid,
                                        grid ? Axis::SplineNodesFor(grid->thetas) : 0);
   return measurement.anisotropic ? spec : spec.ForScattered(num_samples);
+}
+
+std::string ModelName(const ModelSpec& spec) {
+  if (spec.anisotropic()) return "anisotropic";
+  const auto is = [&spec](const ModelSpec& named) {
+    return std::tie(spec.lobes, spec.D, spec.F, spec.G) ==
+           std::tie(named.lobes, named.D, named.F, named.G);
+  };
+  if (is(ModelSpec::SharedFactors(spec.lobes))) return "shared";
+  if (is(ModelSpec::IndependentG()) && !spec.stretches.any()) return "independent";
+  return "other";
 }
 
 std::vector<NodeCandidate> NodesToTry(const Measurement& measurement, const FormOptions& options,

@@ -44,7 +44,7 @@ double ScoreBeyond(const Objective& part, const FactorModel& model) {
 }
 
 // All samples move what is stored of a form that was fitted to a part of them.
-FactorModel FittedToAll(const Objective& solved, const ChosenModel& chosen, const StopCheck& stop) {
+FactorModel FitToAll(const Objective& solved, const ChosenModel& chosen, const StopCheck& stop) {
   constexpr int kSteps = 10;
   constexpr double kSmall = 1e-3;
   const ModelSpec& spec = chosen.model.spec();
@@ -53,7 +53,7 @@ FactorModel FittedToAll(const Objective& solved, const ChosenModel& chosen, cons
           ? Objective(solved, spec)
           : Objective(solved.samples(), spec, chosen.weighting, solved.num_threads());
   const Reduction stored(spec, chosen.layout);
-  const Objective held = UnmeasuredPrior(solved, chosen.model).With(all);
+  const Objective held = UnmeasuredPrior(solved, chosen.model).JoinTo(all);
   return JointSteps(held, chosen.model, kSteps, stop, &stored, kSmall).model;
 }
 
@@ -72,7 +72,7 @@ HeldOutPart::HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_thr
   held_ = Selected(measured, held);
 }
 
-Objective HeldOutPart::Without(const Objective& objective) const {
+Objective HeldOutPart::RemoveFrom(const Objective& objective) const {
   const auto part = [&](const BrdfSamples& samples) {
     std::vector<int> numbers = kept_;
     for (int j = num_measured_; j < samples.size(); ++j) numbers.push_back(j);
@@ -106,7 +106,7 @@ int LeastToHoldOut(int max_parameters) {
 
 ChosenModel ChooseModel(const Objective& solved, const HeldOutPart& held_out,
                         const FactorModel& fitted, int max_parameters, const StopCheck& stop) {
-  const Objective part = held_out.Without(solved);
+  const Objective part = held_out.RemoveFrom(solved);
   FactorModel first = FitToPart(part, fitted, stop);
   TieEntriesAtDataEdge(part, &first, stop);
   Canonicalize(part, &first);
@@ -124,7 +124,7 @@ ChosenModel ChooseModel(const Objective& solved, const HeldOutPart& held_out,
     chosen.layout = TableLayout::Full(fitted.spec());
     chosen.weighting = solved.weighting();
   } else {
-    chosen.model = FittedToAll(solved, chosen, stop);
+    chosen.model = FitToAll(solved, chosen, stop);
   }
   return chosen;
 }

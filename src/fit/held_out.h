@@ -25,7 +25,7 @@ class HeldOutPart {
 
   // The objective without them. Its first samples are those measured, and any others a prior's,
   // which stay.
-  Objective Without(const Objective& objective) const;
+  Objective RemoveFrom(const Objective& objective) const;
 
   // How much a model looks like the samples held out [dB] (CompareSamples).
   double Score(const FactorModel& model) const;

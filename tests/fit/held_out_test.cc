@@ -34,20 +34,20 @@ BrdfSamples White(size_t count) {
 Objective Of(BrdfSamples samples) { return {std::move(samples), Spec(), Weightings().front()}; }
 
 int KeptOf(const BrdfSamples& samples, uint64_t seed) {
-  return HeldOutPart(samples, seed, 1).Without(Of(samples)).samples().size();
+  return HeldOutPart(samples, seed, 1).RemoveFrom(Of(samples)).samples().size();
 }
 
 TEST(HeldOutPart, IsAFifthOfTheSamplesByWholeBlocks) {
   const BrdfSamples samples = White(5000);
   const HeldOutPart part(samples, 1, 1);
   EXPECT_NEAR(part.size(), 1000, 150);
-  const BrdfSamples kept = part.Without(Of(samples)).samples();
+  const BrdfSamples kept = part.RemoveFrom(Of(samples)).samples();
   EXPECT_EQ(kept.size() + part.size(), samples.size());
   // Next to a sample that is kept are only such, and so with those held out: a copy of all samples
   // that is moved by a hundredth of a block is divided alike, but for those at the edges of blocks.
   BrdfSamples moved = samples;
   for (HalfDiffAngles& at : moved.angles) at.theta_d += 0.02 * kPi / 180;
-  const BrdfSamples kept_of_moved = HeldOutPart(moved, 1, 1).Without(Of(moved)).samples();
+  const BrdfSamples kept_of_moved = HeldOutPart(moved, 1, 1).RemoveFrom(Of(moved)).samples();
   int same = 0;
   for (const SphericalAngles& at : kept.directions) {
     same += static_cast<int>(std::ranges::count_if(kept_of_moved.directions, [&](const auto& it) {
@@ -78,7 +78,7 @@ TEST(HeldOutPart, LeavesAPriorAsItIs) {
   }
   for (int j = 500; j < 700; ++j) both.rho[j] = {0.7, 0.7, 0.7};
   const HeldOutPart part(samples, 1, 1);
-  const Objective left = part.Without(Objective(data, both));
+  const Objective left = part.RemoveFrom(Objective(data, both));
   ASSERT_TRUE(left.has_prior());
   EXPECT_EQ(left.data().samples().size(), 500 - part.size());
   EXPECT_EQ(left.samples().size(), 700 - part.size());

@@ -2,6 +2,7 @@
 #define TRILOBE_FIT_FORM_H_
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "trilobe/fit/prior/node_choice.h"
@@ -40,6 +41,10 @@ void CheckForm(const FormOptions& options);
 // can tell apart; with smaller tables for few scattered samples. Throws Error for options that
 // contradict each other or the measurement.
 ModelSpec SpecFor(const Measurement& measurement, const FormOptions& options, int num_samples);
+
+// The value of --model that stands for a spec, which a model file may have brought: "shared",
+// "independent", "anisotropic" or "other".
+std::string ModelName(const ModelSpec& spec);
 
 // Nodes to choose from for this form; empty without nodes_by_held_out. Throws Error for an
 // isotropic spec.

@@ -61,7 +61,7 @@ class SampledLight {
   }
 
   // Of a model with the objective's spec. The same bits for any number of threads.
-  Light Of(const FactorModel& model, Slopes slopes) const {
+  Light Evaluate(const FactorModel& model, Slopes slopes) const {
     const int num_parameters = slopes == Slopes::kAll ? spec_.num_parameters() : 0;
     std::vector<Light> parts(kParts);
     ParallelFor(kParts, num_threads_, [&](int part) {
@@ -137,26 +137,26 @@ double Reflectance::Error() const { return RelativeDistance(fitted, measured); }
 
 Reflectance ReflectanceOf(const Objective& objective, const FactorModel& model) {
   CheckSameSpec(model.spec(), objective.spec());
-  return SampledLight(objective).Of(model, Slopes::kNone).reflectance;
+  return SampledLight(objective).Evaluate(model, Slopes::kNone).reflectance;
 }
 
 ReflectancePrice::ReflectancePrice(const Objective& objective, const FactorModel& model,
                                    double price)
     : light_(std::make_unique<const SampledLight>(objective)), price_(price) {
   CheckSameSpec(model.spec(), objective.spec());
-  target_ = light_->Of(model, Slopes::kNone).reflectance.fitted;
+  target_ = light_->Evaluate(model, Slopes::kNone).reflectance.fitted;
 }
 
 ReflectancePrice::~ReflectancePrice() = default;
 
 double ReflectancePrice::operator()(const FactorModel& model) const {
-  const Reflectance reflectance = light_->Of(model, Slopes::kNone).reflectance;
+  const Reflectance reflectance = light_->Evaluate(model, Slopes::kNone).reflectance;
   return price_ * std::pow(RelativeDistance(reflectance.fitted, target_), 2);
 }
 
 void ReflectancePrice::AddTo(const FactorModel& model, QuadraticModel* at) const {
   if (target_ == Rgb{}) return;
-  const Light light = light_->Of(model, Slopes::kAll);
+  const Light light = light_->Evaluate(model, Slopes::kAll);
   at->objective += price_ * std::pow(RelativeDistance(light.reflectance.fitted, target_), 2);
   AddPrice(price_, target_, light, std::identity(), at);
 }
@@ -169,7 +169,7 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
   CheckParameters(model);
   CheckLayout(layout, objective.spec());
   const SampledLight sampled(objective);
-  const Reflectance reflectance = sampled.Of(model, Slopes::kNone).reflectance;
+  const Reflectance reflectance = sampled.Evaluate(model, Slopes::kNone).reflectance;
   if (!reflectance.IsOff()) return std::nullopt;
   const double before = reflectance.Error();
   const Reduction reduction(objective.spec(), layout);
@@ -186,7 +186,7 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
       equations.Evaluate(at.model, Hessian::kGaussNewton, &problem);
       problem = reduction(problem);
       const std::vector<double> metric = DampingMetric(reduction.parts(), problem.squared_lengths);
-      const Light light = sampled.Of(at.model, Slopes::kAll);
+      const Light light = sampled.Evaluate(at.model, Slopes::kAll);
       AddPrice(
           price * E0, light.reflectance.measured, light,
           [&](const std::vector<double>& slope) { return reduction.Transpose(slope); }, &problem);
@@ -195,7 +195,7 @@ std::optional<MatchedModel> MatchReflectance(const Objective& objective, const O
     }
     FactorModel stepped = at.model;
     std::ranges::copy(reduction.Expand(step.Solve(lambda).x), stepped.parameters().begin());
-    const double error = sampled.Of(stepped, Slopes::kNone).reflectance.Error();
+    const double error = sampled.Evaluate(stepped, Slopes::kNone).reflectance.Error();
     const double lower = total(minimised.Value(stepped), error);
     if (!(lower < lowest)) {
       lambda *= kRise;

@@ -91,7 +91,7 @@ struct Sums {
   }
 
   template <typename Brdf>
-  std::vector<Rgb> Of(const Brdf& brdf) const {
+  std::vector<Rgb> Evaluate(const Brdf& brdf) const {
     std::vector<Rgb> sums;
     int k = 0;
     for (const int end : ends) {
@@ -129,7 +129,7 @@ class SumsCost : public ceres::CostFunction {
         steps[k - 1] = x[k - 1] > middle ? -kStep : kStep;
         x[k - 1] += steps[k - 1];
       }
-      seen[k] = sums_.Of(OpenPbrBrdf(Unpack(x.data(), start_, anisotropic_)));
+      seen[k] = sums_.Evaluate(OpenPbrBrdf(Unpack(x.data(), start_, anisotropic_)));
     });
     for (int j = 0; j < sums_.size(); ++j) {
       for (int c = 0; c < kChannels; ++c) {
@@ -300,9 +300,9 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
   const Prepared prepared(model);
   const auto value = [&](const DirectionPair& pair) { return prepared.Value(pair.wi, pair.wo); };
   Sums half_vectors = OverHalfVectors(prepared, max_theta);
-  half_vectors.expected = half_vectors.Of(value);
+  half_vectors.expected = half_vectors.Evaluate(value);
   Sums sphere = OverSphere(prepared, max_theta, options);
-  sphere.expected = sphere.Of(value);
+  sphere.expected = sphere.Evaluate(value);
 
   const double least = std::cos(max_theta) - 1e-12;
   const auto counts = [&](const SphericalAngles& at) {
@@ -315,7 +315,7 @@ NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
     OpenPbr material = Moved(half_vectors, start, anisotropic, 12, options.num_threads);
     material = Moved(sphere, material, anisotropic, 8, options.num_threads);
     double distance = 0;
-    const std::vector<Rgb> seen = sphere.Of(OpenPbrBrdf(material));
+    const std::vector<Rgb> seen = sphere.Evaluate(OpenPbrBrdf(material));
     for (int j = 0; j < sphere.size(); ++j) distance += LabDifference(seen[j], sphere.expected[j]);
     near.emplace_back(distance, material);
   }

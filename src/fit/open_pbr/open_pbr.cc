@@ -38,7 +38,7 @@ double MetalFresnel(double cosine, double f0, double tint) {
 struct Diffuse {
   double single = 0, again = 0, average = 1;
 
-  double Of(double color) const {
+  double Value(double color) const {
     return single * color + again * color * color / (1 - color * (1 - average));
   }
 };
@@ -234,7 +234,7 @@ Rgb OpenPbrBrdf::operator()(const DirectionPair& pair) const {
     const double metal = specular * MetalFresnel(cos_d, p.base_color[c], p.specular_color[c]) *
                          again(specular_, p.base_color[c]);
     const double glossy =
-        p.specular_color[c] * dielectric + below_specular * diffuse.Of(p.base_color[c]);
+        p.specular_color[c] * dielectric + below_specular * diffuse.Value(p.base_color[c]);
     value[c] = coat + below_coat * (glossy + p.base_metalness * (metal - glossy));
   }
   return value;

@@ -32,22 +32,22 @@ std::optional<Rgb> MeanAround(const NodeTable& table, int i, int o) {
 }
 
 // `sample`: the data's at each pair of nodes, or -1.
-bool CanBeInterpolated(const NodeTable& lack, const std::vector<int>& sample,
+bool CanBeInterpolated(const NodeTable& residual, const std::vector<int>& sample,
                        const Objective& data) {
   struct Sum {
     double all = 0, left = 0;
   };
-  const int nodes = lack.grid.nodes();
+  const int nodes = residual.grid.nodes();
   std::vector<Sum> sums(nodes);
   ParallelFor(nodes, data.num_threads(), [&](int i) {
     for (int o = 0; o < nodes; ++o) {
       const size_t index = static_cast<size_t>(i) * nodes + o;
-      if (!lack.present[index]) continue;
-      const std::optional<Rgb> around = MeanAround(lack, i, o);
+      if (!residual.present[index]) continue;
+      const std::optional<Rgb> around = MeanAround(residual, i, o);
       if (!around) continue;
       const Rgb weight = data.Sample(sample[index]).weight;
       for (int c = 0; c < kChannels; ++c) {
-        const double here = lack.rho[index][c], left = here - (*around)[c];
+        const double here = residual.rho[index][c], left = here - (*around)[c];
         sums[i].all += weight[c] * here * here;
         sums[i].left += weight[c] * left * left;
       }
@@ -63,28 +63,30 @@ bool CanBeInterpolated(const NodeTable& lack, const std::vector<int>& sample,
 
 }  // namespace
 
-std::optional<NodeBrdf> LackOf(const FactorModel& model, const Objective& data,
-                               const HemisphereGrid& grid) {
+std::optional<NodeBrdf> InterpolateResidual(const FactorModel& model, const Objective& data,
+                                            const HemisphereGrid& grid) {
   CheckHemisphereGrid(grid);
   const BrdfSamples& measured = data.samples();
   const auto nodes = static_cast<size_t>(grid.nodes());
-  NodeTable lack{.source = measured.source,
-                 .grid = grid,
-                 .rho = std::vector<Rgb>(nodes * nodes),
-                 .present = std::vector<bool>(nodes * nodes)};
+  NodeTable residual{.source = measured.source,
+                     .grid = grid,
+                     .rho = std::vector<Rgb>(nodes * nodes),
+                     .present = std::vector<bool>(nodes * nodes)};
   std::vector<int> sample(nodes * nodes, -1);
-  const std::vector<Rgb> said = EvaluateSamples(model, measured, data.num_threads());
+  const std::vector<Rgb> of_model = EvaluateSamples(model, measured, data.num_threads());
   for (int j = 0; j < measured.size(); ++j) {
     const SphericalAngles& at = measured.directions[j];
     const auto i = grid.Find(at.theta_i, at.phi_i), o = grid.Find(at.theta_o, at.phi_o);
     if (!i || !o) throw Error(measured.source + ": a sample is at no node of the prior's grid");
     const size_t index = *i * nodes + *o;
-    lack.present[index] = true;
+    residual.present[index] = true;
     sample[index] = j;
-    for (int c = 0; c < kChannels; ++c) lack.rho[index][c] = measured.rho[j][c] - said[j][c];
+    for (int c = 0; c < kChannels; ++c) {
+      residual.rho[index][c] = measured.rho[j][c] - of_model[j][c];
+    }
   }
-  if (!CanBeInterpolated(lack, sample, data)) return std::nullopt;
-  return NodeBrdf(std::move(lack));
+  if (!CanBeInterpolated(residual, sample, data)) return std::nullopt;
+  return NodeBrdf(std::move(residual));
 }
 
 }  // namespace trilobe

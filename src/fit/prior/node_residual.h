@@ -9,13 +9,13 @@
 
 namespace trilobe {
 
-// What a model lacks of the data at the nodes of a grid, where they stand: data less model, of
-// either sign, linear between the nodes. Nothing where that does not help between them, as with
-// highlights that are narrower than the grid's steps: unless what the 16 nodes around a node say of
-// it, at double steps, leaves less of the lack's squares, as E weighs them, than saying 0 does.
-// Throws Error for samples that stand elsewhere.
-std::optional<NodeBrdf> LackOf(const FactorModel& model, const Objective& data,
-                               const HemisphereGrid& grid);
+// Data less model at the nodes of a grid, where the data stand, and linear between them; of either
+// sign. Nothing where that does not help between the nodes, as with highlights that are narrower
+// than the grid's steps. It helps if the mean of the 16 nodes around a node, at double steps,
+// leaves less of the squares of the residual there, as E weighs them, than 0 does. Throws Error for
+// samples that stand elsewhere.
+std::optional<NodeBrdf> InterpolateResidual(const FactorModel& model, const Objective& data,
+                                            const HemisphereGrid& grid);
 
 }  // namespace trilobe
 

@@ -1,10 +1,7 @@
 #include "trilobe/fit/prior/reach.h"
 
-#include <gsl/gsl_qrng.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/lobes/reconstruct.h"
@@ -13,6 +10,18 @@ namespace trilobe {
 namespace {
 
 constexpr size_t kLookedAt = 50000;
+
+// The digits of n in a base, mirrored at the point: n = 1, 2, ... are Halton's sequence in a
+// dimension whose base is a prime of its own (Halton 1960).
+double RadicalInverse(int base, size_t n) {
+  double value = 0, digit = 1;
+  const double step = 1.0 / base;
+  for (; n > 0; n /= base) {
+    digit *= step;
+    value += digit * static_cast<double>(n % base);
+  }
+  return value;
+}
 
 // The largest channel of the model at each pair.
 std::vector<double> LargestChannels(const std::vector<SphericalAngles>& pairs,
@@ -32,13 +41,11 @@ std::vector<double> LargestChannels(const std::vector<SphericalAngles>& pairs,
 }  // namespace
 
 std::vector<SphericalAngles> DirectionsBetween(double max_theta, size_t count, Spread spread) {
-  const std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> halton(
-      gsl_qrng_alloc(gsl_qrng_halton, 4), gsl_qrng_free);
   std::vector<SphericalAngles> pairs;
   const size_t tries = 20 * count;
   for (size_t k = 0; k < tries && pairs.size() < count; ++k) {
-    double u[4];
-    gsl_qrng_get(halton.get(), u);
+    const double u[] = {RadicalInverse(2, k + 1), RadicalInverse(3, k + 1),
+                        RadicalInverse(5, k + 1), RadicalInverse(7, k + 1)};
     SphericalAngles at;
     if (spread == Spread::kByHighlights || k % 2 == 0) {
       const auto [wi, h] = ToDirections(SphericalAngles{max_theta * u[0], 2 * kPi * u[1],

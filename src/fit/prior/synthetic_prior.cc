@@ -79,71 +79,73 @@ void LimitTo(double times, const std::vector<Rgb>& data, std::vector<Rgb>* rho) 
   }
 }
 
-// A prior as it stands, and what it lacks at the nodes of the data, if they have any.
-struct Speaker {
+// A prior as it is fitted, and the residual of the data at their nodes, if they have any.
+struct PriorModel {
   const FactorModel& model;
-  const NodeBrdf* lack = nullptr;
+  const NodeBrdf* residual = nullptr;
 };
 
 // What it says at these directions.
-BrdfSamples SamplesOf(const Speaker& prior, std::vector<SphericalAngles> directions,
+BrdfSamples SamplesOf(const PriorModel& prior, std::vector<SphericalAngles> directions,
                       const BrdfSamples& measured, int num_threads) {
-  BrdfSamples said;
-  said.source = measured.source;
-  said.grid = measured.grid;
-  said.directions = std::move(directions);
-  for (const SphericalAngles& at : said.directions) {
-    said.angles.push_back(ToHalfDiff(ToDirections(at)));
+  BrdfSamples added;
+  added.source = measured.source;
+  added.grid = measured.grid;
+  added.directions = std::move(directions);
+  for (const SphericalAngles& at : added.directions) {
+    added.angles.push_back(ToHalfDiff(ToDirections(at)));
   }
-  said.rho.assign(said.directions.size(), {});
-  said.rho = EvaluateSamples(prior.model, said, num_threads);
-  if (prior.lack == nullptr) return said;
-  for (size_t j = 0; j < said.rho.size(); ++j) {
-    const Rgb lack = (*prior.lack)(said.directions[j]);
-    for (int c = 0; c < kChannels; ++c) said.rho[j][c] = std::max(said.rho[j][c] + lack[c], 0.0);
+  added.rho.assign(added.directions.size(), {});
+  added.rho = EvaluateSamples(prior.model, added, num_threads);
+  if (prior.residual == nullptr) return added;
+  for (size_t j = 0; j < added.rho.size(); ++j) {
+    const Rgb residual = (*prior.residual)(added.directions[j]);
+    for (int c = 0; c < kChannels; ++c) {
+      added.rho[j][c] = std::max(added.rho[j][c] + residual[c], 0.0);
+    }
   }
-  return said;
+  return added;
 }
 
 // Both, the latter of this weight each.
-BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said, double weight) {
+BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, double weight) {
   samples.multiplicity.resize(samples.rho.size(), 1);
-  samples.multiplicity.resize(samples.rho.size() + said.rho.size(), weight);
+  samples.multiplicity.resize(samples.rho.size() + added.rho.size(), weight);
   const auto append = [](const auto& from, auto* target) {
     target->insert(target->end(), from.begin(), from.end());
   };
-  append(said.angles, &samples.angles);
-  append(said.directions, &samples.directions);
-  append(said.rho, &samples.rho);
+  append(added.angles, &samples.angles);
+  append(added.directions, &samples.directions);
+  append(added.rho, &samples.rho);
   return samples;
 }
 
 // Directions between the samples where a fit is above so many times their largest value.
-std::vector<SphericalAngles> Above(double times, const Objective& with_prior,
-                                   const FactorModel& fit) {
+std::vector<SphericalAngles> FindDirectionsAbove(double times, const Objective& with_prior,
+                                                 const FactorModel& fit) {
   const BrdfSamples& measured = with_prior.data().samples();
   return DirectionsAbove(times * LargestValue(measured), LargestTheta(measured), fit,
                          with_prior.num_threads());
 }
 
 // The data and what `prior` says between them, enough for a model of so many parameters.
-BrdfSamples WithSamplesOf(const Speaker& prior, const Objective& data, int num_parameters,
+BrdfSamples WithSamplesOf(const PriorModel& prior, const Objective& data, int num_parameters,
                           double weight) {
   const BrdfSamples& measured = data.samples();
   const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
   const bool few = share < kFew * num_parameters;
   const auto count = static_cast<size_t>(few ? kEnough * num_parameters : share);
-  BrdfSamples said =
+  BrdfSamples added =
       SamplesOf(prior,
                 DirectionsBetween(LargestTheta(measured), count,
                                   few ? Spread::kRetroreflectionToo : Spread::kByHighlights),
                 measured, data.num_threads());
-  if (said.directions.empty()) return measured;
+  if (added.directions.empty()) return measured;
   if (few) {
-    LimitTo(kMaxOfLargest, measured.rho, &said.rho);
+    LimitTo(kMaxOfLargest, measured.rho, &added.rho);
     weight *= share / static_cast<double>(count);
   }
-  return Joined(measured, said, weight);
+  return JoinSamples(measured, added, weight);
 }
 
 // The prior of this number, from 0 (the finest), itself fitted with the next where data are few.
@@ -193,27 +195,27 @@ SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOption
   weight_ = kind.weight;
   model_ = FitPrior(kind, 0, data, options.stop);
   if (!options.isotropic && data.spec().lobes >= 2) TryTwoLobes(&kind, data, options.stop, &model_);
-  if (options.grid) lack_ = LackOf(model_, data, *options.grid);
+  if (options.grid) residual_ = InterpolateResidual(model_, data, *options.grid);
 }
 
-BrdfSamples SyntheticPrior::With(const Objective& data) const {
-  return WithSamplesOf({model_, lack_ ? &*lack_ : nullptr}, data, data.spec().num_parameters(),
-                       weight_);
+BrdfSamples SyntheticPrior::JoinTo(const Objective& data) const {
+  return WithSamplesOf({model_, residual_ ? &*residual_ : nullptr}, data,
+                       data.spec().num_parameters(), weight_);
 }
 
-std::optional<Objective> SyntheticPrior::WhereLarge(const Objective& with_prior,
-                                                    const FactorModel& fit, double times) const {
+std::optional<Objective> SyntheticPrior::AddWhereLarge(const Objective& with_prior,
+                                                       const FactorModel& fit, double times) const {
   const BrdfSamples& measured = with_prior.data().samples();
-  const std::vector<SphericalAngles> large = Above(kMaxOfLargest, with_prior, fit);
+  const std::vector<SphericalAngles> large = FindDirectionsAbove(kMaxOfLargest, with_prior, fit);
   if (large.empty()) return std::nullopt;
-  BrdfSamples said =
-      SamplesOf({model_, lack_ ? &*lack_ : nullptr}, large, measured, with_prior.num_threads());
-  LimitTo(kMaxOfLargest, measured.rho, &said.rho);
-  return Objective(with_prior.data(), Joined(with_prior.samples(), said, times * weight_));
+  BrdfSamples added = SamplesOf({model_, residual_ ? &*residual_ : nullptr}, large, measured,
+                                with_prior.num_threads());
+  LimitTo(kMaxOfLargest, measured.rho, &added.rho);
+  return Objective(with_prior.data(), JoinSamples(with_prior.samples(), added, times * weight_));
 }
 
 BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& options) {
-  return SyntheticPrior(data, options).With(data);
+  return SyntheticPrior(data, options).JoinTo(data);
 }
 
 std::optional<CorrectedOvershoot> CorrectOvershoot(const SyntheticPrior& prior,
@@ -221,7 +223,7 @@ std::optional<CorrectedOvershoot> CorrectOvershoot(const SyntheticPrior& prior,
                                                    FactorModel* model) {
   constexpr int kRounds = 4, kSteps = 20;
   constexpr double kMore = 10;  // of what each of the prior's samples there counts, each round
-  if (Above(kOvershoot, *with_prior, *model).empty()) return std::nullopt;
+  if (FindDirectionsAbove(kOvershoot, *with_prior, *model).empty()) return std::nullopt;
   const double before = with_prior->data().Value(*model);
   SolverOptions options;
   options.max_iterations = kSteps;
@@ -229,7 +231,7 @@ std::optional<CorrectedOvershoot> CorrectOvershoot(const SyntheticPrior& prior,
   options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
   double times = 1;
   for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
-    std::optional<Objective> further = prior.WhereLarge(*with_prior, *model, times);
+    std::optional<Objective> further = prior.AddWhereLarge(*with_prior, *model, times);
     if (!further) break;
     MakeSolver("varpro")->Solve(*further, options, model);
     *with_prior = *std::move(further);

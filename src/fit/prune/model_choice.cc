@@ -50,8 +50,8 @@ Objective Thinned(const Objective& objective, const SampleThinning& thinning) {
 
 // Where few samples lead, a few joint steps on more of them go on: an entry that the few hardly
 // read may be anything.
-FactorModel GoOn(const Objective& objective, const FactorModel& start, const StopCheck& stop,
-                 const Reduction* reduction = nullptr) {
+FactorModel ContinueFit(const Objective& objective, const FactorModel& start, const StopCheck& stop,
+                        const Reduction* reduction = nullptr) {
   constexpr int kSteps = 2;
   return JointSteps(objective, start, kSteps, stop, reduction).model;
 }
@@ -64,7 +64,7 @@ class Objectives {
 
   const Objective& own() const { return made_.front(); }
 
-  Objective For(const ModelSpec& spec, const Weighting& weighting) {
+  Objective ObjectiveFor(const ModelSpec& spec, const Weighting& weighting) {
     const auto alike = std::ranges::find_if(made_, [&](const Objective& other) {
       return other.weighting().name == weighting.name &&
              other.spec().stretches.distinct() == spec.stretches.distinct();
@@ -94,8 +94,8 @@ class ModelSearch {
         some_(Thinned(objective, kSomeSamples)),
         few_(Thinned(objective, kFewSamples)),
         prior_(objective, fitted),
-        some_with_prior_(prior_.With(some_.own())),
-        few_with_prior_(prior_.With(few_.own())) {}
+        some_with_prior_(prior_.JoinTo(some_.own())),
+        few_with_prior_(prior_.JoinTo(few_.own())) {}
 
   ChosenModel Run() {
     const TableLayout full = TableLayout::Full(fitted_.spec());
@@ -154,7 +154,7 @@ class ModelSearch {
   // E, as it is quoted, is of the objective that was asked for; of a form on its way, as these
   // samples tell it.
   double ValueOfSome(const FactorModel& model) {
-    const double E = some_.For(model.spec(), objective_.weighting()).Value(model);
+    const double E = some_.ObjectiveFor(model.spec(), objective_.weighting()).Value(model);
     return some_of_fit_ > 0 ? E * (best_.candidates.front().E / some_of_fit_) : E;
   }
 
@@ -162,7 +162,7 @@ class ModelSearch {
   // once.
   double ValueOf(const FactorModel& model) {
     if (!model.spec().stretches.any()) {
-      return all_.For(model.spec(), objective_.weighting()).Value(model);
+      return all_.ObjectiveFor(model.spec(), objective_.weighting()).Value(model);
     }
     const std::vector<Rgb> values =
         UnclampedSamples(model, objective_.samples(), objective_.num_threads());
@@ -180,13 +180,14 @@ class ModelSearch {
     const bool of_fit = best_.chosen < 0;
     prune.sharing = of_fit;
     if (!of_fit) prune.stop = options_.stop;
-    PrunedModel pruned = Prune(prior.With(few_.For(model.spec(), weighting)), model, prune);
+    PrunedModel pruned =
+        Prune(prior.JoinTo(few_.ObjectiveFor(model.spec(), weighting)), model, prune);
     if (!of_fit && options_.stop()) return;
-    const Objective refitted = prior.With(some_.For(pruned.model.spec(), weighting));
+    const Objective refitted = prior.JoinTo(some_.ObjectiveFor(pruned.model.spec(), weighting));
     const Reduction stored(refitted.spec(), pruned.layout);
-    pruned.model = GoOn(refitted, pruned.model, options_.stop, &stored);
+    pruned.model = ContinueFit(refitted, pruned.model, options_.stop, &stored);
     // By what was measured, without the prior.
-    const Objective measured = some_.For(pruned.model.spec(), weighting);
+    const Objective measured = some_.ObjectiveFor(pruned.model.spec(), weighting);
     SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
     ExpandStored(pruned.layout, &pruned.model);
     Judge(name + ", thinned", pruned.model, pruned.layout, ValueOf(pruned.model));
@@ -212,13 +213,14 @@ class ModelSearch {
     const ModelSpec& spec = form.start.spec();
     constexpr int kStepsOnFew = 12;
     constexpr double kSmall = 2e-3;  // a decrease of E, relative, that no picture shows
-    form.start = JointSteps(few_with_prior_.For(spec, form.weighting), form.start, kStepsOnFew,
-                            options_.stop, /*reduction=*/nullptr, kSmall)
+    form.start = JointSteps(few_with_prior_.ObjectiveFor(spec, form.weighting), form.start,
+                            kStepsOnFew, options_.stop, /*reduction=*/nullptr, kSmall)
                      .model;
-    form.start = GoOn(some_with_prior_.For(spec, form.weighting), form.start, options_.stop);
+    form.start =
+        ContinueFit(some_with_prior_.ObjectiveFor(spec, form.weighting), form.start, options_.stop);
     // Entries that no measured sample reads are what the prior makes of them, next to others that
     // have moved far away; a picture reads between the two.
-    Canonicalize(some_.For(spec, form.weighting), &form.start);
+    Canonicalize(some_.ObjectiveFor(spec, form.weighting), &form.start);
     const double score =
         Judge(form.name, form.start, TableLayout::Full(spec), ValueOfSome(form.start));
     forms_.push_back({std::move(form), score});
@@ -236,7 +238,7 @@ class ModelSearch {
   bool FitStretchedBase() {
     const ModelSpec& spec = fitted_.spec();
     if (spec.lobes == 0 || spec.anisotropic() || spec.stretches.any()) return true;
-    const Objective few = few_with_prior_.For(spec, objective_.weighting());
+    const Objective few = few_with_prior_.ObjectiveFor(spec, objective_.weighting());
     SteppedModel stretch = FitStretches(few, fitted_, options_.stop);
     if (!Fit({"stretched", stretch.model, objective_.weighting()})) return false;
     double E = best_.candidates.back().E;
@@ -244,7 +246,7 @@ class ModelSearch {
     const Objective* judged = &few;
     // The prior is what the fit says where nothing was measured, and would lead the second way back
     // to it. So it goes without, and the picture tells which of both is better.
-    const Objective measured = few_.For(spec, objective_.weighting());
+    const Objective measured = few_.ObjectiveFor(spec, objective_.weighting());
     std::optional<SteppedModel> anew =
         FitStretchesAnew(measured, fitted_, stretch.model, options_.stop);
     if (anew) {
@@ -279,12 +281,12 @@ class ModelSearch {
       bases_.push_back(forms_.back());
     }
     // From starts of its own, since it ends in another minimum.
-    ModelForm form{
-        "weighed by channel anew",
-        FitBy("auto", few_with_prior_.For(fitted_.spec(), by_channel), fitted_, options_.stop),
-        by_channel};
+    ModelForm form{"weighed by channel anew",
+                   FitBySolver("auto", few_with_prior_.ObjectiveFor(fitted_.spec(), by_channel),
+                               fitted_, options_.stop),
+                   by_channel};
     if (stretched) {
-      const Objective few = few_with_prior_.For(fitted_.spec(), by_channel);
+      const Objective few = few_with_prior_.ObjectiveFor(fitted_.spec(), by_channel);
       form = {"stretched, weighed by channel anew",
               FitStretches(few, form.start, options_.stop).model, by_channel};
     }
@@ -323,14 +325,14 @@ class ModelSearch {
       if (LeastStored(model.spec()) > options_.max_parameters) continue;
       const TableLayout layout = TableLayout::Full(model.spec());
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
-        model = Tied(some_.For(model.spec(), weighting), model, fitted_form.score,
-                     TieRefit::kUntilBack);
+        model = TieUnlessSeen(some_.ObjectiveFor(model.spec(), weighting), model, fitted_form.score,
+                              TieRefit::kUntilBack);
         Thin(name, weighting, model);
       } else {
-        const Objective all = all_.For(model.spec(), weighting);
-        model = GoOn(all, model, options_.stop);
+        const Objective all = all_.ObjectiveFor(model.spec(), weighting);
+        model = ContinueFit(all, model, options_.stop);
         Canonicalize(all, &model);
-        model = Tied(all, model, options_.judge(model), TieRefit::kUntilSettled);
+        model = TieUnlessSeen(all, model, options_.judge(model), TieRefit::kUntilSettled);
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout, weighting);
       }
@@ -339,8 +341,8 @@ class ModelSearch {
 
   // The model, in canonical form and of this score, with entries at the edge of the data tied,
   // unless that is seen where data are.
-  FactorModel Tied(const Objective& objective, const FactorModel& model, double score,
-                   TieRefit refit) {
+  FactorModel TieUnlessSeen(const Objective& objective, const FactorModel& model, double score,
+                            TieRefit refit) {
     FactorModel tied = model;
     if (!TieEntriesAtDataEdge(objective, &tied, options_.stop, refit)) return model;
     Canonicalize(objective, &tied);

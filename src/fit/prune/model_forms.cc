@@ -60,8 +60,8 @@ std::optional<ModelForm> FormWithALobeMore(const ModelForm& base) {
                    base.weighting};
 }
 
-FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& start,
-                  const StopCheck& stop) {
+FactorModel FitBySolver(const char* solver, const Objective& few, const FactorModel& start,
+                        const StopCheck& stop) {
   FactorModel model = start;
   SolverOptions options;
   options.diagnose = false;
@@ -74,7 +74,7 @@ std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorM
                                              const FactorModel& stretched, const StopCheck& stop) {
   FactorModel start = InitialModels().front().make(few, /*seed=*/1);
   CopyUnobservedParameters(few.coverage(), fitted, &start);
-  SteppedModel anew = FitStretches(few, FitBy("hybrid", few, start, stop), stop);
+  SteppedModel anew = FitStretches(few, FitBySolver("hybrid", few, start, stop), stop);
   if (!anew.model.spec().stretches.any()) return std::nullopt;
   if (!(anew.E < Objective(few, stretched.spec()).Value(stretched))) return std::nullopt;
   return anew;

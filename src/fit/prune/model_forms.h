@@ -31,8 +31,8 @@ std::optional<ModelForm> FormSharingNeither(const ModelForm& base);
 std::optional<ModelForm> FormWithALobeMore(const ModelForm& base);
 
 // What a solver makes of few samples.
-FactorModel FitBy(const char* solver, const Objective& few, const FactorModel& start,
-                  const StopCheck& stop);
+FactorModel FitBySolver(const char* solver, const Objective& few, const FactorModel& start,
+                        const StopCheck& stop);
 
 // Where highlights widen towards grazing a fit without stretches may let F and G cancel over many
 // decades (docs/stored-model.md), from which no stretch leads back; so a second way begins at the

@@ -150,7 +150,7 @@ class Eliminator {
     const Constraint c = ConstraintOf(j);
     const double rise = tableau_.Rise(c);
     if (!tableau_.free(row_of_[j])) tableau_.Pivot(row_of_[j]);
-    tableau_.Impose(c);
+    tableau_.ImposeConstraint(c);
     const int row = row_of_[j], last = number_of_[tableau_.size() - 1];
     tableau_.Remove(row);
     number_of_[row] = last;
@@ -253,7 +253,7 @@ double Tableau::Rise(const Constraint& c) const {
   return variance > 0 ? value * value / variance - release : 0;
 }
 
-void Tableau::Impose(const Constraint& c) {
+void Tableau::ImposeConstraint(const Constraint& c) {
   t_.assign(size_, 0.0);
   double value = 0, variance = 0;
   for (const Term& a : c) {

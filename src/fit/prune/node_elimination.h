@@ -51,7 +51,7 @@ class Tableau {
   double Rise(const Constraint& c) const;
 
   // Imposes it, its first parameter being free.
-  void Impose(const Constraint& c);
+  void ImposeConstraint(const Constraint& c);
 
   // Forgets a parameter that follows from others. The last one takes its place.
   void Remove(int k);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "fit/prune/lobe_search.h"
-#include "fit/prune/stored_layouts.h"
 #include "fit/prune/prune_tables.h"
 #include "fit/prune/pruning.h"
+#include "fit/prune/stored_layouts.h"
 #include "model/lobes/gauge.h"
 #include "model/lobes/lobes.h"
 #include "solvers/joint/reduction.h"
@@ -105,7 +105,7 @@ std::vector<LobeStart> WithOneLobeLess(const Pruning& pruning) {
 
 // The best that comes of these starts. Those whose lobes are stretched by others are fitted apart.
 PruneState FitLobes(std::vector<LobeStart> starts, double wanted, const Pruning& pruning) {
-  FitGoal goal{.E = pruning.ForFits(wanted)};
+  FitGoal goal{.E = pruning.GoalOfFits(wanted)};
   // Where E only leads to what is seen, the last of it is not worth its time.
   if (pruning.options().error) goal.least_gain = kLittleUnseen;
   PruneState best{};
@@ -144,10 +144,10 @@ bool TryLobes(std::vector<LobeStart> starts, double wanted, Pruning* pruning) {
   ExpandStored(next.layout, &next.model);
   next.E = next.data->Value(next.model);
   if (pruning->options().stop()) return false;
-  const bool within = next.E <= wanted && pruning->Keeps(next);
+  const bool within = next.E <= wanted && pruning->KeepsToBudget(next);
   const bool taken = lobes > state.lobes() ? next.E < state.E : within;
   const std::string what = LobesText(lobes) + " instead of " + LobesText(state.lobes());
-  const std::string why = pruning->Against(next.E, within);
+  const std::string why = pruning->CompareWithFull(next.E, within);
   return pruning->Decide(what, std::move(next), taken, why);
 }
 
@@ -212,11 +212,11 @@ void SpendBudget(Pruning* pruning) {
 
 void AddLobes(Pruning* pruning) {
   const PruneState& state = pruning->state();
-  while (!pruning->Keeps(state) && state.lobes() < pruning->options().max_lobes) {
+  while (!pruning->KeepsToBudget(state) && state.lobes() < pruning->options().max_lobes) {
     std::vector<LobeStart> starts = LobeStarts(WithOneLobeMore(state.model));
     if (starts.empty() || !TryLobes(std::move(starts), pruning->search_limit(), pruning)) break;
   }
-  if (!pruning->Keeps(state)) {
+  if (!pruning->KeepsToBudget(state)) {
     pruning->Record("nothing else left out", state, false,
                     "the budget asks for a better fit than was found");
   } else {
@@ -273,7 +273,7 @@ PrunedModel Prune(const Objective& measured, const Objective& with_prior, const 
   LeaveOutWhatIsFree(&pruning);
   if (pruning.by_parameters()) {
     MeetParameters(&pruning);
-  } else if (!pruning.Keeps(pruning.state())) {
+  } else if (!pruning.KeepsToBudget(pruning.state())) {
     AddLobes(&pruning);
   } else if (pruning.may_rise()) {
     SpendBudget(&pruning);

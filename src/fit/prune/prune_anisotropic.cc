@@ -154,8 +154,8 @@ class AnisotropicPruning {
   }
 
   bool Decide(const std::string& what, PruneState next) {
-    const bool within = pruning_.Keeps(next);
-    const std::string why = pruning_.Against(next.E, within);
+    const bool within = pruning_.KeepsToBudget(next);
+    const std::string why = pruning_.CompareWithFull(next.E, within);
     return pruning_.Decide(what, std::move(next), within && !stopped(), why);
   }
 
@@ -185,7 +185,7 @@ class AnisotropicPruning {
         best.emplace(candidate->what, std::move(next));
       }
       if (!best) break;
-      const std::string why = pruning_.Against(best->second.E, true);
+      const std::string why = pruning_.CompareWithFull(best->second.E, true);
       pruning_.Decide(best->first, std::move(best->second), true, why);
     }
     if (state().num_parameters() <= max_parameters) {
@@ -205,7 +205,7 @@ class AnisotropicPruning {
   // Where E with the prior is to go for that of the measured ones to go where it may.
   double Wanted() const {
     if (pruning_.by_parameters()) return 0;  // nothing can be given up: a few steps tell enough
-    if (pruning_.Exact(pruning_.E_full())) return pruning_.search_limit();
+    if (pruning_.IsExact(pruning_.E_full())) return pruning_.search_limit();
     return pruning_.E_full() > 0 ? E_with_prior_ * pruning_.search_limit() / pruning_.E_full() : 0;
   }
 
@@ -250,7 +250,7 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& with_pr
                              const FactorModel& full, const PruneOptions& options) {
   AnisotropicPruning search(measured, with_prior, full, options);
   Pruning& pruning = search.pruning();
-  if (!pruning.Keeps(pruning.state())) {
+  if (!pruning.KeepsToBudget(pruning.state())) {
     pruning.Record("nothing left out", pruning.state(), false,
                    "the budget asks for a better fit than was found");
     return pruning.Result(LobeOrder::kByLight);

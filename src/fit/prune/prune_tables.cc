@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "fit/prune/stored_layouts.h"
 #include "fit/prune/node_elimination.h"
 #include "fit/prune/reduced_quadratic.h"
+#include "fit/prune/stored_layouts.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/core/system/parallel.h"
@@ -72,7 +72,8 @@ void Polish(const Pruning& pruning, PruneState* state) {
 }
 
 bool WithinBudget(const Pruning& pruning, const PruneState& next) {
-  return pruning.by_parameters() || (next.E <= pruning.search_limit() && pruning.Keeps(next));
+  return pruning.by_parameters() ||
+         (next.E <= pruning.search_limit() && pruning.KeepsToBudget(next));
 }
 
 // A shape, with the parameters that would be best by the quadratic.
@@ -125,8 +126,8 @@ std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& sha
 }
 
 // The state with the first `count` nodes given up, refitted.
-PruneState Without(const Pruning& pruning, const std::vector<Elimination>& order, int count,
-                   const QuadraticModel& at) {
+PruneState RemoveNodes(const Pruning& pruning, const std::vector<Elimination>& order, int count,
+                       const QuadraticModel& at) {
   PruneState next = pruning.state();
   for (int k = 0; k < count; ++k) {
     std::erase(next.layout.of(order[k].factor, order[k].table), order[k].entry);
@@ -188,7 +189,7 @@ void ChooseShape(Pruning* pruning) {
     next.E = next.data->Value(next.model);
     Polish(*pruning, &next);
     const bool taken = WithinBudget(*pruning, next);
-    const std::string why = pruning->Against(next.E, taken);
+    const std::string why = pruning->CompareWithFull(next.E, taken);
     if (pruning->Decide(option.shape.name, std::move(next), taken, why)) return;
   }
 }
@@ -208,7 +209,7 @@ void ThinTables(Pruning* pruning) {
     bool worth_more = false;
     for (bool taken = false; !taken && attempt < kMaxAttempts && count > 0; ++attempt) {
       if (share < 1) count = std::min(count, CountWithin(order, share * left));
-      PruneState next = Without(*pruning, order, count, at);
+      PruneState next = RemoveNodes(*pruning, order, count, at);
       taken = WithinBudget(*pruning, next);
       if (taken) {
         const bool few = next.num_parameters() > (1 - kFewParameters) * from.num_parameters();
@@ -236,7 +237,7 @@ void ThinTables(Pruning* pruning) {
     what << (factor == Factor::kD ? " " : ", ") << FactorName(factor) << " from " << nodes_before
          << " to " << nodes_after;
   }
-  const std::string why = pruning->Against(after.E, /*within=*/true);
+  const std::string why = pruning->CompareWithFull(after.E, /*within=*/true);
   pruning->Decide(what.str(), std::move(after), true, why);
 }
 

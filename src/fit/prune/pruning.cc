@@ -65,7 +65,7 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
     const double growth = full_error_ > 0 ? max_error_ / full_error_ : kInfinity;
     search_limit_ = growth * growth * E_full_;
     // Of an exact model no multiple says anything: then the E of a good fit is where to begin.
-    if (Exact(E_full_)) search_limit_ = std::max(search_limit_, kGoodFit * data.MeasuredEnergy());
+    if (IsExact(E_full_)) search_limit_ = std::max(search_limit_, kGoodFit * data.MeasuredEnergy());
     search_limit_ = std::min({limit_, search_limit_, data.MeasuredEnergy()});
   } else if (std::isfinite(options.max_psnr_drop_db)) {
     error_ = ErrorByPsnr;
@@ -75,7 +75,7 @@ Pruning::Pruning(const Objective& data, const Objective& objective, const Factor
     search_limit_ = std::min(limit_, growth * growth * E_full_);
   }
   const bool relative = !options.error && options.max_relative_rise > 0;
-  if (relative && Exact(E_full_)) {
+  if (relative && IsExact(E_full_)) {
     std::ostringstream why;
     why << std::setprecision(2) << "E of the full model is practically 0, "
         << (data.MeasuredEnergy() > 0 ? E_full_ / data.MeasuredEnergy() : 0)
@@ -113,20 +113,20 @@ const QuadraticModel& Pruning::Linearized() {
   return quadratic_;
 }
 
-bool Pruning::Exact(double E) const { return E <= kPracticallyZero * data_.MeasuredEnergy(); }
+bool Pruning::IsExact(double E) const { return E <= kPracticallyZero * data_.MeasuredEnergy(); }
 
 bool Pruning::may_rise() const { return search_limit_ > E_full_ * (1 + kRounding); }
 
-bool Pruning::Keeps(const PruneState& state) const {
+bool Pruning::KeepsToBudget(const PruneState& state) const {
   if (by_parameters_) return true;
   if (!(state.E <= limit_ * (1 + kRounding))) return false;
   return !limits_error() || ErrorOf(state) <= max_error_;
 }
 
-std::string Pruning::Against(double E, bool within) const {
+std::string Pruning::CompareWithFull(double E, bool within) const {
   std::ostringstream out;
   out.precision(3);
-  if (!Exact(E_full_)) {
+  if (!IsExact(E_full_)) {
     const double rise = 100 * (E / E_full_ - 1);
     out << "E is " << std::abs(rise) << " % " << (rise < 0 ? "below" : "above")
         << " the full model's";

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "fit/prune/stored_layouts.h"
 #include "fit/prune/prune_options.h"
+#include "fit/prune/stored_layouts.h"
 #include "model/lobes/gauge.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
@@ -66,14 +66,14 @@ class Pruning {
   bool by_parameters() const { return by_parameters_; }
   double E_full() const { return E_full_; }
   // Whether E is 0 but for rounding, so that nothing can be relative to it.
-  bool Exact(double E) const;
+  bool IsExact(double E) const;
   bool may_rise() const;  // by more than rounding
   double limit() const { return limit_; }
   // Where E is to go, limit() or less: by a limit of the error that is known only roughly.
   double search_limit() const { return search_limit_; }
   void set_search_limit(double limit) { search_limit_ = limit; }
   // Where E of fits is to go, of the data and of the prior's samples, for that of the data to be E.
-  double ForFits(double E) const { return E + E_of_prior_; }
+  double GoalOfFits(double E) const { return E + E_of_prior_; }
   // Besides E: how far off the state's model is in what options() or a PSNR limit, and how far it
   // may be; 0 where nothing but E counts.
   bool limits_error() const { return error_ != nullptr; }
@@ -81,9 +81,9 @@ class Pruning {
   double full_error() const { return full_error_; }
   double max_error() const { return max_error_; }
   // The true test, of E and error.
-  bool Keeps(const PruneState& state) const;
+  bool KeepsToBudget(const PruneState& state) const;
   // E against the full model's, in words.
-  std::string Against(double E, bool within) const;
+  std::string CompareWithFull(double E, bool within) const;
 
   void Record(std::string what, const PruneState& next, bool taken, std::string why);
   // Records it, and goes on from there if it is taken; returns whether.

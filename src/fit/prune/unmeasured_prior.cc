@@ -45,42 +45,42 @@ std::vector<SphericalAngles> DirectionsBeyond(const BrdfSamples& measured) {
 }
 
 // Scattered ones.
-BrdfSamples Joined(BrdfSamples samples, const BrdfSamples& said) {
+BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added) {
   const auto append = [](const auto& from, auto* target) {
     target->insert(target->end(), from.begin(), from.end());
   };
   samples.multiplicity.resize(samples.rho.size(), 1);
-  append(said.multiplicity, &samples.multiplicity);
-  append(said.angles, &samples.angles);
-  append(said.directions, &samples.directions);
-  append(said.rho, &samples.rho);
+  append(added.multiplicity, &samples.multiplicity);
+  append(added.angles, &samples.angles);
+  append(added.directions, &samples.directions);
+  append(added.rho, &samples.rho);
   return samples;
 }
 
 }  // namespace
 
 UnmeasuredPrior::UnmeasuredPrior(const Objective& objective, const FactorModel& model)
-    : said_{objective.samples().source, objective.samples().grid, {}, {}, {}} {
+    : samples_{objective.samples().source, objective.samples().grid, {}, {}, {}} {
   const BrdfSamples& measured = objective.samples();
   if (measured.on_grid()) {
-    said_.bins = OpenBins(measured);
+    samples_.bins = OpenBins(measured);
   } else {
-    said_.directions = DirectionsBeyond(measured);
-    for (const SphericalAngles& at : said_.directions) {
-      said_.angles.push_back(ToHalfDiff(ToDirections(at)));
+    samples_.directions = DirectionsBeyond(measured);
+    for (const SphericalAngles& at : samples_.directions) {
+      samples_.angles.push_back(ToHalfDiff(ToDirections(at)));
     }
   }
-  const size_t places = said_.bins.size() + said_.angles.size();
+  const size_t places = samples_.bins.size() + samples_.angles.size();
   if (places == 0) return;
-  said_.rho.assign(places, {});
-  said_.rho = UnclampedSamples(model, said_, objective.num_threads());
+  samples_.rho.assign(places, {});
+  samples_.rho = UnclampedSamples(model, samples_, objective.num_threads());
   Rgb most{};
   for (const Rgb& rho : measured.rho) {
     for (int c = 0; c < kChannels; ++c) most[c] = std::max(most[c], rho[c]);
   }
   std::vector<int> finite;
-  for (int j = 0; j < said_.size(); ++j) {
-    Rgb& rho = said_.rho[j];
+  for (int j = 0; j < samples_.size(); ++j) {
+    Rgb& rho = samples_.rho[j];
     if (!std::ranges::all_of(rho, [](double x) { return std::isfinite(x); })) continue;
     finite.push_back(j);
     // A spline may undershoot, and a model be absurd.
@@ -88,22 +88,23 @@ UnmeasuredPrior::UnmeasuredPrior(const Objective& objective, const FactorModel& 
       rho[c] = std::clamp(rho[c], 0.0, std::min(kAbsurd * most[c], kLargest));
     }
   }
-  said_ = ThinnedByPlace(Selected(said_, finite), kStride, kLeast);
+  samples_ = ThinnedByPlace(Selected(samples_, finite), kStride, kLeast);
   const double weight = measured.on_grid() ? kWeight : kWeightOfScattered;
-  for (double& times : said_.multiplicity) times *= weight;
+  for (double& times : samples_.multiplicity) times *= weight;
 }
 
-Objective UnmeasuredPrior::With(const Objective& objective) const {
-  if (said_.rho.empty()) return objective;
+Objective UnmeasuredPrior::JoinTo(const Objective& objective) const {
+  if (samples_.rho.empty()) return objective;
   const BrdfSamples& measured = objective.samples();
   if (!measured.on_grid()) {
-    BrdfSamples both = Joined(measured, said_);
+    BrdfSamples both = JoinSamples(measured, samples_);
     return {std::move(both), objective.spec(), objective.weighting(), objective.num_threads()};
   }
   BrdfSamples both{measured.source, measured.grid, {}, {}, {}};
-  for (int j = 0, k = 0; j < measured.size() || k < said_.size();) {
-    const bool own = k == said_.size() || (j < measured.size() && measured.bins[j] < said_.bins[k]);
-    const BrdfSamples& from = own ? measured : said_;
+  for (int j = 0, k = 0; j < measured.size() || k < samples_.size();) {
+    const bool own =
+        k == samples_.size() || (j < measured.size() && measured.bins[j] < samples_.bins[k]);
+    const BrdfSamples& from = own ? measured : samples_;
     const int number = own ? j++ : k++;
     both.bins.push_back(from.bins[number]);
     both.rho.push_back(from.rho[number]);

@@ -19,10 +19,10 @@ class UnmeasuredPrior {
   UnmeasuredPrior(const Objective& objective, const FactorModel& model);
 
   // The objective, whose samples are some of the other's, with the prior's samples besides.
-  Objective With(const Objective& objective) const;
+  Objective JoinTo(const Objective& objective) const;
 
  private:
-  BrdfSamples said_;
+  BrdfSamples samples_;
 };
 
 }  // namespace trilobe

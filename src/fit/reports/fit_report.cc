@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <tuple>
 #include <utility>
 
 #include "fit/reports/appearance_report.h"
@@ -62,7 +61,7 @@ std::string Hundredths(double seconds) {
 
 }  // namespace
 
-void TellFit(const FitResult& fit, FitReport* report) {
+void FillReport(const FitResult& fit, FitReport* report) {
   report->interrupted = fit.interrupted;
   report->spec = fit.model().spec();
   report->summary = fit.summary;
@@ -77,17 +76,6 @@ void TellFit(const FitResult& fit, FitReport* report) {
   report->reach = fit.reach;
   report->light = fit.light;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
-}
-
-std::string ModelName(const ModelSpec& spec) {
-  if (spec.anisotropic()) return "anisotropic";
-  const auto is = [&spec](const ModelSpec& named) {
-    return std::tie(spec.lobes, spec.D, spec.F, spec.G) ==
-           std::tie(named.lobes, named.D, named.F, named.G);
-  };
-  if (is(ModelSpec::SharedFactors(spec.lobes))) return "shared";
-  if (is(ModelSpec::IndependentG()) && !spec.stretches.any()) return "independent";
-  return "other";
 }
 
 std::string ParametersText(const FitReport& report) {

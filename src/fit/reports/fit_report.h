@@ -59,10 +59,8 @@ struct FitReport {
 };
 
 // What a fit has to say of itself, which is all but the source's part and the program's.
-void TellFit(const FitResult& fit, FitReport* report);
+void FillReport(const FitResult& fit, FitReport* report);
 
-// The value of --model that stands for a spec, which a model file may have brought.
-std::string ModelName(const ModelSpec& spec);
 // "822 parameters"; of thinned tables not all are stored: the others follow.
 std::string ParametersText(const FitReport& report);
 // A line that says how large the model is where no sample says so, if that is more than somebody

@@ -52,13 +52,13 @@ void Print(const AlbedoTable& table, const std::string& title) {
   for (const int degrees : {0, 10, 20, 30, 40, 50, 60, 70, 80, 85, 89}) {
     if (degrees >= static_cast<int>(table.albedo.size())) break;
     const Rgb& albedo = table.albedo[degrees];
-    std::cout << Right(std::to_string(degrees), 15) << Right(Text(albedo[0], 3), 10)
-              << Right(Text(albedo[1], 3), 10) << Right(Text(albedo[2], 3), 10) << "\n";
+    std::cout << AlignRight(std::to_string(degrees), 15) << AlignRight(Text(albedo[0], 3), 10)
+              << AlignRight(Text(albedo[1], 3), 10) << AlignRight(Text(albedo[2], 3), 10) << "\n";
   }
-  std::cout << Right("passes 1 at", 15);
+  std::cout << AlignRight("passes 1 at", 15);
   for (int c = 0; c < kChannels; ++c) {
     const auto angle = AlbedoPassesOne(table.theta_i, table.albedo, c);
-    std::cout << Right(angle ? Text(RadiansToDegrees(*angle), 3) : "never", 10);
+    std::cout << AlignRight(angle ? Text(RadiansToDegrees(*angle), 3) : "never", 10);
   }
   std::cout << "\n";
 }

@@ -13,7 +13,7 @@ std::string Text(const Rgb& rgb) {
   return Text(rgb[0]) + ", " + Text(rgb[1]) + ", " + Text(rgb[2]);
 }
 
-std::string Right(const std::string& text, int width) {
+std::string AlignRight(const std::string& text, int width) {
   const int length = static_cast<int>(text.size());
   return std::string(length < width ? width - length : 2, ' ') + text;
 }
@@ -24,7 +24,7 @@ void PrintLine(const std::string& label, const std::string& value) {
   PrintLine(label + std::string(label.size() < 26 ? 26 - label.size() : 1, ' ') + value);
 }
 
-void TellNotes(const Measurement& measurement) {
+void PrintNotes(const Measurement& measurement) {
   for (const std::string& note : measurement.notes) {
     std::cerr << "trilobe: " << Printable(measurement.source + ": " + note) << "\n";
   }

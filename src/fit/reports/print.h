@@ -17,7 +17,7 @@ double PsnrFall(double before, double after);
 std::string Text(const Rgb& rgb);
 
 // Right-justified in `width` columns, or after two spaces where it is wider.
-std::string Right(const std::string& text, int width);
+std::string AlignRight(const std::string& text, int width);
 
 // A line of standard output, whatever names are in it (Printable).
 void PrintLine(const std::string& text);
@@ -26,7 +26,7 @@ void PrintLine(const std::string& text);
 void PrintLine(const std::string& label, const std::string& value);
 
 // What a measurement's reader found wrong with it, a line each on standard error.
-void TellNotes(const Measurement& measurement);
+void PrintNotes(const Measurement& measurement);
 
 // One object and a newline on standard output. A number that is not finite becomes null, text that
 // is not UTF-8 is repaired.

@@ -197,7 +197,7 @@ std::string MaterialFitKey(const SceneMaterial& material, const SceneFitSettings
   key.Add("then", "prune 6");
   key.Add("unit", static_cast<int>(material.budget.unit));
   key.Add("amount", material.budget.amount);
-  if (material.budget.of_look()) {
+  if (material.budget.of_appearance()) {
     key.Add("lights", settings.appearance.lights);
     key.Add("size", settings.appearance.size);
   }

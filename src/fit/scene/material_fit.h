@@ -31,7 +31,7 @@ struct SceneFitSettings {
   bool extrapolated = false;
   std::string program;  // "trilobe 0.1.0", for model files
   std::string build;    // and which build of it: what another one has fitted is not reused
-  // By which budgets of look are judged, and verdicts, if there are to be any; threads are
+  // By which budgets of appearance are judged, and verdicts, if there are to be any; threads are
   // replaced.
   AppearanceOptions appearance;
   bool verdicts = false;

@@ -16,7 +16,7 @@ namespace {
 double ErrorByPsnr(double psnr_db) { return std::pow(10, -psnr_db / 20); }
 
 // What the scene sees of a measurement.
-Measurement Seen(const SceneMaterial& material, Measurement measured) {
+Measurement LimitToScene(const SceneMaterial& material, Measurement measured) {
   BrdfSamples samples = SamplesOf(measured);
   if (measured.table && material.reductions.samples) {
     samples = UsedSamples(samples, material.directions);
@@ -44,8 +44,8 @@ Measurement Seen(const SceneMaterial& material, Measurement measured) {
   return measured;
 }
 
-SphereError AtNodes(const NodeBrdf& nodes, const FactorModel& model,
-                    const AppearanceOptions& options) {
+SphereError CompareAtNodes(const NodeBrdf& nodes, const FactorModel& model,
+                           const AppearanceOptions& options) {
   const ImagePair pair = RenderMeasuredPair(nodes, MaterialOf(model).spherical, options);
   return CompareSpheres(pair.measured, pair.fitted);
 }
@@ -82,8 +82,9 @@ FactorModel LuminanceOf(const FactorModel& model) {
   return grey;
 }
 
-Look::Look(const SceneMaterial& material, Measurement measured, const AppearanceOptions& options)
-    : seen_(Seen(material, std::move(measured))),
+SceneAppearance::SceneAppearance(const SceneMaterial& material, Measurement measured,
+                                 const AppearanceOptions& options)
+    : seen_(LimitToScene(material, std::move(measured))),
       pictured_(PictureDataOf(seen_)),
       options_(options) {
   if (pictured_.empty()) {
@@ -94,17 +95,17 @@ Look::Look(const SceneMaterial& material, Measurement measured, const Appearance
   if (pictured_.table != nullptr) judge_.emplace(*pictured_.table, options_);
 }
 
-SphereError Look::Of(const FactorModel& model) const {
-  if (pictured_.table == nullptr) return AtNodes(*pictured_.nodes, model, options_);
+SphereError SceneAppearance::Compare(const FactorModel& model) const {
+  if (pictured_.table == nullptr) return CompareAtNodes(*pictured_.nodes, model, options_);
   const ImagePair pair = RenderMeasuredPair(*pictured_.table, MaterialOf(model).angular, options_);
   return CompareSpheres(pair.measured, pair.fitted);
 }
 
-SphereError Look::Quickly(const FactorModel& model) const {
+SphereError SceneAppearance::CompareQuickly(const FactorModel& model) const {
   if (judge_) return (*judge_)(MaterialOf(model).angular);
   AppearanceOptions smaller = options_;
   smaller.size /= 2;
-  return AtNodes(*pictured_.nodes, model, smaller);
+  return CompareAtNodes(*pictured_.nodes, model, smaller);
 }
 
 double ErrorIn(SceneBudget::Unit unit, const SphereError& error) {

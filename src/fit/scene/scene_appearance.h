@@ -22,17 +22,18 @@ FactorModel LuminanceOf(const FactorModel& model);
 
 // How a model looks beside its measurement, on the sphere of docs/appearance.md, as far as a scene
 // sees that: in its channels and, of a table, from its directions alone.
-class Look {
+class SceneAppearance {
  public:
   // Throws Error where scattered samples stand on no grid, as these make no picture.
-  Look(const SceneMaterial& material, Measurement measured, const AppearanceOptions& options);
-  Look(const Look&) = delete;
-  Look& operator=(const Look&) = delete;
+  SceneAppearance(const SceneMaterial& material, Measurement measured,
+                  const AppearanceOptions& options);
+  SceneAppearance(const SceneAppearance&) = delete;
+  SceneAppearance& operator=(const SceneAppearance&) = delete;
 
   // As `trilobe fit` tells it.
-  SphereError Of(const FactorModel& model) const;
+  SphereError Compare(const FactorModel& model) const;
   // On a quarter of the pixels, in a quarter of the time.
-  SphereError Quickly(const FactorModel& model) const;
+  SphereError CompareQuickly(const FactorModel& model) const;
 
  private:
   const Measurement seen_;
@@ -41,7 +42,7 @@ class Look {
   std::optional<SphereJudge> judge_;  // of a table
 };
 
-// PruneOptions::error of a budget of look: mean Delta E, or 10^(-PSNR/20).
+// PruneOptions::error of a budget of appearance: mean Delta E, or 10^(-PSNR/20).
 double ErrorIn(SceneBudget::Unit unit, const SphereError& error);
 // The same of the budget's amount.
 double MaxError(const SceneBudget& budget);

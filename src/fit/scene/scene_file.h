@@ -26,7 +26,7 @@ struct SceneBudget {
   double amount = 0.01;
 
   // Of how the model looks beside its measurement.
-  bool of_look() const { return unit == Unit::kMeanDeltaE || unit == Unit::kSpherePsnr; }
+  bool of_appearance() const { return unit == Unit::kMeanDeltaE || unit == Unit::kSpherePsnr; }
 };
 
 // Which kinds of things may be left out.

@@ -66,7 +66,7 @@ PruneOptions PruneOptionsOf(const SceneMaterial& material) {
   options.shadowing = material.reductions.shadowing;
   options.tables = material.reductions.tables;
   const bool wants_more =
-      amount < 0 || unit == SceneBudget::Unit::kBytes || material.budget.of_look();
+      amount < 0 || unit == SceneBudget::Unit::kBytes || material.budget.of_appearance();
   options.max_lobes = options.lobes && wants_more ? kMoreLobes : 0;
   return options;
 }
@@ -227,21 +227,23 @@ class MaterialFitter {
 
   // The search looks at a quarter of the pixels; that the budget is kept on all of them is seen
   // afterwards, and the search repeated with a little less where it is not.
-  PrunedModel PruneByLook(const Look& look, const FitProblem& problem, const FactorModel& model,
-                          PruneOptions options) const {
+  PrunedModel PruneByAppearance(const SceneAppearance& appearance, const FitProblem& problem,
+                                const FactorModel& model, PruneOptions options) const {
     constexpr int kTries = 3;
     constexpr double kMargin = 0.98;
     const SceneBudget& budget = material_.budget;
     const auto error_of = [&](const SphereError& error) { return ErrorIn(budget.unit, error); };
     const double most = MaxError(budget);
-    const double full_error = error_of(look.Of(model));
+    const double full_error = error_of(appearance.Compare(model));
     // What is beyond the budget on all pixels is so on a quarter of them.
-    double share = full_error > 0 ? error_of(look.Quickly(model)) / full_error : 1;
+    double share = full_error > 0 ? error_of(appearance.CompareQuickly(model)) / full_error : 1;
     for (int k = 0;; ++k) {
       options.max_error = share * most;
-      options.error = [&](const FactorModel& judged) { return error_of(look.Quickly(judged)); };
+      options.error = [&](const FactorModel& judged) {
+        return error_of(appearance.CompareQuickly(judged));
+      };
       PrunedModel pruned = PruneWithin(problem, model, options);
-      const double error = error_of(look.Of(pruned.model));
+      const double error = error_of(appearance.Compare(pruned.model));
       if (error <= most || full_error > most || settings_.stop()) return pruned;
       if (k == kTries) break;
       share *= kMargin * most / error;
@@ -258,15 +260,16 @@ class MaterialFitter {
   }
 
   // Nothing where the measurement makes no picture.
-  std::unique_ptr<Look> LookIfAny() {
+  std::unique_ptr<SceneAppearance> AppearanceIfAny() {
     if (PictureDataOf(measured()).empty()) return nullptr;
-    return std::make_unique<Look>(material_, measured(), Appearance());
+    return std::make_unique<SceneAppearance>(material_, measured(), Appearance());
   }
 
   // On the sphere, or of samples that make none, or of which no pixel sees one.
-  SeenError SeenOf(const Look* look, const BrdfSamples& samples, const FactorModel& model) const {
-    if (look != nullptr) {
-      const SphereError error = look->Of(model);
+  SeenError CompareSeen(const SceneAppearance* appearance, const BrdfSamples& samples,
+                        const FactorModel& model) const {
+    if (appearance != nullptr) {
+      const SphereError error = appearance->Compare(model);
       const auto sees = [](const PlaceError& place) { return place.share > 0; };
       if (std::ranges::any_of(error.places, sees)) return error;
     }
@@ -285,12 +288,14 @@ class MaterialFitter {
     // No lobe more says what a model is better than it does: what its sphere is off is that of
     // bins.
     if (is_model_) prune_options.max_lobes = 0;
-    const bool by_look = material_.budget.of_look();
-    std::unique_ptr<Look> look;
-    if (by_look) look = std::make_unique<Look>(material_, measured(), Appearance());
+    const bool by_appearance = material_.budget.of_appearance();
+    std::unique_ptr<SceneAppearance> appearance;
+    if (by_appearance)
+      appearance = std::make_unique<SceneAppearance>(material_, measured(), Appearance());
     if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
-    PrunedModel pruned = by_look ? PruneByLook(*look, Guide(problem, *full), model, prune_options)
-                                 : PruneWithin(problem, model, prune_options);
+    PrunedModel pruned =
+        by_appearance ? PruneByAppearance(*appearance, Guide(problem, *full), model, prune_options)
+                      : PruneWithin(problem, model, prune_options);
     if (settings_.stop()) return std::nullopt;
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
@@ -304,12 +309,13 @@ class MaterialFitter {
     const Objective of_pruned(objective, pruned.model.spec());
     fit.pruned = ScoreOn(of_pruned, pruned.model);
     if (settings_.verdicts) {
-      if (!look) look = LookIfAny();
-      fit.verdict = Words(VerdictOf(SeenOf(look.get(), of_pruned.samples(), pruned.model)));
+      if (!appearance) appearance = AppearanceIfAny();
+      fit.verdict =
+          Words(VerdictOf(CompareSeen(appearance.get(), of_pruned.samples(), pruned.model)));
     }
-    if (look) {
+    if (appearance) {
       const auto add = [&](const FactorModel& judged, SceneScore* score) {
-        const SphereError error = look->Of(judged);
+        const SphereError error = appearance->Compare(judged);
         score->mean_delta_e = error.mean_delta_e;
         score->sphere_psnr_db = error.psnr_db;
       };

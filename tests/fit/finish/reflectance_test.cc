@@ -176,7 +176,7 @@ TEST(Reflectance, AGuideHoldsWhatItSpeaksOf) {
   FactorModel fitted = Fitted(objective);
   ASSERT_TRUE(TieEntriesAtDataEdge(objective, &fitted));  // or it would undershoot 0 there
   Canonicalize(objective, &fitted);
-  const Objective with_prior = UnmeasuredPrior(objective, fitted).With(objective);
+  const Objective with_prior = UnmeasuredPrior(objective, fitted).JoinTo(objective);
   // Squares of what it says of directions that were not measured, now less then, weighted.
   const auto change = [&](const FactorModel& model) {
     return with_prior.Value(model) - objective.Value(model);

@@ -16,37 +16,38 @@ namespace {
 constexpr HemisphereGrid kGrid = {6, 12};
 
 // A Lambertian model of 0.1, and data that are more than that by these.
-std::optional<NodeBrdf> LackBy(const std::function<double(const SphericalAngles&)>& more,
-                               const HemisphereGrid& grid = kGrid) {
+std::optional<NodeBrdf> ResidualBy(const std::function<double(const SphericalAngles&)>& more,
+                                   const HemisphereGrid& grid = kGrid) {
   BrdfSamples samples = SamplesOf(SynthesizeSamples(FindSynthMaterial("velvet"), 0, 1, kGrid));
   for (int j = 0; j < samples.size(); ++j) {
     samples.rho[j].fill(0.1 + more(samples.directions[j]));
   }
   FactorModel model(ModelSpec{.lobes = 0});
   for (double& d : model.d()) d = 0.1;
-  return LackOf(model, Objective(std::move(samples), model.spec(), Weightings().front(), 2), grid);
+  return InterpolateResidual(
+      model, Objective(std::move(samples), model.spec(), Weightings().front(), 2), grid);
 }
 
-TEST(Lack, OfWideHighlightsIsInterpolated) {
+TEST(InterpolateResidual, OfWideHighlightsIsInterpolated) {
   const auto wide = [](const SphericalAngles& at) {
     return -0.05 + 0.02 * (at.theta_i + at.theta_o);
   };
-  const std::optional<NodeBrdf> lack = LackBy(wide);
-  ASSERT_TRUE(lack);
+  const std::optional<NodeBrdf> residual = ResidualBy(wide);
+  ASSERT_TRUE(residual);
   const SphericalAngles between{0.3, 0.2, 0.9, 2.9};
-  for (const double x : (*lack)(between)) EXPECT_NEAR(x, wide(between), 1e-12);
+  for (const double x : (*residual)(between)) EXPECT_NEAR(x, wide(between), 1e-12);
 }
 
 // It changes its sign from each theta_i to the next.
-TEST(Lack, OfHighlightsNarrowerThanTheStepsIsNot) {
+TEST(InterpolateResidual, OfHighlightsNarrowerThanTheStepsIsNot) {
   const double step = kGrid.ThetaStep();
-  EXPECT_FALSE(
-      LackBy([&](const SphericalAngles& at) { return 0.05 * std::cos(kPi * at.theta_i / step); }));
-  EXPECT_FALSE(LackBy([](const SphericalAngles&) { return 0; }));
+  EXPECT_FALSE(ResidualBy(
+      [&](const SphericalAngles& at) { return 0.05 * std::cos(kPi * at.theta_i / step); }));
+  EXPECT_FALSE(ResidualBy([](const SphericalAngles&) { return 0; }));
 }
 
-TEST(Lack, WantsSamplesAtItsNodes) {
-  EXPECT_THROW(LackBy([](const SphericalAngles&) { return 0; }, {5, 12}), Error);
+TEST(InterpolateResidual, WantsSamplesAtItsNodes) {
+  EXPECT_THROW(ResidualBy([](const SphericalAngles&) { return 0; }, {5, 12}), Error);
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ TEST(SyntheticPrior, TamesAFitThatIsWildBetweenNoisySamples) {
   const ModelSpec spec = ModelSpec::SharedFactors(3).ForScattered(data.size());
   const Objective objective(data, spec, FindWeighting("appearance"), 2);
   const SyntheticPrior prior(objective, {.isotropic = true});
-  Objective with_prior(objective, prior.With(objective));
+  Objective with_prior(objective, prior.JoinTo(objective));
   FactorModel model = FindInitialModel("analytic").make(objective, 1);
   SolverOptions options;
   options.max_iterations = 60;

@@ -183,7 +183,7 @@ TEST(Tableau, ImposesAndHoldsAsTheEquationsDo) {
   for (int k = 1; k + 1 < kSize; k += 3) {
     const Constraint c = MeanOfNeighbours(k);
     const double by_it = tableau.Rise(c);
-    tableau.Impose(c);
+    tableau.ImposeConstraint(c);
     rise += by_it;
     q.constraints.push_back(c);
     if (k % 2 == 0) {
@@ -210,7 +210,7 @@ TEST(Tableau, TheLastTakesThePlaceOfWhatIsRemoved) {
   Tableau tableau = MakeTableau(q);
   for (int k = 1; k < 19; k += 3) {
     const Constraint c = MeanOfNeighbours(k);
-    tableau.Impose(c);
+    tableau.ImposeConstraint(c);
     q.constraints.push_back(c);
   }
   const Eigen::VectorXd lowest = q.Lowest();

@@ -29,7 +29,7 @@ TEST(UnmeasuredPrior, SpeaksWhereNothingWasMeasuredAndLittle) {
   const Objective objective = Measured();
   const BrdfSamples& measured = objective.samples();
   const FactorModel model = RandomModel(Spec(), 2);
-  const Objective with_prior = UnmeasuredPrior(objective, model).With(objective);
+  const Objective with_prior = UnmeasuredPrior(objective, model).JoinTo(objective);
   EXPECT_EQ(with_prior.spec(), objective.spec());
   EXPECT_EQ(with_prior.weighting().level, objective.weighting().level);
   const BrdfSamples& both = with_prior.samples();
@@ -67,7 +67,7 @@ TEST(UnmeasuredPrior, SaysTheSameInEveryObjective) {
   const UnmeasuredPrior prior(objective, RandomModel(Spec(), 2));
   const Objective few(Thinned(objective.samples(), 7), Spec(), objective.weighting());
   const auto said = [&](const Objective& objective) {
-    const Objective with_prior = prior.With(objective);
+    const Objective with_prior = prior.JoinTo(objective);
     std::set<int> bins(with_prior.samples().bins.begin(), with_prior.samples().bins.end());
     for (const int bin : objective.samples().bins) bins.erase(bin);
     return bins;
@@ -83,7 +83,7 @@ TEST(UnmeasuredPrior, SpeaksBeyondScatteredSamplesAndVeryLittle) {
   }
   const Objective objective(scattered, Spec(), FindWeighting("appearance"));
   const FactorModel model = RandomModel(Spec(), 2);
-  const BrdfSamples both = UnmeasuredPrior(objective, model).With(objective).samples();
+  const BrdfSamples both = UnmeasuredPrior(objective, model).JoinTo(objective).samples();
   ASSERT_GT(both.size(), scattered.size());
   double times = 0;
   for (int j = 0; j < both.size(); ++j) {
@@ -99,10 +99,10 @@ TEST(UnmeasuredPrior, SpeaksBeyondScatteredSamplesAndVeryLittle) {
 TEST(UnmeasuredPrior, IsSilentWhereAllWasMeasuredOrDirectionsAreNotKnown) {
   const FactorModel model = RandomModel(Spec(), 2);
   const Objective whole = MakeObjective(TableOf(RandomModel(Spec(), 1), kGrid), Spec());
-  EXPECT_EQ(UnmeasuredPrior(whole, model).With(whole).samples().size(), whole.samples().size());
+  EXPECT_EQ(UnmeasuredPrior(whole, model).JoinTo(whole).samples().size(), whole.samples().size());
   BrdfSamples scattered = Scattered(Measured().samples());
   const Objective objective(scattered, Spec(), FindWeighting("appearance"));
-  EXPECT_EQ(UnmeasuredPrior(objective, model).With(objective).samples().size(), scattered.size());
+  EXPECT_EQ(UnmeasuredPrior(objective, model).JoinTo(objective).samples().size(), scattered.size());
 }
 
 // G so rough that its spline undershoots, and factors whose product overflows.
@@ -116,7 +116,7 @@ TEST(UnmeasuredPrior, SaysNothingThatNoMeasurementCouldSay) {
   const auto rho = UnclampedSamples(model, objective.samples(), 1);
   EXPECT_TRUE(std::ranges::any_of(rho, [](const Rgb& x) { return x[0] < 0; }));
   const auto expect_valid = [&] {
-    const Objective with_prior = UnmeasuredPrior(objective, model).With(objective);
+    const Objective with_prior = UnmeasuredPrior(objective, model).JoinTo(objective);
     EXPECT_GT(with_prior.samples().size(), objective.samples().size());
     EXPECT_TRUE(std::isfinite(with_prior.Value(RandomModel(Spec(), 3))));
   };
@@ -127,7 +127,7 @@ TEST(UnmeasuredPrior, SaysNothingThatNoMeasurementCouldSay) {
   expect_valid();
   // All of them.
   std::ranges::fill(model.table(Factor::kD, 0), 1e308);
-  EXPECT_EQ(UnmeasuredPrior(objective, model).With(objective).samples().size(),
+  EXPECT_EQ(UnmeasuredPrior(objective, model).JoinTo(objective).samples().size(),
             objective.samples().size());
 }
 
@@ -138,7 +138,7 @@ TEST(UnmeasuredPrior, KeepsHowOftenSamplesCount) {
   for (int j = 0; j < samples.size(); ++j) samples.multiplicity[j] += j % 4;
   const Objective objective(samples, Spec(), FindWeighting("appearance"));
   const BrdfSamples both =
-      UnmeasuredPrior(objective, RandomModel(Spec(), 2)).With(objective).samples();
+      UnmeasuredPrior(objective, RandomModel(Spec(), 2)).JoinTo(objective).samples();
   int j = 0;
   for (int k = 0; k < both.size() && j < samples.size(); ++k) {
     if (both.bins[k] == samples.bins[j]) {
@@ -151,8 +151,8 @@ TEST(UnmeasuredPrior, KeepsHowOftenSamplesCount) {
 TEST(UnmeasuredPrior, TheSameBitsForAnyNumberOfThreads) {
   const FactorModel model = RandomModel(Spec(), 2);
   const Objective one = Measured(1), three = Measured(3);
-  const BrdfSamples a = UnmeasuredPrior(one, model).With(one).samples();
-  const BrdfSamples b = UnmeasuredPrior(three, model).With(three).samples();
+  const BrdfSamples a = UnmeasuredPrior(one, model).JoinTo(one).samples();
+  const BrdfSamples b = UnmeasuredPrior(three, model).JoinTo(three).samples();
   EXPECT_EQ(a.bins, b.bins);
   EXPECT_EQ(a.rho, b.rho);
   EXPECT_EQ(a.multiplicity, b.multiplicity);

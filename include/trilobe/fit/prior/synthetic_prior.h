@@ -26,7 +26,7 @@ struct SyntheticPriorOptions {
   // The data know no azimuths, and so the prior knows none; what it says counts 0.003 of that.
   bool isotropic = false;
   // At whose nodes the samples stand, if they do. What the prior says between them is then moved by
-  // what it lacks at them, interpolated, where that helps: with highlights that are wider than the
+  // the residual at them, interpolated, where that helps: with highlights that are wider than the
   // grid's steps (docs/anisotropic.md).
   std::optional<HemisphereGrid> grid = {};
   StopCheck stop = {};  // ends the fit of the prior early
@@ -41,20 +41,20 @@ class SyntheticPrior {
   const FactorModel& model() const { return model_; }
 
   // The data's samples and the prior's, for fits of the spec of `data`: see WithPrior.
-  BrdfSamples With(const Objective& data) const;
+  BrdfSamples JoinTo(const Objective& data) const;
 
   // Between the samples a fit of such an objective may reach many times the largest value that was
   // measured: an entry that the data read only where another factor is next to 0 may be anything,
   // and noise makes it large. The same objective with what the prior says at directions where
   // `fit` is above twice the largest, each of which counts `times` as much as one of the prior's
   // samples among many data. Nothing where there is no such direction among 50,000.
-  std::optional<Objective> WhereLarge(const Objective& with_prior, const FactorModel& fit,
-                                      double times) const;
+  std::optional<Objective> AddWhereLarge(const Objective& with_prior, const FactorModel& fit,
+                                         double times) const;
 
  private:
   double weight_;
   FactorModel model_;
-  std::optional<NodeBrdf> lack_ = {};  // data less model, if that can be interpolated
+  std::optional<NodeBrdf> residual_ = {};  // data less model, if that can be interpolated
 };
 
 // The objective's samples and the prior's, one for six of them, with the objective's number of
@@ -64,7 +64,7 @@ class SyntheticPrior {
 BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& options);
 
 // Goes on from a fit of `with_prior` that overshoots between the samples, above four times the
-// largest value that was measured, with what SyntheticPrior::WhereLarge adds, ever more of it,
+// largest value that was measured, with what SyntheticPrior::AddWhereLarge adds, ever more of it,
 // which *with_prior then has, too: a few steps a round, and as many rounds as it takes, up to four.
 // Returns E of the data before and after; nothing, and changes nothing, where the fit does not
 // overshoot.
