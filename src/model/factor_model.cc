@@ -126,19 +126,12 @@ SampleStencils ScatteredStencils(const ModelSpec& spec, const SphericalAngles& a
 }
 
 double UnclampedValue(const FactorModel& model, const SampleStencils& stencils, int channel) {
-  double rho = model.d()[channel];
-  for (int m = 0; m < model.spec().lobes; ++m) {
-    const std::span<const double> G = model.G(m, channel);
-    const Stencil& D = stencils.DOf(model.spec().stretches.index(m));
-    rho += model.s(m)[channel] * D(model.D(m, channel)) * stencils.F(model.F(m, channel)) *
-           stencils.G_i(G) * stencils.G_o(G) * stencils.inverse_cosines;
-  }
-  return rho;
+  return ValueOf(model.spec(), model.d()[channel], ModelReads{model, stencils}, channel);
 }
 
 Rgb EvaluateAt(const FactorModel& model, const SampleStencils& stencils) {
-  return AtLeastZero({UnclampedValue(model, stencils, 0), UnclampedValue(model, stencils, 1),
-                      UnclampedValue(model, stencils, 2)});
+  const std::span<const double> d = model.d();
+  return AtLeastZero(ValueOf(model.spec(), Rgb{d[0], d[1], d[2]}, ModelReads{model, stencils}));
 }
 
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions) {

@@ -1,5 +1,6 @@
 # Installs the build in trilobe_build_dir into scratch_dir, then configures, builds and runs the
-# project beside this script against what was installed, and nothing else of this repository.
+# project beside this script, with the code of docs/ceres.md in code_dir, against what was installed,
+# and nothing else of this repository.
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -14,9 +15,11 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${build_dir} -G ${generator
   -DCMAKE_CXX_COMPILER=${cxx_compiler}
   -DCMAKE_CXX_FLAGS=${cxx_flags}
   -DCMAKE_PREFIX_PATH=${prefix}
-  -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
+  -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+  -Dcode_dir=${code_dir})
 run(${CMAKE_COMMAND} --build ${build_dir})
 run(${build_dir}/consumer WORKING_DIRECTORY ${scratch_dir})
+run(${build_dir}/fit_copper)
 
 # It has made the program's own model.
 find_program(trilobe_program trilobe PATHS ${prefix}/bin NO_DEFAULT_PATH)

@@ -12,7 +12,6 @@
 #include "model/lobes/gauge.h"
 #include "model/lobes/unclamped_model.h"
 #include "model/objective/canonical_form.h"
-#include "model/objective/parameter_blocks.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/model/lobes/lobe_light.h"
@@ -21,6 +20,8 @@
 #include "trilobe/model/measurement/measurement_stats.h"
 #include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
+#include "trilobe/model/objective/parameter_blocks.h"
+#include "trilobe/model/objective/sample_residual.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/model/table_layout.h"
 
@@ -142,6 +143,44 @@ TEST(Arguments, OfAnObjective) {
   EXPECT_THAT(ErrorOf([&] { MakeObjective(Scattered(Samples())).spline_cells(); }),
               HasSubstr("no grid"));
   EXPECT_THAT(ErrorOf([&] { ScoreValues(objective, std::vector<Rgb>(3)); }), HasSubstr("3 values"));
+}
+
+TEST(Arguments, ParameterBlocksAndWhatReadsThem) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  ParameterBlocks blocks(spec);
+  for (const int b : {-1, blocks.num_blocks(), 1 << 30}) {
+    EXPECT_THAT(ErrorOf([&] { blocks.block(b); }), HasSubstr("the parameter block is"));
+    EXPECT_THAT(ErrorOf([&] { blocks.parameters(b); }), HasSubstr("the parameter block is"));
+  }
+  for (const int entry : {-1, spec.d_axis.size}) {
+    EXPECT_THAT(ErrorOf([&] { blocks.row(Factor::kD, entry); }), HasSubstr("must be from 0 to 5"));
+  }
+  const ParameterBlocks diffuse(ModelSpec::SharedFactors(0, kGrid));
+  EXPECT_THAT(ErrorOf([&] { diffuse.row(Factor::kF, 0); }), HasSubstr("there is none"));
+  EXPECT_THAT(ErrorOf([&] { blocks.Write(nullptr); }), HasSubstr("must not be null"));
+
+  const WeightedSample sample = MakeObjective(Samples()).Sample(0);
+  std::vector<int> read;
+  EXPECT_NO_THROW(SampleResidual(blocks, sample, &read));
+  const auto error_with = [&](const std::function<void(WeightedSample*)>& change) {
+    WeightedSample changed = sample;
+    change(&changed);
+    return ErrorOf([&] { SampleResidual(blocks, changed, &read); });
+  };
+  EXPECT_THAT(ErrorOf([&] { SampleResidual(blocks, sample, nullptr); }),
+              HasSubstr("must not be null"));
+  for (const double bad : {-1.0, kNaN, kInfinity}) {
+    EXPECT_THAT(error_with([&](WeightedSample* changed) { changed->weight[1] = bad; }),
+                HasSubstr("the weight of a sample is"));
+  }
+  EXPECT_THAT(error_with([](WeightedSample* changed) { changed->stencils.F.index[0] = 5; }),
+              HasSubstr("must be from 0 to 4"));
+  for (const int size : {0, 5}) {
+    EXPECT_THAT(error_with([&](WeightedSample* changed) { changed->stencils.G_o.size = size; }),
+                HasSubstr("of a stencil"));
+  }
+  EXPECT_THAT(error_with([](WeightedSample* changed) { changed->stencils.more_D.resize(1); }),
+              HasSubstr("stencils of D"));
 }
 
 TEST(Arguments, NumbersOfSamples) {

@@ -105,6 +105,17 @@ TEST(FactorModel, ScatteredReadingIsLinearInDAndF) {
   EXPECT_NEAR(at.F.WeightOf(5), 0.5, 1e-14);
 }
 
+TEST(FactorModel, AllChannelsAtOnceAreThoseOfEach) {
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    const FactorModel model = RandomModel(spec, 5);
+    const SampleStencils at = GridStencils(spec, kGrid, kGrid.Index(1, 2, 3));
+    const Rgb rho = EvaluateAt(model, at);
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_EQ(rho[c], std::max(UnclampedValue(model, at, c), 0.0)) << name;
+    }
+  }
+}
+
 TEST(FactorModel, IsReciprocal) {
   const FactorModel model = RandomModel(ModelSpec::IndependentG(kGrid), 3);
   for (int bin = 0; bin < kGrid.size(); ++bin) {

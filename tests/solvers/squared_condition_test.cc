@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "core/algebra/cholesky.h"
-#include "model/objective/cost_functors.h"
-#include "model/objective/parameter_blocks.h"
 #include "tests/test_util.h"
+#include "trilobe/model/objective/parameter_blocks.h"
+#include "trilobe/model/objective/sample_residual.h"
 #include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/solvers/sums/normal_equations.h"

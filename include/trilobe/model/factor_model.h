@@ -7,6 +7,7 @@
 #include "trilobe/core/geometry/channels.h"
 #include "trilobe/core/math/stencil.h"
 #include "trilobe/model/model_spec.h"
+#include "trilobe/model/value_of.h"
 
 namespace trilobe {
 
@@ -91,6 +92,20 @@ struct SampleStencils {
 
   // By the number of the stretch among the distinct ones.
   const Stencil& DOf(int stretch) const { return stretch == 0 ? D : more_D[stretch - 1]; }
+};
+
+// How ValueOf reads a model's tables at a sample; both outlive this.
+struct ModelReads {
+  const FactorModel& model;
+  const SampleStencils& at;
+
+  double s(int m, int c) const { return model.s(m)[c]; }
+  double D(int m, int c) const { return at.DOf(model.spec().stretches.index(m))(model.D(m, c)); }
+  double F(int m, int c) const { return at.F(model.F(m, c)); }
+  Shadowing G(int m, int c) const {
+    const std::span<const double> G = model.G(m, c);
+    return {at.G_i(G), at.G_o(G), at.inverse_cosines};
+  }
 };
 
 // Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/model.md), a stretched

@@ -12,6 +12,7 @@
 #include "model/lobes/lobes.h"
 #include "model/objective/sample_derivatives.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/model/value_of.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 
 namespace trilobe {
@@ -69,11 +70,11 @@ class ExponentDerivatives {
 
   void Set(const SampleStencils& at, int c, double* derivatives) const {
     const ModelSpec& spec = model_.spec();
+    const ModelReads reads{model_, at};
     std::fill_n(derivatives, size(), 0.0);
     for (int m = 0; m < spec.lobes; ++m) {
-      const auto G = model_.G(m, c);
-      const double others = model_.s(m)[c] * at.F(model_.F(m, c)) * at.G_i(G) * at.G_o(G) *
-                            at.inverse_cosines / (2 * kStep);
+      const double others =
+          LobeValue(reads.s(m, c), 1.0, reads.F(m, c), reads.G(m, c)) / (2 * kStep);
       const int g = spec.D.per_lobe ? m : 0;
       for (int k = 2 * g; k < 2 * g + 2; ++k) {
         derivatives[k] += others * (higher_[k](model_.D(m, c)) - lower_[k](model_.D(m, c)));

@@ -12,6 +12,7 @@
 #include "trilobe/core/geometry/merl_grid.h"
 #include "trilobe/core/math/catmull_rom.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/model/value_of.h"
 
 namespace trilobe {
 namespace {
@@ -180,8 +181,8 @@ void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lo
           const int D = model.TableOffset(Factor::kD, spec.table(Factor::kD, m, c)) + h;
           const int F = model.TableOffset(Factor::kF, spec.table(Factor::kF, m, c)) + pair.d;
           const int G = spec.table(Factor::kG, m, c);
-          const double part =
-              shadowing[G] * model.s(m)[c] * model.parameters()[D] * model.parameters()[F];
+          const double part = LobeValue(shadowing[G] * model.s(m)[c], model.parameters()[D],
+                                        model.parameters()[F], 1.0);
           light.lobes[m][c] += part;
           light.through[D] += part;
           light.through[F] += part;

@@ -4,8 +4,27 @@
 #include <cmath>
 
 #include "model/lobes/shadowing_pieces.h"
+#include "trilobe/model/value_of.h"
 
 namespace trilobe {
+namespace {
+
+// D and F by stencils, G by its product for each table.
+struct Reads {
+  const FactorModel& model;
+  std::span<const Stencil> stencil_of_D;  // [stretch]
+  const Stencil& stencil_of_F;
+  const double* products_of_G;
+
+  double s(int m, int c) const { return model.s(m)[c]; }
+  double D(int m, int c) const {
+    return stencil_of_D[model.spec().stretches.index(m)](model.D(m, c));
+  }
+  double F(int m, int c) const { return stencil_of_F(model.F(m, c)); }
+  double G(int m, int c) const { return products_of_G[model.spec().table(Factor::kG, m, c)]; }
+};
+
+}  // namespace
 
 UnclampedModel::UnclampedModel(const FactorModel& model)
     : model_(model),
@@ -24,18 +43,10 @@ Rgb UnclampedModel::operator()(std::span<const Stencil> D, const Stencil& F,
     return spline[i.interval](i.t - 0.5) * spline[o.interval](o.t - 0.5);
   };
   const double inverse_cosines = 1 / product(cosine_);
-  const ModelSpec& spec = model_.spec();
-  double g_products[kMaxLobes * kChannels];  // [G table]
-  for (size_t t = 0; t < g_.size(); ++t) g_products[t] = product(g_[t]) * inverse_cosines;
-  Rgb rho;
-  for (int c = 0; c < kChannels; ++c) {
-    rho[c] = model_.d()[c];
-    for (int m = 0; m < spec.lobes; ++m) {
-      rho[c] += model_.s(m)[c] * D[spec.stretches.index(m)](model_.D(m, c)) * F(model_.F(m, c)) *
-                g_products[spec.table(Factor::kG, m, c)];
-    }
-  }
-  return rho;
+  double G[kMaxLobes * kChannels];  // [G table]
+  for (size_t t = 0; t < g_.size(); ++t) G[t] = product(g_[t]) * inverse_cosines;
+  const std::span<const double> d = model_.d();
+  return ValueOf(model_.spec(), Rgb{d[0], d[1], d[2]}, Reads{model_, D, F, G});
 }
 
 Rgb UnclampedModel::operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {

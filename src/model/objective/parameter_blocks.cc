@@ -1,4 +1,4 @@
-#include "model/objective/parameter_blocks.h"
+#include "trilobe/model/objective/parameter_blocks.h"
 
 namespace trilobe {
 
@@ -29,7 +29,7 @@ void ParameterBlocks::Read(const FactorModel& model) {
 }
 
 void ParameterBlocks::Write(FactorModel* model) const {
-  CheckSameSpec(model->spec(), spec_);
+  CheckSameSpec(NotNull(model, "the model").spec(), spec_);
   for (size_t k = 0; k < values_.size(); ++k) model->parameters()[parameter_[k]] = values_[k];
 }
 

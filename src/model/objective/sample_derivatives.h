@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/value_of.h"
 
 namespace trilobe {
 
@@ -16,7 +17,11 @@ class SampleDerivatives {
   explicit SampleDerivatives(int num_parameters)
       : values_(num_parameters, 0.0), is_touched_(num_parameters, 0) {}
 
-  void Set(const FactorModel& model, const SampleStencils& at, int channel);
+  void Set(const FactorModel& model, const SampleStencils& at, int channel) {
+    for (const int k : touched_) values_[k] = is_touched_[k] = 0;
+    touched_.clear();
+    Visit(model, at, channel, [this](int parameter, double value) { Add(parameter, value); });
+  }
 
   // The same in parts: calls add(parameter, value), often more than once for a parameter.
   template <typename Visitor>
@@ -28,7 +33,11 @@ class SampleDerivatives {
   double operator[](int parameter) const { return values_[parameter]; }
 
  private:
-  void Add(int parameter, double value);
+  void Add(int parameter, double value) {
+    if (!is_touched_[parameter]) touched_.push_back(parameter);
+    is_touched_[parameter] = 1;
+    values_[parameter] += value;
+  }
 
   std::vector<double> values_;
   std::vector<int> touched_;
@@ -40,22 +49,22 @@ void SampleDerivatives::Visit(const FactorModel& model, const SampleStencils& at
                               const Visitor& add) {
   add(c, 1.0);
   const ModelSpec& spec = model.spec();
+  const ModelReads reads{model, at};
   for (int m = 0; m < spec.lobes; ++m) {
-    const Stencil& D_stencil = at.DOf(spec.stretches.index(m));
-    const double s = model.s(m)[c], D = D_stencil(model.D(m, c)), F = at.F(model.F(m, c));
-    const double G_i = at.G_i(model.G(m, c)), G_o = at.G_o(model.G(m, c));
-    const double K = G_i * G_o * at.inverse_cosines;
-    add(kChannels * (1 + m) + c, D * F * K);
+    const double s = reads.s(m, c), D = reads.D(m, c), F = reads.F(m, c);
+    const Shadowing G = reads.G(m, c);
+    const double K = 1.0 * G;
+    add(kChannels * (1 + m) + c, LobeValue(1.0, D, F, K));
     const auto add_table = [&](Factor factor, const Stencil& stencil, double scale) {
       const int offset = model.TableOffset(factor, spec.table(factor, m, c));
       for (int k = 0; k < stencil.size; ++k) {
         add(offset + stencil.index[k], stencil.weight[k] * scale);
       }
     };
-    add_table(Factor::kD, D_stencil, s * F * K);
-    add_table(Factor::kF, at.F, s * D * K);
-    add_table(Factor::kG, at.G_i, s * D * F * G_o * at.inverse_cosines);
-    add_table(Factor::kG, at.G_o, s * D * F * G_i * at.inverse_cosines);
+    add_table(Factor::kD, at.DOf(spec.stretches.index(m)), LobeValue(s, 1.0, F, K));
+    add_table(Factor::kF, at.F, LobeValue(s, D, 1.0, K));
+    add_table(Factor::kG, at.G_i, LobeValue(s, D, F, Shadowing{1, G.o, G.inverse_cosines}));
+    add_table(Factor::kG, at.G_o, LobeValue(s, D, F, Shadowing{G.i, 1, G.inverse_cosines}));
   }
 }
 

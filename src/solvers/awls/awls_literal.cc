@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/algebra/element_step.h"
+#include "trilobe/model/value_of.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
@@ -15,36 +16,25 @@ struct Response {
   double p1 = 0, p2 = 0;
 };
 
-// s D F / (cos cos) and the two lookups of G, for one lobe, channel and sample.
-struct LobeTerms {
-  double s, D, F, G_i, G_o, inverse_cosines;
-  LobeTerms(const FactorModel& model, const SampleStencils& at, int m, int c)
-      : s(model.s(m)[c]),
-        D(at.DOf(model.spec().stretches.index(m))(model.D(m, c))),
-        F(at.F(model.F(m, c))),
-        G_i(at.G_i(model.G(m, c))),
-        G_o(at.G_o(model.G(m, c))),
-        inverse_cosines(at.inverse_cosines) {}
-};
-
 // The response to entry k of table t of a factor: the sum over the lobes that the table serves.
 Response TableResponse(const FactorModel& model, const SampleStencils& at, Factor factor, int t,
                        int k, int c) {
+  const ModelReads reads{model, at};
   Response response;
   for (int m = 0; m < model.spec().lobes; ++m) {
     if (!model.spec().serves(factor, t, m, c)) continue;
-    const LobeTerms lobe(model, at, m, c);
+    const double s = reads.s(m, c), D = reads.D(m, c), F = reads.F(m, c);
+    const Shadowing G = reads.G(m, c);
     if (factor == Factor::kD) {
-      const Stencil& D = at.DOf(model.spec().stretches.index(m));
-      response.p1 += D.WeightOf(k) * lobe.s * lobe.F * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
+      const double weight = at.DOf(model.spec().stretches.index(m)).WeightOf(k);
+      response.p1 += LobeValue(weight * s, 1.0, F, G);
     } else if (factor == Factor::kF) {
-      response.p1 +=
-          at.F.WeightOf(k) * lobe.s * lobe.D * lobe.G_i * lobe.G_o * lobe.inverse_cosines;
+      response.p1 += LobeValue(at.F.WeightOf(k) * s, D, 1.0, G);
     } else {
       // (a_i + c_i delta)(a_o + c_o delta), the paper's third situation; c_i or c_o may be 0.
       const double c_i = at.G_i.WeightOf(k), c_o = at.G_o.WeightOf(k);
-      const double y = lobe.s * lobe.D * lobe.F * lobe.inverse_cosines;
-      response.p1 += y * (c_i * lobe.G_o + c_o * lobe.G_i);
+      const double y = LobeValue(s, D, F, G.inverse_cosines);
+      response.p1 += y * (c_i * G.o + c_o * G.i);
       response.p2 += y * c_i * c_o;
     }
   }
@@ -52,8 +42,8 @@ Response TableResponse(const FactorModel& model, const SampleStencils& at, Facto
 }
 
 Response SpecularWeightResponse(const FactorModel& model, const SampleStencils& at, int m, int c) {
-  const LobeTerms lobe(model, at, m, c);
-  return {lobe.D * lobe.F * lobe.G_i * lobe.G_o * lobe.inverse_cosines, 0};
+  const ModelReads reads{model, at};
+  return {LobeValue(1.0, reads.D(m, c), reads.F(m, c), reads.G(m, c)), 0};
 }
 
 // For each entry of a factor's tables, the samples that read it.

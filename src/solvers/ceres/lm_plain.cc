@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "model/objective/cost_functors.h"
-#include "model/objective/parameter_blocks.h"
 #include "solvers/ceres/ceres_run.h"
+#include "trilobe/model/objective/parameter_blocks.h"
+#include "trilobe/model/objective/sample_residual.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

@@ -12,6 +12,7 @@
 #include "solvers/sums/scattered_equations.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/model/value_of.h"
 
 namespace trilobe {
 namespace {
@@ -44,10 +45,9 @@ void AddSecondDerivatives(const FactorModel& model, const SampleStencils& at, in
     for (int a = 0; a < 5; ++a) {
       for (int b = 0; b < 5; ++b) {
         if (a == b) continue;
-        double others = scale * at.inverse_cosines;
-        for (int e = 0; e < 5; ++e) {
-          if (e != a && e != b) others *= lookups[e].value;
-        }
+        const auto other = [&](int e) { return e == a || e == b ? 1 : lookups[e].value; };
+        const double others = scale * LobeValue(other(0), other(1), other(2),
+                                                Shadowing{other(3), other(4), at.inverse_cosines});
         const Lookup &of_a = lookups[a], &of_b = lookups[b];
         for (int k = 0; k < of_a.stencil.size; ++k) {
           for (int l = 0; l < of_b.stencil.size; ++l) {

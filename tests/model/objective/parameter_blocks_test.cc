@@ -1,4 +1,4 @@
-#include "model/objective/parameter_blocks.h"
+#include "trilobe/model/objective/parameter_blocks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,34 @@
-#include "model/objective/cost_functors.h"
+#include "trilobe/model/objective/sample_residual.h"
 
 #include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/dynamic_numeric_diff_cost_function.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <new>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "tests/test_util.h"
+
+// Counts what this thread allocates in this program. The sanitizers have operators of their own.
+static thread_local int allocations = 0;
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+[[gnu::noinline]] void* operator new(size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, size_t /*size*/) noexcept {
+  std::free(memory);
+}
+#endif
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -177,6 +194,32 @@ TEST(SampleResidual, DerivativesAreThoseOfItsValues) {
       }
     }
   }
+}
+
+// With numbers, and with the numbers of ceres::DynamicAutoDiffCostFunction.
+TEST(SampleResidual, AllocatesNothingInAnEvaluation) {
+  using Jet = ceres::Jet<double, 8>;
+  for (const auto& [name, spec] : TestSpecs(kGrid)) {
+    ParameterBlocks layout(spec);
+    layout.Read(ModelWithZeros(spec));
+    for (const BrdfSamples& samples : OnGridAndBetween()) {
+      const Reading reading(Objective(samples, spec, FindWeighting("uniform")).Sample(3), &layout);
+      std::vector<std::vector<Jet>> jets;
+      std::vector<const Jet*> blocks;
+      for (const int b : reading.numbers) {
+        const auto block = layout.block(b);
+        blocks.push_back(jets.emplace_back(block.begin(), block.end()).data());
+      }
+      std::array<double, kChannels> residuals;
+      std::array<Jet, kChannels> jet_residuals;
+      const int before = allocations;
+      ASSERT_TRUE(reading.residual(reading.blocks.data(), residuals.data()));
+      ASSERT_TRUE(reading.residual(blocks.data(), jet_residuals.data()));
+      EXPECT_EQ(allocations, before) << name;
+      for (int c = 0; c < kChannels; ++c) EXPECT_EQ(jet_residuals[c].a, residuals[c]) << name;
+    }
+  }
+  EXPECT_EQ(allocations > 0, !kSanitized);
 }
 
 }  // namespace
