@@ -20,9 +20,7 @@ struct NamedChoice {
 // All that there are of a type of choice, the value of which does not matter.
 const std::vector<NamedChoice<Positivity>>& ChoicesLike(Positivity) {
   static const std::vector<NamedChoice<Positivity>> choices = {
-      {"active_set", Positivity::kActiveSet},
-      {"bounds", Positivity::kBounds},
-      {"squares", Positivity::kSquares}};
+      {"active_set", Positivity::kActiveSet}, {"bounds", Positivity::kBounds}};
   return choices;
 }
 const std::vector<NamedChoice<TrustRegion>>& ChoicesLike(TrustRegion) {

@@ -20,10 +20,9 @@ namespace trilobe {
 enum class Positivity {
   kActiveSet,  // step in the parameters that are free to move, projected on x >= 0
   kBounds,     // Ceres' lower bounds: projected steps with a line search
-  kSquares,    // x = p^2, no bounds
 };
 
-const char* PositivityName(Positivity positivity);  // "active_set", "bounds", "squares"
+const char* PositivityName(Positivity positivity);  // "active_set", "bounds"
 
 enum class TrustRegion { kLevenbergMarquardt, kDogleg };
 const char* TrustRegionName(TrustRegion trust_region);  // "levenberg_marquardt", "dogleg"

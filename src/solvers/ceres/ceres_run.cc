@@ -111,8 +111,7 @@ CeresParameters::CeresParameters(const Objective& objective, FactorModel start,
       start_(std::move(start)),
       value_unit_(ValueUnit(objective)),
       residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.samples().size())),
-      squares_(ChoosePositivity(active_set, run) == Positivity::kSquares),
-      holds_(run->options().positivity == Positivity::kActiveSet) {}
+      holds_(ChoosePositivity(active_set, run) == Positivity::kActiveSet) {}
 
 FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   for (double& d : model.d()) d *= by;
@@ -122,25 +121,15 @@ FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   return model;
 }
 
-FactorModel CeresParameters::Start() const {
-  FactorModel p = Scaled(start_, 1 / value_unit_);
-  if (squares_) {
-    for (double& x : p.parameters()) x = std::sqrt(x);
-  }
-  return p;
-}
+FactorModel CeresParameters::Start() const { return Scaled(start_, 1 / value_unit_); }
 
 FactorModel CeresParameters::Model(FactorModel p) const {
-  if (squares_) {
-    for (double& x : p.parameters()) x *= x;
-  }
   FactorModel model = Scaled(std::move(p), value_unit_);
   CopyUnobservedParameters(objective_.coverage(), start_, &model);
   return model;
 }
 
 void CeresParameters::SetBounds(std::span<double> block, ceres::Problem* problem) const {
-  if (squares_) return;
   for (int k = 0; k < static_cast<int>(block.size()); ++k) {
     problem->SetParameterLowerBound(block.data(), k, 0);
     problem->SetParameterUpperBound(block.data(), k, std::max(block[k], kMaxParameter));

@@ -18,19 +18,18 @@ namespace trilobe {
 // A model's parameters x as Ceres sees them. d and s are measured in the power of two next to the
 // weighted root mean square of the data, and residuals in that next to theirs at a black model,
 // since Ceres' scaling of columns and its damping contain absolute constants. x >= 0 is kept by
-// bounds or, with squares, by Ceres' parameters being p, x = p^2: a parameter at 0 stays there.
+// bounds.
 class CeresParameters {
  public:
   // Whether the cost function holds parameters on their bounds (IsHeld).
   enum class ActiveSet { kNone, kInCost };
 
-  // Takes from the run's options whether they are squares. Ceres itself has no active set: where
-  // the options ask for one and the cost has none, there are bounds alone and a note says so.
+  // Ceres itself has no active set: where the run's options ask for one and the cost has none,
+  // there are bounds alone and a note says so.
   CeresParameters(const Objective& objective, FactorModel start, ActiveSet active_set, Run* run);
 
   double value_unit() const { return value_unit_; }        // of d and s
   double residual_unit() const { return residual_unit_; }  // E becomes E / residual_unit^2
-  bool squares() const { return squares_; }
 
   // True for a parameter that is 0 and that a lower E would push below, with dE/dx given, where
   // there is an active set. As Ceres would project its step only after it is made for all
@@ -43,7 +42,7 @@ class CeresParameters {
   // The model of such parameters. Unobserved bins are the starting point's, to the last bit.
   FactorModel Model(FactorModel p) const;
   // 0 <= x <= kMaxParameter, or the start if that is above, for a block of the problem that holds
-  // such parameters of the starting point; nothing with squares.
+  // such parameters of the starting point.
   void SetBounds(std::span<double> block, ceres::Problem* problem) const;
 
  private:
@@ -52,7 +51,7 @@ class CeresParameters {
   const Objective& objective_;
   const FactorModel start_;
   const double value_unit_, residual_unit_;
-  const bool squares_, holds_;
+  const bool holds_;
 };
 
 // How Ceres solves the linear least-squares problem of a step: by a Cholesky factorisation of the

@@ -93,8 +93,8 @@ class CondensedCost : public ceres::CostFunction {
     for (size_t k = 0; k < n; ++k) rest -= residuals[k] * residuals[k];
     residuals[n] = std::sqrt(std::max(0.0, rest));
 
-    // d (r / unit) / dp = J C, C diagonal: value_unit / unit or 1 / unit for the change of units,
-    // 2 p for squares; 0 for what is held.
+    // d (r / unit) / dp = J C, C diagonal: value_unit / unit or 1 / unit for the change of units; 0
+    // for what is held.
     const double unit = parameters_.residual_unit();
     for (size_t k = 0; k <= n; ++k) residuals[k] /= unit;
     const size_t num_in_units = kChannels * (1 + objective_.spec().lobes);  // d and s
@@ -102,7 +102,6 @@ class CondensedCost : public ceres::CostFunction {
     for (size_t k = 0; k < n; ++k) {
       column[k] = std::sqrt(at_.squared_lengths[k]) *
                   (k < num_in_units ? parameters_.value_unit() : 1) / unit;
-      if (parameters_.squares()) column[k] *= 2 * p[k];
       if (parameters_.IsHeld(p[k], at_.gradient[k])) column[k] = 0;
     }
     for (size_t k = 0; k < n; ++k) {

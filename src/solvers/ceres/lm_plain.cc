@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -27,32 +26,6 @@ constexpr int kStride = 8;
 // second, some ten times what one by sparse normal equations takes.
 constexpr double kMaxDenseBytes = 64 << 20;
 
-// A sample's residuals as functions of p, x = p^2.
-class SquaresResidual {
- public:
-  SquaresResidual(const ParameterBlocks& layout, const WeightedSample& sample,
-                  std::vector<int>* blocks)
-      : residual_(layout, sample, blocks) {
-    for (const int b : *blocks) sizes_.push_back(static_cast<int>(layout.block(b).size()));
-  }
-
-  template <typename T>
-  bool operator()(T const* const* p, T* residuals) const {
-    std::vector<T> squares;
-    squares.reserve(std::accumulate(sizes_.begin(), sizes_.end(), size_t{0}));
-    std::vector<const T*> x;
-    for (size_t b = 0; b < sizes_.size(); ++b) {
-      x.push_back(squares.data() + squares.size());
-      for (int k = 0; k < sizes_[b]; ++k) squares.push_back(p[b][k] * p[b][k]);
-    }
-    return residual_(x.data(), residuals);
-  }
-
- private:
-  SampleResidual residual_;
-  std::vector<int> sizes_;
-};
-
 // E / residual_unit^2 as a problem for Ceres, with a residual block a sample.
 class PlainProblem {
  public:
@@ -62,11 +35,7 @@ class PlainProblem {
     for (int j = 0; j < objective.samples().size(); ++j) {
       const WeightedSample sample = objective.Sample(j);
       if (std::ranges::count(sample.weight, 0.0) == kChannels) continue;
-      if (parameters.squares()) {
-        AddSample<SquaresResidual>(sample);
-      } else {
-        AddSample<SampleResidual>(sample);
-      }
+      AddSample(sample);
     }
     for (int b = 0; b < blocks_.num_blocks(); ++b) Constrain(b, objective.coverage());
   }
@@ -93,13 +62,12 @@ class PlainProblem {
     return options;
   }
 
-  template <typename Residual>
   void AddSample(WeightedSample sample) {
     const double unit = parameters_.value_unit(), ratio = unit / parameters_.residual_unit();
     for (double& rho : sample.rho) rho /= unit;
     for (double& w : sample.weight) w *= ratio * ratio;
-    auto* const cost = new ceres::DynamicAutoDiffCostFunction<Residual, kStride>(
-        new Residual(blocks_, sample, &block_numbers_));
+    auto* const cost = new ceres::DynamicAutoDiffCostFunction<SampleResidual, kStride>(
+        new SampleResidual(blocks_, sample, &block_numbers_));
     cost->SetNumResiduals(SampleResidual::kNumResiduals);
     std::vector<double*> parameters;
     for (const int b : block_numbers_) {

@@ -46,8 +46,7 @@ TEST(LmPlain, LowersE) {
 TEST(LmPlain, SaysHowItKeepsTheBounds) {
   const Objective objective =
       MakeObjective(RandomTable(kGrid, 1), ModelSpec::SharedFactors(1, kGrid));
-  for (const Positivity asked :
-       {Positivity::kActiveSet, Positivity::kSquares, Positivity::kBounds}) {
+  for (const Positivity asked : {Positivity::kActiveSet, Positivity::kBounds}) {
     FactorModel model = RandomModel(objective.spec(), 1);
     SolverOptions options = Iterations(1);
     options.positivity = asked;

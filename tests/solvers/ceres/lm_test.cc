@@ -92,16 +92,13 @@ TEST(Lm, GoesWhereLmPlainGoes) {
   for (const int lobes : {1, 2}) {
     FactorModel start;
     const Objective objective = NoisyObjective(kGrid, lobes, &start);
-    for (const Positivity positivity : {Positivity::kBounds, Positivity::kSquares}) {
-      for (const TrustRegion trust_region :
-           {TrustRegion::kLevenbergMarquardt, TrustRegion::kDogleg}) {
-        SolverOptions options = Iterations(6);
-        options.positivity = positivity;
-        options.trust_region = trust_region;
-        ExpectSameIterates(objective, start, options,
-                           std::to_string(lobes) + " lobes, " + PositivityName(positivity) + ", " +
-                               TrustRegionName(trust_region));
-      }
+    for (const TrustRegion trust_region :
+         {TrustRegion::kLevenbergMarquardt, TrustRegion::kDogleg}) {
+      SolverOptions options = Iterations(6);
+      options.positivity = Positivity::kBounds;
+      options.trust_region = trust_region;
+      ExpectSameIterates(objective, start, options,
+                         std::to_string(lobes) + " lobes, " + TrustRegionName(trust_region));
     }
   }
 }
