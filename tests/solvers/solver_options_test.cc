@@ -30,7 +30,7 @@ std::vector<OptionValue> Values(const SolverOptions& options) {
 OptionValue OtherValue(const SolverOption& option) {
   const OptionValue value = option.get({});
   if (const auto* const choice = std::get_if<std::string>(&value)) {
-    return *choice == "active_set" ? "bounds" : "dogleg";
+    return *choice == "active_set" ? "bounds" : *choice == "auto" ? "cgnr" : "dogleg";
   }
   return std::visit(
       [](const auto& of_type) -> OptionValue {
