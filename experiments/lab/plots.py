@@ -23,7 +23,6 @@ SOLVERS = {
     "varpro": (BLUE, "-"),
     "newton": (ORANGE, "-"),
     "lm": (PURPLE, "-"),
-    "lm_squares": (PURPLE, ":"),
     "lm_bounds": (PURPLE, "--"),
     "lm_plain": (PURPLE, "-."),
     "awls": (VERMILION, "-"),

@@ -20,14 +20,24 @@ struct NamedChoice {
 // All that there are of a type of choice, the value of which does not matter.
 const std::vector<NamedChoice<Positivity>>& ChoicesLike(Positivity) {
   static const std::vector<NamedChoice<Positivity>> choices = {
-      {"active_set", Positivity::kActiveSet},
-      {"bounds", Positivity::kBounds},
-      {"squares", Positivity::kSquares}};
+      {"active_set", Positivity::kActiveSet}, {"bounds", Positivity::kBounds}};
   return choices;
 }
 const std::vector<NamedChoice<TrustRegion>>& ChoicesLike(TrustRegion) {
   static const std::vector<NamedChoice<TrustRegion>> choices = {
       {"levenberg_marquardt", TrustRegion::kLevenbergMarquardt}, {"dogleg", TrustRegion::kDogleg}};
+  return choices;
+}
+const std::vector<NamedChoice<LinearSolver>>& ChoicesLike(LinearSolver) {
+  static const std::vector<NamedChoice<LinearSolver>> choices = {
+      {"auto", LinearSolver::kAuto},
+      {"dense_qr", LinearSolver::kDenseQr},
+      {"dense_normal_cholesky", LinearSolver::kDenseNormalCholesky},
+      {"sparse_normal_cholesky", LinearSolver::kSparseNormalCholesky},
+      {"dense_schur", LinearSolver::kDenseSchur},
+      {"sparse_schur", LinearSolver::kSparseSchur},
+      {"iterative_schur", LinearSolver::kIterativeSchur},
+      {"cgnr", LinearSolver::kCgnr}};
   return choices;
 }
 
@@ -133,6 +143,15 @@ std::vector<SolverOption> MakeOptions() {
       Option("positivity", &Options::positivity, {.help = "how parameters are kept >= 0"}),
       Option("trust_region", &Options::trust_region,
              {.help = "how the length of a step is bounded"}),
+      Option("nonmonotonic", &Options::nonmonotonic,
+             {.help = "judge a step of the trust region against up to five steps before, not the "
+                      "last alone"}),
+      Option("linear_solver", &Options::linear_solver,
+             {.help = "how Ceres solves for a step (auto takes dense_qr where the Jacobian has at "
+                      "most 64 MiB, else sparse_normal_cholesky; a Schur complement eliminates D)"}),
+      Option("inner_iterations", &Options::inner_iterations,
+             {.help = "after each step of Ceres, minimise E over one parameter block after another "
+                      "(Ruhe and Wedin's algorithm II)"}),
       Option(
           "memory", &Options::memory,
           {.help = "earlier iterates that an accelerated solver combines", .range = kNotNegative}),
@@ -146,6 +165,8 @@ std::vector<SolverOption> MakeOptions() {
 const char* PositivityName(Positivity positivity) { return NameOf(positivity); }
 
 const char* TrustRegionName(TrustRegion trust_region) { return NameOf(trust_region); }
+
+const char* LinearSolverName(LinearSolver linear_solver) { return NameOf(linear_solver); }
 
 const std::vector<SolverOption>& AllSolverOptions() {
   static const std::vector<SolverOption> options = MakeOptions();

@@ -532,7 +532,7 @@ TEST(Fit, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--g_filter=-1"}, "--g_filter"},
       {{"--solver=awls", "--starts=2"}, "awls does not take --starts; it takes --g_filter"},
       {{"--solver=awls", "--memory=3"}, "does not take --memory"},
-      {{"--solver=awls", "--positivity=squares"}, "does not take --positivity"},
+      {{"--solver=awls", "--positivity=bounds"}, "does not take --positivity"},
       {{"--solver=awls", "--trust_region=dogleg"}, "does not take --trust_region"},
       {{"--threads=-1"}, "--threads"},
       {{"--noise=2"}, "noise"},

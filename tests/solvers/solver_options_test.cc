@@ -30,7 +30,7 @@ std::vector<OptionValue> Values(const SolverOptions& options) {
 OptionValue OtherValue(const SolverOption& option) {
   const OptionValue value = option.get({});
   if (const auto* const choice = std::get_if<std::string>(&value)) {
-    return *choice == "active_set" ? "squares" : "dogleg";
+    return *choice == "active_set" ? "bounds" : *choice == "auto" ? "cgnr" : "dogleg";
   }
   return std::visit(
       [](const auto& of_type) -> OptionValue {
@@ -94,9 +94,9 @@ TEST(SolverOptions, ChoicesAreKnownByName) {
   EXPECT_STREQ(PositivityName(options.positivity), "bounds");
   EXPECT_STREQ(TrustRegionName(TrustRegion::kDogleg), "dogleg");
   EXPECT_EQ(FindSolverOption("positivity").help,
-            "how parameters are kept >= 0: active_set, bounds or squares");
+            "how parameters are kept >= 0: active_set or bounds");
   EXPECT_THAT(ErrorOf([&] { FindSolverOption("positivity").set("x", &options); }),
-              testing::HasSubstr("'x'; known: active_set, bounds, squares"));
+              testing::HasSubstr("'x'; known: active_set, bounds"));
 }
 
 TEST(SolverOptions, OutOfRangeNameTheValueAndTheRange) {
@@ -107,7 +107,7 @@ TEST(SolverOptions, OutOfRangeNameTheValueAndTheRange) {
 
 TEST(SolverOptions, OfASolverAreThoseThatItReads) {
   SolverOptions options;
-  options.positivity = Positivity::kSquares;
+  options.positivity = Positivity::kBounds;
   options.seed = 0xffffffffffffffff;
   const std::vector<std::string> particular = {"seed", "positivity"};
   std::vector<std::string> texts;
@@ -117,7 +117,7 @@ TEST(SolverOptions, OfASolverAreThoseThatItReads) {
   EXPECT_THAT(texts, testing::ElementsAre("max_iterations=100", "max_seconds=inf",
                                           "relative_decrease_tolerance=1e-05",
                                           "optimality_tolerance=1e-10", "diagnose=true",
-                                          "positivity=squares", "seed=18446744073709551615"));
+                                          "positivity=bounds", "seed=18446744073709551615"));
 }
 
 TEST(SolverOptions, AreThereWhereASolverNamesThem) {

@@ -20,13 +20,27 @@ namespace trilobe {
 enum class Positivity {
   kActiveSet,  // step in the parameters that are free to move, projected on x >= 0
   kBounds,     // Ceres' lower bounds: projected steps with a line search
-  kSquares,    // x = p^2, no bounds
 };
 
-const char* PositivityName(Positivity positivity);  // "active_set", "bounds", "squares"
+const char* PositivityName(Positivity positivity);  // "active_set", "bounds"
 
 enum class TrustRegion { kLevenbergMarquardt, kDogleg };
 const char* TrustRegionName(TrustRegion trust_region);  // "levenberg_marquardt", "dogleg"
+
+// How Ceres solves the linear least-squares problem of a step: ceres::LinearSolverType. Those by QR
+// and dense Cholesky store the whole Jacobian, [3 samples][parameters]; a Schur complement
+// eliminates rows of D.
+enum class LinearSolver {
+  kAuto,  // dense QR where the Jacobian takes at most 64 MiB, else sparse Cholesky
+  kDenseQr,
+  kDenseNormalCholesky,
+  kSparseNormalCholesky,
+  kDenseSchur,
+  kSparseSchur,
+  kIterativeSchur,
+  kCgnr,
+};
+const char* LinearSolverName(LinearSolver linear_solver);  // "auto", "dense_qr", ...
 
 // What a run is asked to do. The first part is common to all solvers; each option of the second
 // part is one that only some solvers read, and SolverEntry::options says which. What else there is
@@ -62,6 +76,11 @@ struct SolverOptions {
 
   Positivity positivity = Positivity::kActiveSet;
   TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
+
+  // Of Ceres, under the names that it has for them in ceres::Solver::Options.
+  bool nonmonotonic = false;  // use_nonmonotonic_steps: judged against several before
+  LinearSolver linear_solver = LinearSolver::kAuto;
+  bool inner_iterations = false;  // use_inner_iterations: then block by block, after each step
 
   // Earlier iterates that an accelerated solver combines.
   int memory = 5;

@@ -1,11 +1,10 @@
 #include "solvers/ceres/ceres_run.h"
 
 #include <ceres/iteration_callback.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "core/algebra/element_step.h"
 #include "core/algebra/openblas.h"
 #include "model/lobes/gauge.h"
+#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
@@ -35,16 +35,25 @@ class Recorder : public ceres::IterationCallback {
   Run& run_;
 };
 
-ceres::LinearSolverType ToCeres(CeresLinearSolver linear_solver) {
+ceres::LinearSolverType TypeOf(LinearSolver linear_solver) {
   switch (linear_solver) {
-    case CeresLinearSolver::kSparseCholesky:
-      return ceres::SPARSE_NORMAL_CHOLESKY;
-    case CeresLinearSolver::kDenseCholesky:
-      return ceres::DENSE_NORMAL_CHOLESKY;
-    case CeresLinearSolver::kDenseQr:
+    case LinearSolver::kDenseQr:
       return ceres::DENSE_QR;
+    case LinearSolver::kDenseNormalCholesky:
+      return ceres::DENSE_NORMAL_CHOLESKY;
+    case LinearSolver::kAuto:
+    case LinearSolver::kSparseNormalCholesky:
+      return ceres::SPARSE_NORMAL_CHOLESKY;
+    case LinearSolver::kDenseSchur:
+      return ceres::DENSE_SCHUR;
+    case LinearSolver::kSparseSchur:
+      return ceres::SPARSE_SCHUR;
+    case LinearSolver::kIterativeSchur:
+      return ceres::ITERATIVE_SCHUR;
+    case LinearSolver::kCgnr:
+      return ceres::CGNR;
   }
-  return ceres::DENSE_QR;
+  return ceres::SPARSE_NORMAL_CHOLESKY;
 }
 
 // The power of two next to the root of the mean of squares.
@@ -59,24 +68,18 @@ double ValueUnit(const Objective& objective) {
   return Unit(objective.MeasuredEnergy(), weight);
 }
 
-// Replaces an active set that there is not by bounds.
-Positivity ChoosePositivity(CeresParameters::ActiveSet active_set, Run* run) {
-  Positivity& positivity = run->summary().used.positivity;
-  if (positivity == Positivity::kActiveSet && active_set == CeresParameters::ActiveSet::kNone) {
-    positivity = Positivity::kBounds;
-    run->summary().notes.push_back("Ceres has no active set, so " + run->summary().solver +
-                                   " keeps parameters >= 0 by bounds; solvers lm and newton have"
-                                   " one");
-  }
-  return positivity;
-}
+}  // namespace
 
-ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver linear_solver,
-                               int num_threads) {
+ceres::Solver::Options CeresOptions(const SolverOptions& options, LinearSolver linear_solver,
+                                    int num_threads) {
   ceres::Solver::Options ceres_options;
   ceres_options.trust_region_strategy_type =
       options.trust_region == TrustRegion::kDogleg ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
-  ceres_options.linear_solver_type = ToCeres(linear_solver);
+  ceres_options.use_nonmonotonic_steps = options.nonmonotonic;
+  ceres_options.linear_solver_type = TypeOf(linear_solver);
+  // The diagonal blocks of the Schur complement cost next to nothing once it is there by blocks.
+  ceres_options.preconditioner_type =
+      linear_solver == LinearSolver::kIterativeSchur ? ceres::SCHUR_JACOBI : ceres::JACOBI;
   ceres_options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   ceres_options.dense_linear_algebra_library_type =
       ceres::LAPACK;  // as fast as the BLAS that is installed
@@ -100,19 +103,20 @@ ceres::Solver::Options ToCeres(const SolverOptions& options, CeresLinearSolver l
 
   ceres_options.update_state_every_iteration = true;
   ceres_options.logging_type = ceres::SILENT;
+  std::string reason;
+  if (!ceres_options.IsValid(&reason)) {
+    throw Error("Ceres does not take linear_solver " +
+                std::string(LinearSolverName(linear_solver)) + " with trust_region " +
+                TrustRegionName(options.trust_region) + ": " + reason);
+  }
   return ceres_options;
 }
 
-}  // namespace
-
-CeresParameters::CeresParameters(const Objective& objective, FactorModel start,
-                                 ActiveSet active_set, Run* run)
+CeresParameters::CeresParameters(const Objective& objective, FactorModel start)
     : objective_(objective),
       start_(std::move(start)),
       value_unit_(ValueUnit(objective)),
-      residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.samples().size())),
-      squares_(ChoosePositivity(active_set, run) == Positivity::kSquares),
-      holds_(run->options().positivity == Positivity::kActiveSet) {}
+      residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.samples().size())) {}
 
 FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   for (double& d : model.d()) d *= by;
@@ -122,36 +126,24 @@ FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   return model;
 }
 
-FactorModel CeresParameters::Start() const {
-  FactorModel p = Scaled(start_, 1 / value_unit_);
-  if (squares_) {
-    for (double& x : p.parameters()) x = std::sqrt(x);
-  }
-  return p;
-}
+FactorModel CeresParameters::Start() const { return Scaled(start_, 1 / value_unit_); }
 
 FactorModel CeresParameters::Model(FactorModel p) const {
-  if (squares_) {
-    for (double& x : p.parameters()) x *= x;
-  }
   FactorModel model = Scaled(std::move(p), value_unit_);
   CopyUnobservedParameters(objective_.coverage(), start_, &model);
   return model;
 }
 
 void CeresParameters::SetBounds(std::span<double> block, ceres::Problem* problem) const {
-  if (squares_) return;
   for (int k = 0; k < static_cast<int>(block.size()); ++k) {
     problem->SetParameterLowerBound(block.data(), k, 0);
     problem->SetParameterUpperBound(block.data(), k, std::max(block[k], kMaxParameter));
   }
 }
 
-void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
-                       const std::function<CeresPoint()>& current, ceres::Problem* problem,
-                       Run* run) {
+void MinimizeWithCeres(ceres::Solver::Options options, const std::function<CeresPoint()>& current,
+                       ceres::Problem* problem, Run* run) {
   Recorder recorder(current, run);
-  ceres::Solver::Options options = ToCeres(run->options(), linear_solver, num_threads);
   options.callbacks.push_back(&recorder);
 
   ceres::Solver::Summary summary;

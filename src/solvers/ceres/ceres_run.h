@@ -1,6 +1,9 @@
 #ifndef TRILOBE_SOLVERS_CERES_CERES_RUN_H_
 #define TRILOBE_SOLVERS_CERES_CERES_RUN_H_
 
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
 #include <functional>
 #include <optional>
 #include <span>
@@ -8,42 +11,28 @@
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/solvers/run.h"
-
-namespace ceres {
-class Problem;
-}  // namespace ceres
+#include "trilobe/solvers/solver_options.h"
 
 namespace trilobe {
 
 // A model's parameters x as Ceres sees them. d and s are measured in the power of two next to the
 // weighted root mean square of the data, and residuals in that next to theirs at a black model,
 // since Ceres' scaling of columns and its damping contain absolute constants. x >= 0 is kept by
-// bounds or, with squares, by Ceres' parameters being p, x = p^2: a parameter at 0 stays there.
+// bounds.
 class CeresParameters {
  public:
-  // Whether the cost function holds parameters on their bounds (IsHeld).
-  enum class ActiveSet { kNone, kInCost };
+  CeresParameters(const Objective& objective, FactorModel start);
 
-  // Takes from the run's options whether they are squares. Ceres itself has no active set: where
-  // the options ask for one and the cost has none, there are bounds alone and a note says so.
-  CeresParameters(const Objective& objective, FactorModel start, ActiveSet active_set, Run* run);
-
+  const Objective& objective() const { return objective_; }
   double value_unit() const { return value_unit_; }        // of d and s
   double residual_unit() const { return residual_unit_; }  // E becomes E / residual_unit^2
-  bool squares() const { return squares_; }
-
-  // True for a parameter that is 0 and that a lower E would push below, with dE/dx given, where
-  // there is an active set. As Ceres would project its step only after it is made for all
-  // parameters together, such a parameter spoils the steps of the others: it is to have no
-  // derivative.
-  bool IsHeld(double p, double gradient) const { return holds_ && p <= 0 && gradient > 0; }
 
   // The starting point in Ceres' parameters, each in the place of the model's.
   FactorModel Start() const;
   // The model of such parameters. Unobserved bins are the starting point's, to the last bit.
   FactorModel Model(FactorModel p) const;
   // 0 <= x <= kMaxParameter, or the start if that is above, for a block of the problem that holds
-  // such parameters of the starting point; nothing with squares.
+  // such parameters of the starting point.
   void SetBounds(std::span<double> block, ceres::Problem* problem) const;
 
  private:
@@ -52,13 +41,14 @@ class CeresParameters {
   const Objective& objective_;
   const FactorModel start_;
   const double value_unit_, residual_unit_;
-  const bool squares_, holds_;
 };
 
-// How Ceres solves the linear least-squares problem of a step: by a Cholesky factorisation of the
-// normal equations, SuiteSparse's or a dense one, or by a QR factorisation of the Jacobian, which
-// does not square its condition number. The dense ones store the whole Jacobian.
-enum class CeresLinearSolver { kSparseCholesky, kDenseCholesky, kDenseQr };
+// What Ceres is told of a run with these options (max_iterations, trust_region, nonmonotonic), but
+// for what depends on the problem. kAuto stands for
+// kSparseNormalCholesky here. Throws Error, with Ceres' reason, where the linear solver and the
+// trust region do not go together.
+ceres::Solver::Options CeresOptions(const SolverOptions& options, LinearSolver linear_solver,
+                                    int num_threads);
 
 // Where Ceres stands, and E there if it is known.
 struct CeresPoint {
@@ -66,16 +56,15 @@ struct CeresPoint {
   std::optional<double> objective = std::nullopt;
 };
 
-// Makes the iterations of a run that Run::Start has begun by Ceres' trust-region minimizer, with
-// `num_threads` threads, or this one alone where the system gives no more, from where the problem's
-// parameter blocks stand. The problem's cost is to be E up to a constant factor. `current` makes a
-// model of the blocks, which are up to date when it is called; the run records it after each
-// iteration of Ceres, those among them whose step was taken back. The run's trust_region option is
-// honoured, and its stopping test is the only one; where Ceres can go no further before, it is
-// kNoDecrease, with Ceres' reason in a note. Adds Ceres' times to the run's phases.
-void MinimizeWithCeres(CeresLinearSolver linear_solver, int num_threads,
-                       const std::function<CeresPoint()>& current, ceres::Problem* problem,
-                       Run* run);
+// Makes the iterations of a run that Run::Start has begun by Ceres' trust-region minimizer from
+// where the problem's parameter blocks stand, on this thread alone where the system gives no more.
+// The problem's cost is to be E up to a constant factor. `current` makes a model of the blocks,
+// which are up to date when it is called; the run records it after each iteration of Ceres, those
+// among them whose step was taken back. The run's stopping test is the only one; where Ceres can go
+// no further before, it is kNoDecrease, with Ceres' reason in a note. Adds Ceres' times to the
+// run's phases.
+void MinimizeWithCeres(ceres::Solver::Options options, const std::function<CeresPoint()>& current,
+                       ceres::Problem* problem, Run* run);
 
 }  // namespace trilobe
 

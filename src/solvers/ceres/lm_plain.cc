@@ -1,136 +1,12 @@
-#include <ceres/dynamic_autodiff_cost_function.h>
-#include <ceres/manifold.h>
-#include <ceres/problem.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "solvers/ceres/ceres_run.h"
-#include "trilobe/model/objective/parameter_blocks.h"
-#include "trilobe/model/objective/sample_residual.h"
+#include "solvers/ceres/plain_problem.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 
 namespace trilobe {
 namespace {
-
-// A sample has 30 to 42 derivatives with the paper's three lobes. Measured there: passes of 8 take
-// 1.7 us, of 4 (Ceres' default) 2.5 us, of 14 2.3 us; ceres::AutoDiffCostFunction, all at once with
-// every size known to the compiler, 3.9 us.
-constexpr int kStride = 8;
-
-// QR of the whole Jacobian where that takes no more than this. There a step by QR takes half a
-// second, some ten times what one by sparse normal equations takes.
-constexpr double kMaxDenseBytes = 64 << 20;
-
-// A sample's residuals as functions of p, x = p^2.
-class SquaresResidual {
- public:
-  SquaresResidual(const ParameterBlocks& layout, const WeightedSample& sample,
-                  std::vector<int>* blocks)
-      : residual_(layout, sample, blocks) {
-    for (const int b : *blocks) sizes_.push_back(static_cast<int>(layout.block(b).size()));
-  }
-
-  template <typename T>
-  bool operator()(T const* const* p, T* residuals) const {
-    std::vector<T> squares;
-    squares.reserve(std::accumulate(sizes_.begin(), sizes_.end(), size_t{0}));
-    std::vector<const T*> x;
-    for (size_t b = 0; b < sizes_.size(); ++b) {
-      x.push_back(squares.data() + squares.size());
-      for (int k = 0; k < sizes_[b]; ++k) squares.push_back(p[b][k] * p[b][k]);
-    }
-    return residual_(x.data(), residuals);
-  }
-
- private:
-  SampleResidual residual_;
-  std::vector<int> sizes_;
-};
-
-// E / residual_unit^2 as a problem for Ceres, with a residual block a sample.
-class PlainProblem {
- public:
-  PlainProblem(const Objective& objective, const CeresParameters& parameters)
-      : parameters_(parameters), blocks_(objective.spec()), problem_(Options()) {
-    blocks_.Read(parameters.Start());
-    for (int j = 0; j < objective.samples().size(); ++j) {
-      const WeightedSample sample = objective.Sample(j);
-      if (std::ranges::count(sample.weight, 0.0) == kChannels) continue;
-      if (parameters.squares()) {
-        AddSample<SquaresResidual>(sample);
-      } else {
-        AddSample<SampleResidual>(sample);
-      }
-    }
-    for (int b = 0; b < blocks_.num_blocks(); ++b) Constrain(b, objective.coverage());
-  }
-
-  ceres::Problem* problem() { return &problem_; }
-
-  CeresLinearSolver linear_solver() const {
-    const double bytes = 8.0 * problem_.NumResiduals() * problem_.NumParameters();
-    return bytes <= kMaxDenseBytes ? CeresLinearSolver::kDenseQr
-                                   : CeresLinearSolver::kSparseCholesky;
-  }
-
-  // The model that the blocks hold now.
-  FactorModel Model() const {
-    FactorModel p(blocks_.spec());
-    blocks_.Write(&p);
-    return parameters_.Model(std::move(p));
-  }
-
- private:
-  static ceres::Problem::Options Options() {
-    ceres::Problem::Options options;
-    options.disable_all_safety_checks = true;  // a sample names each block once
-    return options;
-  }
-
-  template <typename Residual>
-  void AddSample(WeightedSample sample) {
-    const double unit = parameters_.value_unit(), ratio = unit / parameters_.residual_unit();
-    for (double& rho : sample.rho) rho /= unit;
-    for (double& w : sample.weight) w *= ratio * ratio;
-    auto* const cost = new ceres::DynamicAutoDiffCostFunction<Residual, kStride>(
-        new Residual(blocks_, sample, &block_numbers_));
-    cost->SetNumResiduals(SampleResidual::kNumResiduals);
-    std::vector<double*> parameters;
-    for (const int b : block_numbers_) {
-      cost->AddParameterBlock(static_cast<int>(blocks_.block(b).size()));
-      parameters.push_back(blocks_.block(b).data());
-    }
-    problem_.AddResidualBlock(cost, nullptr, parameters);
-  }
-
-  // Bounds, and unobserved bins stay as they are.
-  void Constrain(int b, const std::vector<double>& coverage) {
-    double* const values = blocks_.block(b).data();
-    if (!problem_.HasParameterBlock(values)) return;
-    const int size = static_cast<int>(blocks_.block(b).size());
-    std::vector<int> unobserved;
-    parameters_.SetBounds(blocks_.block(b), &problem_);
-    for (int k = 0; k < size; ++k) {
-      if (coverage[blocks_.parameters(b)[k]] == 0) unobserved.push_back(k);
-    }
-    if (static_cast<int>(unobserved.size()) == size) {
-      problem_.SetParameterBlockConstant(values);
-    } else if (!unobserved.empty()) {
-      problem_.SetManifold(values, new ceres::SubsetManifold(size, unobserved));
-    }
-  }
-
-  const CeresParameters& parameters_;
-  ParameterBlocks blocks_;
-  std::vector<int> block_numbers_;
-  ceres::Problem problem_;
-};
 
 // The model as one writes it down for Ceres: every sample a residual block with derivatives by
 // automatic differentiation.
@@ -139,15 +15,19 @@ class LmPlain : public Solver {
   SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                         FactorModel* model) const override {
     Run run("lm_plain", objective, options, model);
-    const CeresParameters parameters(objective, *model, CeresParameters::ActiveSet::kNone, &run);
+    const int threads = objective.num_threads();
+    CeresOptions(options, options.linear_solver, threads);  // throws before all that takes time
+    const CeresParameters parameters(objective, *model);
     std::optional<PlainProblem> problem;
     {
       const ScopedTimer timer = run.Time(&PhaseSeconds::preparing);
-      problem.emplace(objective, parameters);
+      problem.emplace(parameters);
     }
+    LinearSolver& linear_solver = run.summary().used.linear_solver;
+    linear_solver = problem->Choose(linear_solver);
     if (run.Start()) {
       MinimizeWithCeres(
-          problem->linear_solver(), objective.num_threads(),
+          problem->OptionsFor(run.options(), threads),
           [&] { return CeresPoint{.model = problem->Model()}; }, problem->problem(), &run);
     }
     return run.Finish();
@@ -159,9 +39,9 @@ class LmPlain : public Solver {
 SolverEntry LmPlainEntry() {
   return {
       .name = "lm_plain",
-      .description = "Levenberg-Marquardt over all samples by Ceres, as one would write it down",
-      .reference = "Ceres Solver 2.1, SPARSE_NORMAL_CHOLESKY or DENSE_QR; Marquardt 1963",
-      .options = {"positivity", "trust_region"},
+      .description = "Ceres' trust region on one residual block a sample, as one would write it",
+      .reference = "Ceres Solver 2.1; Marquardt 1963; Powell 1970",
+      .options = {"trust_region", "nonmonotonic", "linear_solver", "inner_iterations"},
       .make = [] { return std::make_unique<LmPlain>(); }};
 }
 
