@@ -1,4 +1,4 @@
-"""Stiff tables, smooth tables, and the lobes of two halves: see README.md beside this file."""
+"""Smooth tables, and the lobes of two halves: see README.md beside this file."""
 import itertools
 import math
 

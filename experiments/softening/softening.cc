@@ -76,7 +76,7 @@ FactorModel RandomStart(const Objective& objective, int seed) {
 }
 
 // As many as `auto` looks at before it has a start, though not of every other row.
-Objective Few(const std::string& source, const SourceOptions& reading) {
+Objective ThinnedObjective(const std::string& source, const SourceOptions& reading) {
   const BrdfSamples samples = ValidSamples(LoadSource(source, reading));
   const ModelSpec spec = ModelSpec::SharedFactors(3, samples.grid);
   const Weighting& weighting = FindWeighting(FLAGS_weighting);
@@ -93,10 +93,10 @@ double ProcessorSeconds() {
 
 int Main(const std::string& source) {
   const Way& way = FindWay(FLAGS_way);
-  const Objective few = Few(source, {.corrupt = FLAGS_corrupt,
-                                     .seed = FLAGS_seed,
-                                     .max_angle_deg = FLAGS_max_angle,
-                                     .extrapolated = FLAGS_extrapolated});
+  const Objective few = ThinnedObjective(source, {.corrupt = FLAGS_corrupt,
+                                                  .seed = FLAGS_seed,
+                                                  .max_angle_deg = FLAGS_max_angle,
+                                                  .extrapolated = FLAGS_extrapolated});
   SolverOptions options;
   options.diagnose = false;
   for (int seed = FLAGS_first_seed; seed < FLAGS_first_seed + FLAGS_starts; ++seed) {

@@ -41,10 +41,11 @@ class Hybrid : public Solver {
 }  // namespace
 
 SolverEntry HybridEntry() {
-  return {.name = "hybrid",
-          .description = "AWLS sweeps while they pay, then Newton steps",
-          .reference = "docs/solvers.md",
-          .make = [] { return std::make_unique<Hybrid>(); }};
+  return {
+      .name = "hybrid",
+      .description = "AWLS sweeps while they pay, then joint steps: for experiments that compare",
+      .reference = "docs/solvers.md",
+      .make = [] { return std::make_unique<Hybrid>(); }};
 }
 
 }  // namespace trilobe

@@ -34,7 +34,8 @@ class JointSolver : public Solver {
 
 SolverEntry NewtonEntry() {
   return {.name = "newton",
-          .description = "damped Newton steps in all parameters at once, by an active set",
+          .description =
+              "damped Newton steps in all parameters, none refitted: for experiments that compare",
           .reference = "Nielsen 1999; Portugal, Judice, Vicente 1994; docs/solvers.md",
           .make = [] {
             return std::make_unique<JointSolver>("newton", JointStepper::Curvature::kNewton,

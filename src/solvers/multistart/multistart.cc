@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -8,12 +9,9 @@
 #include <vector>
 
 #include "model/lobes/gauge.h"
-#include "model/lobes/lobes.h"
 #include "solvers/joint/joint_step.h"
-#include "solvers/multistart/agreement.h"
-#include "solvers/multistart/coarse_starts.h"
-#include "solvers/multistart/smooth_starts.h"
 #include "solvers/multistart/start_elimination.h"
+#include "solvers/multistart/stiff_starts.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/start/initial_model.h"
@@ -23,30 +21,6 @@ namespace {
 
 // Where a step costs more by its parameters than by its samples, fewer do.
 constexpr StartElimination::Thinning kThinnedMore{.samples_per_parameter = 6, .max_stride = 24};
-constexpr StartElimination::Thinning kAsTheyAre{.samples_per_parameter = 1, .max_stride = 1};
-
-// A model with one lobe, fitted a little; then again and again its strongest lobe split, and fitted
-// a little, each time by so many sweeps and a few joint steps: a lobe that grew out of another
-// starts where it is needed.
-FactorModel Grow(const Objective& objective, int sweeps, uint64_t seed, const StopCheck& stop) {
-  constexpr int kTries = 5;
-  const Stretches& stretches = objective.spec().stretches;
-  ModelSpec spec = objective.spec();
-  spec.stretches = stretches.of(0);  // of all, as long as there are fewer lobes
-  FactorModel model;
-  for (int lobes = 1; lobes < objective.spec().lobes; ++lobes) {
-    spec.lobes = lobes;
-    const Objective smaller(objective.samples(), spec, objective.weighting(), 1);
-    StartElimination elimination(smaller, kAsTheyAre, stop);
-    if (lobes == 1) model = FindInitialModel("analytic").make(smaller, seed);
-    elimination.Enter("", [&](PhaseSeconds*) { return model; }, {.count = sweeps});
-    elimination.Advance(kTries);
-    if (elimination.leader() != nullptr) model = *elimination.leader();
-    NormalizeScale(smaller.coverage(), &model);
-    model = SplitLobe(model, StrongestLobe(model));
-  }
-  return WithStretches(model, stretches);
-}
 
 // The starts, in the order in which they enter: the given one first.
 class Starts {
@@ -59,7 +33,7 @@ class Starts {
         seed_(seed),
         elimination_(elimination),
         stop_(std::move(stop)) {
-    if (coarse) coarse_ = SoftenCoarsely(*coarse, objective.num_threads(), stop_, &phases_);
+    if (coarse) coarse_ = SoftenCoarseStarts(*coarse, objective.num_threads(), stop_, &phases_);
   }
 
   // Of what was done before any start entered.
@@ -72,36 +46,34 @@ class Starts {
 
  private:
   // In the order of what they have won for the time that they take (docs/solvers.md).
-  static constexpr std::array<std::string_view, 10> kByCoarse = {
+  static constexpr std::array<std::string_view, 9> kByCoarse = {
       "given",  "coarse",   "highlight", "coarse", "coarse",
-      "coarse", "analytic", "roughness", "swept",  "grown"};
-  static constexpr std::array<std::string_view, 10> kIsotropic = {
-      "given",    "wide",      "narrow", "highlight", "middle",
-      "analytic", "roughness", "swept",  "grown",     "grown/3"};
-  static constexpr std::array<std::string_view, 10> kAnisotropic = {
-      "given",     "freed",     "moments", "highlight", "analytic",
-      "roughness", "roughness", "swept",   "grown",     "grown/3"};
+      "coarse", "analytic", "roughness", "swept"};
+  static constexpr std::array<std::string_view, 8> kIsotropic = {
+      "given", "wide", "narrow", "highlight", "middle", "analytic", "roughness", "swept"};
+  static constexpr std::array<std::string_view, 8> kAnisotropic = {
+      "given", "freed", "moments", "highlight", "analytic", "roughness", "roughness", "swept"};
+
+  std::span<const std::string_view> Names() const {
+    if (objective_.spec().anisotropic()) return kAnisotropic;
+    if (coarse_.empty()) return kIsotropic;
+    return kByCoarse;
+  }
 
   void EnterOne(size_t number) {
-    const auto& names = objective_.spec().anisotropic() ? kAnisotropic
-                        : !coarse_.empty()              ? kByCoarse
-                                                        : kIsotropic;
+    const std::span<const std::string_view> names = Names();
     const std::string_view name = number < names.size() ? names[number] : "roughness";
-    const auto smooth = std::ranges::find(SmoothStarts(), name, &SmoothStart::name);
+    const auto stiff = std::ranges::find(StiffStarts(), name, &StiffStart::name);
     if (name == "given") {
       elimination_->Enter("given", [this](PhaseSeconds*) { return given_; });
       // If it agrees with one that does not depend on it, that goes on: the same whatever is given.
       if (!coarse_.empty()) elimination_->RankLastBehind(kSameE);
-    } else if (smooth != SmoothStarts().end()) {
-      EnterSmooth(*smooth);
+    } else if (stiff != StiffStarts().end()) {
+      EnterStiff(*stiff);
     } else if (name == "coarse") {
       EnterCoarse();
     } else if (name == "swept") {
       EnterSwept();
-    } else if (name == "grown") {
-      EnterGrown(5, "grown");
-    } else if (name == "grown/3") {
-      EnterGrown(3, "grown/3");
     } else if (name == "roughness") {
       const uint64_t seed = seed_ + random_++;
       EnterInitial(name, seed, "roughness/" + std::to_string(seed));
@@ -111,11 +83,11 @@ class Starts {
   }
 
   // Its tables have softened before it enters, and it needs no sweeps.
-  void EnterSmooth(const SmoothStart& start) {
+  void EnterStiff(const StiffStart& start) {
     elimination_->Enter(start.name,
                         [this, &start](PhaseSeconds* phases) {
                           return WithUnobservedBins(
-                              SoftenFrom(start, elimination_->thinned(), given_, stop_, phases));
+                              SoftenStart(start, elimination_->thinned(), given_, stop_, phases));
                         },
                         {.count = 0});
   }
@@ -136,15 +108,6 @@ class Starts {
   void EnterSwept() {
     elimination_->Enter("swept", [this](PhaseSeconds*) { return given_; },
                         {.count = 60, .in_blocks = false});
-  }
-
-  void EnterGrown(int sweeps, const char* name) {
-    const auto grow = [this, sweeps](PhaseSeconds*) -> std::optional<FactorModel> {
-      const ModelSpec& spec = objective_.spec();
-      if (spec.lobes < 2 || !spec.D.per_lobe) return std::nullopt;
-      return WithUnobservedBins(Grow(elimination_->thinned(), sweeps, seed_, stop_));
-    };
-    elimination_->Enter(name, grow, {.count = sweeps});
   }
 
   void EnterInitial(std::string_view init, uint64_t seed, std::string name) {
@@ -290,7 +253,7 @@ class Auto : public Solver {
     Run run("auto", objective, options, model);
     // A joint step on all samples gains more than an iteration of others, and costs more.
     run.summary().used.relative_decrease_tolerance *= kToleranceFactor;
-    const std::optional<Objective> coarse = Coarse(objective);
+    const std::optional<Objective> coarse = CoarseObjective(objective);
     const std::vector<Round> rounds = objective.spec().anisotropic() ? FewRounds()
                                       : coarse                       ? RoundsByCoarse()
                                                                      : Rounds();
@@ -298,7 +261,8 @@ class Auto : public Solver {
     const std::vector<StartResult>& tried = run.summary().starts;
     // A few steps of an anisotropic model tell which start is best, but not whether two agree.
     if (tried.size() > 1 && !objective.spec().anisotropic()) {
-      run.summary().notes.push_back(Agreement(tried));
+      run.summary().notes.push_back(std::to_string(CountAgreeing(tried)) + " of " +
+                                    std::to_string(tried.size()) + " starts agree");
     }
     return run.Finish();
   }
@@ -313,7 +277,7 @@ class Multistart : public Solver {
     RunRounds({{.starts = n, .tries = 10, .keep = n},
                {.starts = n, .tries = 25, .keep = half},
                {.starts = n, .tries = 100, .keep = half}},
-              objective, Coarse(objective), FactorModel(*model), &run);
+              objective, CoarseObjective(objective), FactorModel(*model), &run);
     const std::vector<StartResult>& tried = run.summary().starts;
     if (!tried.empty()) run.summary().notes.push_back(Within(tried));
     return run.Finish();

@@ -17,18 +17,19 @@ constexpr double kSmallDecrease = 1e-5;
 
 }  // namespace
 
+int CountAgreeing(const std::vector<StartResult>& starts) {
+  if (starts.empty()) return 0;
+  const double most =
+      (1 + kSameE) * std::ranges::min(starts, {}, &StartResult::objective).objective;
+  return static_cast<int>(std::ranges::count_if(
+      starts, [most](double E) { return E <= most; }, &StartResult::objective));
+}
+
 int StartElimination::StrideFor(const Objective& objective, const Thinning& thinning) {
   // Folded samples are half as many.
   const int fold = objective.samples().on_grid() ? 2 : 1;
   const int wanted = fold * thinning.samples_per_parameter * objective.spec().num_parameters();
   return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
-}
-
-Objective StartElimination::Few(const Objective& objective, int stride) {
-  const BrdfSamples& samples = objective.samples();
-  const bool by_rows = samples.on_grid() && stride > 1;
-  return {by_rows ? InEveryOtherRow(Thinned(samples, stride / 2)) : Thinned(samples, stride),
-          objective.spec(), objective.weighting(), /*num_threads=*/1};
 }
 
 class StartElimination::Candidate {
@@ -130,7 +131,13 @@ StartElimination::StartElimination(const Objective& objective, const Thinning& t
   Thin();
 }
 
-void StartElimination::Thin() { thinned_ = std::make_unique<Objective>(Few(objective_, stride_)); }
+void StartElimination::Thin() {
+  const BrdfSamples& samples = objective_.samples();
+  const bool by_rows = samples.on_grid() && stride_ > 1;
+  thinned_ = std::make_unique<Objective>(
+      by_rows ? InEveryOtherRow(Thinned(samples, stride_ / 2)) : Thinned(samples, stride_),
+      objective_.spec(), objective_.weighting(), /*num_threads=*/1);
+}
 
 void StartElimination::ThinLess() {
   if (stride_ == 1) return;

@@ -16,6 +16,12 @@
 
 namespace trilobe {
 
+inline constexpr double kSameE = 0.005;  // E of models that agree differ by this share at most
+
+// How many have the least E, within kSameE. Two that came there from different starts are hardly
+// there by chance.
+int CountAgreeing(const std::vector<StartResult>& starts);
+
 // Several starting points, fitted side by side to a thinned selection of the samples, a thread
 // each: E has many local minima, which one a start leads to cannot be told beforehand, and the
 // samples lie so dense that a fraction of them ranks the minima as all of them do.
@@ -35,9 +41,6 @@ class StartElimination {
   static constexpr Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
   // Every how many samples are looked at.
   static int StrideFor(const Objective& objective, const Thinning& thinning);
-  // The same of one in `stride` of the samples, for one thread: on a grid, of every other (theta_h,
-  // theta_d) one in stride / 2 of phi_d, since a row of few samples takes as long as one of eight.
-  static Objective Few(const Objective& objective, int stride);
 
   // `stop` may be asked from several threads.
   StartElimination(const Objective& objective, const Thinning& thinning, StopCheck stop);
@@ -83,6 +86,9 @@ class StartElimination {
 
  private:
   class Candidate;
+  // Sets thinned_: one in stride_ of the samples, for one thread; on a grid, of every other
+  // (theta_h, theta_d) one in stride_ / 2 of phi_d, since a row of few samples takes as long as one
+  // of eight.
   void Thin();
   std::vector<Candidate*> Ranked() const;
 

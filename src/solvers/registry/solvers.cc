@@ -10,7 +10,6 @@
 #define TRILOBE_FOR_EACH_SOLVER(X) \
   X(Auto)                          \
   X(Multistart)                    \
-  X(Continuation)                  \
   X(Awls)                          \
   X(AwlsBlock)                     \
   X(AwlsAccelerated)               \

@@ -1,4 +1,4 @@
-#include "solvers/multistart/coarse_starts.h"
+#include "solvers/multistart/stiff_starts.h"
 
 #include <algorithm>
 #include <iterator>
@@ -6,21 +6,22 @@
 
 #include "model/lobes/gauge.h"
 #include "model/lobes/with_axes.h"
-#include "solvers/multistart/smooth_starts.h"
 #include "solvers/multistart/start_elimination.h"
-#include "solvers/smooth/softening.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/solvers/start/initial_model.h"
 
 namespace trilobe {
 namespace {
 
+// The widest, which has the longest way, begins stiffer.
+constexpr StiffStart kWide{"wide", 0.2, 0.6, 10 * kStiffTables};
+constexpr StiffStart kNarrow{"narrow", 0.02, 0.2, kStiffTables};
+constexpr StiffStart kStiffStarts[] = {kWide, kNarrow, {"middle", 0.1, 0.6, kStiffTables}};
+
 // From the widest lobes to the narrowest, and two that have both. Which of them ends lowest on few
 // samples, coarse ones tell: docs/decisions/coarse-starts.md.
-constexpr SmoothStart kCoarseStarts[] = {kWideStart,
-                                         kNarrowStart,
-                                         {"spread", 0.02, 0.6, kStiffTables},
-                                         {"broad", 0.05, 0.6, 10 * kStiffTables}};
+constexpr StiffStart kCoarseStarts[] = {
+    kWide, kNarrow, {"spread", 0.02, 0.6, kStiffTables}, {"broad", 0.05, 0.6, 10 * kStiffTables}};
 constexpr int kNumCoarseStarts = std::size(kCoarseStarts);
 
 constexpr double kStillStiff = 1e-6;  // where half the entries are enough
@@ -38,7 +39,16 @@ bool CanBeHalved(const Objective& objective) {
 
 }  // namespace
 
-std::optional<Objective> Coarse(const Objective& objective) {
+std::span<const StiffStart> StiffStarts() { return kStiffStarts; }
+
+FactorModel SoftenStart(const StiffStart& start, const Objective& few, const FactorModel& given,
+                        const StopCheck& stop, PhaseSeconds* phases) {
+  FactorModel model = SpreadModel(few, start.narrow, start.wide);
+  CopyUnobservedParameters(few.coverage(), given, &model);
+  return Soften(few, model, {.stiffest = start.stiffest}, stop, phases);
+}
+
+std::optional<Objective> CoarseObjective(const Objective& objective) {
   const bool plenty = StartElimination::StrideFor(objective, StartElimination::kThinned) > 1;
   if (!plenty || !CanBeHalved(objective)) return std::nullopt;
   constexpr int kOfRow = 8;  // of phi_d, with their mirrors: a row of fewer takes as long
@@ -50,14 +60,14 @@ std::optional<Objective> Coarse(const Objective& objective) {
   return Objective(std::move(means), spec, objective.weighting(), /*num_threads=*/1);
 }
 
-std::vector<CoarseStart> SoftenCoarsely(const Objective& coarse, int num_threads,
-                                        const StopCheck& stop, PhaseSeconds* phases) {
+std::vector<CoarseStart> SoftenCoarseStarts(const Objective& coarse, int num_threads,
+                                            const StopCheck& stop, PhaseSeconds* phases) {
   constexpr double kSame = 0.003;
   std::optional<CoarseStart> made[kNumCoarseStarts];
   PhaseSeconds phases_of[kNumCoarseStarts];
   ParallelJobs(kNumCoarseStarts, num_threads, [&](int k) {
     if (stop()) return;
-    const SmoothStart& start = kCoarseStarts[k];
+    const StiffStart& start = kCoarseStarts[k];
     const StiffnessSchedule schedule{.stiffest = start.stiffest, .softest = kStillStiff};
     FactorModel model = Soften(coarse, SpreadModel(coarse, start.narrow, start.wide), schedule,
                                stop, &phases_of[k]);

@@ -1,4 +1,4 @@
-#include "solvers/multistart/coarse_starts.h"
+#include "solvers/multistart/stiff_starts.h"
 
 #include <gtest/gtest.h>
 
@@ -22,9 +22,9 @@ Objective Copper(const ModelSpec& spec) {
   return MakeObjective(Synthesize(FindSynthMaterial("copper"), 0, 1, kGrid), spec, "appearance");
 }
 
-TEST(Coarse, HasTablesOfHalfTheEntries) {
+TEST(CoarseObjective, HasTablesOfHalfTheEntries) {
   const Objective objective = Copper(ModelSpec::SharedFactors(2, kGrid));
-  const std::optional<Objective> coarse = Coarse(objective);
+  const std::optional<Objective> coarse = CoarseObjective(objective);
   ASSERT_TRUE(coarse);
   for (const Factor factor : kFactors) {
     EXPECT_EQ(2 * coarse->spec().table_size(factor), objective.spec().table_size(factor));
@@ -33,23 +33,23 @@ TEST(Coarse, HasTablesOfHalfTheEntries) {
   EXPECT_LT(4 * coarse->samples().size(), objective.samples().size());
 }
 
-TEST(Coarse, IsNotOfWhatCannotBeHalved) {
+TEST(CoarseObjective, IsNotOfWhatCannotBeHalved) {
   const ModelSpec spec = ModelSpec::SharedFactors(2, kGrid);
   ModelSpec odd = spec;
   odd.g_axis.size = 9;
-  EXPECT_FALSE(Coarse(Copper(odd)));
+  EXPECT_FALSE(CoarseObjective(Copper(odd)));
   const BrdfSamples samples = Copper(spec).samples();
-  EXPECT_FALSE(Coarse(Objective(Scattered(samples), spec, FindWeighting("appearance"))));
+  EXPECT_FALSE(CoarseObjective(Objective(Scattered(samples), spec, FindWeighting("appearance"))));
   ModelSpec stretched = spec;
   stretched.stretches = Stretch{.along = 1};
-  EXPECT_FALSE(Coarse(Objective(samples, stretched, FindWeighting("appearance"))));
+  EXPECT_FALSE(CoarseObjective(Objective(samples, stretched, FindWeighting("appearance"))));
 }
 
-TEST(SoftenCoarsely, RanksStartsAndPutsThoseThatAreAlikeLast) {
+TEST(SoftenCoarseStarts, RanksStartsAndPutsThoseThatAreAlikeLast) {
   const Objective objective = Copper(ModelSpec::SharedFactors(2, kGrid));
-  const Objective coarse = Coarse(objective).value();
+  const Objective coarse = CoarseObjective(objective).value();
   PhaseSeconds phases;
-  const std::vector<CoarseStart> starts = SoftenCoarsely(coarse, 1, Never, &phases);
+  const std::vector<CoarseStart> starts = SoftenCoarseStarts(coarse, 1, Never, &phases);
   ASSERT_EQ(starts.size(), 4U);
   std::set<std::string> names;
   double lowest = starts.front().E;
@@ -72,7 +72,7 @@ TEST(SoftenCoarsely, RanksStartsAndPutsThoseThatAreAlikeLast) {
                             }))
         << starts[k].name;
   }
-  const std::vector<CoarseStart> by_two = SoftenCoarsely(coarse, 2, Never, &phases);
+  const std::vector<CoarseStart> by_two = SoftenCoarseStarts(coarse, 2, Never, &phases);
   ASSERT_EQ(by_two.size(), starts.size());
   for (size_t k = 0; k < starts.size(); ++k) {
     EXPECT_STREQ(by_two[k].name, starts[k].name);
@@ -85,7 +85,7 @@ TEST(SoftenFurther, GoesOnFromTheCoarseModel) {
   const Objective objective = Copper(ModelSpec::SharedFactors(2, kGrid));
   PhaseSeconds phases;
   const std::vector<CoarseStart> starts =
-      SoftenCoarsely(Coarse(objective).value(), 1, Never, &phases);
+      SoftenCoarseStarts(CoarseObjective(objective).value(), 1, Never, &phases);
   ASSERT_FALSE(starts.empty());
   const FactorModel given = RandomModel(objective.spec(), 1);
   const FactorModel model = SoftenFurther(starts.front(), objective, given, Never, &phases);
@@ -97,10 +97,10 @@ TEST(SoftenFurther, GoesOnFromTheCoarseModel) {
   }
 }
 
-TEST(SoftenCoarsely, MakesNoneOnceItIsToStop) {
-  const Objective coarse = Coarse(Copper(ModelSpec::SharedFactors(1, kGrid))).value();
+TEST(SoftenCoarseStarts, MakesNoneOnceItIsToStop) {
+  const Objective coarse = CoarseObjective(Copper(ModelSpec::SharedFactors(1, kGrid))).value();
   PhaseSeconds phases;
-  EXPECT_TRUE(SoftenCoarsely(
+  EXPECT_TRUE(SoftenCoarseStarts(
                   coarse, 2, [] { return true; }, &phases)
                   .empty());
 }
