@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "benchmarks/ggx.h"
-#include "model/evaluate/ndf_sampler.h"
+#include "experiments/sampling/ndf_sampler.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/evaluate/bsdf.h"
 #include "trilobe/model/factor_model.h"

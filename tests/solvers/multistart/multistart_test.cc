@@ -274,14 +274,14 @@ TEST_P(Multistart, FitsScatteredSamples) {
   const Objective objective(Scattered(ValidSamples(RandomTable(kSmall, 1))), spec,
                             FindWeighting("compressive"));
   FactorModel model = RandomModel(spec, 1);
-  SolverOptions options = Iterations(10);
+  SolverOptions options = Iterations(8);
   options.starts = 10;
   const SolverSummary summary = Solve(objective, options, &model);
   EXPECT_THAT(Names(summary), testing::Contains("given"));
   if (GetParam() == std::string("multistart")) {
     EXPECT_THAT(Names(summary), testing::Contains("swept"));
   }
-  EXPECT_EQ(summary.iterations, 10);
+  EXPECT_EQ(summary.iterations, 8);
   EXPECT_LT(summary.final_objective, summary.initial_objective);
   EXPECT_EQ(objective.Value(model), summary.final_objective);
 }

@@ -1,4 +1,4 @@
-#include "model/evaluate/ndf_sampler.h"
+#include "experiments/sampling/ndf_sampler.h"
 
 #include <gtest/gtest.h>
 
