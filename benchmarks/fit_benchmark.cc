@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files/read_file.h"
+#include "core/files/file.h"
 #include "io/formats/merl_file.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/objective.h"

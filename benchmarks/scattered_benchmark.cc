@@ -19,8 +19,7 @@
 #include <vector>
 
 #include "model/objective/batch_evaluator.h"
-#include "solvers/awls/make_sweep.h"
-#include "solvers/awls/sample_sweep.h"
+#include "solvers/awls/sweep.h"
 #include "solvers/sums/scattered_equations.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/io/formats/source.h"

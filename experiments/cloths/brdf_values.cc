@@ -12,7 +12,6 @@
 
 #include "core/files/file.h"
 #include "core/files/little_endian.h"
-#include "core/files/read_file.h"
 #include "experiments/program.h"
 #include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/math/linear_density.h"
-#include "model/evaluate/nodes_of_y.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
+#include "trilobe/model/evaluate/half_vector_table.h"
 
 namespace trilobe {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "benchmarks/ggx.h"
 #include "core/files/file.h"
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "experiments/program.h"
 #include "experiments/sampling/environment_sampler.h"
 #include "experiments/sampling/ndf_sampler.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "experiments/stiff/anisotropic_cases.h"
 #include "experiments/stiff/material.h"
 #include "tests/test_util.h"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/files/file.h"
-#include "core/files/read_file.h"
 #include "experiments/stiff/agreement.h"
 #include "experiments/stiff/minimize.h"
 #include "experiments/stiff/reference_problem.h"

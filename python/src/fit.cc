@@ -22,8 +22,7 @@
 #include <vector>
 
 #include "core/algebra/openblas.h"
-#include "core/system/peak_memory.h"
-#include "core/system/utc_time.h"
+#include "core/system/process.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
 #include "fit_module.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "fit/reports/bin_counts.h"
 #include "fit_module.h"
 #include "io/formats/completed_measurement.h"

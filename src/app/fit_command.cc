@@ -21,7 +21,7 @@
 #include "app/scene_plan.h"
 #include "app/solver_flags.h"
 #include "core/algebra/openblas.h"
-#include "core/files/read_file.h"
+#include "core/files/file.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
 #include "fit/reports/print.h"

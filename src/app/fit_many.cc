@@ -22,7 +22,6 @@
 #include "app/result_folder.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
-#include "core/files/read_file.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/print.h"
 #include "model/appearance/verdict.h"

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "core/base/markup.h"
+#include "core/base/text.h"
 #include "fit/reports/print.h"
 #include "io/page/document.h"
 #include "trilobe/core/base/printable.h"

@@ -19,7 +19,7 @@
 #include "app/command.h"
 #include "app/flags.h"
 #include "app/solver_flags.h"
-#include "core/base/nearest_name.h"
+#include "core/base/names.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
 

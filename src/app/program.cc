@@ -3,7 +3,7 @@
 #include <dlfcn.h>
 #include <gflags/gflags.h>
 
-#include "core/files/read_file.h"
+#include "core/files/file.h"
 #include "fit/scene/fit_cache.h"
 #include "trilobe/core/base/error.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "trilobe/model/objective/iteration_record.h"
 #include "trilobe/solvers/solver.h"
 

@@ -10,7 +10,7 @@
 #include "app/program.h"
 #include "app/progress.h"
 #include "app/solver_flags.h"
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/objective/weighting.h"

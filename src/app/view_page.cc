@@ -3,7 +3,6 @@
 #include "app/fit_page.h"
 #include "io/page/page.h"
 #include "model/appearance/picture_data.h"
-#include "model/appearance/sample_table.h"
 #include "model/appearance/verdict.h"
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/appearance/material.h"

@@ -1,6 +1,6 @@
 #include "trilobe/fit/as_measurement.h"
 
-#include "model/appearance/node_reconstruction.h"
+#include "model/appearance/node_appearance.h"
 #include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "model/objective/canonical_form.h"
 #include "trilobe/core/base/error.h"
 

@@ -6,18 +6,18 @@
 #include <memory>
 #include <utility>
 
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "fit/choose_form.h"
 #include "fit/held_out.h"
-#include "model/appearance/node_judge.h"
+#include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
-#include "model/appearance/seen_samples.h"
 #include "model/lobes/gauge.h"
 #include "model/measurement/anisotropy.h"
 #include "model/objective/canonical_form.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/appearance/material.h"
+#include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/solvers/registry/solvers.h"
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "core/algebra/eigenvalues.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/solvers/sums/normal_equations.h"
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <type_traits>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {

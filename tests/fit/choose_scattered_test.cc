@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "model/appearance/picture_data.h"
-#include "model/appearance/seen_samples.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/fit/prior/reach.h"
 #include "trilobe/io/formats/source.h"
+#include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

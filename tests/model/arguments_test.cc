@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/lobes/continuation.h"
+#include "model/lobes/beyond_data.h"
 #include "model/lobes/gauge.h"
 #include "model/lobes/unclamped_model.h"
 #include "model/objective/canonical_form.h"

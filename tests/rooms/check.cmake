@@ -44,10 +44,10 @@ expect_failure(rooms.txt "== extra:\nextra: model" "rooms.txt: extra sees model,
 expect_failure(rooms.txt "== attic:\nextra:\nother: extra"
                "rooms.txt: no file of other includes a header of extra")
 expect_failure(rooms.txt "== attic: model" "rooms.txt: attic sees model, which is not listed above it")
-expect_failure(solvers/sums/normal_equations.h "#include \"solvers/sums/kind.h\""
-               "solvers/sums/normal_equations.h: #include \"solvers/sums/kind.h\" in a public header")
-expect_failure(solvers/sums/kind.h "#include \"solvers/sums/scatter_buffer.h\""
-               "sums: accumulator_layout, add_normal_equations, ")
+expect_failure(solvers/sums/normal_equations.h "#include \"solvers/sums/parameter_kind.h\""
+               "solvers/sums/normal_equations.h: #include \"solvers/sums/parameter_kind.h\" in a public header")
+expect_failure(solvers/sums/parameter_kind.h "#include \"solvers/sums/accumulators.h\""
+               "sums: accumulators, add_normal_equations, ")
 # The lists of registries count, too.
 expect_failure(solvers/solver.cc "#define TRILOBE_DECLARE(NAME) SolverEntry NAME##Entry();\n//  X(Auto)"
                "solvers/solver.cc: AutoEntry(), but the room solvers does not see multistart")

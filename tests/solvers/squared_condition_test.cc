@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "core/algebra/cholesky.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "tests/test_util.h"
 #include "trilobe/model/objective/parameter_blocks.h"
 #include "trilobe/model/objective/sample_residual.h"

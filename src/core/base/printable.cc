@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 
 namespace trilobe {
 namespace {

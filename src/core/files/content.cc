@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 #include "core/files/text_lines.h"
 #include "trilobe/core/base/error.h"
 

@@ -7,6 +7,9 @@
 
 namespace trilobe {
 
+// The bytes of a file. Throws Error: missing, a directory, unreadable, changed while read.
+std::string ReadFile(const std::string& path);
+
 // 16 hexadecimal digits that nobody else has, for names.
 std::string RandomDigits();
 

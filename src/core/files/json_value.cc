@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/base/utf8.h"
-#include "core/files/read_file.h"
+#include "core/base/text.h"
+#include "core/files/file.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {

@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "core/files/file.h"
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "fit/open_pbr/nearest_open_pbr.h"
 #include "fit/open_pbr/open_pbr.h"
 #include "fit/reports/print.h"

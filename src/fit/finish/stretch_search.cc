@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/algebra/cholesky.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "model/lobes/lobes.h"
 #include "model/objective/sample_derivatives.h"
 #include "trilobe/core/system/parallel.h"

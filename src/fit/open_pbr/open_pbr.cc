@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/base/markup.h"
 #include "core/base/text.h"
 #include "trilobe/core/math/angles.h"
 

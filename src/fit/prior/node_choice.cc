@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/system/stopwatch.h"
-#include "model/lobes/with_axes.h"
+#include "core/system/process.h"
+#include "model/lobes/lobes.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/geometry/directions.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/system/stopwatch.h"
+#include "core/system/process.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/stretch_search.h"
 #include "fit/prune/model_forms.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/algebra/cholesky.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "core/base/multiversion.h"
 #include "fit/prune/reduced_quadratic.h"
 #include "solvers/joint/joint_step.h"

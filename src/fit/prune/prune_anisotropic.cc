@@ -12,7 +12,7 @@
 #include "fit/prune/lobe_search.h"
 #include "fit/prune/prune.h"
 #include "fit/prune/pruning.h"
-#include "model/lobes/with_axes.h"
+#include "model/lobes/lobes.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/solvers/start/initial_model.h"
 

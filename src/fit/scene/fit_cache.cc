@@ -9,7 +9,6 @@
 #include <ostream>
 
 #include "core/files/file.h"
-#include "core/files/read_file.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {

@@ -9,10 +9,10 @@
 #include <set>
 #include <utility>
 
-#include "core/base/nearest_name.h"
+#include "core/base/names.h"
 #include "core/base/text.h"
+#include "core/files/file.h"
 #include "core/files/json_value.h"
-#include "core/files/read_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/source.h"

@@ -8,15 +8,13 @@
 #include <utility>
 #include <variant>
 
-#include "core/files/read_file.h"
-#include "core/system/stopwatch.h"
-#include "core/system/utc_time.h"
+#include "core/files/file.h"
+#include "core/system/process.h"
 #include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
 #include "fit/scene/cached_fits.h"
 #include "fit/scene/scene_appearance.h"
 #include "model/appearance/picture_data.h"
-#include "model/appearance/seen_samples.h"
 #include "model/appearance/verdict.h"
 #include "model/lobes/gauge.h"
 #include "trilobe/core/base/error.h"
@@ -25,6 +23,7 @@
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
+#include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/materials/load_model.h"
 

@@ -7,7 +7,6 @@
 
 #include "core/files/file.h"
 #include "core/files/little_endian.h"
-#include "core/files/read_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "core/files/file.h"
-#include "core/files/read_file.h"
 #include "core/files/text_lines.h"
 #include "io/formats/utia_file.h"
 #include "model/measurement/symptoms.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "core/files/file.h"
 #include "core/files/little_endian.h"
 #include "trilobe/core/base/error.h"

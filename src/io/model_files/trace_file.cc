@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "core/files/file.h"
-#include "core/files/read_file.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {

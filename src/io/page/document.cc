@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "core/base/markup.h"
+#include "core/base/text.h"
 #include "io/page/web_files.h"
 #include "trilobe/core/base/error.h"
 

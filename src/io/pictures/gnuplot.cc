@@ -22,7 +22,7 @@
 #include <sstream>
 #include <thread>
 
-#include "core/base/utf8.h"
+#include "core/base/text.h"
 #include "core/files/file.h"
 #include "trilobe/core/base/error.h"
 

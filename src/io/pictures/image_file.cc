@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/files/file.h"
-#include "core/files/read_file.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/files/content.h"

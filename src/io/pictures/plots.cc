@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "io/pictures/gnuplot.h"
-#include "model/appearance/sample_table.h"
+#include "model/appearance/picture_data.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/lobes/reconstruct.h"

@@ -13,7 +13,6 @@
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/appearance/render.h"
-#include "trilobe/model/appearance/sphere.h"
 #include "trilobe/model/appearance/view.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"

@@ -4,11 +4,18 @@
 #include <optional>
 
 #include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/hemisphere_grid.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/measurement/node_brdf.h"
 
 namespace trilobe {
+
+// Scattered samples of an isotropic material as a table, for pictures: the mean of those in each
+// bin of the finest of a few grids that has four times as many samples as bins, and at least one in
+// 60 % of the bins; the others are invalid. Nothing where samples are too few, as in car paints
+// that lack what was dark, or azimuths matter.
+std::optional<BrdfTable> TableOfSamples(const Measurement& scattered);
 
 // The grid at whose nodes anisotropic samples stand, at most one at each pair: that of their
 // smallest steps. Nothing unless they do, and at half of the pairs up to the last theta or more.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/arc_functions.h"
+#include "core/math/lanes.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/model/appearance/environment.h"
 

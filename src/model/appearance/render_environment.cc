@@ -1,12 +1,106 @@
 #include "model/appearance/render_environment.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <vector>
 
+#include "core/math/lanes.h"
 #include "model/appearance/color.h"
 #include "model/appearance/mirrored_environment.h"
+#include "model/appearance/prepared_light.h"
+#include "trilobe/core/base/check.h"
 
 namespace trilobe {
+namespace {
+
+constexpr int kTurns = 4;
+
+// Of the points of a sphere that quarter turns take to each other, the one that is right of the
+// middle and not below it; and the middle itself.
+std::vector<SurfacePoint> FirstQuarter(const View& sphere) {
+  std::vector<SurfacePoint> quarter;
+  for (const SurfacePoint& point : sphere.points) {
+    const auto [x, y, z] = point.normal;
+    if (y >= 0 && (x > 0 || (x == 0 && y == 0))) quarter.push_back(point);
+  }
+  return quarter;
+}
+
+// Turned by a quarter from x, to the right, towards y, upwards.
+int Turned(int pixel, int size) { return (size - 1 - pixel % size) * size + pixel / size; }
+
+// The light of a cell that falls on a point and its turned ones.
+struct CellLight {
+  int point;
+  bool counted;
+  Direction half;
+  double scale;  // of the mean radiance: solid angle times cos theta_i
+};
+
+// Sums of radiance, and in the last lane of the luminance of the light alone, of each turn.
+using Sums = std::array<Pixel, kTurns>;
+
+// Adds the light of a cell, by the values of the materials, at each light one after another and in
+// the last lane 1, to the sums [point][material]{of all, of what counts}.
+TRILOBE_MULTIVERSION void AddLights(const MirroredEnvironment& mirrored, double solid_angle,
+                                    const std::vector<CellLight>& lights, const Pixel* values,
+                                    int materials, Sums* sums) {
+  for (const CellLight& light : lights) {
+    Four<double> means[kTurns];
+    mirrored.SetMeans<kTurns>(light.half, solid_angle, means);
+    for (int m = 0; m < materials; ++m) {
+      const Four<double> value = light.scale * Load((values++)->lane);
+      Sums* const of_light = &sums[(light.point * materials + m) * 2];
+      for (int turn = 0; turn < kTurns; ++turn) {
+        const Four<double> seen = value * means[turn];
+        for (int set = 0; set <= (light.counted ? 1 : 0); ++set) {
+          double* const sum = of_light[set][turn].lane;
+          Store<double>(Load(sum) + seen, sum);
+        }
+      }
+    }
+  }
+}
+
+// The sums of some points, as AddLights has them.
+std::vector<Sums> SumsOf(std::span<const SurfacePoint> points, const MirroredEnvironment& mirrored,
+                         std::span<const AngularBrdf> materials,
+                         const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts) {
+  const int count = static_cast<int>(materials.size());
+  std::vector<Sums> sums(points.size() * count * 2);
+  std::vector<CellLight> lights;
+  std::vector<Pixel> values;
+  // Point by point within a cell: much of what is read of a table for it stays.
+  for (const HalfCell& cell : HalfCells()) {
+    lights.clear();
+    values.clear();
+    for (size_t k = 0; k < points.size(); ++k) {
+      const Direction& normal = points[k].normal;
+      const Direction half = cell.About(normal);
+      if (!(half[2] > 0)) continue;
+      const Cosines cosines = CosinesOver(points[k], MirroredEye(half));
+      if (!(cosines.i > 0)) continue;
+      // As AnglesOver has it, the light being the eye's mirror image at the half vector.
+      const double sine2 = half[0] * half[0] + half[1] * half[1];
+      const bool on_left = normal[1] * half[0] >= normal[0] * half[1];
+      const HalfDiffAngles angles = {cell.theta, AngleOfSine2(sine2),
+                                     PhiDOver(cosines, cell.sine, std::sqrt(sine2), on_left)};
+      lights.push_back({static_cast<int>(k), counts(angles, cosines), half,
+                        4 * half[2] * cell.solid_angle * cosines.i});
+      for (const AngularBrdf& material : materials) {
+        const Rgb rho = material(angles, cosines);
+        values.push_back({rho[0], rho[1], rho[2], 1});
+      }
+    }
+    AddLights(mirrored, cell.solid_angle, lights, values.data(), count, sums.data());
+  }
+  return sums;
+}
+
+}  // namespace
 
 RenderedImages RenderUnder(const Environment& environment, const View& view,
                            std::span<const SphericalBrdf> materials,
@@ -35,6 +129,42 @@ RenderedImages RenderUnder(const Environment& environment, const View& view,
       [&](int m, const SphericalAngles& at, const Cosines&) { return materials[m](at); },
       [&](const SphericalAngles& at, const Cosines&) { return counts(at); }, /*whole_too=*/true,
       num_threads);
+}
+
+RenderedImages RenderSphereUnder(
+    const Environment& environment, int size, std::span<const AngularBrdf> materials,
+    const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads) {
+  for (const AngularBrdf& material : materials) CheckNotEmpty(material, "a material");
+  CheckNotEmpty(counts, "counts");
+  const MirroredEnvironment mirrored(environment);
+  const std::vector<SurfacePoint> quarter = FirstQuarter(ViewSphere(size));
+  const size_t pixels = static_cast<size_t>(size) * size, count = materials.size();
+  const RenderedImage black = {size, std::vector<Rgb>(pixels), std::vector<double>(pixels, -1.0)};
+  RenderedImages images{std::vector<RenderedImage>(count, black),
+                        std::vector<RenderedImage>(count, black)};
+  constexpr size_t kPoints = 256;  // an item of work
+  const auto items = static_cast<int>((quarter.size() + kPoints - 1) / kPoints);
+  ParallelFor(items, num_threads, [&](int item) {
+    const size_t begin = item * kPoints;
+    const auto points =
+        std::span(quarter).subspan(begin, std::min(kPoints, quarter.size() - begin));
+    const std::vector<Sums> sums = SumsOf(points, mirrored, materials, counts);
+    for (size_t k = 0; k < points.size(); ++k) {
+      int pixel = points[k].pixel;
+      for (int turn = 0; turn < kTurns; ++turn, pixel = Turned(pixel, size)) {
+        for (size_t m = 0; m < count; ++m) {
+          const Sums* const of_point = &sums[(k * count + m) * 2];
+          const auto& all = of_point[0][turn].lane;
+          const auto& counted = of_point[1][turn].lane;
+          images.whole[m].radiance[pixel] = {all[0], all[1], all[2]};
+          images.counted[m].radiance[pixel] = {counted[0], counted[1], counted[2]};
+          const double coverage = all[3] > 0 ? counted[3] / all[3] : 1;
+          images.whole[m].coverage[pixel] = images.counted[m].coverage[pixel] = coverage;
+        }
+      }
+    }
+  });
+  return images;
 }
 
 }  // namespace trilobe

@@ -4,7 +4,7 @@
 #include <optional>
 #include <sstream>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "core/files/text_lines.h"
 #include "model/corruption/kinds.h"
 #include "model/corruption/readings.h"

@@ -6,6 +6,7 @@
 #include "model/corruption/readings.h"
 
 // Each kind of corruption, by what CorruptionKinds() has for its formula.
+
 namespace trilobe {
 
 // Of single readings.

@@ -5,10 +5,10 @@
 #include <limits>
 #include <string>
 
-#include "core/math/arc_functions.h"
-#include "model/evaluate/nodes_of_y.h"
+#include "core/math/lanes.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
+#include "trilobe/model/evaluate/half_vector_table.h"
 
 namespace trilobe {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/base/multiversion.h"
-#include "core/math/arc_functions.h"
+#include "core/math/lanes.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/core/math/catmull_rom.h"

@@ -4,8 +4,10 @@
 #include <span>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/model_spec.h"
 
 // Models with other lobes: some of them, fewer, or more.
+
 namespace trilobe {
 
 // The model whose k-th lobe is a copy of lobes[k], with d as it is. A lobe may come several times.
@@ -33,6 +35,11 @@ FactorModel SplitLobe(const FactorModel& model, int lobe);
 
 // The lobe that reflects most: the largest sum of s in the canonical gauge.
 int StrongestLobe(const FactorModel& canonical);
+
+// The model on the axes of another spec, with as many lobes and the same sharing: each entry of a
+// new table is what the old one says there. So an isotropic model becomes an anisotropic one that
+// is round, and a model on few nodes one on many. Throws Error where lobes or sharing differ.
+FactorModel WithAxes(const FactorModel& model, const ModelSpec& spec);
 
 }  // namespace trilobe
 

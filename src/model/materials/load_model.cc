@@ -1,6 +1,6 @@
 #include "trilobe/model/materials/load_model.h"
 
-#include "core/base/nearest_name.h"
+#include "core/base/names.h"
 #include "model/materials/material_files.h"
 #include "trilobe/core/base/error.h"
 

@@ -7,9 +7,8 @@
 #include <sstream>
 #include <utility>
 
+#include "model/measurement/bad_readings.h"
 #include "model/measurement/counter_random.h"
-#include "model/measurement/dark_noise.h"
-#include "model/measurement/outliers.h"
 #include "model/measurement/own_shadow.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"

@@ -9,8 +9,10 @@ namespace trilobe {
 
 // Brings a model of the objective's spec into the canonical form (gauge.h), by what its samples
 // cover and with its threads.
-void Canonicalize(const Objective& objective, FactorModel* model,
-                  LobeOrder order = LobeOrder::kByLight);
+inline void Canonicalize(const Objective& objective, FactorModel* model,
+                         LobeOrder order = LobeOrder::kByLight) {
+  Canonicalize(objective.coverage(), model, order, objective.num_threads());
+}
 
 }  // namespace trilobe
 

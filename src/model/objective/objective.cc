@@ -8,11 +8,13 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "model/objective/batch_evaluator.h"
 #include "model/objective/stencils_of.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe {
 namespace {
@@ -272,6 +274,29 @@ WeightedSample Objective::Sample(int j) const {
 
 const std::vector<WeightedSample>& Objective::weighted_samples() const {
   return prepared_->WeightedSamples(num_threads_);
+}
+
+BrdfSamples Reweighted(const Objective& objective, const FactorModel& model, double delta) {
+  CheckSameSpec(objective.spec(), model.spec());
+  if (!(delta > 0)) throw Error("the error from which a loss is linear must be above 0");
+  BrdfSamples samples = objective.samples();
+  const std::vector<Rgb> fitted = UnclampedSamples(model, samples, objective.num_threads());
+  const double level = objective.weighting().level;
+  const double unit = level > 0 ? level : 1;
+  samples.multiplicity.resize(samples.rho.size());
+  for (int j = 0; j < samples.size(); ++j) {
+    // In units of the level, where the weighting is. Without the solid angle, which says how often
+    // a sample counts and not how far off it is.
+    const Rgb w = objective.weighting()({samples.rho[j], samples.CosinesOf(j)});
+    double square = 0;
+    for (int c = 0; c < kChannels; ++c) {
+      const double difference = fitted[j][c] - samples.rho[j][c];
+      square += w[c] * difference * difference / kChannels;
+    }
+    samples.multiplicity[j] =
+        objective.samples().Multiplicity(j) * std::min(1.0, delta * unit / std::sqrt(square));
+  }
+  return samples;
 }
 
 }  // namespace trilobe

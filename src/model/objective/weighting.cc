@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "core/geometry/grid_cosines.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"

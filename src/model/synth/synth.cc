@@ -6,10 +6,10 @@
 #include <iterator>
 #include <optional>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "core/geometry/grid_cosines.h"
 #include "model/measurement/counter_random.h"
-#include "model/synth/synth_anisotropic.h"
+#include "model/synth/anisotropic_materials.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
 

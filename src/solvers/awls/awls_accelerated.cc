@@ -9,7 +9,7 @@
 
 #include "core/algebra/element_step.h"
 #include "model/lobes/gauge.h"
-#include "solvers/awls/make_sweep.h"
+#include "solvers/awls/sweep.h"
 #include "trilobe/solvers/run.h"
 #include "trilobe/solvers/solver.h"
 

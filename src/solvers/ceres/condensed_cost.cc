@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/algebra/cholesky.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/solvers/run.h"
 

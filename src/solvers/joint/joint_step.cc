@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/awls/make_sweep.h"
+#include "solvers/awls/sweep.h"
 #include "solvers/diagnosis.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/solvers/run.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/algebra/cholesky.h"
 #include "core/algebra/element_step.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "trilobe/core/system/parallel.h"
 
 namespace trilobe {

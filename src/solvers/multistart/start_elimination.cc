@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "solvers/awls/make_sweep.h"
+#include "solvers/awls/sweep.h"
 #include "solvers/joint/joint_step.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/core/system/parallel.h"

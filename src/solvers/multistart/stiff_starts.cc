@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "model/lobes/gauge.h"
-#include "model/lobes/with_axes.h"
+#include "model/lobes/lobes.h"
 #include "solvers/multistart/start_elimination.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/solvers/start/initial_model.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "trilobe/core/base/error.h"
 
 // The solvers of the library, the default one first. NAME stands for the function NAMEEntry(),

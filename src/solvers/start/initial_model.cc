@@ -5,10 +5,10 @@
 #include <random>
 #include <span>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "core/math/quantile.h"
 #include "model/lobes/gauge.h"
-#include "model/lobes/with_axes.h"
+#include "model/lobes/lobes.h"
 #include "model/objective/canonical_form.h"
 #include "solvers/awls/awls.h"
 #include "trilobe/solvers/solver.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/multiversion.h"
-#include "solvers/sums/scatter_buffer.h"
+#include "solvers/sums/accumulators.h"
 
 namespace trilobe {
 namespace {

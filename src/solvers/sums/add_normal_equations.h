@@ -2,7 +2,7 @@
 #define TRILOBE_SOLVERS_SUMS_ADD_NORMAL_EQUATIONS_H_
 
 #include "model/objective/batch_evaluator.h"
-#include "solvers/sums/accumulator_layout.h"
+#include "solvers/sums/accumulators.h"
 #include "trilobe/model/objective/quadratic_model.h"
 
 namespace trilobe {

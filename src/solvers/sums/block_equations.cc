@@ -81,11 +81,12 @@ void Spread(const SpreadJob& job) {
 
 }  // namespace
 
-BlockEquations::BlockEquations(const CachedLookups& lookups, Kind kind, int first, int last)
+BlockEquations::BlockEquations(const CachedLookups& lookups, ParameterKind kind, int first,
+                               int last)
     : lookups_(lookups), kind_(kind), first_(first), last_(last) {
   const ModelSpec& spec = lookups.spec();
   const auto channels = [&](int t) -> ModelSpec::ChannelRange {
-    if (kind == Kind::kAmplitudes) return {0, kChannels};
+    if (kind == ParameterKind::kAmplitudes) return {0, kChannels};
     return spec.channels(FactorOf(kind), first + t);
   };
   pair_of_.assign(tables() * tables(), -1);
@@ -98,7 +99,7 @@ BlockEquations::BlockEquations(const CachedLookups& lookups, Kind kind, int firs
       pairs_.push_back({t, u, common});
     }
   }
-  if (kind == Kind::kAmplitudes) {
+  if (kind == ParameterKind::kAmplitudes) {
     for (int c = 0; c < kChannels; ++c) cells_.push_back({.size = 1, .entry = {c}});
     readers_.resize(kChannels);
   } else {
@@ -131,7 +132,7 @@ void BlockEquations::Accumulate(const FactorModel& model) {
     for (int begin = static_cast<int>(size * k / count); begin < last; begin += kBatch) {
       const int end = std::min(begin + kBatch, last);
       lookups_.Evaluate(begin, end, model, &batch);
-      if (kind_ == Kind::kAmplitudes) {
+      if (kind_ == ParameterKind::kAmplitudes) {
         AddAmplitudes(begin, end, batch, &sums);
       } else {
         AddBatch(begin, end, batch, &sums);
@@ -177,7 +178,8 @@ void BlockEquations::AddBatch(int begin, int end, const CachedLookups::Batch& ba
       if (t == u) AddProducts(size, w, &batch.residual[c * kBatch], slope, &slopes[t * kBatch]);
     }
   }
-  const int lookup = kind_ == Kind::kF ? samples.order.F() : lookups_.spec().StretchOfTable(first_);
+  const int lookup =
+      kind_ == ParameterKind::kF ? samples.order.F() : lookups_.spec().StretchOfTable(first_);
   const FoldedSamples::Lookup& weights = samples.lookups[lookup];
   SpreadJob job{.size = size,
                 .cells = cells_.data(),
@@ -202,7 +204,7 @@ void BlockEquations::Update(int entry, std::span<const int> tables, double E, Fa
   std::array<double, kMaxNonnegativeUnknowns * kMaxNonnegativeUnknowns> H{};
   std::array<double*, kMaxNonnegativeUnknowns> parameters{};
   double* const sums = sums_[0].data();
-  double* const of_kind = kind_ == Kind::kAmplitudes
+  double* const of_kind = kind_ == ParameterKind::kAmplitudes
                               ? model->parameters().data()
                               : &model->parameters()[model->TableOffset(FactorOf(kind_), 0)];
   const auto pair_of = [&](int t, int u) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solvers/sums/cached_lookups.h"
-#include "solvers/sums/kind.h"
+#include "solvers/sums/parameter_kind.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
@@ -21,7 +21,7 @@ namespace trilobe {
 class BlockEquations {
  public:
   // Of the tables [first, last) of a kind, which one lookup reads; of amplitudes of all.
-  BlockEquations(const CachedLookups& lookups, Kind kind, int first, int last);
+  BlockEquations(const CachedLookups& lookups, ParameterKind kind, int first, int last);
 
   // The sums around a model whose tables are read. The same bits for any number of threads.
   void Accumulate(const FactorModel& model);
@@ -31,7 +31,7 @@ class BlockEquations {
   // one table needs to know (MoveToMinimum).
   void Update(int entry, std::span<const int> tables, double E, FactorModel* model);
 
-  Kind kind() const { return kind_; }
+  ParameterKind kind() const { return kind_; }
   int entries() const { return static_cast<int>(readers_.size()); }
   int first() const { return first_; }
   int last() const { return last_; }
@@ -59,7 +59,7 @@ class BlockEquations {
                      std::vector<double>* sums) const;
 
   const CachedLookups& lookups_;
-  const Kind kind_;
+  const ParameterKind kind_;
   const int first_, last_;
   std::vector<Cell> cells_;
   std::vector<std::vector<Reader>> readers_;  // [entry]

@@ -45,7 +45,7 @@ struct LobeJob {
 };
 
 // slope += the lobe's value over what it reads of a kind, residual += its value.
-template <Kind kKind>
+template <ParameterKind kKind>
 TRILOBE_ALWAYS_INLINE void AddLobe(const LobeJob& job) {
   const double s = job.s;
   const double* __restrict const D = job.D;
@@ -59,15 +59,15 @@ TRILOBE_ALWAYS_INLINE void AddLobe(const LobeJob& job) {
     const double G = G_i[n] * G_o[n], K = G * inverse_cosines[n];
     double others, own;
     switch (kKind) {
-      case Kind::kAmplitudes:
+      case ParameterKind::kAmplitudes:
         others = D[n] * F[n] * K;
         own = s;
         break;
-      case Kind::kD:
+      case ParameterKind::kD:
         others = s * K * F[n];
         own = D[n];
         break;
-      case Kind::kF:
+      case ParameterKind::kF:
         others = s * K * D[n];
         own = F[n];
         break;
@@ -80,16 +80,18 @@ TRILOBE_ALWAYS_INLINE void AddLobe(const LobeJob& job) {
   }
 }
 
-TRILOBE_MULTIVERSION void AddByAmplitude(const LobeJob& job) { AddLobe<Kind::kAmplitudes>(job); }
-TRILOBE_MULTIVERSION void AddByD(const LobeJob& job) { AddLobe<Kind::kD>(job); }
-TRILOBE_MULTIVERSION void AddByF(const LobeJob& job) { AddLobe<Kind::kF>(job); }
-TRILOBE_MULTIVERSION void AddByG(const LobeJob& job) { AddLobe<Kind::kG>(job); }
+TRILOBE_MULTIVERSION void AddByAmplitude(const LobeJob& job) {
+  AddLobe<ParameterKind::kAmplitudes>(job);
+}
+TRILOBE_MULTIVERSION void AddByD(const LobeJob& job) { AddLobe<ParameterKind::kD>(job); }
+TRILOBE_MULTIVERSION void AddByF(const LobeJob& job) { AddLobe<ParameterKind::kF>(job); }
+TRILOBE_MULTIVERSION void AddByG(const LobeJob& job) { AddLobe<ParameterKind::kG>(job); }
 
 }  // namespace
 
-CachedLookups::Batch::Batch(const ModelSpec& spec, Kind kind)
+CachedLookups::Batch::Batch(const ModelSpec& spec, ParameterKind kind)
     : kind(kind),
-      tables(kind == Kind::kAmplitudes ? 1 + spec.lobes : spec.num_tables(FactorOf(kind))),
+      tables(kind == ParameterKind::kAmplitudes ? 1 + spec.lobes : spec.num_tables(FactorOf(kind))),
       residual(kChannels * kBatch),
       slope(kChannels * tables * kBatch) {}
 
@@ -167,20 +169,20 @@ void CachedLookups::ReadBy(int lookup, const FactorModel& model, int first, int 
 }
 
 void CachedLookups::Evaluate(int begin, int end, const FactorModel& model, Batch* batch) const {
-  const Kind kind = batch->kind;
+  const ParameterKind kind = batch->kind;
   const int size = end - begin;
   std::ranges::fill(batch->slope, 0.0);
-  const auto add = kind == Kind::kAmplitudes ? AddByAmplitude
-                   : kind == Kind::kD        ? AddByD
-                   : kind == Kind::kF        ? AddByF
-                                             : AddByG;
+  const auto add = kind == ParameterKind::kAmplitudes ? AddByAmplitude
+                   : kind == ParameterKind::kD        ? AddByD
+                   : kind == ParameterKind::kF        ? AddByF
+                                                      : AddByG;
   for (int c = 0; c < kChannels; ++c) {
     double* const residual = &batch->residual[c * kBatch];
     for (int n = 0; n < size; ++n) residual[n] = model.d()[c] - samples_.rho[c][begin + n];
-    if (kind == Kind::kAmplitudes) std::fill_n(batch->Slope(c, 0), size, 1.0);
+    if (kind == ParameterKind::kAmplitudes) std::fill_n(batch->Slope(c, 0), size, 1.0);
     for (int m = 0; m < spec_.lobes; ++m) {
       const int G = spec_.table(Factor::kG, m, c);
-      const int t = kind == Kind::kAmplitudes ? 1 + m : spec_.table(FactorOf(kind), m, c);
+      const int t = kind == ParameterKind::kAmplitudes ? 1 + m : spec_.table(FactorOf(kind), m, c);
       add({.size = size,
            .s = model.s(m)[c],
            .D = &D_[spec_.table(Factor::kD, m, c)][begin],

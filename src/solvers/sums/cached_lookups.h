@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "solvers/sums/kind.h"
+#include "solvers/sums/parameter_kind.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/folded_samples.h"
 
@@ -22,12 +22,12 @@ class CachedLookups {
   // How the values of one batch move with what they read from tables of one kind. Beyond `size`,
   // numbers are finite and mean nothing.
   struct Batch {
-    Batch(const ModelSpec& spec, Kind kind);
+    Batch(const ModelSpec& spec, ParameterKind kind);
 
     const double* Slope(int c, int t) const { return &slope[(c * tables + t) * kBatch]; }
     double* Slope(int c, int t) { return &slope[(c * tables + t) * kBatch]; }
 
-    Kind kind;
+    ParameterKind kind;
     int tables;                    // of amplitudes: d, and s of each lobe
     std::vector<double> residual;  // rho - rho*. [kChannels][kBatch]
     // d rho / d lookup; 1 for d, and of G, d rho / d (G_i G_o). [kChannels][tables][kBatch]

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "core/algebra/triangle.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "model/objective/sample_derivatives.h"
 #include "solvers/sums/grid/joint_rows.h"
 #include "solvers/sums/grid/joint_shadowing.h"

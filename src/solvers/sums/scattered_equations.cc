@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/algebra/triangle.h"
+#include "core/algebra/symmetric_matrix.h"
 #include "solvers/sums/add_normal_equations.h"
 #include "trilobe/core/system/parallel.h"
 
@@ -12,12 +12,12 @@ namespace trilobe {
 namespace {
 
 // Rows of a kind, or of the tables of D that are read by one stretch, but for where their sums lie.
-AccumulatorRows RowsOf(const BatchEvaluator& reader, Kind kind, int stretch) {
+AccumulatorRows RowsOf(const BatchEvaluator& reader, ParameterKind kind, int stretch) {
   const ModelSpec& spec = reader.spec();
   const FactorModel model(spec);
   AccumulatorRows rows;
   rows.kind = kind;
-  if (kind == Kind::kAmplitudes) {
+  if (kind == ParameterKind::kAmplitudes) {
     rows.entries = kChannels;
     rows.lanes = reader.amplitude_lanes();
     for (int a = 0; a <= spec.lobes; ++a) rows.table.push_back(a);
@@ -36,7 +36,7 @@ AccumulatorRows RowsOf(const BatchEvaluator& reader, Kind kind, int stretch) {
   rows.tables = static_cast<int>(rows.table.size());
   for (int entry = 0; entry < rows.entries; ++entry) {
     for (const int t : rows.table) {
-      rows.parameter.push_back(kind != Kind::kAmplitudes
+      rows.parameter.push_back(kind != ParameterKind::kAmplitudes
                                    ? model.TableOffset(FactorOf(kind), t) + entry
                                : t == spec.lobes ? entry
                                                  : kChannels * (1 + t) + entry);
@@ -52,13 +52,13 @@ ScatteredEquations::ScatteredEquations(const FoldedSamples& samples, const Model
     : reader_(samples, spec),
       num_threads_(num_threads),
       accumulators_(NumAccumulators(samples.size())) {
-  const auto add = [&](Kind kind, int stretch) {
+  const auto add = [&](ParameterKind kind, int stretch) {
     layout_.rows.push_back(RowsOf(reader_, kind, stretch));
   };
-  add(Kind::kAmplitudes, 0);
-  for (int k = 0; k < samples.order.of_D; ++k) add(Kind::kD, k);
-  add(Kind::kF, 0);
-  add(Kind::kG, 0);
+  add(ParameterKind::kAmplitudes, 0);
+  for (int k = 0; k < samples.order.of_D; ++k) add(ParameterKind::kD, k);
+  add(ParameterKind::kF, 0);
+  add(ParameterKind::kG, 0);
   const AccumulatorRows& amplitudes = layout_.amplitudes();
   for (AccumulatorRows& rows : layout_.rows) {
     num_parameters_ += static_cast<int>(rows.parameter.size());
@@ -67,7 +67,7 @@ ScatteredEquations::ScatteredEquations(const FoldedSamples& samples, const Model
     layout_.size += rows.entries * rows.own_size();
     for (const AccumulatorRows& others : layout_.rows) {
       rows.blocks.push_back(layout_.size);
-      if (others.kind != Kind::kAmplitudes) {
+      if (others.kind != ParameterKind::kAmplitudes) {
         layout_.size +=
             &others == &rows && rows.by_cell
                 ? rows.InCell(static_cast<int>(samples.cells_of(FactorOf(rows.kind)).size()), 0)
@@ -142,7 +142,7 @@ void ScatteredEquations::GatherOwn(const AccumulatorRows& rows, int entry,
     for (size_t i = 0; i < amplitudes.parameter.size(); ++i) {
       target[amplitudes.parameter[i]] = own[(AccumulatorRows::kFirstAmplitude + i) * rows.lanes];
     }
-    if (rows.kind != Kind::kAmplitudes) continue;
+    if (rows.kind != ParameterKind::kAmplitudes) continue;
     for (int u = 0; u < rows.tables; ++u) {
       const size_t line = AccumulatorRows::kFirstAmplitude + entry * rows.tables + t;
       target[rows.parameter[entry * rows.tables + u]] +=

@@ -203,7 +203,7 @@ ShadowingUpdates::ShadowingUpdates(CachedLookups* lookups)
 void ShadowingUpdates::Read(const FactorModel& model) {
   constexpr int kBatch = CachedLookups::kBatch;
   lookups_.ForChunks([&](int chunk_begin, int chunk_end) {
-    CachedLookups::Batch batch(lookups_.spec(), Kind::kG);
+    CachedLookups::Batch batch(lookups_.spec(), ParameterKind::kG);
     for (int begin = chunk_begin; begin < chunk_end; begin += kBatch) {
       const int size = std::min(kBatch, chunk_end - begin);
       lookups_.Evaluate(begin, begin + size, model, &batch);

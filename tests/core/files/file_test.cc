@@ -19,7 +19,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/files/read_file.h"
 #include "tests/test_directory.h"
 #include "trilobe/core/base/error.h"
 

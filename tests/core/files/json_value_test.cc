@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/system/peak_memory.h"
+#include "core/system/process.h"
 #include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

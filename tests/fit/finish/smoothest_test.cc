@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "solvers/smooth/roughness.h"
+#include "solvers/smooth/log_stepper.h"
 #include "tests/test_util.h"
 #include "trilobe/model/synth/synth.h"
 #include "trilobe/solvers/registry/solvers.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/lobes/with_axes.h"
+#include "model/lobes/lobes.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/prior/reach.h"
 #include "trilobe/model/lobes/reconstruct.h"

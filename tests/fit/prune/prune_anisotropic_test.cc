@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "model/lobes/with_axes.h"
+#include "model/lobes/lobes.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/node_brdf.h"

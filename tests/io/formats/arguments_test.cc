@@ -10,7 +10,7 @@
 #include "io/formats/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "io/pictures/plots.h"
-#include "model/appearance/node_reconstruction.h"
+#include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
 #include "model/measurement/anisotropy.h"
 #include "tests/test_directory.h"

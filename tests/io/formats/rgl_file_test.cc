@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files/read_file.h"
+#include "core/files/file.h"
 #include "io/formats/spectrum.h"
 #include "tests/io/formats/tensor_bytes.h"
 #include "tests/paths.h"

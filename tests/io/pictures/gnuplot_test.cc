@@ -12,8 +12,8 @@
 #include <fstream>
 #include <limits>
 
-#include "core/files/read_file.h"
-#include "core/system/stopwatch.h"
+#include "core/files/file.h"
+#include "core/system/process.h"
 #include "io/pictures/plots.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"

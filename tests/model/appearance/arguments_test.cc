@@ -10,7 +10,6 @@
 #include "tests/test_util.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/render.h"
-#include "trilobe/model/appearance/sphere.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "model/appearance/color.h"
 #include "model/appearance/mirrored_environment.h"
-#include "trilobe/model/appearance/sphere.h"
+#include "trilobe/model/appearance/render.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

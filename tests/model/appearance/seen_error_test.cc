@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "model/appearance/color.h"
-#include "model/appearance/seen_samples.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/appearance/appearance.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/brdf_samples.h"

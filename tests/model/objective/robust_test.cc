@@ -1,5 +1,3 @@
-#include "model/objective/robust.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/model/objective/objective.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "solvers/awls/grid_sweep.h"
+#include "solvers/awls/sweep.h"
 #include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

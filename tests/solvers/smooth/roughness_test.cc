@@ -1,11 +1,10 @@
-#include "solvers/smooth/roughness.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "solvers/smooth/log_stepper.h"
 #include "tests/test_util.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {

@@ -14,7 +14,6 @@
 #include "trilobe/model/appearance/point_errors.h"
 #include "trilobe/model/appearance/render.h"
 #include "trilobe/model/appearance/seen_error.h"
-#include "trilobe/model/appearance/sphere.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/node_brdf.h"

@@ -15,6 +15,7 @@
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/view.h"
+#include "trilobe/model/measurement/tabulated_brdf.h"
 
 namespace trilobe {
 
@@ -116,6 +117,15 @@ RenderedImages RenderBy(const View& view, int lights, int materials, const Incid
   });
   return images;
 }
+
+// One sphere an isotropic material, all under the same lights, in size^2 pixels, whose sides it
+// touches: what Render makes of them, faster. Pairs of directions for which `counts` is false are
+// left out of all spheres. Of the pixels one in `every`, evenly spread; the others are as those
+// beside the sphere. The same bits for any number of threads.
+std::vector<RenderedImage> RenderSpheres(
+    std::span<const AngularBrdf> materials, std::span<const Light> lights, int size,
+    const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads,
+    int every = 1);
 
 }  // namespace trilobe
 

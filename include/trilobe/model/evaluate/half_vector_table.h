@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "trilobe/model/model_spec.h"
+
 namespace trilobe {
 
 // A density over two numbers, y in [0, 1] and s in [0, 1], that depends on a direction wi: bilinear
@@ -78,6 +80,10 @@ class HalfVectorTable {
 
 extern template class HalfVectorTable<double>;
 extern template class HalfVectorTable<float>;
+
+// sin^2 theta_h of the entries of D and some between them, from 0 to 1; where D is linear between
+// its entries, so is a table in sin^2 theta_h between these, or nearly.
+std::vector<double> NodesOfY(const ModelSpec& spec);
 
 }  // namespace trilobe
 

@@ -16,7 +16,7 @@ enum class PreparedForm : char;
 
 // A model of any form as a function of directions, prepared for many calls: the splines through G
 // and the cosines are cubics, tables lie side by side as they are read, and azimuths are taken
-// where a table has some. Angles are polynomials, four at once (core/math/arc_functions.h). The
+// where a table has some. Angles are polynomials, four at once (core/math/lanes.h). The
 // same value as Evaluate(model, directions), to rounding, but 0 where that throws. Real is double
 // or float. Immutable; any number of threads may use one object, and no call allocates.
 template <typename Real>

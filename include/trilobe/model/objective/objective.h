@@ -87,6 +87,15 @@ class Objective {
   std::shared_ptr<const Objective> data_;  // null without a prior
 };
 
+// The objective's samples for the next pass of a fit by a loss that grows linearly with the error
+// beyond `delta`, by iteratively reweighted least squares: a sample whose error e is larger counts
+// delta / e times as often (Huber 1964). e is the root mean square over the channels of the error
+// as the weighting sees it, which is a relative error under weights relative to the value, in units
+// of the level where the weighting has one. E of the samples that come back, up to a constant, lies
+// above that loss and touches it at `model` (Hunter and Lange 2004), so that what lowers E lowers
+// the loss. Throws Error unless delta > 0 and the model has the objective's spec.
+BrdfSamples Reweighted(const Objective& objective, const FactorModel& model, double delta);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_MODEL_OBJECTIVE_OBJECTIVE_H_

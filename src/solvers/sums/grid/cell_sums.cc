@@ -10,7 +10,7 @@
 #include "core/algebra/nonnegative_least_squares.h"
 #include "core/base/multiversion.h"
 #include "model/lobes/shadowing_pieces.h"
-#include "solvers/sums/grid/cell_kernels.h"
+#include "solvers/sums/grid/kernels.h"
 #include "trilobe/core/system/parallel.h"
 
 namespace trilobe {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "solvers/sums/grid/cell_kernels.h"
+#include "solvers/sums/grid/kernels.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/folded_grid.h"
 

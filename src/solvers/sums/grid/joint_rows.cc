@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/algebra/add_to.h"
 #include "model/lobes/shadowing_pieces.h"
+#include "solvers/sums/grid/kernels.h"
 #include "solvers/sums/grid/row_accumulator.h"
-#include "solvers/sums/grid/row_kernels.h"
-#include "solvers/sums/grid/row_layout.h"
 #include "trilobe/core/math/catmull_rom.h"
 #include "trilobe/core/system/parallel.h"
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/algebra/add_to.h"
 #include "core/base/multiversion.h"
 #include "model/lobes/shadowing_pieces.h"
-#include "solvers/sums/grid/node_lanes.h"
+#include "solvers/sums/grid/kernels.h"
 #include "solvers/sums/grid/spline_moments.h"
 #include "trilobe/core/system/parallel.h"
 

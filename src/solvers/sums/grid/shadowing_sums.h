@@ -1,14 +1,75 @@
 #ifndef TRILOBE_SOLVERS_SUMS_GRID_SHADOWING_SUMS_H_
 #define TRILOBE_SOLVERS_SUMS_GRID_SHADOWING_SUMS_H_
 
+#include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
-#include "solvers/sums/grid/node_quartics.h"
+#include "core/algebra/element_step.h"
+#include "solvers/sums/grid/spline_moments.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/objective/spline_cells.h"
 
 namespace trilobe {
+
+// E as a function of the nodes of one G table, all else held: exact quartics for one node at a
+// time, from moments of the samples.
+//
+// In node weights B (B_a belongs to node a) the moments become
+//   S_ab      = sum w y r   [B_a(theta_i) B_b(theta_o) + B_b(theta_i) B_a(theta_o)],
+//   Q_(ac)(bd) = sum w y^2 [B_a B_c(theta_i) B_b B_d(theta_o) + B_b B_d(theta_i) B_a B_c(theta_o)],
+// with a, c at most 3 nodes apart, and so b, d. Moving node k by delta changes a sample's value by
+//   y (P1 delta + P2 delta^2),  P1 = B_k(theta_i) G(theta_o) + G(theta_i) B_k(theta_o),
+//   P2 = B_k(theta_i) B_k(theta_o),
+// which gives the quartic from V_cd = sum_b Q_(kc)(db) G_b, and the new S after the move:
+//   c1 = -2 sum_d S_kd G_d,   c2 = sum_d V_kd G_d + sum_c V_ck G_c - S_kk,
+//   c3 = 2 V_kk,              c4 = Q_(kk)(kk) / 2,
+//   S_cd -= delta (V_cd + V_dc) + delta^2 Q_(kc)(kd).
+class NodeQuartics {
+ public:
+  explicit NodeQuartics(int nodes);
+
+  // What one pair of knot intervals adds to S and Q, in node weights; made from its moments.
+  // Local nodes a = 0..3 stand for interval - 1 + a; local pairs are (a, c), a <= c.
+  static constexpr int kPairs = 10;
+  struct CellTerms {
+    double first[4][4];             // [node of theta_i][node of theta_o]
+    double second[kPairs][kPairs];  // [pair of theta_i][pair of theta_o]
+  };
+  void Transform(int interval_i, int interval_o, const SplineMoments& moments,
+                 CellTerms* terms) const;
+
+  // Sums over the cells.
+  void Clear();
+  void Add(int interval_i, int interval_o, const CellTerms& terms);
+
+  // Puts node k, in ascending order of k or any other, where E is lowest.
+  void UpdateNode(int k, std::span<double> G);
+
+ private:
+  // Nodes are shifted by one and padded at both ends, so that every interval has four.
+  static constexpr int kBand = 4;  // pairs (a, a + 0..3)
+  int PairIndex(int a, int c) const { return a < c ? a * kBand + (c - a) : c * kBand + (a - c); }
+  double& S(int a, int b) { return S_[a * padded_ + b]; }
+  double& Q(int p, int q) { return Q_[static_cast<size_t>(p) * pairs_ + q]; }
+
+  int nodes_;
+  int padded_;  // nodes + 2
+  int pairs_;   // padded * kBand
+  // Bernstein terms to node weights and to products of two, for the first, an inner, the last
+  // interval.
+  struct Basis {
+    double first[4][SplineMoments::kFirst];
+    double second[kPairs][SplineMoments::kSecond];
+  };
+  const Basis& BasisOf(int interval) const;
+  std::array<Basis, 3> bases_;
+  std::vector<double> S_;         // [padded][padded], symmetric
+  std::vector<double> Q_;         // [pairs][pairs], symmetric
+  std::vector<double> V_;         // [2 kBand - 1][padded]
+  std::vector<double> padded_G_;  // [padded + kBand]
+};
 
 // Element updates of G from moments of spline weights, exact for fixed d, s, D, F (docs/sums.md).
 //

@@ -1,0 +1,29 @@
+#include "core/system/process.h"
+
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace trilobe {
+
+std::string UtcNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::optional<int64_t> PeakMemory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string key; status >> key;) {
+    int64_t kilobytes = 0;
+    if (key == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;
+    status.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return std::nullopt;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,60 @@
+#include "core/base/names.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+struct Choice {
+  std::string name;
+  int value = 0;
+};
+
+const std::vector<Choice> kChoices = {{"first", 1}, {"second", 2}};
+
+std::string ErrorFor(std::string_view name, const std::vector<Choice>& choices) {
+  try {
+    FindNamed("choice", name, choices);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "found";
+}
+
+TEST(FindNamed, FindsByTheWholeName) {
+  EXPECT_EQ(FindNamed("choice", "first", kChoices).value, 1);
+  EXPECT_EQ(&FindNamed("choice", "second", kChoices), &kChoices[1]);
+}
+
+TEST(FindNamed, ListsTheKnownNamesOtherwise) {
+  EXPECT_EQ(ErrorFor("third", kChoices), "unknown choice 'third'; known: first, second");
+  EXPECT_EQ(ErrorFor("", kChoices), "unknown choice ''; known: first, second");
+  EXPECT_EQ(ErrorFor("firs", kChoices), "unknown choice 'firs'; known: first, second");
+  EXPECT_EQ(ErrorFor("First", kChoices), "unknown choice 'First'; known: first, second");
+}
+
+TEST(NearestName, TakesTheFewestEdits) {
+  const std::vector<std::string_view> known = {"source", "name", "budget"};
+  EXPECT_EQ(NearestName("sorce", known), "source");
+  EXPECT_EQ(NearestName("budgets", known), "budget");
+  EXPECT_EQ(NearestName("game", known), "name");
+  EXPECT_EQ(NearestName("name", known), "name");
+}
+
+TEST(NearestName, CountsEdits) {
+  EXPECT_EQ(EditDistance("lobs", "lobes"), 1U);
+  EXPECT_EQ(EditDistance("kitten", "sitting"), 3U);
+  EXPECT_EQ(EditDistance("", "abc"), 3U);
+}
+
+TEST(NearestName, TakesTheFirstOfSeveral) {
+  EXPECT_EQ(NearestName("", {"ab", "cd"}), "ab");
+  EXPECT_EQ(NearestName("xx", {"ab", "cd"}), "ab");
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
