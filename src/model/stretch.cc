@@ -52,7 +52,7 @@ Stretches::Stretches(const std::vector<Stretch>& of_lobes) {
   if (!several()) index_.clear();
 }
 
-Stretches Stretches::Of(const std::vector<int>& lobes) const {
+Stretches Stretches::Select(const std::vector<int>& lobes) const {
   if (!several()) return *this;
   std::vector<Stretch> of_lobes;
   for (const int lobe : lobes) of_lobes.push_back(of(lobe));

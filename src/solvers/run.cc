@@ -1,5 +1,7 @@
 #include "trilobe/solvers/run.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -113,6 +115,9 @@ bool Run::Record(const FactorModel& current, const Step& step) {
     summary_.final_objective = record.objective;
     *model_ = current;
   }
+  VLOG(1) << summary_.solver << " " << record.iteration << ": E " << record.minimised()
+          << ", moved by " << record.step << (record.accepted ? "" : ", taken back") << ", after "
+          << record.seconds << " s";
   previous_ = current;
   if (!reason_) reason_ = ReasonToStop(step.may_converge);
   const auto& [on_iteration, stop] = std::tie(summary_.used.on_iteration, summary_.used.stop);
@@ -129,6 +134,8 @@ SolverSummary Run::Finish() {
   summary_.initial_objective = summary_.trace.front().objective;
   summary_.iterations = summary_.trace.back().iteration;
   summary_.seconds = summary_.trace.back().seconds;
+  VLOG(1) << summary_.solver << " ended: " << StopReasonName(summary_.stop_reason) << ", E "
+          << best_objective_;
   // Who ends a run does not wait for that.
   if (summary_.used.diagnose && reason_ != StopReason::kInterrupted) {
     const ScopedTimer timer = Time(&PhaseSeconds::diagnosing);

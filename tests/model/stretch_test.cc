@@ -103,9 +103,9 @@ TEST(Stretches, LobesThatAreStretchedAlikeShareAReading) {
   EXPECT_EQ(stretches.index(1), 1);
   EXPECT_EQ(stretches.index(2), 0);
   EXPECT_EQ(stretches.of(1), kB);
-  EXPECT_EQ(stretches.Of({1, 0}), Stretches(std::vector{kB, kA}));
-  EXPECT_EQ(stretches.Of({0, 2}), Stretches(kA));
-  EXPECT_EQ(stretches.Of({}), Stretches());
+  EXPECT_EQ(stretches.Select({1, 0}), Stretches(std::vector{kB, kA}));
+  EXPECT_EQ(stretches.Select({0, 2}), Stretches(kA));
+  EXPECT_EQ(stretches.Select({}), Stretches());
   EXPECT_TRUE(Stretches(std::vector{Stretch(), kB}).any());  // the first is none
 }
 

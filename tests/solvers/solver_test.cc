@@ -1,5 +1,6 @@
 #include "trilobe/solvers/solver.h"
 
+#include <glog/logging.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -96,6 +97,25 @@ TEST(Solver, ReportsWhatIsThere) {
   EXPECT_THAT(SolverSummary().FullReport(), testing::HasSubstr("options      max_iterations 100"));
   EXPECT_EQ(SolverSummary().BestIteration(), 0);
   EXPECT_EQ(SolverSummary().RejectedSteps(), 0);
+}
+
+TEST(Solver, LogsIterationsWhereAskedTo) {
+  constexpr MerlGrid kGrid{.theta_h = 5, .theta_d = 5, .phi_d = 8};
+  const ModelSpec spec = ModelSpec::SharedFactors(1, kGrid);
+  const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
+  FLAGS_logtostderr = true;
+  for (const int level : {0, 1}) {
+    FLAGS_v = level;
+    FactorModel model = RandomModel(spec, 1);
+    testing::internal::CaptureStderr();
+    MakeSolver("awls")->Solve(objective, {.max_iterations = 2, .relative_decrease_tolerance = 0},
+                              &model);
+    const std::string log = testing::internal::GetCapturedStderr();
+    for (const char* const line : {"awls 0: E ", "awls 2: E ", "awls ended: max_iterations, E "}) {
+      EXPECT_EQ(log.find(line) != std::string::npos, level == 1) << log;
+    }
+  }
+  FLAGS_v = 0;
 }
 
 TEST(Solver, AllFitScatteredSamples) {

@@ -76,7 +76,7 @@ class Stretches {
   }
 
   // Those of other lobes: the k-th is that of lobes[k] here.
-  Stretches Of(const std::vector<int>& lobes) const;
+  Stretches Select(const std::vector<int>& lobes) const;
 
   // Throws Error unless all are in range, and, if they are several, as many as there are lobes.
   void Check(int lobes) const;

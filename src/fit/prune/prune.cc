@@ -37,7 +37,7 @@ void ShareWhatIsEqual(Pruning* pruning) {
     if (shape.constant_G || shape.name.empty()) continue;
     const Reduction sharing = Reduction::BySharing(state.spec(), shape.spec);
     const Reduction reduction =
-        sharing.After(Reduction(shape.spec, LayoutOf(shape, TableLayout::Full(shape.spec))));
+        sharing.ComposedWith(Reduction(shape.spec, LayoutOf(shape, TableLayout::Full(shape.spec))));
     const std::span<const double> x = state.model.parameters();
     if (!std::ranges::equal(reduction.Expand(reduction.Restrict(x)), x)) continue;
     FactorModel model(shape.spec);

@@ -100,7 +100,7 @@ std::optional<ShapeOption> Promise(const Pruning& pruning, const ModelShape& sha
     const std::vector<double> coverage = sharing.Transpose(state.objective->coverage());
     option.layout = LayoutOf(shape, NeededLayout(option.model, coverage, pruning.may_thin(),
                                                  /*drop_equal=*/false));
-    const Reduction inner(shape.spec, option.layout), reduction = sharing.After(inner);
+    const Reduction inner(shape.spec, option.layout), reduction = sharing.ComposedWith(inner);
     std::vector<double> y0 = reduction.Transpose(x);
     const std::vector<double> counts = reduction.Transpose(std::vector<double>(x.size(), 1.0));
     for (size_t j = 0; j < y0.size(); ++j) y0[j] /= counts[j];

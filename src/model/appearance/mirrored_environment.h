@@ -95,7 +95,7 @@ struct HalfCell {
 
   // `half` about another normal, by the smallest turn that takes z there, which is no sudden one
   // where the eye looks.
-  Direction About(const Direction& n) const {
+  Direction HalfVectorAbout(const Direction& n) const {
     const double along = (n[0] * half[0] + n[1] * half[1]) / (1 + n[2]);
     return {half[0] - n[0] * along + n[0] * half[2], half[1] - n[1] * along + n[1] * half[2],
             n[2] * half[2] - n[0] * half[0] - n[1] * half[1]};

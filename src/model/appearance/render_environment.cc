@@ -79,7 +79,7 @@ std::vector<Sums> SumsOf(std::span<const SurfacePoint> points, const MirroredEnv
     values.clear();
     for (size_t k = 0; k < points.size(); ++k) {
       const Direction& normal = points[k].normal;
-      const Direction half = cell.About(normal);
+      const Direction half = cell.HalfVectorAbout(normal);
       if (!(half[2] > 0)) continue;
       const Cosines cosines = CosinesOver(points[k], MirroredEye(half));
       if (!(cosines.i > 0)) continue;
@@ -113,7 +113,7 @@ RenderedImages RenderUnder(const Environment& environment, const View& view,
       [&](int k, int number) -> Incident<SphericalAngles> {
         const HalfCell& cell = cells[number];
         const SurfacePoint& point = view.points[k];
-        const Direction half = cell.About(point.normal);
+        const Direction half = cell.HalfVectorAbout(point.normal);
         if (!(half[2] > 0)) return {};
         const Direction light = MirroredEye(half);
         Incident<SphericalAngles> incident{.cosines = CosinesOver(point, light)};

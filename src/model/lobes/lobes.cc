@@ -64,7 +64,7 @@ FactorModel WithLobes(const FactorModel& model, std::span<const int> lobes) {
   for (const int lobe : lobes) CheckLobe(model, lobe);
   ModelSpec spec = model.spec();
   spec.lobes = static_cast<int>(lobes.size());
-  spec.stretches = spec.stretches.Of({lobes.begin(), lobes.end()});
+  spec.stretches = spec.stretches.Select({lobes.begin(), lobes.end()});
   FactorModel result(spec);
   std::ranges::copy(model.d(), result.d().begin());
   for (int m = 0; m < spec.lobes; ++m) {

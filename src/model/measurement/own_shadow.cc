@@ -1,9 +1,8 @@
 #include "model/measurement/own_shadow.h"
 
-#include <gsl/gsl_statistics_double.h>
-
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -25,10 +24,14 @@ constexpr double kBrightShare = 0.8;               // of the samples, where the 
 
 constexpr double kStepRounding = 1e-6;  // of degrees that became radians and back
 
-// The value below which this share of them lies.
-double Quantile(double share, std::vector<double> values) {
+// The value below which this share of them lies, linear between two of them; 0 of none.
+double InterpolatedQuantile(double share, std::vector<double> values) {
+  if (values.empty()) return 0;
   std::ranges::sort(values);
-  return gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), share);
+  const double position = share * static_cast<double>(values.size() - 1);
+  const auto k = static_cast<size_t>(position);
+  const double t = position - static_cast<double>(k);
+  return k + 1 < values.size() ? (1 - t) * values[k] + t * values[k + 1] : values[k];
 }
 
 int WholeSteps(double angle, double per_degree) {
@@ -43,7 +46,7 @@ double Brightness(const LitSamples& lit, int first, int last) {
   for (int step = std::max(first, 0); step <= last; ++step) {
     values.insert(values.end(), lit[step].begin(), lit[step].end());
   }
-  return values.size() < kFewestLit ? 0 : Quantile(0.5, std::move(values));
+  return values.size() < kFewestLit ? 0 : InterpolatedQuantile(0.5, std::move(values));
 }
 
 }  // namespace
@@ -81,7 +84,7 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
     if (degree < kShadowedDegrees && further[step] > 0) middle.push_back(value / further[step]);
   }
   if (middle.size() < kFewest) return {};
-  const double ratio = Quantile(0.5, middle);
+  const double ratio = InterpolatedQuantile(0.5, middle);
   if (!(ratio < kDark)) return {};
 
   // By theta_d: the highlight, 1 where it is as bright as the light at the same theta_h.
@@ -100,7 +103,8 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
     return found;
   };
   int end = kLitDegrees;
-  while (end > kShadowedDegrees && Quantile(1 - kBrightShare, below(end)) > kBright) --end;
+  while (end > kShadowedDegrees && InterpolatedQuantile(1 - kBrightShare, below(end)) > kBright)
+    --end;
   constexpr double kMost = 1000;  // where nothing is left of it
   return {.theta_d_deg = static_cast<double>(end),
           .darker = std::min(kMost, 1 / std::max(ratio, 1 / kMost))};

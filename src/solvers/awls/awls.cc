@@ -33,7 +33,9 @@ class AwlsBlock : public Solver {
     const std::unique_ptr<Sweep> sweep = MakeSweep(objective, &run.summary().phases);
     const auto& trace = run.summary().trace;
     RepeatSweeps(
-        [&](FactorModel* current) { sweep->InBlocks(trace.back(), options.on_element, current); },
+        [&](FactorModel* current) {
+          sweep->SweepInBlocks(trace.back(), options.on_element, current);
+        },
         objective, *model, &run);
     return run.Finish();
   }

@@ -80,7 +80,7 @@ class Coordinates {
   Coordinates(const Objective& objective, const FactorModel& start)
       : coverage_(objective.coverage()), start_(start) {}
 
-  VectorXd Of(FactorModel model) const {
+  VectorXd ToVector(FactorModel model) const {
     NormalizeScale(coverage_, &model);
     VectorXd x(model.parameters().size());
     for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = IsLive(k) ? model.parameters()[k] : 0;
@@ -143,10 +143,10 @@ class AwlsAccelerated : public Solver {
 
     FactorModel current = start;
     for (bool go_on = run.Start(); go_on;) {
-      const VectorXd u = coordinates.Of(current);
-      sweep->InBlocks(run.summary().trace.back(), options.on_element, &current);
+      const VectorXd u = coordinates.ToVector(current);
+      sweep->SweepInBlocks(run.summary().trace.back(), options.on_element, &current);
       Point best{current, evaluate(current)};
-      const VectorXd g = coordinates.Of(current);
+      const VectorXd g = coordinates.ToVector(current);
       std::optional<VectorXd> step;
       {
         const ScopedTimer timer = run.Time(&PhaseSeconds::linear_algebra);

@@ -10,7 +10,8 @@
 
 namespace trilobe {
 
-void Sweep::InBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model) {
+void Sweep::SweepInBlocks(const IterationRecord& last, const OnElement& on_block,
+                          FactorModel* model) {
   // What other parameters do to E: docs/solvers.md.
   constexpr int kElementSweeps = 3;
   if (last.iteration < kElementSweeps) {

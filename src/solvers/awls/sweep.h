@@ -35,13 +35,13 @@ class Sweep {
   // of all lobes, then one of F. The first sweeps of a run go element by element all the same: as
   // long as G is far off, exact blocks settle too early which lobe is what. `last` is the record of
   // the model as it comes. `on_block`, if set, sees it after each block and node.
-  void InBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model);
+  void SweepInBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model);
 
   // Updates those blocks once, and not G. E: of the model as it comes.
   void Project(double E, FactorModel* model) { UpdateBlocks(E, 1, nullptr, model); }
 
  protected:
-  // `rounds`: how often InBlocks updates the blocks.
+  // `rounds`: how often SweepInBlocks updates the blocks.
   explicit Sweep(int rounds) : rounds_(rounds) {}
   virtual void UpdateBlocks(double E, int rounds, const OnElement& on_block,
                             FactorModel* model) = 0;

@@ -81,13 +81,13 @@ JointStepper::JointStepper(const Objective& objective, Curvature curvature, Tria
       << "a projection would leave the reduction";
 }
 
-void JointStepper::Wake() {
+void JointStepper::MakeScratch() {
   if (equations_) return;
   equations_.emplace(objective_);
   if (trial_ == Trial::kProjected) sweep_ = MakeSweep(objective_, phases_);
 }
 
-void JointStepper::Rest() {
+void JointStepper::ReleaseScratch() {
   equations_.reset();
   sweep_.reset();
   if (linearized_) binding_ = step_.binding();
@@ -123,7 +123,7 @@ double JointStepper::Evaluate(const FactorModel& model) {
 
 void JointStepper::Linearize() {
   if (linearized_) return;
-  Wake();
+  MakeScratch();
   {
     const ScopedTimer timer(&phases_->evaluating);
     equations_->Evaluate(current_, hessian_, &at_);
@@ -164,6 +164,7 @@ bool JointStepper::Step() {
     E = Evaluate(trial);
   }
   const double gain = (E_ - E) / (2 * result.predicted_decrease);
+  VLOG(2) << "joint step: lambda " << lambda_ << ", E " << E_ << " to " << E << ", gain " << gain;
   settled_ = false;
   if (!(E < E_ && gain > kMinGain)) {
     settled_ = !held_back_ && 2 * result.predicted_decrease < RoundingOfE();

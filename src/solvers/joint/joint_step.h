@@ -63,12 +63,12 @@ class JointStepper {
   double E() const { return E_; }
   // Gives back what it can make again, some hundred megabytes for a model of 2,000 parameters,
   // until the next step.
-  void Rest();
+  void ReleaseScratch();
   // Diagnosis::optimality of the point. Passes over the data when the point is new.
   double Optimality();
 
  private:
-  void Wake();
+  void MakeScratch();
   double Evaluate(const FactorModel& model);
   // What the sum of so many terms may be off by, if each rounds either way.
   double RoundingOfE() const;
@@ -81,7 +81,7 @@ class JointStepper {
   Hessian hessian_;  // of the next point
   PhaseSeconds* const phases_;
   const Trial trial_;
-  // None while it rests; a sweep only if trials are projected.
+  // None from ReleaseScratch to the next step; a sweep only if trials are projected.
   std::optional<NormalEquations> equations_;
   std::unique_ptr<Sweep> sweep_;
   FactorModel current_;

@@ -72,7 +72,7 @@ Reduction Reduction::BySharing(const ModelSpec& spec, const ModelSpec& fewer) {
   return reduction;
 }
 
-Reduction Reduction::After(const Reduction& inner) const {
+Reduction Reduction::ComposedWith(const Reduction& inner) const {
   Reduction product;
   for (int k = 0; k < num_parameters(); ++k) {
     for (int n = begin_[k]; n < begin_[k + 1]; ++n) {

@@ -24,7 +24,7 @@ class Reduction {
   static Reduction BySharing(const ModelSpec& spec, const ModelSpec& fewer);
 
   // x = B y,  y = C z  to  x = B C z.
-  Reduction After(const Reduction& inner) const;
+  Reduction ComposedWith(const Reduction& inner) const;
 
   int size() const { return static_cast<int>(source_.size()); }
   int num_parameters() const { return static_cast<int>(begin_.size()) - 1; }

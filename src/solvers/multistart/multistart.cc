@@ -1,3 +1,5 @@
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -192,9 +194,12 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
         continue;
       }
       starts.EnterUpTo(round.starts);
-      stepper->Rest();
+      stepper->ReleaseScratch();
       elimination.Advance(round.tries);
       elimination.Keep(round.keep);
+      for (const StartResult& start : elimination.Results()) {
+        VLOG(1) << "start " << start.name << ": E " << start.objective << " by thinned samples";
+      }
       if (elimination.leader() == nullptr) continue;
       // On all samples a leader may be behind its predecessor.
       begin_at(*elimination.leader());

@@ -70,7 +70,7 @@ class StartElimination::Candidate {
     }
     model_ = stepper_->current();
     E_ = stepper_->E();
-    stepper_->Rest();  // others' turn may come
+    stepper_->ReleaseScratch();  // others' turn may come
   }
 
   void Leave() {
@@ -98,7 +98,7 @@ class StartElimination::Candidate {
     const std::unique_ptr<Sweep> sweep = MakeSweep(*objective_, &phases_);
     for (int k = 0; k < sweeps_.count && !stop(); ++k) {
       if (sweeps_.in_blocks) {
-        sweep->InBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
+        sweep->SweepInBlocks({.iteration = k, .objective = E_}, nullptr, &*model_);
         E_ = Evaluate();  // which blocks need to know
       } else {
         (*sweep)(nullptr, &*model_);

@@ -74,7 +74,7 @@ TEST(SplitLobe, GivesTheNewLobeTheFlanks) {
     std::vector<int> lobes(added);
     std::iota(lobes.begin(), lobes.end(), 0);
     lobes.push_back(lobe);
-    expected.stretches = expected.stretches.Of(lobes);
+    expected.stretches = expected.stretches.Select(lobes);
     ASSERT_EQ(split.spec(), expected) << what;
     for (int c = 0; c < kChannels; ++c) {
       const auto before = model.D(lobe, c);

@@ -60,7 +60,8 @@ TEST(Reduction, TheReducedProblemIsTheProblemInTheReducedNumbers) {
   ModelSpec fewer = spec;
   fewer.F.per_channel = false;
   const TableLayout layout = ThinLayout(fewer);
-  const Reduction reduction = Reduction::BySharing(spec, fewer).After(Reduction(fewer, layout));
+  const Reduction reduction =
+      Reduction::BySharing(spec, fewer).ComposedWith(Reduction(fewer, layout));
   const Objective objective = MakeObjective(RandomTable(kGrid, 1), spec);
   FactorModel model = RandomModel(spec, 2);
   const std::vector<double> y = reduction.Restrict(model.parameters());
