@@ -16,8 +16,8 @@ constexpr MerlGrid kGrids[] = {{.theta_h = 90, .theta_d = 30, .phi_d = 36},
                                {.theta_h = 60, .theta_d = 18, .phi_d = 24},
                                {.theta_h = 45, .theta_d = 15, .phi_d = 18},
                                {.theta_h = 30, .theta_d = 12, .phi_d = 12}};
-constexpr int kSamplesOfBin = 4;      // for each bin above the surface
-constexpr double kFilled = 0.6;  // of these; what is next to a gap would fill it
+constexpr int kSamplesOfBin = 4;  // for each bin above the surface
+constexpr double kFilled = 0.6;   // of these; what is next to a gap would fill it
 
 constexpr int64_t kMostNodes = 3162;  // as of ParseHemisphereGrid
 

@@ -1,8 +1,8 @@
+#include "model/synth/anisotropic_materials.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "model/synth/anisotropic_materials.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {

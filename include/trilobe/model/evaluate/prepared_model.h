@@ -12,7 +12,13 @@
 
 namespace trilobe {
 
-enum class PreparedForm : char;
+// The forms that most models have, with D and G by the lobe and F by the channel, of no more lobes
+// than a vector has room for, are compiled by themselves: what depends on the form is decided then.
+enum class PreparedForm : char {
+  kAny,
+  kIsotropic,    // D over the root of theta_h, unstretched; G a spline
+  kAnisotropic,  // D and G over azimuths, too
+};
 
 // A model of any form as a function of directions, prepared for many calls: the splines through G
 // and the cosines are cubics, tables lie side by side as they are read, and azimuths are taken
