@@ -23,7 +23,6 @@
 #include "app/result_folder.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
-#include "core/files/read_file.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/print.h"
 #include "model/appearance/verdict.h"
@@ -147,9 +146,7 @@ bool IsFinished(const FitSettings& settings, const ResultFolder& folder, FitOutc
     for (const std::string name : report.at("files")) {
       if (std::ranges::find(files, name) == files.end()) return false;
     }
-    const std::string& source = outcome->source;
-    const std::string bytes = IsSynthetic(source) ? "" : ReadFile(source);
-    if (report.at("key") != FitKey(settings, source, bytes)) return false;
+    if (report.at("key") != FitKey(settings, Source(outcome->source))) return false;
     TakeReport(report, outcome);
     return true;
   } catch (const Error&) {

@@ -4,7 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "core/files/read_file.h"
-#include "fit/scene/fit_cache.h"
+#include "core/system/content_hash.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {

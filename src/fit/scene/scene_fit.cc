@@ -9,7 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/files/read_file.h"
+#include "core/system/content_hash.h"
 #include "core/system/stopwatch.h"
 #include "core/system/utc_time.h"
 #include "fit/prune/prune_anisotropic.h"
@@ -126,9 +126,9 @@ SceneScore ScoreOn(const Objective& objective, const FactorModel& model) {
   return {report.objective, report.psnr_db};
 }
 
-std::string BytesOfSource(const std::string& source) {
-  if (IsSynthetic(source)) return source;
-  return IsMaterial(source) ? std::string(MaterialText(source)) : ReadFile(source);
+// Of a measurement, or the text of a model.
+Source SourceOf(const std::string& name) {
+  return IsMaterial(name) ? Source(name, std::string(MaterialText(name))) : Source(name);
 }
 
 // One material, of which nothing is read more than once, or without need.
@@ -138,9 +138,9 @@ class MaterialFitter {
       : material_(material),
         settings_(settings),
         num_threads_(num_threads),
-        bytes_(BytesOfSource(material.source)),
-        bytes_hash_(ContentHash(bytes_)),
-        is_model_(RecogniseContent(bytes_).kind == Content::Kind::kJson) {}
+        source_(SourceOf(material.source)),
+        fingerprint_(source_.Fingerprint()),
+        is_model_(RecogniseContent(source_.bytes()).kind == Content::Kind::kJson) {}
 
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
@@ -181,8 +181,8 @@ class MaterialFitter {
     Key key("fit 3, " + purpose);
     key.Add("program", settings_.program);
     key.Add("build", settings_.build);
-    key.Add("source", bytes_hash_);
-    if (IsSynthetic(material_.source)) {
+    key.Add("source", fingerprint_);
+    if (source_.synthetic()) {
       key.Add("noise", settings_.noise);
       key.Add("synth_seed", settings_.seed);
     }
@@ -226,7 +226,7 @@ class MaterialFitter {
     return key.text();
   }
 
-  ModelFile GivenModel() const { return ParseModel(bytes_, material_.source); }
+  ModelFile GivenModel() const { return ParseModel(source_.bytes(), source_.name()); }
 
   Measurement Measured() const {
     if (is_model_) {
@@ -234,14 +234,12 @@ class MaterialFitter {
       constexpr HemisphereGrid kNodes = {.thetas = 12, .phis = 48};
       return AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
     }
-    const SourceOptions options = {.noise = settings_.noise,
-                                   .seed = settings_.seed,
-                                   .num_threads = num_threads_,
-                                   .max_angle_deg = settings_.max_angle_deg,
-                                   .min_theta_d_deg = settings_.min_theta_d_deg,
-                                   .extrapolated = settings_.extrapolated};
-    return IsSynthetic(material_.source) ? LoadMeasurement(material_.source, options)
-                                         : ParseMeasurement(bytes_, material_.source, options);
+    return source_.Read({.noise = settings_.noise,
+                         .seed = settings_.seed,
+                         .num_threads = num_threads_,
+                         .max_angle_deg = settings_.max_angle_deg,
+                         .min_theta_d_deg = settings_.min_theta_d_deg,
+                         .extrapolated = settings_.extrapolated});
   }
 
   const Measurement& measured() {
@@ -426,8 +424,8 @@ class MaterialFitter {
   const SceneMaterial& material_;
   const SceneFitSettings& settings_;
   const int num_threads_;
-  const std::string bytes_;
-  const std::string bytes_hash_;
+  const Source source_;
+  const std::string fingerprint_;
   const bool is_model_;
   std::optional<Measurement> measured_;
 };

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "core/base/named.h"
 #include "core/files/file.h"
 #include "core/files/read_file.h"
 #include "core/files/text_lines.h"
+#include "core/system/content_hash.h"
 #include "io/formats/utia_file.h"
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/base/check.h"
@@ -180,10 +182,10 @@ std::string WriteMeasurement(const Measurement& measurement, const std::string& 
   return format.written_as + ", " + format.write(measurement, path, num_threads);
 }
 
-bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
+bool IsSynthetic(std::string_view name) { return name.starts_with(kSynth); }
 
-SynthSource SynthSourceOf(std::string_view source) {
-  const std::string_view name = source.substr(kSynth.size());
+SynthSource SynthSourceOf(std::string_view name) {
+  name.remove_prefix(kSynth.size());
   const size_t at = name.find('@');
   const SynthMaterial& material = FindSynthMaterial(name.substr(0, at));
   if (at == std::string_view::npos) {
@@ -224,12 +226,45 @@ void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
   LimitThetaD(DegreesToRadians(options.min_theta_d_deg), measurement);
 }
 
-Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
-                             const SourceOptions& options) {
-  CheckSourceOptions(options);
-  const MeasurementFormat& format = FormatOf(bytes, source);
-  Measurement measurement = format.read(bytes, source, options);
+Source::Source(std::string name) : name_(std::move(name)) {
+  if (!synthetic()) bytes_ = ReadFile(name_);
+}
+
+Source::Source(std::string name, std::string bytes)
+    : name_(std::move(name)), bytes_(std::move(bytes)) {}
+
+bool Source::synthetic() const { return IsSynthetic(name_); }
+
+std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHash(bytes_); }
+
+Measurement Source::Parsed(const SourceOptions& options) const {
+  const MeasurementFormat& format = FormatOf(bytes_, name_);
+  Measurement measurement = format.read(bytes_, name_, options);
   NoteUnread(options, format.name, &measurement);
+  return measurement;
+}
+
+Measurement Source::Synthesized(const SourceOptions& options) const {
+  const auto [material, grid] = SynthSourceOf(name_);
+  Measurement measurement;
+  if (const auto* const directions = std::get_if<HemisphereGrid>(&grid)) {
+    measurement =
+        SynthesizeSamples(material, options.noise, options.seed, *directions, options.num_threads);
+    measurement.source = measurement.samples.source = name_;
+  } else {
+    measurement = {.source = name_,
+                   .kind = "synthetic measurement",
+                   .table = Synthesize(material, options.noise, options.seed,
+                                       std::get<MerlGrid>(grid), options.num_threads)};
+    measurement.table->source = name_;
+  }
+  NoteUnread(options, kSynth, &measurement);
+  return measurement;
+}
+
+Measurement Source::Read(const SourceOptions& options) const {
+  CheckSourceOptions(options);
+  Measurement measurement = synthetic() ? Synthesized(options) : Parsed(options);
   CorruptBy(options, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
@@ -239,37 +274,13 @@ Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
   return measurement;
 }
 
-BrdfTable ParseSource(std::string_view bytes, const std::string& source,
-                      const SourceOptions& options) {
-  return TableOf(ParseMeasurement(bytes, source, options));
-}
-
-Measurement LoadMeasurement(const std::string& source, const SourceOptions& options) {
+Measurement LoadMeasurement(const std::string& name, const SourceOptions& options) {
   CheckSourceOptions(options);  // before a large file is read
-  if (!IsSynthetic(source)) return ParseMeasurement(ReadFile(source), source, options);
-  const auto [material, grid] = SynthSourceOf(source);
-  Measurement measurement;
-  if (const auto* const directions = std::get_if<HemisphereGrid>(&grid)) {
-    measurement =
-        SynthesizeSamples(material, options.noise, options.seed, *directions, options.num_threads);
-    measurement.source = measurement.samples.source = source;
-  } else {
-    measurement = {.source = source,
-                   .kind = "synthetic measurement",
-                   .table = Synthesize(material, options.noise, options.seed,
-                                       std::get<MerlGrid>(grid), options.num_threads)};
-    measurement.table->source = source;
-  }
-  NoteUnread(options, kSynth, &measurement);
-  CorruptBy(options, &measurement);
-  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
-  if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
-  DecideMeasured(options, &measurement);
-  return measurement;
+  return Source(name).Read(options);
 }
 
-BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
-  return TableOf(LoadMeasurement(source, options));
+BrdfTable LoadTable(const std::string& name, const SourceOptions& options) {
+  return TableOf(LoadMeasurement(name, options));
 }
 
 }  // namespace trilobe

@@ -83,7 +83,7 @@ TEST(Content, IsRecognisedByItsFirstBytes) {
 
 TEST(Content, IsNamedByEveryReader) {
   const auto source_error = [](const std::string& bytes) {
-    return ErrorOf([&] { ParseSource(bytes, "f"); });
+    return ErrorOf([&] { TableOf(Source("f", bytes).Read()); });
   };
   const std::string as_utf16 = Utf16("\xFF\xFE", kJson, true);
   EXPECT_THAT(source_error(as_utf16),

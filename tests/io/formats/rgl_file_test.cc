@@ -463,7 +463,7 @@ TEST(RglFile, SamplesAnAnisotropicMaterialAtItsNodes) {
       }
     }
   }
-  const Measurement loaded = ParseMeasurement(file.Bytes(), "tiny.bsdf");
+  const Measurement loaded = Source("tiny.bsdf", file.Bytes()).Read();
   EXPECT_EQ(loaded.samples.rho, measurement.samples.rho);
   EXPECT_FALSE(loaded.table);
   EXPECT_TRUE(loaded.look_up);
@@ -533,7 +533,7 @@ TEST(RglFile, LeavesOutNodesThatWereNotMeasured) {
             all.counts.valid);
   EXPECT_EQ(part.counts.below_surface, all.counts.below_surface);
   const std::string bytes = file.Bytes();
-  EXPECT_EQ(ParseMeasurement(bytes, "x", {.extrapolated = true}).counts.valid, all.counts.valid);
+  EXPECT_EQ(Source("x", bytes).Read({.extrapolated = true}).counts.valid, all.counts.valid);
 }
 
 TEST(TabulateRgl, EvaluatesBinCentresOnAnyNumberOfThreads) {
