@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/files/content.h"
 #include "core/system/content_hash.h"
 #include "core/system/stopwatch.h"
 #include "core/system/utc_time.h"
@@ -22,7 +23,6 @@
 #include "model/appearance/verdict.h"
 #include "model/lobes/gauge.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"

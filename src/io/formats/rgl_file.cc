@@ -14,7 +14,6 @@
 #include "io/formats/spectrum.h"
 #include "io/formats/tensor_file.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -293,8 +292,6 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
   return measurement;
 }
 
-bool LooksLikeRgl(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }
-
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid,
                       int num_threads) {
   if (!brdf.isotropic()) {
@@ -345,7 +342,7 @@ MeasurementFormat RglFormat() {
           .description = "an RGL .bsdf file",
           .ending = ".bsdf",
           .is_text = false,
-          .recognise = IsContent<Content::Kind::kTensor>,
+          .recognise = LooksLikeTensorFile,
           .read = [](std::string_view bytes, const std::string& source,
                      const SourceOptions& options) -> Measurement {
             auto rgl = std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/named.h"
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/read_file.h"
 #include "core/files/text_lines.h"
@@ -14,22 +15,22 @@
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/model/corruption/corruption.h"
 #include "trilobe/model/synth/synth.h"
 
-// The formats of the library, in the order in which they are asked whether a file is theirs. NAME
-// stands for the function NAMEFormat(), which the reader's own file defines: to add a format is one
-// file, and one line here.
+// The formats of the library, in the order in which they are asked whether a file is theirs: those
+// that a first line or more tells before that of which the size alone does. NAME stands for the
+// function NAMEFormat(), which the reader's own file defines: to add a format is one file, and one
+// line here.
 #define TRILOBE_FOR_EACH_FORMAT(X) \
   X(Merl)                          \
   X(Rgl)                           \
   X(Mbsdf)                         \
-  X(Utia)                          \
+  X(Csv)                           \
   X(Zemax)                         \
-  X(Cornell)                       \
   X(Astm)                          \
-  X(Csv)
+  X(Cornell)                       \
+  X(Utia)
 
 namespace trilobe {
 
@@ -66,15 +67,13 @@ std::string WhatMeasurementsAre() {
 }
 
 const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source) {
+  if (const MeasurementFormat* const format = RecogniseFormat(bytes)) return *format;
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
-  auto found = std::ranges::find_if(
-      formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
-  if (found != formats.end()) return *found;
   const Content content = RecogniseContent(bytes);
   const bool is_text = content.kind == Content::Kind::kText;
   if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
-    found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
+    auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
       return (bytes.empty() || format.is_text == is_text) && format.ending == ending;
     });
     // Of a text format that this cannot be: its reader says what is wrong.
@@ -163,6 +162,22 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
 #undef TRILOBE_LIST
   };
   return formats;
+}
+
+const MeasurementFormat* RecogniseFormat(std::string_view bytes) {
+  const Content::Kind kind = RecogniseContent(bytes).kind;
+  if (kind == Content::Kind::kJson || kind == Content::Kind::kForeign) return nullptr;
+  const std::vector<MeasurementFormat>& formats = MeasurementFormats();
+  const auto found = std::ranges::find_if(
+      formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
+  return found == formats.end() ? nullptr : &*found;
+}
+
+void CheckMayBeJson(std::string_view bytes, const std::string& what) {
+  const Content content = RecogniseContent(bytes);
+  const MeasurementFormat* const format = RecogniseFormat(bytes);
+  if (format == nullptr && content.kind != Content::Kind::kForeign) return;
+  throw Error(what + ": this is " + (format == nullptr ? content.name : format->description));
 }
 
 const MeasurementFormat& WritableFormat(const std::string& path) {

@@ -567,9 +567,13 @@ std::string FieldsError(const std::vector<TensorField>& fields) {
 TEST(RglFile, RecognisesTheMagic) {
   TinyRgl file;
   file.FillConstant(1, 1, 1);
-  EXPECT_TRUE(LooksLikeRgl(file.Bytes()));
-  EXPECT_FALSE(LooksLikeRgl("tensor_file"));  // without the final 0
-  EXPECT_FALSE(LooksLikeRgl(""));
+  const auto is_rgl = [](std::string_view bytes) {
+    const MeasurementFormat* const format = RecogniseFormat(bytes);
+    return format != nullptr && format->name == "rgl";
+  };
+  EXPECT_TRUE(is_rgl(file.Bytes()));
+  EXPECT_FALSE(is_rgl("tensor_file"));  // without the final 0
+  EXPECT_FALSE(is_rgl(""));
   EXPECT_THAT(ParseError(""), AllOf(HasSubstr("tiny.bsdf"), HasSubstr("not an RGL file")));
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <string>
 
-#include "io/formats/csv_file.h"
 #include "model/appearance/node_reconstruction.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"

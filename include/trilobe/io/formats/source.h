@@ -70,8 +70,15 @@ void CorruptBy(const SourceOptions& options, Measurement* measurement);
 void DecideMeasured(const SourceOptions& options, BrdfTable* table);
 void DecideMeasured(const SourceOptions& options, Measurement* measurement);
 
-// Those of the library; the first that recognises a file reads it.
+// Those of the library, in the order in which they are asked.
 const std::vector<MeasurementFormat>& MeasurementFormats();
+
+// The first that recognises the bytes of a file, or its beginning; null where none does.
+const MeasurementFormat* RecogniseFormat(std::string_view bytes);
+
+// Throws Error "WHAT: this is a MERL .binary file" for the bytes of a file, or its beginning, that
+// are known, and are no JSON text.
+void CheckMayBeJson(std::string_view bytes, const std::string& what);
 
 // The one in which a file of this name is written, by its ending; without one, the first. Throws
 // Error, which names the endings that there are, for others.
