@@ -34,7 +34,7 @@ namespace {
 const BrdfTable& Measurement() {
   static const BrdfTable table = [] {
     const char* const source = std::getenv("TRILOBE_BENCHMARK_SOURCE");
-    return LoadSource(source != nullptr ? source : "synth:plastic", {.noise = 0.02});
+    return LoadTable(source != nullptr ? source : "synth:plastic", {.noise = 0.02});
   }();
   return table;
 }

@@ -34,7 +34,7 @@ namespace {
 const BrdfSamples& OnGrid() {
   static const BrdfSamples samples = [] {
     const char* const source = std::getenv("TRILOBE_BENCHMARK_SOURCE");
-    return ValidSamples(LoadSource(source != nullptr ? source : "synth:plastic", {.noise = 0.02}));
+    return ValidSamples(LoadTable(source != nullptr ? source : "synth:plastic", {.noise = 0.02}));
   }();
   return samples;
 }

@@ -3,7 +3,7 @@
 
 Adds a made-up subcommand, format, form of the model, solver and weighting to a copy of the working tree by the
 files that the page names, counts them against its numbers, and compiles what was touched; with --build the whole
-program, and runs it. Counts the files that name each real subcommand, and a real form, too.
+program, and runs it. Counts the files that name each real subcommand, format and a real form, too.
 scripts/check_what_to_touch.py [--build]
 """
 import json
@@ -168,6 +168,24 @@ def check_real(name, files, wanted):
         sys.exit(f"docs/architecture.md says {wanted} files, and {name} is named by {', '.join(sorted(files))}")
 
 
+def check_real_formats(wanted):
+    """A format whose reader has no header, as nothing else calls it, is named by its own file and its line. Other
+    things are CSV, too."""
+    registry = "src/io/formats/source.cc"
+    files = subprocess.run(["git", "ls-files", "src", "include"], cwd=ROOT, check=True, capture_output=True, text=True)
+    code = {path: re.sub(r"//.*", "", (ROOT / path).read_text())
+            for path in files.stdout.split() if path.endswith((".h", ".cc")) and (ROOT / path).is_file()}
+    names = re.findall(r"^  X\((\w+)\)", code[registry], re.M)
+    counted = [name for name in names if name != "Csv" and f"src/io/formats/{name.lower()}_file.h" not in code]
+    if len(counted) < 4:
+        sys.exit(f"{registry} lists {names}, of which no more than {counted} can be counted")
+    for name in counted:
+        naming = {path for path, text in code.items() if name in text}
+        print(f"{name}: {len(naming)} files")
+        if len(naming) != wanted or naming != {registry, f"src/io/formats/{name.lower()}_file.cc"}:
+            sys.exit(f"docs/architecture.md says {wanted} files for a format, and {name} is in {sorted(naming)}")
+
+
 def compile_touched(tree):
     """Without code: the sources of the touched files, as the tidy preset compiles them."""
     build = tree.folder / "build/tidy"
@@ -197,6 +215,7 @@ def main():
             print(f"{name}: {count} files")
             if count != wanted.get(name):
                 sys.exit(f"docs/architecture.md says {wanted.get(name)} files for {name}, and it takes {count}")
+        check_real_formats(wanted["a format of measurements"])
         tree.touched = everything
         subprocess.run(["cmake", f"-Droot={folder}", "-P", "cmake/TrilobeCheckRooms.cmake"], cwd=folder, check=True)
         compile_touched(tree)

@@ -3,7 +3,7 @@
 
 import {anglesOf, linearPlace} from './model.js';
 
-// The Rice code of src/io/page/measured_data.h.
+// The Rice code of src/io/page/page.h.
 export function decodeMeasured(header, text) {
   const bytes = bytesOf(text);
   let at = 0;

@@ -60,7 +60,7 @@ int Main(const std::string& source) {
       "filter,sweeps,first_E,best_E,worst_relative_difference,literal_s_a_sweep,awls_s_a_sweep\n");
   const SourceOptions options = {
       .noise = FLAGS_noise, .max_angle_deg = FLAGS_max_angle, .extrapolated = FLAGS_extrapolated};
-  const BrdfSamples samples = Thinned(ValidSamples(LoadSource(source, options)), FLAGS_stride);
+  const BrdfSamples samples = Thinned(ValidSamples(LoadTable(source, options)), FLAGS_stride);
   const Objective objective(samples, ModelSpec::SharedFactors(3, samples.grid),
                             FindWeighting(FLAGS_weighting));
   bool passed = true;

@@ -138,7 +138,7 @@ int Main(const std::string& model_path, const std::string& source) {
   const SourceOptions options = {.num_threads = FLAGS_threads,
                                  .max_angle_deg = FLAGS_max_angle,
                                  .extrapolated = FLAGS_extrapolated};
-  const Objective objective(ValidSamples(LoadSource(source, options)), model.spec(),
+  const Objective objective(ValidSamples(LoadTable(source, options)), model.spec(),
                             FindWeighting(FLAGS_weighting), FLAGS_threads);
   std::printf("%s\n", Spectrum(objective, model).dump().c_str());
   return 0;

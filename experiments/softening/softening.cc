@@ -77,7 +77,7 @@ FactorModel RandomStart(const Objective& objective, int seed) {
 
 // As many as `auto` looks at before it has a start, though not of every other row.
 Objective ThinnedObjective(const std::string& source, const SourceOptions& reading) {
-  const BrdfSamples samples = ValidSamples(LoadSource(source, reading));
+  const BrdfSamples samples = ValidSamples(LoadTable(source, reading));
   const ModelSpec spec = ModelSpec::SharedFactors(3, samples.grid);
   const Weighting& weighting = FindWeighting(FLAGS_weighting);
   const Objective all(samples, spec, weighting);

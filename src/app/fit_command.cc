@@ -22,6 +22,7 @@
 #include "app/solver_flags.h"
 #include "core/algebra/openblas.h"
 #include "core/files/file.h"
+#include "core/system/content_hash.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
 #include "fit/reports/print.h"

@@ -145,9 +145,7 @@ bool IsFinished(const FitSettings& settings, const ResultFolder& folder, FitOutc
     for (const std::string name : report.at("files")) {
       if (std::ranges::find(files, name) == files.end()) return false;
     }
-    const std::string& source = outcome->source;
-    const std::string bytes = IsSynthetic(source) ? "" : ReadFile(source);
-    if (report.at("key") != FitKey(settings, source, bytes)) return false;
+    if (report.at("key") != FitKey(settings, Source(outcome->source))) return false;
     TakeReport(report, outcome);
     return true;
   } catch (const Error&) {

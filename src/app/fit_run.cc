@@ -15,10 +15,10 @@
 #include "app/program.h"
 #include "app/view_page.h"
 #include "core/files/file.h"
+#include "core/system/content_hash.h"
 #include "core/system/process.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/print.h"
-#include "fit/scene/fit_cache.h"
 #include "io/formats/merl_file.h"
 #include "io/formats/utia_file.h"
 #include "io/pictures/plots.h"
@@ -126,11 +126,9 @@ const std::vector<std::string>& FitFolderMarks() {
   return marks;
 }
 
-std::string FitKey(const FitSettings& settings, const std::string& source,
-                   const std::string& bytes) {
-  std::string text = ProgramName() + "\n" + ProgramBuild() + "\n" + settings.key;
-  text += IsSynthetic(source) ? source : ContentHash(bytes);
-  return ContentHash(text);
+std::string FitKey(const FitSettings& settings, const Source& source) {
+  return ContentHash(ProgramName() + "\n" + ProgramBuild() + "\n" + settings.key +
+                     source.Fingerprint());
 }
 
 std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& settings,
@@ -145,13 +143,10 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   source_options.num_threads = num_threads;
   RefuseMaterial(source);
   Measurement measured;
-  if (IsSynthetic(source)) {
-    measured = LoadMeasurement(source, source_options);
-    report.key = FitKey(settings, source, "");
-  } else {
-    const std::string bytes = ReadFile(source);
-    measured = ParseMeasurement(bytes, source, source_options);
-    report.key = FitKey(settings, source, bytes);
+  {
+    const Source input(source);
+    measured = input.Read(source_options);
+    report.key = FitKey(settings, input);
   }
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();

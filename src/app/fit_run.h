@@ -56,8 +56,7 @@ const std::vector<std::string>& FitFolderMarks();
 
 // What the result depends on: settings, the measurement's content, the program's version.
 // 32 hexadecimal digits.
-std::string FitKey(const FitSettings& settings, const std::string& source,
-                   const std::string& bytes);
+std::string FitKey(const FitSettings& settings, const Source& source);
 
 // A fit that is through, and in its folder if it has one, as far as the model goes.
 struct FitRun {

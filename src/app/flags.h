@@ -52,7 +52,7 @@ std::string FlagHelp(const std::string& flag);
 // standard error. Throws Error if negative.
 int ThreadsFromFlags();
 
-// What says how a source is read: for LoadSource. Throws Error for bad values. And the names of
+// What says how a source is read: for Source::Read. Throws Error for bad values. And the names of
 // these flags.
 SourceOptions SourceOptionsFromFlags();
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others);

@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "app/flags.h"
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/materials/load_model.h"
 
@@ -15,11 +15,11 @@ namespace trilobe {
 
 bool IsModelFile(const std::string& path) {
   if (IsMaterial(path)) return true;
-  return RecogniseFile(path).kind == Content::Kind::kJson;
+  return RecogniseContent(BeginningOf(path)).kind == Content::Kind::kJson;
 }
 
 ModelFile ModelOfSource(const std::string& path) {
-  if (!IsMaterial(path)) CheckMayBeJson(RecogniseFile(path), path + ": not a model file");
+  if (!IsMaterial(path)) CheckMayBeJson(BeginningOf(path), path + ": not a model file");
   return LoadModel(path);
 }
 

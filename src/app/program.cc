@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "core/files/file.h"
+#include "core/system/content_hash.h"
 #include "fit/scene/fit_cache.h"
 #include "trilobe/core/base/error.h"
 

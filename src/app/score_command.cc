@@ -89,7 +89,7 @@ int RunScore(std::span<const std::string> arguments) {
   if (IsModelFile(arguments[0])) {
     model = ModelOfSource(arguments[0]).model;
   } else {
-    other = LoadSource(arguments[0], SourceOptionsFromFlags());
+    other = LoadTable(arguments[0], SourceOptionsFromFlags());
   }
   const Measurement measured = MeasurementOfSource(arguments[1], SourceOptionsFromFlags());
   PrintNotes(measured);

@@ -1,14 +1,10 @@
 #include "fit/scene/fit_cache.h"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <ostream>
 
 #include "core/files/file.h"
+#include "core/system/content_hash.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
@@ -24,15 +20,6 @@ std::string Entry(std::string_view key, std::string_view content) {
 }
 
 }  // namespace
-
-std::string ContentHash(std::string_view bytes) {
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  std::array<char, 33> text;
-  std::snprintf(text.data(), text.size(), "%016llx%016llx",
-                static_cast<unsigned long long>(hash.high64),  // NOLINT(google-runtime-int)
-                static_cast<unsigned long long>(hash.low64));  // NOLINT(google-runtime-int)
-  return text.data();
-}
 
 FitCache::FitCache(const std::string& folder) : folder_(folder) {
   MakeDirectories(folder);

@@ -7,9 +7,6 @@
 
 namespace trilobe {
 
-// 128 bits (XXH3) of some bytes, as 32 hexadecimal digits.
-std::string ContentHash(std::string_view bytes);
-
 // A folder of results that can be had again at the cost of time: a file each, named by the hash of
 // a key, which is to say everything that the result depends on. Any of the files, or all, may be
 // deleted at any time. Each is written under a temporary name and then renamed, holds its key, and

@@ -11,10 +11,10 @@
 
 #include "core/base/names.h"
 #include "core/base/text.h"
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/materials/load_model.h"
 
@@ -329,7 +329,7 @@ std::vector<std::string> FilesOf(const Scene& scene) {
 }
 
 Scene ReadScene(const std::string& path) {
-  CheckMayBeJson(RecogniseFile(path), NotAScene(path));
+  CheckMayBeJson(BeginningOf(path), NotAScene(path));
   return ParseScene(ReadJsonText(path, NotAScene(path)), path);
 }
 

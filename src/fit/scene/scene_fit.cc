@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/files/file.h"
+#include "core/files/content.h"
 #include "core/system/process.h"
 #include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
@@ -18,7 +18,6 @@
 #include "model/appearance/verdict.h"
 #include "model/lobes/gauge.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
@@ -80,9 +79,9 @@ SceneScore ScoreOn(const Objective& objective, const FactorModel& model) {
   return {report.objective, report.psnr_db};
 }
 
-std::string BytesOfSource(const std::string& source) {
-  if (IsSynthetic(source)) return source;
-  return IsMaterial(source) ? std::string(MaterialText(source)) : ReadFile(source);
+// Of a measurement, or the text of a model.
+Source SourceOf(const std::string& name) {
+  return IsMaterial(name) ? Source(name, std::string(MaterialText(name))) : Source(name);
 }
 
 // One material, of which nothing is read more than once, or without need.
@@ -92,9 +91,9 @@ class MaterialFitter {
       : material_(material),
         settings_(settings),
         num_threads_(num_threads),
-        bytes_(BytesOfSource(material.source)),
-        bytes_hash_(ContentHash(bytes_)),
-        is_model_(RecogniseContent(bytes_).kind == Content::Kind::kJson) {}
+        source_(SourceOf(material.source)),
+        fingerprint_(source_.Fingerprint()),
+        is_model_(RecogniseContent(source_.bytes()).kind == Content::Kind::kJson) {}
 
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
@@ -130,7 +129,7 @@ class MaterialFitter {
   }
 
  private:
-  ModelFile GivenModel() const { return ParseModel(bytes_, material_.source); }
+  ModelFile GivenModel() const { return ParseModel(source_.bytes(), source_.name()); }
 
   Measurement Measured() const {
     if (is_model_) {
@@ -138,14 +137,12 @@ class MaterialFitter {
       constexpr HemisphereGrid kNodes = {.thetas = 12, .phis = 48};
       return AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
     }
-    const SourceOptions options = {.noise = settings_.noise,
-                                   .seed = settings_.seed,
-                                   .num_threads = num_threads_,
-                                   .max_angle_deg = settings_.max_angle_deg,
-                                   .min_theta_d_deg = settings_.min_theta_d_deg,
-                                   .extrapolated = settings_.extrapolated};
-    return IsSynthetic(material_.source) ? LoadMeasurement(material_.source, options)
-                                         : ParseMeasurement(bytes_, material_.source, options);
+    return source_.Read({.noise = settings_.noise,
+                         .seed = settings_.seed,
+                         .num_threads = num_threads_,
+                         .max_angle_deg = settings_.max_angle_deg,
+                         .min_theta_d_deg = settings_.min_theta_d_deg,
+                         .extrapolated = settings_.extrapolated});
   }
 
   const Measurement& measured() {
@@ -336,8 +333,8 @@ class MaterialFitter {
   const SceneMaterial& material_;
   const SceneFitSettings& settings_;
   const int num_threads_;
-  const std::string bytes_;
-  const std::string bytes_hash_;
+  const Source source_;
+  const std::string fingerprint_;
   const bool is_model_;
   std::optional<Measurement> measured_;
 };

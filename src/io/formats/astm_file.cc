@@ -1,5 +1,3 @@
-#include "io/formats/astm_file.h"
-
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -7,7 +5,6 @@
 #include "core/files/text_lines.h"
 #include "io/formats/spectrum.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
@@ -87,8 +84,12 @@ Header ReadHeader(TextLines* lines, const std::string& source) {
   throw Error(source + ": no line VARS, which names the columns; " + kExpected);
 }
 
-}  // namespace
-
+// Angle-resolved scatter in the text format of ASTM E1392-96, as Cornell published measurements in
+// it and as libbsdf reads it (`.astm`, docs/file-formats.md): a header line a key, of which
+// NUM_POINTS and VARS are read; VARS is the last and names the columns of the lines that follow,
+// theta_i, phi_i, theta_s, phi_s [rad], and values [1/sr]: R, G, B, or a spectrum (`400nm`, ...,
+// which becomes a colour as SpectralColor says), or one value, which is taken for all channels.
+// Throws Error, with line and column, on anything else.
 Measurement ParseAstm(std::string_view text, const std::string& source) {
   TextLines lines(text, source);
   const auto [columns, points] = ReadHeader(&lines, source);
@@ -117,12 +118,24 @@ Measurement ParseAstm(std::string_view text, const std::string& source) {
   return collector.TakeByAzimuths();
 }
 
+// A header of keys, of which VARS is the last.
+bool LooksLikeAstm(std::string_view text) {
+  constexpr size_t kLongestHeader = 1 << 16;
+  TextLines lines(text.substr(0, kLongestHeader), "");
+  while (lines.Next()) {
+    if (lines.line().starts_with("VARS ") || lines.line().starts_with("VARS\t")) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 MeasurementFormat AstmFormat() {
   return {.name = "astm",
           .description = "an ASTM E1392 .astm file",
           .ending = ".astm",
           .is_text = true,
-          .recognise = IsContent<Content::Kind::kAstm>,
+          .recognise = LooksLikeAstm,
           .read = ReadBy<ParseAstm>};
 }
 

@@ -19,7 +19,7 @@ constexpr int kPlaces = 20000;
 
 using Prepared = std::shared_ptr<const PreparedModel<double>>;
 
-Direction ByCosine(uint64_t counter) {
+Direction DrawByCosine(uint64_t counter) {
   const double r = std::sqrt(UniformAt(1, 2 * counter));
   const double phi = 2 * kPi * UniformAt(1, 2 * counter + 1);
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
@@ -59,7 +59,7 @@ CompletedMeasurement CompleteTable(const BrdfTable& measured, const Prepared& mo
   CompletedMeasurement completed;
   for (uint64_t k = 0; k < kPlaces; ++k) {
     const int bin =
-        measured.grid.Bin(ToHalfDiff(DirectionPair{ByCosine(2 * k), ByCosine(2 * k + 1)}));
+        measured.grid.Bin(ToHalfDiff(DirectionPair{DrawByCosine(2 * k), DrawByCosine(2 * k + 1)}));
     if (!valid[bin] || !(Mean(value_at(bin)) > 0)) continue;
     completed.places.push_back({ToDirections(measured.grid.Center(bin)), value_at(bin)});
   }

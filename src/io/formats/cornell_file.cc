@@ -1,5 +1,3 @@
-#include "io/formats/cornell_file.h"
-
 #include <optional>
 #include <span>
 #include <sstream>
@@ -8,7 +6,6 @@
 #include "core/files/text_lines.h"
 #include "io/formats/spectrum.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
@@ -45,8 +42,10 @@ std::vector<double> ReadWavelengths(TextLines* lines, const std::string& source)
   return wavelengths;
 }
 
-}  // namespace
-
+// Spectra measured by the gonioreflectometer of Cornell's Program of Computer Graphics, as pbrt-v2
+// has them (`.brdf`, docs/file-formats.md): the number of wavelengths, these [nm], then a line a
+// sample with theta_i, phi_i, theta_o, phi_o [rad] and the BRDF [1/sr] at each wavelength. They
+// become colours as SpectralColor says. Throws Error, with line and column, on anything else.
 Measurement ParseCornell(std::string_view text, const std::string& source) {
   TextLines lines(text, source);
   const std::vector<double> wavelengths = ReadWavelengths(&lines, source);
@@ -68,12 +67,24 @@ Measurement ParseCornell(std::string_view text, const std::string& source) {
   return collector.Take();
 }
 
+// The number of wavelengths alone on its line, then the first of them [nm].
+bool LooksLikeCornell(std::string_view text) {
+  TextLines lines(text, "");
+  if (!lines.Next()) return false;
+  const double count = ToNumber(lines.line()).value_or(0);
+  if (!lines.Next()) return false;
+  const double first = ToNumber(SplitWords(lines.line())[0]).value_or(0);
+  return count >= 2 && count <= 10000 && first >= 200 && first <= 3000;
+}
+
+}  // namespace
+
 MeasurementFormat CornellFormat() {
   return {.name = "cornell",
           .description = "a Cornell .brdf file of spectra",
           .ending = ".brdf",
           .is_text = true,
-          .recognise = IsContent<Content::Kind::kCornell>,
+          .recognise = LooksLikeCornell,
           .read = ReadBy<ParseCornell>};
 }
 

@@ -1,5 +1,3 @@
-#include "io/formats/csv_file.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,7 +7,6 @@
 #include "core/files/file.h"
 #include "core/files/text_lines.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
@@ -47,8 +44,9 @@ SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
   return at;
 }
 
-}  // namespace
-
+// Samples as comma-separated values (docs/file-formats.md): a header row that names the columns
+// theta_i, phi_i, theta_o, phi_o [degrees], r, g, b [1/sr] in any order, then a row a sample; from
+// a # on a line is a comment. Throws Error, with line and column, on anything else.
 Measurement ParseCsv(std::string_view text, const std::string& source) {
   TextLines lines(text, source);
   if (!lines.Next()) throw Error(source + ": no header row; it must be " + kHeader);
@@ -66,7 +64,9 @@ Measurement ParseCsv(std::string_view text, const std::string& source) {
   return collector.TakeByAzimuths();
 }
 
-int WriteCsv(const Measurement& measurement, const std::string& path) {
+// Writes the valid samples, as many digits as read back to the same numbers, row by row. Those of a
+// table stand at the centres of its bins, with phi_i = 0. Throws Error where there is none.
+std::string WriteCsv(const Measurement& measurement, const std::string& path, int /*num_threads*/) {
   const std::optional<BrdfSamples> of_table =
       measurement.table ? std::optional(SamplesOf(measurement)) : std::nullopt;
   const BrdfSamples& samples = of_table ? *of_table : measurement.samples;
@@ -94,21 +94,29 @@ int WriteCsv(const Measurement& measurement, const std::string& path) {
       out.write(row.data(), end - row.data());
     }
   });
-  return samples.size();
+  return std::to_string(samples.size()) + " samples";
 }
+
+// A header that names a column theta_i.
+bool LooksLikeCsv(std::string_view text) {
+  TextLines lines(text, "");
+  if (!lines.Next()) return false;
+  const auto cells = SplitCells(lines.line());
+  return std::ranges::find(cells, "theta_i") != cells.end();
+}
+
+}  // namespace
 
 MeasurementFormat CsvFormat() {
   return {.name = "csv",
           .description = "a .csv file of samples",
           .ending = ".csv",
           .is_text = true,
-          .recognise = IsContent<Content::Kind::kCsv>,
+          .recognise = LooksLikeCsv,
           .read = ReadBy<ParseCsv>,
           .written_as = "CSV",
           .holds_anisotropic = true,
-          .write = [](const Measurement& measurement, const std::string& path, int) {
-            return std::to_string(WriteCsv(measurement, path)) + " samples";
-          }};
+          .write = WriteCsv};
 }
 
 }  // namespace trilobe

@@ -1,17 +1,15 @@
-#include "io/formats/mbsdf_file.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 
 #include "core/files/little_endian.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
 namespace {
 
+constexpr std::string_view kMagic = "NVIDIA ARC MBSDF V1\n";
 constexpr std::string_view kData = "MBSDF_DATA=\n";  // of files before there was transmission
 constexpr std::string_view kReflection = "MBSDF_DATA_REFLECTION=\n";
 constexpr std::string_view kTransmission = "MBSDF_DATA_TRANSMISSION=\n";
@@ -27,7 +25,7 @@ class Reader {
 
   // After the magic come lines of metadata, then the data.
   void FindReflection() {
-    if (!rest_.starts_with(kMbsdfMagic)) Fail("this does not begin as an MBSDF file does");
+    if (!rest_.starts_with(kMagic)) Fail("this does not begin as an MBSDF file does");
     do {
       const size_t end = rest_.find('\n');
       if (end == std::string_view::npos) Fail("it ends before its data");
@@ -83,8 +81,10 @@ class Reader {
   const std::string& source_;
 };
 
-}  // namespace
-
+// A measured BSDF of NVIDIA's Material Definition Language (`.mbsdf`, MDL specification, appendix
+// E; docs/file-formats.md), its part for reflection: float32 BRDF values [1/sr], RGB or one for all
+// channels, on a grid of theta_in, theta_out and the angle between the azimuths, 0 to 180 degrees.
+// Samples stand at the centres of the cells. Throws Error on anything else.
 Measurement ParseMbsdf(std::string_view bytes, const std::string& source) {
   Reader reader(bytes, source);
   reader.FindReflection();
@@ -109,12 +109,16 @@ Measurement ParseMbsdf(std::string_view bytes, const std::string& source) {
   return collector.Take();
 }
 
+bool LooksLikeMbsdf(std::string_view bytes) { return bytes.starts_with(kMagic); }
+
+}  // namespace
+
 MeasurementFormat MbsdfFormat() {
   return {.name = "mbsdf",
           .description = "an MDL .mbsdf file",
           .ending = ".mbsdf",
           .is_text = false,
-          .recognise = IsContent<Content::Kind::kMbsdf>,
+          .recognise = LooksLikeMbsdf,
           .read = ReadBy<ParseMbsdf>};
 }
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/little_endian.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/model/measurement/measurement_stats.h"
 
@@ -32,8 +32,7 @@ std::string Defect(std::string_view bytes, const MerlGrid& grid) {
   const std::string size = std::to_string(bytes.size()) + " bytes";
   const std::string expected = "a MERL file has " + std::to_string(file_size) + " bytes";
   if (bytes.empty()) return "the file is empty; " + expected;
-  if (const Content content = RecogniseContent(bytes);
-      content.kind != Content::Kind::kUnknown && content.kind != Content::Kind::kMerl) {
+  if (const Content content = RecogniseContent(bytes); content.kind != Content::Kind::kUnknown) {
     return "this is " + content.name + "; " + expected;
   }
   if (bytes.size() < kHeaderSize) return "truncated: " + size + "; " + expected;
@@ -92,12 +91,21 @@ void WriteMerl(const BrdfTable& table, const std::string& path) {
   });
 }
 
+namespace {
+
+bool LooksLikeMerl(std::string_view bytes) {
+  const Dimensions usual = DimensionsOf({});
+  return bytes.size() >= kHeaderSize && std::memcmp(bytes.data(), usual.data(), kHeaderSize) == 0;
+}
+
+}  // namespace
+
 MeasurementFormat MerlFormat() {
   return {.name = "merl",
           .description = "a MERL .binary file",
           .ending = ".binary",
           .is_text = false,
-          .recognise = IsContent<Content::Kind::kMerl>,
+          .recognise = LooksLikeMerl,
           .read =
               [](std::string_view bytes, const std::string& source, const SourceOptions&) {
                 return Measurement{.source = source,

@@ -13,7 +13,7 @@
 
 #include "io/formats/bilinear_warp.h"
 #include "io/formats/rgl_file.h"
-#include "io/formats/smooth_spectrum.h"
+#include "io/formats/spectrum.h"
 #include "io/formats/tensor_file.h"
 #include "model/measurement/counter_random.h"
 #include "trilobe/core/base/error.h"
@@ -319,7 +319,7 @@ std::vector<CompletedMeasurement::Place> PlacesOf(const PairBrdf& brdf, double m
 }
 
 // Relative errors of rho cos theta_o.
-void Judge(const std::vector<CompletedMeasurement::Place>& places, RglExport* result) {
+void MeasureErrors(const std::vector<CompletedMeasurement::Place>& places, RglExport* result) {
   const RglBrdf file = RglBrdf::Parse(result->bytes, "the file to be written");
   std::vector<double> errors;
   for (const CompletedMeasurement::Place& place : places) {
@@ -332,15 +332,15 @@ void Judge(const std::vector<CompletedMeasurement::Place>& places, RglExport* re
 
 // The first file that is exact enough, or else of all of them the smallest that is hardly worse
 // than the best.
-RglExport Smallest(const Tables& tables, std::span<const Size> sizes,
-                   const std::vector<CompletedMeasurement::Place>& places, double max_error,
-                   const std::string& description, bool spectral) {
+RglExport ChooseSmallest(const Tables& tables, std::span<const Size> sizes,
+                         const std::vector<CompletedMeasurement::Place>& places, double max_error,
+                         const std::string& description, bool spectral) {
   if (places.empty()) throw Error("there is no light to write");
   constexpr double kHardlyWorse = 1.1;
   std::vector<RglExport> files;
   for (const Size& size : sizes) {
     files.push_back(FileOf(tables, size, description, spectral));
-    Judge(places, &files.back());
+    MeasureErrors(places, &files.back());
     if (files.back().median_error <= max_error) return files.back();
   }
   const auto error = [](const RglExport& file) { return file.median_error; };
@@ -358,7 +358,8 @@ RglExport Export(const FactorModel& model, const PairBrdf& value,
   if (any_error) sizes = sizes.first(kUsual);
   const double max_error = options.max_error.value_or(anisotropic ? 0.02 : 0.005);
   const Tables tables(model, value, options.max_theta);
-  RglExport result = Smallest(tables, sizes, places, max_error, description, options.spectral);
+  RglExport result =
+      ChooseSmallest(tables, sizes, places, max_error, description, options.spectral);
   if (any_error || !options.max_error || result.median_error <= max_error) return result;
   std::ostringstream message;
   message.precision(3);

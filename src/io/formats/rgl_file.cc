@@ -14,7 +14,6 @@
 #include "io/formats/spectrum.h"
 #include "io/formats/tensor_file.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -162,7 +161,7 @@ SphericalAngles Copied(const SphericalAngles& at, int copy) {
   return {at.theta_i, index(at.phi_i), at.theta_o, index(at.phi_o)};
 }
 
-Direction WithSigns(const Direction& w, const std::array<double, 2>& signs) {
+Direction ApplySigns(const Direction& w, const std::array<double, 2>& signs) {
   return {signs[0] * w[0], signs[1] * w[1], w[2]};
 }
 
@@ -201,7 +200,7 @@ double RglBrdf::max_theta() const { return tables_->mask.max_theta(); }
 MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {};
   const auto signs = FoldingSigns(tables_->symmetry, directions.wi);
-  const Direction wi = WithSigns(directions.wi, signs), wo = WithSigns(directions.wo, signs);
+  const Direction wi = ApplySigns(directions.wi, signs), wo = ApplySigns(directions.wo, signs);
   const Direction half = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
   const auto [theta_i, phi_i] = ToPolarAngles(wi);
   const auto [theta_m, phi_m] = ToPolarAngles(half);
@@ -293,8 +292,6 @@ Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const 
   return measurement;
 }
 
-bool LooksLikeRgl(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }
-
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid,
                       int num_threads) {
   if (!brdf.isotropic()) {
@@ -329,7 +326,7 @@ BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const Merl
 namespace {
 
 // Beyond its last measured angles nothing counts as measured.
-std::function<MeasuredValue(const DirectionPair&)> LookUpIn(std::shared_ptr<const RglBrdf> rgl) {
+std::function<MeasuredValue(const DirectionPair&)> MakeLookUp(std::shared_ptr<const RglBrdf> rgl) {
   const double min_cosine = std::cos(rgl->max_theta()) - 1e-12;
   return [rgl = std::move(rgl), min_cosine](const DirectionPair& pair) {
     MeasuredValue value = rgl->LookUp(pair);
@@ -345,19 +342,19 @@ MeasurementFormat RglFormat() {
           .description = "an RGL .bsdf file",
           .ending = ".bsdf",
           .is_text = false,
-          .recognise = IsContent<Content::Kind::kTensor>,
+          .recognise = LooksLikeTensorFile,
           .read = [](std::string_view bytes, const std::string& source,
                      const SourceOptions& options) -> Measurement {
             auto rgl = std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source));
             if (!rgl->isotropic()) {
               Measurement measurement = rgl->Sample(source, options.extrapolated);
-              measurement.look_up = LookUpIn(rgl);
+              measurement.look_up = MakeLookUp(rgl);
               return measurement;
             }
             return {.source = source,
                     .kind = "RGL measurement, at MERL bins",
                     .table = TabulateRgl(*rgl, source, {}, options.num_threads),
-                    .look_up = LookUpIn(rgl)};
+                    .look_up = MakeLookUp(rgl)};
           }};
 }
 

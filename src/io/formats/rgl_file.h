@@ -47,9 +47,6 @@ class RglBrdf {
   std::unique_ptr<const Tables> tables_;
 };
 
-// True if the bytes begin with the tensor file's magic.
-bool LooksLikeRgl(std::string_view bytes);
-
 // The BRDF at the centres of all bins above the surface, others invalid, and which of them were
 // measured (docs/samples.md). Throws Error for an anisotropic material.
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},

@@ -3,30 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "core/base/names.h"
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/text_lines.h"
+#include "core/system/content_hash.h"
 #include "io/formats/utia_file.h"
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/model/corruption/corruption.h"
 #include "trilobe/model/synth/synth.h"
 
-// The formats of the library, in the order in which they are asked whether a file is theirs. NAME
-// stands for the function NAMEFormat(), which the reader's own file defines: to add a format is one
-// file, and one line here.
+// The formats of the library, in the order in which they are asked whether a file is theirs: those
+// that a first line or more tells before that of which the size alone does. NAME stands for the
+// function NAMEFormat(), which the reader's own file defines: to add a format is one file, and one
+// line here.
 #define TRILOBE_FOR_EACH_FORMAT(X) \
   X(Merl)                          \
   X(Rgl)                           \
   X(Mbsdf)                         \
-  X(Utia)                          \
+  X(Csv)                           \
   X(Zemax)                         \
-  X(Cornell)                       \
   X(Astm)                          \
-  X(Csv)
+  X(Cornell)                       \
+  X(Utia)
 
 namespace trilobe {
 
@@ -63,15 +66,13 @@ std::string WhatMeasurementsAre() {
 }
 
 const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source) {
+  if (const MeasurementFormat* const format = RecogniseFormat(bytes)) return *format;
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
-  auto found = std::ranges::find_if(
-      formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
-  if (found != formats.end()) return *found;
   const Content content = RecogniseContent(bytes);
   const bool is_text = content.kind == Content::Kind::kText;
   if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
-    found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
+    auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
       return (bytes.empty() || format.is_text == is_text) && format.ending == ending;
     });
     // Of a text format that this cannot be: its reader says what is wrong.
@@ -162,6 +163,22 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
   return formats;
 }
 
+const MeasurementFormat* RecogniseFormat(std::string_view bytes) {
+  const Content::Kind kind = RecogniseContent(bytes).kind;
+  if (kind == Content::Kind::kJson || kind == Content::Kind::kForeign) return nullptr;
+  const std::vector<MeasurementFormat>& formats = MeasurementFormats();
+  const auto found = std::ranges::find_if(
+      formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
+  return found == formats.end() ? nullptr : &*found;
+}
+
+void CheckMayBeJson(std::string_view bytes, const std::string& what) {
+  const Content content = RecogniseContent(bytes);
+  const MeasurementFormat* const format = RecogniseFormat(bytes);
+  if (format == nullptr && content.kind != Content::Kind::kForeign) return;
+  throw Error(what + ": this is " + (format == nullptr ? content.name : format->description));
+}
+
 const MeasurementFormat& WritableFormat(const std::string& path) {
   const std::string ending = EndingOf(path);
   std::string known;
@@ -179,10 +196,10 @@ std::string WriteMeasurement(const Measurement& measurement, const std::string& 
   return format.written_as + ", " + format.write(measurement, path, num_threads);
 }
 
-bool IsSynthetic(std::string_view source) { return source.starts_with(kSynth); }
+bool IsSynthetic(std::string_view name) { return name.starts_with(kSynth); }
 
-SynthSource SynthSourceOf(std::string_view source) {
-  const std::string_view name = source.substr(kSynth.size());
+SynthSource SynthSourceOf(std::string_view name) {
+  name.remove_prefix(kSynth.size());
   const size_t at = name.find('@');
   const SynthMaterial& material = FindSynthMaterial(name.substr(0, at));
   if (at == std::string_view::npos) {
@@ -223,12 +240,45 @@ void DecideMeasured(const SourceOptions& options, Measurement* measurement) {
   LimitThetaD(DegreesToRadians(options.min_theta_d_deg), measurement);
 }
 
-Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
-                             const SourceOptions& options) {
-  CheckSourceOptions(options);
-  const MeasurementFormat& format = FormatOf(bytes, source);
-  Measurement measurement = format.read(bytes, source, options);
+Source::Source(std::string name) : name_(std::move(name)) {
+  if (!synthetic()) bytes_ = ReadFile(name_);
+}
+
+Source::Source(std::string name, std::string bytes)
+    : name_(std::move(name)), bytes_(std::move(bytes)) {}
+
+bool Source::synthetic() const { return IsSynthetic(name_); }
+
+std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHash(bytes_); }
+
+Measurement Source::Parsed(const SourceOptions& options) const {
+  const MeasurementFormat& format = FormatOf(bytes_, name_);
+  Measurement measurement = format.read(bytes_, name_, options);
   NoteUnread(options, format.name, &measurement);
+  return measurement;
+}
+
+Measurement Source::Synthesized(const SourceOptions& options) const {
+  const auto [material, grid] = SynthSourceOf(name_);
+  Measurement measurement;
+  if (const auto* const directions = std::get_if<HemisphereGrid>(&grid)) {
+    measurement =
+        SynthesizeSamples(material, options.noise, options.seed, *directions, options.num_threads);
+    measurement.source = measurement.samples.source = name_;
+  } else {
+    measurement = {.source = name_,
+                   .kind = "synthetic measurement",
+                   .table = Synthesize(material, options.noise, options.seed,
+                                       std::get<MerlGrid>(grid), options.num_threads)};
+    measurement.table->source = name_;
+  }
+  NoteUnread(options, kSynth, &measurement);
+  return measurement;
+}
+
+Measurement Source::Read(const SourceOptions& options) const {
+  CheckSourceOptions(options);
+  Measurement measurement = synthetic() ? Synthesized(options) : Parsed(options);
   CorruptBy(options, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
@@ -238,37 +288,13 @@ Measurement ParseMeasurement(std::string_view bytes, const std::string& source,
   return measurement;
 }
 
-BrdfTable ParseSource(std::string_view bytes, const std::string& source,
-                      const SourceOptions& options) {
-  return TableOf(ParseMeasurement(bytes, source, options));
-}
-
-Measurement LoadMeasurement(const std::string& source, const SourceOptions& options) {
+Measurement LoadMeasurement(const std::string& name, const SourceOptions& options) {
   CheckSourceOptions(options);  // before a large file is read
-  if (!IsSynthetic(source)) return ParseMeasurement(ReadFile(source), source, options);
-  const auto [material, grid] = SynthSourceOf(source);
-  Measurement measurement;
-  if (const auto* const directions = std::get_if<HemisphereGrid>(&grid)) {
-    measurement =
-        SynthesizeSamples(material, options.noise, options.seed, *directions, options.num_threads);
-    measurement.source = measurement.samples.source = source;
-  } else {
-    measurement = {.source = source,
-                   .kind = "synthetic measurement",
-                   .table = Synthesize(material, options.noise, options.seed,
-                                       std::get<MerlGrid>(grid), options.num_threads)};
-    measurement.table->source = source;
-  }
-  NoteUnread(options, kSynth, &measurement);
-  CorruptBy(options, &measurement);
-  if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
-  if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
-  DecideMeasured(options, &measurement);
-  return measurement;
+  return Source(name).Read(options);
 }
 
-BrdfTable LoadSource(const std::string& source, const SourceOptions& options) {
-  return TableOf(LoadMeasurement(source, options));
+BrdfTable LoadTable(const std::string& name, const SourceOptions& options) {
+  return TableOf(LoadMeasurement(name, options));
 }
 
 }  // namespace trilobe

@@ -9,10 +9,11 @@
 
 #include "core/files/little_endian.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 
 namespace trilobe {
 namespace {
+
+constexpr std::string_view kTensorMagic("tensor_file\0", 12);
 
 // Bytes of one entry, by type number: none, then (u)int8, 16, 32, 64 in pairs unsigned, signed,
 // then float16, float32, float64.
@@ -61,8 +62,10 @@ void TensorFile::Fail(std::string_view field, const std::string& problem) const 
   throw Error(source_ + ": field " + Quote(field) + " " + problem);
 }
 
+bool LooksLikeTensorFile(std::string_view bytes) { return bytes.starts_with(kTensorMagic); }
+
 TensorFile::TensorFile(std::string_view bytes, const std::string& source) : source_(source) {
-  if (!bytes.starts_with(kTensorMagic)) {
+  if (!LooksLikeTensorFile(bytes)) {
     throw Error(source + ": not an RGL file: it must begin with tensor_file");
   }
   Cursor cursor(bytes, source);

@@ -55,6 +55,9 @@ class TensorFile {
   std::vector<Field> fields_;
 };
 
+// Whether bytes begin as such a file does.
+bool LooksLikeTensorFile(std::string_view bytes);
+
 // Makes such a file: fields in the order in which they are added, each aligned to its items.
 class TensorFileWriter {
  public:

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "core/base/names.h"
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/little_endian.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/model/measurement/measurement_stats.h"
 
@@ -20,7 +20,6 @@ constexpr size_t Bytes(const HemisphereGrid& grid) {
   const auto nodes = static_cast<size_t>(grid.nodes());
   return sizeof(double) * kChannels * nodes * nodes;
 }
-static_assert(kUtiaSize == Bytes(kUtiaGrid));
 
 // IEC 61966-2-1, from code to linear light; unlike LinearizeSrgb for codes above 1, which BRDFs
 // have.
@@ -179,12 +178,22 @@ void WriteUtia(const Measurement& scattered, const std::string& path) {
   });
 }
 
+namespace {
+
+// By the size alone; a text of that size is none.
+bool LooksLikeUtia(std::string_view bytes) {
+  return bytes.size() == Bytes(kUtiaGrid) &&
+         RecogniseContent(bytes).kind == Content::Kind::kUnknown;
+}
+
+}  // namespace
+
 MeasurementFormat UtiaFormat() {
   return {.name = "utia",
           .description = "a UTIA .bin file",
           .ending = ".bin",
           .is_text = false,
-          .recognise = IsContent<Content::Kind::kUtia>,
+          .recognise = LooksLikeUtia,
           .read =
               [](std::string_view bytes, const std::string& source, const SourceOptions& options) {
                 return ParseUtia(bytes, source, options.radiometry);

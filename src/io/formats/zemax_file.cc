@@ -1,5 +1,3 @@
-#include "io/formats/zemax_file.h"
-
 #include <array>
 #include <cmath>
 #include <map>
@@ -8,7 +6,6 @@
 
 #include "core/files/text_lines.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
@@ -130,8 +127,10 @@ size_t Distinct(const std::vector<double>& degrees) {
   return degrees.size() - (degrees.size() > 1 && degrees.back() - degrees.front() == 360 ? 1 : 0);
 }
 
-}  // namespace
-
+// A BRDF in the tabular text format of Zemax OpticStudio (`.bsdf`, docs/file-formats.md), by sample
+// rotation, angle of incidence, and azimuth and distance about the direction of mirror reflection
+// [degrees]; one channel, which counts for all three. A value of exactly 0 is a gap. Azimuths
+// matter where there are several sample rotations. Throws Error, with the line, on anything else.
 Measurement ParseZemax(std::string_view text, const std::string& source) {
   TextLines lines(text, source);
   const Header header = ReadHeader(&lines);
@@ -172,12 +171,22 @@ Measurement ParseZemax(std::string_view text, const std::string& source) {
   return measurement;
 }
 
+// The first of the keys, with the only value that it has.
+bool LooksLikeZemax(std::string_view text) {
+  TextLines lines(text, "");
+  if (!lines.Next()) return false;
+  const auto words = SplitWords(lines.line());
+  return words.size() == 2 && words[0] == "Source" && words[1] == "Measured";
+}
+
+}  // namespace
+
 MeasurementFormat ZemaxFormat() {
   return {.name = "zemax",
           .description = "a Zemax .bsdf file",
           .ending = ".bsdf",
           .is_text = true,
-          .recognise = IsContent<Content::Kind::kZemax>,
+          .recognise = LooksLikeZemax,
           .read = ReadBy<ParseZemax>};
 }
 

@@ -1,7 +1,9 @@
 #include "io/page/document.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "core/base/text.h"
@@ -9,10 +11,17 @@
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
+std::string_view WebText(std::string_view name) {
+  for (const EmbeddedFile& file : WebFiles()) {
+    if (file.name == name) return file.text;
+  }
+  throw Error("the program was built without web/" + std::string(name));
+}
+
 namespace {
 
 // So that no text ends the element that it stands in: "<" occurs in JSON within strings alone.
-std::string InScript(std::string_view json) {
+std::string EscapeForScript(std::string_view json) {
   std::string text;
   text.reserve(json.size());
   for (const char c : json) {
@@ -26,8 +35,8 @@ std::string InScript(std::string_view json) {
 }
 
 std::string DataElement(std::string_view id, std::string_view json) {
-  return R"(<script type="application/json" id=")" + std::string(id) + R"(">)" + InScript(json) +
-         "</script>";
+  return R"(<script type="application/json" id=")" + std::string(id) + R"(">)" +
+         EscapeForScript(json) + "</script>";
 }
 
 std::string Shaders() {
@@ -102,6 +111,31 @@ std::string FormatDocument(std::string_view name, std::string_view title, std::s
     }
   }
   return page.append(rest);
+}
+
+std::string Base64(std::string_view bytes, int line) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(bytes.size() / 3 * 4 + 4);
+  int column = 0;
+  for (size_t k = 0; k < bytes.size(); k += 3) {
+    uint32_t three = 0;
+    for (size_t b = 0; b < 3; ++b) {
+      const char byte = k + b < bytes.size() ? bytes[k + b] : '\0';
+      three = three << 8 | static_cast<unsigned char>(byte);
+    }
+    for (size_t d = 0; d < 4; ++d) {
+      const bool padding = k + d > bytes.size();
+      text += padding ? '=' : kDigits[three >> (6 * (3 - d)) & 63];
+    }
+    column += 4;
+    if (line > 0 && column >= line && k + 3 < bytes.size()) {
+      text += '\n';
+      column = 0;
+    }
+  }
+  return text;
 }
 
 }  // namespace trilobe

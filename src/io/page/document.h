@@ -6,6 +6,9 @@
 
 namespace trilobe {
 
+// The text of web/NAME. Throws Error where there is none of this name.
+std::string_view WebText(std::string_view name);
+
 // web/NAME with the files that it names put into their places, as one file, and JSON for its
 // scripts:
 //   <!-- title -->         the title
@@ -18,6 +21,10 @@ namespace trilobe {
 // Throws Error where a file is missing.
 std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json,
                            std::string_view body = "");
+
+// RFC 4648, with padding; with a line break after each `line` characters, a multiple of 4, if that
+// is not 0.
+std::string Base64(std::string_view bytes, int line = 0);
 
 }  // namespace trilobe
 

@@ -1,15 +1,199 @@
 #include "io/page/glsl_file.h"
 
+#include <array>
 #include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iomanip>
+#include <limits>
+#include <locale>
+#include <span>
 #include <sstream>
 
-#include "io/page/base64.h"
-#include "io/page/shader_tables.h"
-#include "io/page/web_files.h"
+#include "io/page/document.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/math/catmull_rom.h"
+#include "trilobe/model/axis.h"
+#include "trilobe/model/evaluate/bsdf.h"
+#include "trilobe/model/model_spec.h"
 
 namespace trilobe {
+namespace {
+
+float ToFloat(double x) {
+  if (!(std::abs(x) <= std::numeric_limits<float>::max())) {
+    throw Error("the model's values overflow a shader's numbers; its factors are too large");
+  }
+  return static_cast<float>(x);
+}
+
+class Packer {
+ public:
+  explicit Packer(const FactorModel& model) : model_(model), spec_(model.spec()) {
+    text_.imbue(std::locale::classic());
+    text_ << std::setprecision(std::numeric_limits<float>::max_digits10) << std::showpoint;
+  }
+
+  ShaderTables Pack(bool sampled) {
+    Define("TB_LOBES", spec_.lobes);
+    if (spec_.lobes > 0) {
+      for (const Factor factor : kFactors) AddFactor(factor);
+      AddStretches();
+    }
+    WriteConstants();
+    ShaderTables tables;
+    if (sampled) AddSampling();
+    tables.sampled = sampled;
+    tables.texels = std::move(texels_);
+    const size_t row = size_t{4} * kShaderWidth;
+    tables.texels.resize((tables.texels.size() + row - 1) / row * row);
+    if (tables.texels.empty()) tables.texels.resize(row);
+    tables.preamble = text_.str();
+    return tables;
+  }
+
+ private:
+  void Define(const std::string& name, int value) {
+    text_ << "#define " << name << ' ' << value << '\n';
+  }
+
+  int NextTexel() const { return static_cast<int>(texels_.size() / 4); }
+  void FillTexel() { texels_.resize((texels_.size() + 3) / 4 * 4); }
+
+  // Four tables in a texel, entry by entry.
+  void AddTables(const std::vector<std::vector<double>>& tables, int groups) {
+    const size_t size = tables.front().size();
+    for (size_t e = 0; e < size; ++e) {
+      for (size_t t = 0; t < size_t{4} * groups; ++t) {
+        texels_.push_back(t < tables.size() ? ToFloat(tables[t][e]) : 0.0F);
+      }
+    }
+  }
+
+  // Values and bends by turns, and the cosines after the last table.
+  void AddSplines(std::vector<std::vector<double>> tables, int groups) {
+    const CatmullRom spline(spec_.g_axis.size);
+    std::vector<double>& cosines = tables.emplace_back();
+    for (int k = 0; k < spline.nodes(); ++k) cosines.push_back(std::cos(spline.NodeAngle(k)));
+    std::vector<std::vector<double>> bends;
+    for (const std::vector<double>& table : tables) {
+      std::vector<double>& bend = bends.emplace_back();
+      for (const CatmullRom::Piece& piece : spline.Pieces(table)) bend.push_back(piece.a0);
+      bend.push_back(0);
+    }
+    for (int k = 0; k < spline.nodes(); ++k) {
+      for (int g = 0; g < groups; ++g) {
+        for (const auto* const columns : {&tables, &bends}) {
+          for (size_t t = size_t{4} * g; t < size_t{4} * (g + 1); ++t) {
+            texels_.push_back(t < columns->size() ? ToFloat((*columns)[t][k]) : 0.0F);
+          }
+        }
+      }
+    }
+  }
+
+  void AddFactor(Factor factor) {
+    const std::string name = std::string("TB_") + FactorName(factor);
+    const Axis& axis = spec_.axis(factor);
+    const int count = spec_.num_tables(factor);
+    const bool spline = axis.rule == Axis::Rule::kSpline;
+    const int groups = (count + (spline ? 1 : 0) + 3) / 4;
+    std::vector<std::vector<double>> tables;
+    for (int t = 0; t < count; ++t) {
+      const std::span<const double> table = model_.table(factor, t);
+      tables.emplace_back(table.begin(), table.end());
+    }
+    Define(name + "_TABLES", count);
+    Define(name + "_GROUPS", groups);
+    Define(name + "_PER_LOBE", spec_.sharing(factor).per_lobe ? 1 : 0);
+    Define(name + "_PER_CHANNEL", spec_.sharing(factor).per_channel ? 1 : 0);
+    Define(name + "_SIZE", axis.size);
+    Define(name + "_PHIS", axis.polar() ? axis.phi_nodes : 0);
+    if (factor == Factor::kD) Define(name + "_ROOT", axis.rule == Axis::Rule::kRootTheta ? 1 : 0);
+    Define(name + "_BASE", NextTexel());
+    if (spline) {
+      AddSplines(tables, groups);
+    } else {
+      AddTables(tables, groups);
+    }
+    if (!axis.polar()) return;
+    Define(name + "_RINGS", static_cast<int>(axis.theta.size()));
+    Define(name + "_RINGS_BASE", NextTexel());
+    for (const double theta : axis.theta) texels_.push_back(ToFloat(theta));
+    while (texels_.size() % 4 != 0) texels_.push_back(1e9F);
+  }
+
+  void AddStretches() {
+    const std::vector<Stretch>& stretches = spec_.stretches.distinct();
+    const int count = spec_.stretches.any() ? static_cast<int>(stretches.size()) : 0;
+    Define("TB_STRETCHES", count);
+    if (count == 0) return;
+    text_ << "const vec2 trilobe_stretch[" << count << "] = vec2[" << count << "](";
+    for (int k = 0; k < count; ++k) {
+      text_ << (k > 0 ? ", " : "") << "vec2(" << stretches[k].along << ", " << stretches[k].across
+            << ')';
+    }
+    const int tables = spec_.num_tables(Factor::kD);
+    text_ << ");\nconst int trilobe_stretch_of[" << tables << "] = int[" << tables << "](";
+    for (int t = 0; t < tables; ++t) text_ << (t > 0 ? ", " : "") << spec_.StretchOfTable(t);
+    text_ << ");\n";
+  }
+
+  void WriteColour(std::span<const double> rgb) {
+    text_ << "vec3(";
+    for (int c = 0; c < kChannels; ++c) text_ << (c > 0 ? ", " : "") << ToFloat(rgb[c]);
+    text_ << ')';
+  }
+
+  void WriteConstants() {
+    text_ << "const vec3 trilobe_diffuse = ";
+    WriteColour(model_.d());
+    text_ << ";\n";
+    if (spec_.lobes == 0) return;
+    text_ << "const vec3 trilobe_specular[" << spec_.lobes << "] = vec3[" << spec_.lobes << "](";
+    for (int m = 0; m < spec_.lobes; ++m) {
+      if (m > 0) text_ << ", ";
+      WriteColour(model_.s(m));
+    }
+    text_ << ");\n";
+  }
+
+  void AddNumbers(const std::string& name, const std::vector<float>& numbers) {
+    Define(name, NextTexel());
+    texels_.insert(texels_.end(), numbers.begin(), numbers.end());
+    FillTexel();
+  }
+
+  void AddSampling() {
+    const Bsdf<float> bsdf(model_);
+    const HalfVectorTable<float>& table = bsdf.half_vectors();
+    Define("TB_THETAS_I", static_cast<int>(table.theta_i().size()));
+    Define("TB_PHIS_I", table.num_phi_i());
+    Define("TB_ROWS", static_cast<int>(table.y().size()));
+    Define("TB_S", table.num_s());
+    AddNumbers("TB_THETA_I_BASE", table.theta_i());
+    AddNumbers("TB_Y_BASE", table.y());
+    AddNumbers("TB_OF_ROW_BASE", table.of_row());
+    AddNumbers("TB_CUMULATED_BASE", table.cumulated());
+    AddNumbers("TB_VALUES_BASE", table.values());
+  }
+
+  const FactorModel& model_;
+  const ModelSpec& spec_;
+  std::ostringstream text_;
+  std::vector<float> texels_;
+};
+
+}  // namespace
+
+ShaderTables MakeShaderTables(const FactorModel& model, bool sampled) {
+  CheckParameters(model);
+  return Packer(model).Pack(sampled);
+}
+
 namespace {
 
 std::string LittleEndian(const std::vector<float>& numbers) {

@@ -2,7 +2,6 @@
 #define TRILOBE_IO_PAGE_WEB_FILES_H_
 
 #include <span>
-#include <string_view>
 
 #include "core/files/embedded_file.h"
 
@@ -10,9 +9,6 @@ namespace trilobe {
 
 // The files of web/.
 std::span<const EmbeddedFile> WebFiles();
-
-// The text of one. Throws Error where there is none of this name.
-std::string_view WebText(std::string_view name);
 
 }  // namespace trilobe
 

@@ -6,10 +6,10 @@
 #include <sstream>
 #include <vector>
 
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
-#include "trilobe/core/files/content.h"
 
 // The part of the library that is used, compiled into this file alone. Its reader of Radiance
 // pictures is not: where a picture is cut off, that of version 2.27 does not end, or shows what

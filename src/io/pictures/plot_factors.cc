@@ -19,6 +19,63 @@
 namespace trilobe {
 namespace {
 
+// --- Panels --------------------------------------------------------------------------------------
+
+// In pixels.
+constexpr int kLeft = 150, kRight = 45;    // of a panel's axes: room for labels and tics
+constexpr int kAbove = 130, kBelow = 110;  // for title and legend, for labels
+constexpr int kPanelHeight = 340;
+
+std::string Fraction(double a, int b) { return GnuplotNumber(a / b); }
+
+}  // namespace
+
+std::string PanelMargins(int x, int y, int width, int height, int canvas_width, int canvas_height) {
+  return "set lmargin at screen " + Fraction(x, canvas_width) + "\nset rmargin at screen " +
+         Fraction(x + width, canvas_width) + "\nset tmargin at screen " +
+         Fraction(canvas_height - y, canvas_height) + "\nset bmargin at screen " +
+         Fraction(canvas_height - y - height, canvas_height) + "\n";
+}
+
+void PanelRows::Add(std::vector<Panel> panels, int columns) {
+  std::erase_if(panels, [](const Panel& panel) { return panel.plot.empty(); });
+  for (size_t k = 0; k < panels.size(); ++k) {
+    if (k % columns == 0) rows_.emplace_back();
+    rows_.back().push_back(std::move(panels[k]));
+  }
+}
+
+int PanelRows::height() const {
+  return static_cast<int>(rows_.size()) * (kAbove + kPanelHeight + kBelow);
+}
+
+std::string PanelRows::Script(int top, int canvas) const {
+  std::string script;
+  for (const std::vector<Panel>& row : rows_) {
+    const int cell = width_ / static_cast<int>(row.size());
+    for (size_t k = 0; k < row.size(); ++k) {
+      const Panel& panel = row[k];
+      const int x = static_cast<int>(k) * cell + kLeft, width = cell - kLeft - kRight;
+      const std::string center = " at screen " + Fraction(x + width / 2.0, width_) + ", screen ";
+      script += PanelMargins(x, top + kAbove, width, kPanelHeight, width_, canvas) +
+                "set border 3 linecolor '#555555'\nset tics nomirror out\n"
+                "set grid xtics ytics\nset xtics nomirror out autofreq\n"
+                "set ytics nomirror out autofreq\n"
+                "set label 1 '" +
+                panel.title + "'" + center + Fraction(canvas - top - 34, canvas) +
+                " center font ',19'\nset key" + center + Fraction(canvas - top - 50, canvas) +
+                " center top horizontal maxrows 2 font ',15'\n" + panel.setup + panel.plot +
+                "\nunset label\n";
+    }
+    top += kAbove + kPanelHeight + kBelow;
+  }
+  return script;
+}
+
+// --- What they show ------------------------------------------------------------------------------
+
+namespace {
+
 // Of the light through a table: what its first or its last entries have together, for them not to
 // be drawn as the others are. They may be anything.
 constexpr double kHardlyAny = 2e-3;
@@ -47,7 +104,7 @@ std::string LobeName(int lobe) { return "lobe " + std::to_string(lobe + 1); }
 
 // What stands behind the name of a lobe that is dark.
 const char* AbsenceOf(const FactorModel& model, int lobe) {
-  return Absent(model, lobe) ? " (s = 0)" : "";
+  return ReflectsNothing(model, lobe) ? " (s = 0)" : "";
 }
 
 // Which entries matter: those that data were seen of, and through which light goes. Those of D near
@@ -71,7 +128,7 @@ std::vector<bool> EntriesThatMatter(const ModelFile& file, const LobeLight& ligh
 
 }  // namespace
 
-bool Absent(const FactorModel& model, int lobe) {
+bool ReflectsNothing(const FactorModel& model, int lobe) {
   return std::ranges::all_of(model.s(lobe), [](double s) { return s == 0; });
 }
 
@@ -167,7 +224,7 @@ std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Fa
     std::vector<int> tables;
     for (int t = 0; t < spec.num_tables(factor); ++t) {
       const int lobe = OwnerOf(spec, factor, t).lobe;
-      if ((!by_lobe || lobe == m) && !(sharing.per_lobe && Absent(file.model, lobe))) {
+      if ((!by_lobe || lobe == m) && !(sharing.per_lobe && ReflectsNothing(file.model, lobe))) {
         tables.push_back(t);
       }
     }

@@ -4,14 +4,41 @@
 #include <string>
 #include <vector>
 
-#include "io/pictures/plot_panels.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/lobes/lobe_light.h"
 
 namespace trilobe {
 
-// Whether a lobe reflects nothing, as its s is 0.
-bool Absent(const FactorModel& model, int lobe);
+// A panel of a picture: its title, commands that come before `plot`, and what `plot` draws.
+struct Panel {
+  std::string title;  // enhanced
+  std::string setup;
+  std::string plot;
+};
+
+// Panels below each other, in rows, each row as wide as the canvas.
+class PanelRows {
+ public:
+  explicit PanelRows(int width) : width_(width) {}
+
+  // Up to so many panels in a row; empty ones are left out.
+  void Add(std::vector<Panel> panels, int columns);
+
+  int height() const;
+  // With their first row's upper end `top` pixels below that of a canvas of that height, each with
+  // its legend above it, where no curve can be.
+  std::string Script(int top, int canvas) const;
+
+ private:
+  int width_;
+  std::vector<std::vector<Panel>> rows_;
+};
+
+// Commands that put what is plotted next at pixel (x, y) of the canvas, from its top left.
+std::string PanelMargins(int x, int y, int width, int height, int canvas_width, int canvas_height);
+
+// Whether the s of a lobe is 0.
+bool ReflectsNothing(const FactorModel& model, int lobe);
 
 // Which lobe, or channel, a table belongs to; 0 where it serves them all.
 struct TableOwner {

@@ -33,7 +33,7 @@ std::vector<int> Shown(const FactorModel& model, Factor factor) {
   std::vector<int> shown;
   for (int t = 0; t < model.spec().num_tables(factor); ++t) {
     const bool absent = model.spec().sharing(factor).per_lobe &&
-                        Absent(model, OwnerOf(model.spec(), factor, t).lobe);
+                        ReflectsNothing(model, OwnerOf(model.spec(), factor, t).lobe);
     if (!absent) shown.push_back(t);
   }
   return shown;
@@ -158,7 +158,7 @@ void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::
   const int canvas = kTop + rows * kCellHeight + curves.height();
   const std::string name = file.fit.source.empty() ? "model" : file.fit.source;
   int absent = 0;
-  for (int m = 0; m < spec.lobes; ++m) absent += Absent(model, m) ? 1 : 0;
+  for (int m = 0; m < spec.lobes; ++m) absent += ReflectsNothing(model, m) ? 1 : 0;
   const std::string note =
       absent > 0 ? "; " + std::to_string(absent) + " lobes with s = 0 not drawn" : "";
   std::string script =

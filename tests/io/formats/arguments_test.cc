@@ -29,9 +29,9 @@ constexpr const char* kCsv = "theta_i,phi_i,theta_o,phi_o,r,g,b\n0,0,30,0,1,1,1\
 // Whether a source reads them or not.
 TEST(Arguments, OptionsOfSources) {
   const auto error = [](const SourceOptions& options) {
-    std::string of_text = ErrorOf([&] { ParseMeasurement(kCsv, "x.csv", options); });
+    std::string of_text = ErrorOf([&] { Source("x.csv", kCsv).Read(options); });
     EXPECT_EQ(ErrorOf([&] { LoadMeasurement("synth:felt@2x4", options); }), of_text);
-    Measurement measurement = ParseMeasurement(kCsv, "x.csv");
+    Measurement measurement = Source("x.csv", kCsv).Read();
     EXPECT_EQ(ErrorOf([&] { DecideMeasured(options, &measurement); }), of_text);
     return of_text;
   };
@@ -50,11 +50,11 @@ TEST(Arguments, OptionsOfSources) {
 TEST(Arguments, OptionsThatASourceDoesNotReadAreTold) {
   const SourceOptions options = {.noise = 0.1, .extrapolated = true, .radiometry = "srgb"};
   EXPECT_THAT(
-      ParseMeasurement(kCsv, "x.csv", options).notes,
+      Source("x.csv", kCsv).Read(options).notes,
       ElementsAre(HasSubstr("--noise"), HasSubstr("--extrapolated"), HasSubstr("--radiom")));
   EXPECT_THAT(LoadMeasurement("synth:felt@2x4", options).notes,
               ElementsAre(HasSubstr("--extrapolated"), HasSubstr("--radiometry")));
-  EXPECT_THAT(ParseMeasurement(kCsv, "x.csv").notes, ElementsAre());
+  EXPECT_THAT(Source("x.csv", kCsv).Read().notes, ElementsAre());
 }
 
 TEST(Arguments, OfMeasurements) {
@@ -65,7 +65,7 @@ TEST(Arguments, OfMeasurements) {
   EXPECT_THAT(ErrorOf([] { LeaveOutAtRandom(0, 1, nullptr); }), null);
   EXPECT_THAT(ErrorOf([] { DecideMeasured({}, static_cast<BrdfTable*>(nullptr)); }), null);
   EXPECT_THAT(ErrorOf([] { DecideMeasured({}, static_cast<Measurement*>(nullptr)); }), null);
-  Measurement measurement = ParseMeasurement(kCsv, "x.csv");
+  Measurement measurement = Source("x.csv", kCsv).Read();
   for (const double bad : {kNaN, -1.0}) {
     EXPECT_NE(ErrorOf([&] { LimitAngles(bad, &measurement); }), "");
   }
@@ -89,7 +89,7 @@ TEST(Arguments, GridsAndPictures) {
     EXPECT_THAT(ErrorOf([&] { ReconstructAtNodes(model, "model", bad); }), HasSubstr("theta by"));
     EXPECT_THAT(ErrorOf([&] { SynthesizeSamples(felt, 0, 1, bad, 1); }), HasSubstr("theta by"));
     EXPECT_THAT(ErrorOf([&] { ParseUtia("", "x.bin", "brdf", bad); }), HasSubstr("theta by"));
-    EXPECT_THAT(ErrorOf([&] { AtNodes(ParseMeasurement(kCsv, "x.csv"), bad, 1); }),
+    EXPECT_THAT(ErrorOf([&] { AtNodes(Source("x.csv", kCsv).Read(), bad, 1); }),
                 HasSubstr("theta by"));
   }
   EXPECT_THAT(ErrorOf([] { ParseMerl("", "x.binary", {.theta_h = 0}); }), HasSubstr("grid"));

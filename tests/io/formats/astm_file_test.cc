@@ -1,5 +1,3 @@
-#include "io/formats/astm_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "io/formats/cornell_file.h"
+#include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
@@ -24,7 +22,7 @@ std::string Header(const std::string& values, const std::string& points) {
          "\nVARS theta_i,phi_i,theta_s,phi_s," + values + "\n";
 }
 
-Measurement Parse(const std::string& text) { return ParseAstm(text, "x.astm"); }
+Measurement Parse(const std::string& text) { return ReadAs("astm", text, "x.astm"); }
 std::string ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "io/formats/csv_file.h"
+#include "tests/io/formats/read_as.h"
 #include "tests/model/evaluate/materials.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
@@ -70,7 +70,8 @@ TEST(Complete, TakesAnisotropicMeasurementsAtNodes) {
 }
 
 TEST(Complete, IsTheModelForSamplesOnNoGrid) {
-  const Measurement scattered = ParseCsv(
+  const Measurement scattered = ReadAs(
+      "csv",
       "theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,20,100,0.1,0.2,0.3\n31,0,42,180,0.3,0.2,0.1\n",
       "two.csv");
   const CompletedMeasurement completed = Complete(scattered, Model(), 1);

@@ -1,11 +1,10 @@
-#include "io/formats/cornell_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
+#include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
@@ -19,16 +18,16 @@ using testing::HasSubstr;
 const std::string kHeader = "# a paint\n\n# num wls\n7\n400 450 500 550\n600 650 700\n";
 
 std::string ParseError(const std::string& text) {
-  return ErrorOf([&] { ParseCornell(text, "x.brdf"); });
+  return ErrorOf([&] { ReadAs("cornell", text, "x.brdf"); });
 }
 
 TEST(CornellFile, ReadsSpectraInRadians) {
-  const Measurement measurement =
-      ParseCornell(kHeader +
-                       "# theta i, phi i, theta s, phi_s, values\n"
-                       "0.5 0.0 0.25 3.1415926535 .2 .2 .2 .2 .2 .2 .2\n"
-                       "0.5 0.0 0.25 -3.0 0 0 0 0 0 0 -1e-5\n",
-                   "x.brdf");
+  const Measurement measurement = ReadAs("cornell",
+                                         kHeader +
+                                             "# theta i, phi i, theta s, phi_s, values\n"
+                                             "0.5 0.0 0.25 3.1415926535 .2 .2 .2 .2 .2 .2 .2\n"
+                                             "0.5 0.0 0.25 -3.0 0 0 0 0 0 0 -1e-5\n",
+                                         "x.brdf");
   EXPECT_EQ(measurement.counts.total, 2);
   EXPECT_EQ(measurement.counts.negative, 1);
   ASSERT_EQ(measurement.samples.size(), 1);

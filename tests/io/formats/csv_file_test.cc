@@ -1,5 +1,3 @@
-#include "io/formats/csv_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "tests/io/formats/read_as.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
 
@@ -19,7 +18,7 @@ using testing::HasSubstr;
 
 const std::string kHeader = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
 
-Measurement Parse(const std::string& text) { return ParseCsv(text, "x.csv"); }
+Measurement Parse(const std::string& text) { return ReadAs("csv", text, "x.csv"); }
 std::string ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }
@@ -40,10 +39,10 @@ TEST(CsvFile, HoldsTheSamplesOfATable) {
   const TestDirectory directory;
   const Measurement felt = LoadMeasurement("synth:felt", {.noise = 0.1, .max_angle_deg = 30});
   const std::string path = directory.Path("felt.csv");
-  const int written = WriteCsv(felt, path);
+  const std::string written = WriteMeasurement(felt, path);
   const Measurement read = LoadMeasurement(path);
   EXPECT_FALSE(read.table);
-  EXPECT_EQ(read.counts.total, written);
+  EXPECT_EQ(written, "CSV, " + std::to_string(read.counts.total) + " samples");
   EXPECT_EQ(read.counts.valid, CountsOf(felt).valid);
   ExpectSameSamples(SamplesOf(read), ValidSamples(*felt.table));
   EXPECT_NO_THROW(CheckSamples(SamplesOf(read)));
@@ -59,7 +58,7 @@ TEST(CsvFile, HoldsScatteredSamples) {
                                 "0,0,0,0,1,1,1\n"
                                 "45,90,45,-90,0.1,0.2,0.30000000000000004\n");
   EXPECT_EQ(one.counts.valid, 4);
-  EXPECT_EQ(WriteCsv(one, directory.Path("y.csv")), 4);
+  EXPECT_EQ(WriteMeasurement(one, directory.Path("y.csv")), "CSV, 4 samples");
   const Measurement two = LoadMeasurement(directory.Path("y.csv"));
   ExpectSameSamples(one.samples, two.samples);
   // With the order of the directions, that half and difference angles do not tell.
@@ -70,7 +69,7 @@ TEST(CsvFile, HoldsScatteredSamples) {
 TEST(CsvFile, HoldsAnisotropicSamples) {
   const TestDirectory directory;
   const Measurement silk = LoadMeasurement("synth:shot_silk@3x8", {.noise = 0.1});
-  WriteCsv(silk, directory.Path("silk.csv"));
+  WriteMeasurement(silk, directory.Path("silk.csv"));
   const Measurement read = LoadMeasurement(directory.Path("silk.csv"));
   EXPECT_TRUE(read.anisotropic);
   ASSERT_EQ(read.samples.rho, silk.samples.rho);

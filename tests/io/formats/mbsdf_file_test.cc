@@ -1,5 +1,3 @@
-#include "io/formats/mbsdf_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
@@ -38,7 +37,7 @@ std::string Colours() {
   return Bytes<uint32_t>({1, 2, 3}) + Bytes(values);
 }
 
-Measurement Parse(const std::string& bytes) { return ParseMbsdf(bytes, "x.mbsdf"); }
+Measurement Parse(const std::string& bytes) { return ReadAs("mbsdf", bytes, "x.mbsdf"); }
 std::string ParseError(const std::string& bytes) {
   return ErrorOf([&] { Parse(bytes); });
 }

@@ -463,7 +463,7 @@ TEST(RglFile, SamplesAnAnisotropicMaterialAtItsNodes) {
       }
     }
   }
-  const Measurement loaded = ParseMeasurement(file.Bytes(), "tiny.bsdf");
+  const Measurement loaded = Source("tiny.bsdf", file.Bytes()).Read();
   EXPECT_EQ(loaded.samples.rho, measurement.samples.rho);
   EXPECT_FALSE(loaded.table);
   EXPECT_TRUE(loaded.look_up);
@@ -533,7 +533,7 @@ TEST(RglFile, LeavesOutNodesThatWereNotMeasured) {
             all.counts.valid);
   EXPECT_EQ(part.counts.below_surface, all.counts.below_surface);
   const std::string bytes = file.Bytes();
-  EXPECT_EQ(ParseMeasurement(bytes, "x", {.extrapolated = true}).counts.valid, all.counts.valid);
+  EXPECT_EQ(Source("x", bytes).Read({.extrapolated = true}).counts.valid, all.counts.valid);
 }
 
 TEST(TabulateRgl, EvaluatesBinCentresOnAnyNumberOfThreads) {
@@ -567,9 +567,13 @@ std::string FieldsError(const std::vector<TensorField>& fields) {
 TEST(RglFile, RecognisesTheMagic) {
   TinyRgl file;
   file.FillConstant(1, 1, 1);
-  EXPECT_TRUE(LooksLikeRgl(file.Bytes()));
-  EXPECT_FALSE(LooksLikeRgl("tensor_file"));  // without the final 0
-  EXPECT_FALSE(LooksLikeRgl(""));
+  const auto is_rgl = [](std::string_view bytes) {
+    const MeasurementFormat* const format = RecogniseFormat(bytes);
+    return format != nullptr && format->name == "rgl";
+  };
+  EXPECT_TRUE(is_rgl(file.Bytes()));
+  EXPECT_FALSE(is_rgl("tensor_file"));  // without the final 0
+  EXPECT_FALSE(is_rgl(""));
   EXPECT_THAT(ParseError(""), AllOf(HasSubstr("tiny.bsdf"), HasSubstr("not an RGL file")));
 }
 

@@ -22,33 +22,33 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-TEST(LoadSource, TellsFilesApartByContent) {
+TEST(LoadTable, TellsFilesApartByContent) {
   const TestDirectory directory;
   BrdfTable table = MakeInvalidTable("white", {});
   table.SetValue(1, 5, 0.25);
   WriteMerl(table, directory.Path("a.bsdf"));  // the name says RGL, the content does not
-  const BrdfTable merl = LoadSource(directory.Path("a.bsdf"));
+  const BrdfTable merl = LoadTable(directory.Path("a.bsdf"));
   EXPECT_EQ(merl.stored, table.stored);
   EXPECT_EQ(merl.source, directory.Path("a.bsdf"));
 
   TinyRgl file;
   file.FillConstant(4, 1, 1);
   const std::string path = directory.Make("b.binary", file.Bytes());
-  const BrdfTable rgl = LoadSource(path, {.num_threads = 2, .outliers = true});
+  const BrdfTable rgl = LoadTable(path, {.num_threads = 2, .outliers = true});
   EXPECT_EQ(rgl.source, path);
   EXPECT_EQ(rgl.grid, MerlGrid());
   EXPECT_EQ(rgl.stored, TabulateRgl(RglBrdf::Parse(file.Bytes(), path), path).stored);
 }
 
-TEST(LoadSource, MakesSyntheticMaterials) {
-  const BrdfTable table = LoadSource("synth:plastic", {.noise = 0.1, .seed = 3, .num_threads = 2});
+TEST(LoadTable, MakesSyntheticMaterials) {
+  const BrdfTable table = LoadTable("synth:plastic", {.noise = 0.1, .seed = 3, .num_threads = 2});
   EXPECT_EQ(table.source, "synth:plastic");
   EXPECT_EQ(table.stored,
-            LoadSource("synth:plastic", {.noise = 0.1, .seed = 3, .num_threads = 1}).stored);
-  EXPECT_NE(table.stored, LoadSource("synth:plastic", {.noise = 0.1, .seed = 4}).stored);
+            LoadTable("synth:plastic", {.noise = 0.1, .seed = 3, .num_threads = 1}).stored);
+  EXPECT_NE(table.stored, LoadTable("synth:plastic", {.noise = 0.1, .seed = 4}).stored);
 }
 
-TEST(LoadSource, DecidesWhatCountsAsMeasured) {
+TEST(LoadTable, DecidesWhatCountsAsMeasured) {
   const TestDirectory directory;
   TinyRgl file;
   file.theta_i = {0, 1.2F, 1.5707964F};
@@ -56,43 +56,43 @@ TEST(LoadSource, DecidesWhatCountsAsMeasured) {
   file.MaskAll();
   for (int row = 0; row < file.rgb_rows; ++row) file.SetMask(0, row, 3, false);
   const std::string path = directory.Make("masked.bsdf", file.Bytes());
-  const BrdfTable whole = LoadSource(path, {.extrapolated = true});
+  const BrdfTable whole = LoadTable(path, {.extrapolated = true});
   EXPECT_TRUE(whole.unmeasured.empty());
   EXPECT_EQ(whole.max_theta, kPi / 2);
-  const BinCounts all = CountBins(LoadSource(path));
+  const BinCounts all = CountBins(LoadTable(path));
   EXPECT_GT(all.extrapolated, 0);
   EXPECT_GT(all.beyond_nodes, 0);
   // What was left out before keeps its reason.
-  const BrdfTable part = LoadSource(path, {.max_angle_deg = 40});
+  const BrdfTable part = LoadTable(path, {.max_angle_deg = 40});
   EXPECT_DOUBLE_EQ(RadiansToDegrees(part.max_theta), 40);
   EXPECT_EQ(CountBins(part).extrapolated, all.extrapolated);
   EXPECT_EQ(CountBins(part).beyond_nodes, all.beyond_nodes);
   EXPECT_GT(CountBins(part).beyond_max_angle, 0);
   EXPECT_EQ(part.stored, whole.stored);
-  const BinCounts both = CountBins(LoadSource(path, {.max_angle_deg = 40, .extrapolated = true}));
+  const BinCounts both = CountBins(LoadTable(path, {.max_angle_deg = 40, .extrapolated = true}));
   EXPECT_EQ(both.extrapolated + both.beyond_nodes, 0);
   EXPECT_EQ(both.beyond_max_angle + both.valid, 1096216);
   // Other sources, too; a limit beyond the last node of an RGL file changes nothing.
-  EXPECT_EQ(CountBins(LoadSource("synth:foam", {.max_angle_deg = 40})).valid, both.valid);
-  EXPECT_EQ(LoadSource(path, {.max_angle_deg = 80}).unmeasured, LoadSource(path).unmeasured);
+  EXPECT_EQ(CountBins(LoadTable("synth:foam", {.max_angle_deg = 40})).valid, both.valid);
+  EXPECT_EQ(LoadTable(path, {.max_angle_deg = 80}).unmeasured, LoadTable(path).unmeasured);
   // A MERL file can say no more than that a bin is lost.
   WriteMerl(part, directory.Path("part.binary"));
-  const BinCounts merl = CountBins(LoadSource(directory.Path("part.binary")));
+  const BinCounts merl = CountBins(LoadTable(directory.Path("part.binary")));
   EXPECT_EQ(merl.valid, CountBins(part).valid);
   EXPECT_EQ(merl.negative, 1096216 - merl.valid);
 }
 
-TEST(LoadSource, ErrorsSayWhatToDo) {
+TEST(LoadTable, ErrorsSayWhatToDo) {
   const TestDirectory directory;
-  EXPECT_THAT(ErrorOf([] { LoadSource("synth:cheese"); }),
+  EXPECT_THAT(ErrorOf([] { LoadTable("synth:cheese"); }),
               AllOf(HasSubstr("'cheese'"), HasSubstr("known: plastic")));
-  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Path("missing")); }), HasSubstr("No such file"));
-  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.path()); }), HasSubstr("directory"));
-  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Make("empty", "")); }), HasSubstr("empty"));
-  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Make("text", "BRDF of a cheese\n")); }),
+  EXPECT_THAT(ErrorOf([&] { LoadTable(directory.Path("missing")); }), HasSubstr("No such file"));
+  EXPECT_THAT(ErrorOf([&] { LoadTable(directory.path()); }), HasSubstr("directory"));
+  EXPECT_THAT(ErrorOf([&] { LoadTable(directory.Make("empty", "")); }), HasSubstr("empty"));
+  EXPECT_THAT(ErrorOf([&] { LoadTable(directory.Make("text", "BRDF of a cheese\n")); }),
               HasSubstr("this is text"));
   WriteModel(ModelFile(), directory.Path("model.json"));
-  EXPECT_THAT(ErrorOf([&] { LoadSource(directory.Path("model.json")); }),
+  EXPECT_THAT(ErrorOf([&] { LoadTable(directory.Path("model.json")); }),
               AllOf(HasSubstr("model.json"), HasSubstr("this is a JSON file; a measurement is a")));
 }
 
@@ -151,14 +151,29 @@ TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
   }
 }
 
-TEST(LoadSource, NeedsATable) {
+// Where a corruption makes a detector stand in its own light, it is left out of either.
+TEST(LoadMeasurement, TreatsSyntheticDataAsThoseOfAFile) {
+  const TestDirectory directory;
+  const std::string source = "synth:shot_silk@9x36", path = directory.Path("silk.csv");
+  WriteMeasurement(LoadMeasurement(source), path);
+  const SourceOptions options = {.corrupt = "shadow:5", .num_threads = 2};
+  const Measurement synthetic = LoadMeasurement(source, options);
+  const Measurement read = LoadMeasurement(path, options);
+  EXPECT_GT(read.counts.below_min_theta_d, 0);
+  EXPECT_EQ(synthetic.counts.below_min_theta_d, read.counts.below_min_theta_d);
+  EXPECT_EQ(synthetic.counts.valid, read.counts.valid);
+  EXPECT_EQ(synthetic.notes, read.notes);
+  EXPECT_EQ(synthetic.samples.rho, read.samples.rho);
+}
+
+TEST(LoadTable, NeedsATable) {
   const TestDirectory directory;
   const std::string path = directory.Make("x.csv", kCsv);
-  EXPECT_EQ(ErrorOf([&] { LoadSource(path); }),
+  EXPECT_EQ(ErrorOf([&] { LoadTable(path); }),
             path +
                 ": this command needs a table on the MERL grid, and this is a CSV file of "
                 "scattered samples; take a MERL or RGL file, or synth:NAME");
-  EXPECT_THAT(ErrorOf([&] { ParseSource(kCsv, "x.csv"); }), HasSubstr("needs a table"));
+  EXPECT_THAT(ErrorOf([&] { TableOf(Source("x.csv", kCsv).Read()); }), HasSubstr("needs a table"));
 }
 
 TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {

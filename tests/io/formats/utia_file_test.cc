@@ -121,12 +121,12 @@ TEST(UtiaFile, IsToldBySizeAndByEnding) {
   const TestDirectory directory;
   const std::string bytes = UtiaNumbers(0.25).Bytes();
   EXPECT_EQ(LoadMeasurement(directory.Make("any.name", bytes)).kind, "UTIA measurement");
-  EXPECT_EQ(ErrorOf([&] { ParseMeasurement(bytes.substr(8), "x.bin"); }),
+  EXPECT_EQ(ErrorOf([&] { Source("x.bin", bytes.substr(8)).Read(); }),
             "x.bin: 1990648 bytes; a UTIA file has 1990656, 3 x 288 x 288 float64; get it once "
             "more");
-  EXPECT_THAT(ErrorOf([&] { ParseMeasurement(bytes + "12345678", "x.bin"); }),
+  EXPECT_THAT(ErrorOf([&] { Source("x.bin", bytes + "12345678").Read(); }),
               HasSubstr("1990664 bytes"));
-  EXPECT_THAT(ErrorOf([&] { ParseMeasurement(bytes.substr(8), "x.binary"); }),
+  EXPECT_THAT(ErrorOf([&] { Source("x.binary", bytes.substr(8)).Read(); }),
               HasSubstr("a MERL file has"));
 }
 

@@ -38,8 +38,8 @@ TEST(WriteMeasurement, NamesTheEndingsThatThereAre) {
   EXPECT_EQ(WritableFormat("x").name, "merl");
   EXPECT_EQ(
       ErrorOf([] { WritableFormat("x.exr"); }),
-      "x.exr: trilobe writes no '.exr'; end the name in .binary for MERL layout, .bin for UTIA "
-      "layout, .csv for CSV");
+      "x.exr: trilobe writes no '.exr'; end the name in .binary for MERL layout, .csv for CSV, "
+      ".bin for UTIA layout");
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "io/formats/zemax_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
@@ -27,7 +26,7 @@ const std::string kData =
     "\nMonochrome\nDataBegin\nTIS\t0.5\n1\t2\t0\n1\t3\t0\t\n1\t4\t0\n"
     "TIS\t0.5\n5\t6\t0\n5\t0\t0\n5\t8\t0\nDataEnd\n";
 
-Measurement Parse(const std::string& text) { return ParseZemax(text, "x.bsdf"); }
+Measurement Parse(const std::string& text) { return ReadAs("zemax", text, "x.bsdf"); }
 std::string ParseError(const std::string& text) {
   return ErrorOf([&] { Parse(text); });
 }

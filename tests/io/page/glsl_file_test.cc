@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "io/page/base64.h"
-#include "io/page/shader_tables.h"
+#include "io/page/document.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/factor_model.h"
 

@@ -26,7 +26,7 @@ BrdfTable Corrupted(const std::string& source, const std::string& corrupt) {
   SourceOptions options;
   options.corrupt = corrupt;
   options.outliers = options.dark_noise = true;
-  return LoadSource(source, options);
+  return LoadTable(source, options);
 }
 
 bool IsNoisy(const BrdfTable& table) {

@@ -209,9 +209,9 @@ TEST(OwnShadow, IsLeftOutAndTold) {
 }
 
 TEST(LimitThetaD, MarksBinsOfATable) {
-  const BrdfTable whole = LoadSource("synth:foam");
-  const BrdfTable part = LoadSource("synth:foam", {.max_angle_deg = 60, .min_theta_d_deg = 10});
-  const BrdfTable limited = LoadSource("synth:foam", {.max_angle_deg = 60});
+  const BrdfTable whole = LoadTable("synth:foam");
+  const BrdfTable part = LoadTable("synth:foam", {.max_angle_deg = 60, .min_theta_d_deg = 10});
+  const BrdfTable limited = LoadTable("synth:foam", {.max_angle_deg = 60});
   const std::vector<bool> valid = ValidBins(part), before = ValidBins(limited);
   for (int bin = 0; bin < whole.grid.size(); ++bin) {
     const bool lit = whole.grid.Center(bin).theta_d >= DegreesToRadians(10);

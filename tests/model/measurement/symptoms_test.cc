@@ -19,7 +19,7 @@ using testing::IsEmpty;
 BrdfTable Corrupted(const std::string& corrupt, const std::string& material = "aluminium") {
   SourceOptions options;
   options.corrupt = corrupt;
-  return LoadSource("synth:" + material + "@60x30x60", options);
+  return LoadTable("synth:" + material + "@60x30x60", options);
 }
 
 std::vector<std::string> Told(const BrdfTable& table) {
@@ -52,7 +52,7 @@ TEST(Symptoms, ACosineIsToldAndCanBeTakenOut) {
     SourceOptions options;
     options.corrupt = "cosine:" + x;
     options.cosine = k;
-    EXPECT_THAT(Told(LoadSource("synth:aluminium@60x30x60", options)), IsEmpty());
+    EXPECT_THAT(Told(LoadTable("synth:aluminium@60x30x60", options)), IsEmpty());
   }
   EXPECT_FALSE(CosineOf(Corrupted("nonreciprocal:0.3")).IsOneTooMany());
 }
@@ -65,9 +65,9 @@ TEST(Symptoms, APlateauIsTold) {
 
 TEST(Symptoms, AConstantRowOrTableIsNoPlateau) {
   for (const char* const source : {"synth:copper@45x45x90", "synth:copper@90x90x180"}) {
-    EXPECT_THAT(Told(LoadSource(source)), IsEmpty()) << source;
+    EXPECT_THAT(Told(LoadTable(source)), IsEmpty()) << source;
   }
-  BrdfTable constant = LoadSource("synth:copper@20x20x40");
+  BrdfTable constant = LoadTable("synth:copper@20x20x40");
   for (auto& plane : constant.stored) std::ranges::fill(plane, 0.2);
   EXPECT_FALSE(PlateauOf(constant).IsThere());
 }
@@ -88,7 +88,7 @@ TEST(Symptoms, ATiltIsToldByItsAngle) {
   SourceOptions options;
   options.corrupt = "tilt:1";
   options.tilt_deg = 1;
-  EXPECT_NEAR(TiltOf(LoadSource("synth:aluminium@60x30x60", options)).degrees, 0, 0.1);
+  EXPECT_NEAR(TiltOf(LoadTable("synth:aluminium@60x30x60", options)).degrees, 0, 0.1);
 }
 
 TEST(Symptoms, NoiseIsToldByItsSize) {
@@ -127,7 +127,7 @@ TEST(Symptoms, BlackAndSmallTablesHaveNone) {
     for (double& x : plane) x = x > 0 ? 0 : x;
   }
   EXPECT_THAT(Told(black), IsEmpty());
-  EXPECT_THAT(Told(LoadSource("synth:plastic@4x4x4")), IsEmpty());
+  EXPECT_THAT(Told(LoadTable("synth:plastic@4x4x4")), IsEmpty());
 }
 
 }  // namespace

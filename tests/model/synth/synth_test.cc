@@ -233,19 +233,19 @@ TEST(SynthesizeSamplesTest, TakesUtiasDirectionsOrAnyGrid) {
 
 TEST(SynthesizeTest, TakesAnyGridOfBins) {
   const MerlGrid grid{.theta_h = 8, .theta_d = 12, .phi_d = 15};
-  const BrdfTable table = LoadSource("synth:foam@8x12x15");
+  const BrdfTable table = LoadTable("synth:foam@8x12x15");
   EXPECT_EQ(table.grid, grid);
   EXPECT_EQ(table.source, "synth:foam@8x12x15");
   const BrdfTable expected = Synthesize(FindSynthMaterial("foam"), 0, 1, grid);
   EXPECT_EQ(table.stored, expected.stored);
   for (const char* const bad : {"3x30x60", "30x361x60", "30x30x", "axbxc", "x30x60", "360x360x360",
                                 "-30x30x60", "30x30x60.5"}) {
-    EXPECT_THAT(ErrorOf([&] { LoadSource("synth:foam@" + std::string(bad)); }),
+    EXPECT_THAT(ErrorOf([&] { LoadTable("synth:foam@" + std::string(bad)); }),
                 testing::HasSubstr("'" + std::string(bad) + "' is no grid of bins"));
   }
   EXPECT_THAT(ErrorOf([] { SynthSourceOf("synth:velvet@30x30x60"); }),
               testing::HasSubstr("synth:velvet@30x30x60: velvet is anisotropic"));
-  EXPECT_THAT(ErrorOf([] { LoadSource("synth:linen"); }),
+  EXPECT_THAT(ErrorOf([] { LoadTable("synth:linen"); }),
               testing::HasSubstr("needs a table on the MERL grid, and this is a synthetic"));
   EXPECT_THAT(ErrorOf([] { Synthesize(FindSynthMaterial("linen"), 0, 1); }),
               testing::HasSubstr("synth:linen is anisotropic"));

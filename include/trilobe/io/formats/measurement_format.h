@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "trilobe/core/files/content.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
@@ -45,6 +44,8 @@ struct MeasurementFormat {
   std::string description;  // "a MERL .binary file"
   std::string ending;       // ".binary": of such files' names
   bool is_text = false;
+  // Whether bytes are those of such a file, or of its beginning, as far as that tells. What is JSON
+  // or foreign (a picture, an archive) is not asked for.
   bool (*recognise)(std::string_view bytes) = nullptr;
   // Throws Error for bytes that are no such file; `source` is its name.
   Measurement (*read)(std::string_view bytes, const std::string& source,
@@ -59,12 +60,6 @@ struct MeasurementFormat {
   std::string (*write)(const Measurement& measurement, const std::string& path,
                        int num_threads) = nullptr;
 };
-
-// For `recognise`: bytes of this kind.
-template <Content::Kind kKind>
-bool IsContent(std::string_view bytes) {
-  return RecogniseContent(bytes).kind == kKind;
-}
 
 // For `read`: a parser that has no use for options.
 template <Measurement (*kParse)(std::string_view, const std::string&)>

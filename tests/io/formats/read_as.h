@@ -1,0 +1,20 @@
+#ifndef TRILOBE_TESTS_IO_FORMATS_READ_AS_H_
+#define TRILOBE_TESTS_IO_FORMATS_READ_AS_H_
+
+#include <string>
+#include <string_view>
+
+#include "core/base/named.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe {
+
+// What the format of that name, as "csv", reads from the bytes, whoever recognises them.
+inline Measurement ReadAs(std::string_view format, std::string_view bytes,
+                          const std::string& source) {
+  return FindNamed("format", format, MeasurementFormats()).read(bytes, source, {});
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_TESTS_IO_FORMATS_READ_AS_H_
