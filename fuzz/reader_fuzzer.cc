@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "fit/scene/scene_file.h"
 #include "io/formats/merl_file.h"
 #include "io/formats/rgl_file.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/named.h"
+#include "core/base/names.h"
 #include "trilobe/io/formats/source.h"
 
 namespace trilobe {

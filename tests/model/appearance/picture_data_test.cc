@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "io/formats/csv_file.h"
 #include "model/appearance/node_appearance.h"
-#include "model/appearance/node_reconstruction.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
 #include "trilobe/io/formats/source.h"
