@@ -195,6 +195,7 @@ std::function<void(std::string_view)> FuzzOf(std::string_view name) {
 }  // namespace
 }  // namespace trilobe
 
+// NOLINTNEXTLINE(readability-non-const-parameter): libFuzzer says what it is given.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   constexpr std::string_view kOption = "--reader=";
   std::string_view name;
