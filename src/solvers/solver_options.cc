@@ -146,9 +146,10 @@ std::vector<SolverOption> MakeOptions() {
       Option("nonmonotonic", &Options::nonmonotonic,
              {.help = "judge a step of the trust region against up to five steps before, not the "
                       "last alone"}),
-      Option("linear_solver", &Options::linear_solver,
-             {.help = "how Ceres solves for a step (auto takes dense_qr where the Jacobian has at "
-                      "most 64 MiB, else sparse_normal_cholesky; a Schur complement eliminates D)"}),
+      Option(
+          "linear_solver", &Options::linear_solver,
+          {.help = "how Ceres solves for a step (auto takes dense_qr where the Jacobian has at "
+                   "most 64 MiB, else sparse_normal_cholesky; a Schur complement eliminates D)"}),
       Option("inner_iterations", &Options::inner_iterations,
              {.help = "after each step of Ceres, minimise E over one parameter block after another "
                       "(Ruhe and Wedin's algorithm II)"}),

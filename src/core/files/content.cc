@@ -7,8 +7,6 @@
 #include <system_error>
 
 #include "core/base/text.h"
-#include "core/files/text_lines.h"
-#include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {

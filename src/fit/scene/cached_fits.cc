@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/system/content_hash.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"

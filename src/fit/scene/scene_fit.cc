@@ -97,7 +97,7 @@ class MaterialFitter {
 
   // `purpose` is for the key alone: fits that are to be timed apart.
   std::optional<FullFit> Fit(const std::string& purpose) {
-    const std::string key = FullFitKey(material_, settings_, bytes_hash_, purpose);
+    const std::string key = FullFitKey(material_, settings_, fingerprint_, purpose);
     if (auto cached = CachedFullFit(settings_.cache, key)) return cached;
     std::optional<FullFit> fit = FitAnew();
     if (fit) KeepFit(*fit, key, settings_.cache);
@@ -105,7 +105,7 @@ class MaterialFitter {
   }
 
   std::optional<MaterialFit> FitAndPrune() {
-    const std::string key = MaterialFitKey(material_, settings_, bytes_hash_);
+    const std::string key = MaterialFitKey(material_, settings_, fingerprint_);
     std::optional<MaterialFit> fit = CachedMaterialFit(settings_.cache, key);
     if (!fit) {
       fit = PruneAnew();
