@@ -98,10 +98,14 @@ void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& o
   }
   if (material.channels == SceneChannels::kLuminance) out << "  left out: colour, by the scene\n";
   for (const PruneDecision& decision : fit.decisions) {
-    out << (decision.taken ? "  left out: " : "  kept:     ") << decision.what << ": "
-        << decision.parameters_before << " -> " << decision.parameters_after << " parameters, E "
-        << Text(decision.E_before, 6) << " -> " << Text(decision.E_after, 6);
+    out << (!decision.taken ? "  kept:     "
+            : decision.adds ? "  added:    "
+                            : "  left out: ")
+        << decision.what << ": " << decision.parameters_before << " -> "
+        << decision.parameters_after << " parameters, E " << Text(decision.E_before, 6) << " -> "
+        << Text(decision.E_after, 6);
     if (!decision.why.empty()) out << "; " << decision.why;
+    if (decision.taken && decision.adds) out << "; the budget asks for less error";
     out << "\n";
   }
 }
@@ -112,6 +116,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   for (const PruneDecision& decision : fit.decisions) {
     decisions.push_back({{"what", decision.what},
                          {"taken", decision.taken},
+                         {"adds", decision.adds},
                          {"why", decision.why},
                          {"parameters_before", decision.parameters_before},
                          {"parameters_after", decision.parameters_after},

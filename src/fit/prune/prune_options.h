@@ -54,6 +54,7 @@ struct PruneDecision {
   int parameters_before = 0, parameters_after = 0;
   double E_before = 0, E_after = 0;
   bool taken = false;
+  bool adds = false;  // a lobe, as the budget asks for less error
   std::string why;
 };
 

@@ -144,6 +144,7 @@ void Pruning::Record(std::string what, const PruneState& next, bool taken, std::
                         .E_before = state_.E,
                         .E_after = next.E,
                         .taken = taken,
+                        .adds = next.lobes() > state_.lobes(),
                         .why = std::move(why)});
 }
 

@@ -135,6 +135,7 @@ Json Encode(const MaterialFit& fit) {
                          {"E_before", decision.E_before},
                          {"E_after", decision.E_after},
                          {"taken", decision.taken},
+                         {"adds", decision.adds},
                          {"why", decision.why}});
   }
   return {{"model", FormatModel(fit.file)},   {"valid_samples", fit.valid_samples},
@@ -163,6 +164,7 @@ MaterialFit DecodeMaterialFit(const Json& json) {
                              .E_before = decision.at("E_before"),
                              .E_after = decision.at("E_after"),
                              .taken = decision.at("taken"),
+                             .adds = decision.at("adds"),
                              .why = decision.at("why")});
   }
   fit.fit_seconds = json.at("fit_seconds");
@@ -195,7 +197,7 @@ std::string FullFitKey(const SceneMaterial& material, const SceneFitSettings& se
 std::string MaterialFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
                            const std::string& source_hash) {
   Key key = KeyOfFullFit(material, settings, source_hash, "scene");
-  key.Add("then", "prune 6");
+  key.Add("then", "prune 7");
   key.Add("unit", static_cast<int>(material.budget.unit));
   key.Add("amount", material.budget.amount);
   if (material.budget.of_appearance()) {

@@ -6,6 +6,7 @@
 
 #include "core/files/little_endian.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/core/math/angles.h"
 #include "trilobe/core/math/stencil.h"
 
 namespace trilobe {
@@ -86,6 +87,20 @@ Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram
 }
 
 }  // namespace
+
+double LargestAngle(const SceneDirections& directions, const BrdfSamples& used) {
+  if (std::holds_alternative<AllDirections>(directions)) return kPi / 2;
+  if (const auto* const ranges = std::get_if<DirectionRanges>(&directions)) {
+    return std::max(ranges->theta_i.max, ranges->theta_o.max);
+  }
+  double least = 1;  // cosine
+  for (int j = 0; j < used.size(); ++j) {
+    const Cosines cosines = used.CosinesOf(j);
+    least = std::min({least, cosines.i, cosines.o});
+  }
+  const double half_a_bin = kPi / 4 / used.grid.theta_d;
+  return std::min(std::acos(least) + half_a_bin, kPi / 2);
+}
 
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source) {
   constexpr size_t kHeader = 3 * sizeof(int32_t);

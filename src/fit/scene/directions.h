@@ -52,6 +52,10 @@ DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& sou
 // histogram is on another grid than the samples.
 BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions);
 
+// The largest polar angle of either direction that a scene sees of a table [rad]: the bound of
+// ranges, and of lists and histograms that of the farthest bin among `used`, at its edge.
+double LargestAngle(const SceneDirections& directions, const BrdfSamples& used);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_FIT_SCENE_DIRECTIONS_H_

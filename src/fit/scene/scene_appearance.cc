@@ -20,6 +20,9 @@ Measurement LimitToScene(const SceneMaterial& material, Measurement measured) {
   BrdfSamples samples = SamplesOf(measured);
   if (measured.table && material.reductions.samples) {
     samples = UsedSamples(samples, material.directions);
+    // Beyond, the model has entries without data, and what is seen there is not the scene's.
+    measured.table->max_theta =
+        std::min(measured.table->max_theta, LargestAngle(material.directions, samples));
   }
   if (material.channels == SceneChannels::kLuminance) {
     samples = LuminanceOf(std::move(samples));
@@ -92,7 +95,22 @@ SceneAppearance::SceneAppearance(const SceneMaterial& material, Measurement meas
                 ": samples on no grid make no picture to compare with; give a budget in "
                 "relative_rise, psnr_drop_db, bytes or seconds");
   }
-  if (pictured_.table != nullptr) judge_.emplace(*pictured_.table, options_);
+  if (pictured_.table == nullptr) return;
+  judge_.emplace(*pictured_.table, options_);
+}
+
+void SceneAppearance::CheckShowsSomething() const {
+  if (!judge_) return;
+  // One of black and grey differs from anything that is seen.
+  const auto differs_from = [this](double diffuse) {
+    FactorModel model(ModelSpec::SharedFactors(0));
+    std::ranges::fill(model.d(), diffuse);
+    return Compare(model).mean_delta_e > 0;
+  };
+  if (differs_from(0) || differs_from(0.1)) return;
+  throw Error(seen_.source +
+              ": no pixel of the sphere shows a direction that the scene uses; give a budget in "
+              "relative_rise, psnr_drop_db, bytes or seconds");
 }
 
 SphereError SceneAppearance::Compare(const FactorModel& model) const {

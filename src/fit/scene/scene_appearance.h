@@ -30,6 +30,10 @@ class SceneAppearance {
   SceneAppearance(const SceneAppearance&) = delete;
   SceneAppearance& operator=(const SceneAppearance&) = delete;
 
+  // Throws Error where no pixel shows a direction that the scene uses: what is left out there would
+  // not be seen.
+  void CheckShowsSomething() const;
+
   // As `trilobe fit` tells it.
   SphereError Compare(const FactorModel& model) const;
   // On a quarter of the pixels, in a quarter of the time.

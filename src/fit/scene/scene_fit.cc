@@ -230,6 +230,7 @@ class MaterialFitter {
     const SceneBudget& budget = material_.budget;
     const auto error_of = [&](const SphereError& error) { return ErrorIn(budget.unit, error); };
     const double most = MaxError(budget);
+    appearance.CheckShowsSomething();
     const double full_error = error_of(appearance.Compare(model));
     // What is beyond the budget on all pixels is so on a quarter of them.
     double share = full_error > 0 ? error_of(appearance.CompareQuickly(model)) / full_error : 1;
