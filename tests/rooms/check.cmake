@@ -51,6 +51,16 @@ expect_failure(solvers/sums/parameter_kind.h "#include \"solvers/sums/accumulato
 # The lists of registries count, too.
 expect_failure(solvers/solver.cc "#define TRILOBE_DECLARE(NAME) SolverEntry NAME##Entry();\n//  X(Auto)"
                "solvers/solver.cc: AutoEntry(), but the room solvers does not see multistart")
+# docs/adding-a-solver.md keeps to them as it is typed.
+file(READ ${source_dir}/docs/adding-a-solver.md page)
+string(FIND "${page}" "```cpp\n" begin)
+math(EXPR begin "${begin} + 7")
+string(SUBSTRING "${page}" ${begin} -1 code)
+string(FIND "${code}" "```\n" end)
+string(SUBSTRING "${code}" 0 ${end} code)
+file(WRITE ${scratch_dir}/src/solvers/compass_search.cc "${code}")
+execute_process(COMMAND ${build} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -E sleep 1)
 # "A solver sees no file": a room may not see another group's unless its own group does.
 file(READ ${scratch_dir}/src/rooms.txt rooms)
 string(REPLACE "== io: core model" "== io: core" without "${rooms}")
