@@ -214,6 +214,7 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
   if (fit.max_parameters.value_or(1) < 1) throw Error("max_parameters must be at least 1");
   fit.choose_form = OptionOf<std::string>(options, "model", "a name") == "auto";
   fit.match_reflectance = OptionOf<bool>(options, "match_reflectance", "True or False");
+  fit.raw = OptionOf<bool>(options, "raw", "True or False");
   if (const auto start = MaybeOf<nb::bytes>(options, "start", "the text of a model file")) {
     fit.start_model = ParseModel({start->c_str(), start->size()}, "start").model;
     fit.init = "start";
@@ -229,6 +230,7 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   FitReport report;
   report.noise = measured.noise;
   report.seed = static_cast<int64_t>(fit_options.seed);
+  report.data_seed = measured.seed;
   report.seconds.read = measured.seconds;
   const nb::gil_scoped_release released;
   { const BlasCall memory_is_there; }

@@ -95,6 +95,7 @@ def fit(
     robust: float = 0,
     smoothness: float = 0.005,
     match_reflectance: bool = True,
+    raw: bool = False,
     max_parameters: int | None = None,
     seed: int = 1,
     threads: int = 0,
@@ -122,6 +123,7 @@ def fit(
         robust: above 0, a loss that is linear in the error beyond this.
         smoothness: by which share E may rise for the smoothest tables, where that is not seen; 0: the least E.
         match_reflectance: whether the light that is reflected is mended after the fit.
+        raw: the model that the solver found, without what follows by default; for comparing solvers.
         max_parameters: of model="auto", how many the model may store; by default as many as the default form.
         seed: of whatever is random.
         threads: 0 for all cores. The result does not depend on it.
@@ -158,6 +160,7 @@ def fit(
         "robust": robust,
         "smoothness": smoothness,
         "match_reflectance": match_reflectance,
+        "raw": raw,
         "max_parameters": max_parameters,
         "seed": seed,
         "threads": threads,

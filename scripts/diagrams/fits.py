@@ -139,8 +139,10 @@ def stored(folder: Folder) -> Any:
     left.set(title="D by θh [°]", xlim=(0, 90), yscale="log")
     middle.set(title="G/cos θ by θ [°]", xlim=(0, 90), ylim=0)
     middle.axvspan(60, 90, color="#f1f1f1")
-    moved = fit(folder, "synth:car-paint@30x30x60", "paint", "--noise=0.02", "--lobes=1")["matched_reflectance"]
-    shares = [100 * moved[key] for key in ("error_before", "error_after", "objective_rise")]
+    moved = fit(folder, "synth:car-paint@30x30x60", "paint", "--noise=0.02", "--lobes=1")["finishing"]
+    light = next(step for step in moved if step["step"] == "reflected_light")
+    rise = light["objective_after"] / light["objective_before"] - 1
+    shares = [100 * share for share in (light["error_before"], light["error_after"], rise)]
     bars = right.bar(range(3), shares, color=(GREY, BLUE, VERMILION))
     right.bar_label(bars, [f"{share:.2g} %" for share in shares])
     right.set(xticks=range(3), xticklabels=["light that is off\nas fitted", "put right", "E rose by"],

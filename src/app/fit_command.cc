@@ -55,6 +55,10 @@ DEFINE_bool(match_reflectance, true,
             "of a table: where a fit that has converged reflects more or less light than was "
             "measured, by more than 1 %, let E rise a little to mend that, as far as neither the "
             "sphere nor the mean log error gets worse");
+DEFINE_bool(
+    raw, false,
+    "store the model that the solver found, as for comparing solvers: entries at the edge of "
+    "the data are not tied, reflected light is not matched, tables are not smoothed");
 DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
 DEFINE_bool(reconstruction, false,
             "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
@@ -104,7 +108,7 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags =
       WithSourceFlags({"solver", "init", "weighting", "prior", "robust", "smoothness",
-                       "match_reflectance", "max_parameters"});
+                       "match_reflectance", "raw", "max_parameters"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "convergence", "plots", "verbose", "probe",
@@ -141,6 +145,14 @@ FitSettings SettingsFromFlags() {
     throw Error(
         "--smoothness is for a form that is given: tables that --model=auto chooses are thinned");
   }
+  if (FLAGS_raw) {
+    for (const char* const flag : {"robust", "smoothness", "match_reflectance"}) {
+      if (!IsDefault(flag)) {
+        throw Error("--raw stores what the solver found; leave out --" + std::string(flag));
+      }
+    }
+    if (ChoosesModel()) throw Error("--raw stores what the solver found; leave out --model=auto");
+  }
   if (FLAGS_max_parameters < 1) throw Error("--max_parameters must be at least 1");
   if (!ChoosesModel() && !IsDefault("max_parameters")) {
     throw Error("--max_parameters goes with --model=auto");
@@ -150,6 +162,7 @@ FitSettings SettingsFromFlags() {
   fit.choose_form = ChoosesModel();
   if (!IsDefault("max_parameters")) fit.max_parameters = FLAGS_max_parameters;
   fit.match_reflectance = FLAGS_match_reflectance;
+  fit.raw = FLAGS_raw;
   fit.appearance = AppearanceOptionsFromFlags();
   fit.form = FormFromFlags();
   fit.prior = PriorFromFlags();
@@ -225,9 +238,10 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init", "model", "stretch", "d_nodes", "f_bins", "g_nodes", "nodes", "prior",
-        "max_parameters", "robust", "smoothness", "match_reflectance", "probe", "convergence",
-        "reconstruction", "plots", "diagnose", "shard", "verbose"}) {
+       {"init",  "model",  "stretch",        "d_nodes",        "f_bins",     "g_nodes",
+        "nodes", "prior",  "max_parameters", "robust",         "smoothness", "match_reflectance",
+        "raw",   "probe",  "convergence",    "reconstruction", "plots",      "diagnose",
+        "shard", "verbose"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

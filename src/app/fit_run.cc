@@ -138,6 +138,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   FitReport report;
   report.noise = settings.source.noise;
   report.seed = static_cast<int64_t>(settings.fit.seed);
+  report.data_seed = static_cast<int64_t>(settings.source.seed);
   Stopwatch stopwatch;
   SourceOptions source_options = settings.source;
   source_options.num_threads = num_threads;

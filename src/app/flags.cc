@@ -19,15 +19,21 @@
 DEFINE_int32(threads, 0, "threads to use; 0 for all cores");
 DEFINE_int64(
     seed, 1,
-    "seed of whatever is random: the noise of synth: sources, --init=random, random starts of "
-    "a solver");
+    "seed of whatever is random: --init=random, random starts of a solver, and what --data_seed is "
+    "of unless that is given");
+DEFINE_int64(
+    data_seed, -1,
+    "seed of what is done to the measurement: the noise of synth: sources, --missing and "
+    "--corrupt; with one of its own, --seed alone moves the start on the same data; -1: as "
+    "--seed");
 DEFINE_int32(lobes, 3, "specular lobes of the full model, 0 to 8");
 DEFINE_double(noise, 0, "relative noise of a synth: source, 0 to 1");
-DEFINE_double(missing, 0,
-              "share of the measured bins or samples to leave out at random, by --seed, from 0 up "
-              "to 1: how would a fit do with fewer?");
+DEFINE_double(
+    missing, 0,
+    "share of the measured bins or samples to leave out at random, by --data_seed, from 0 up "
+    "to 1: how would a fit do with fewer?");
 DEFINE_string(corrupt, "",
-              "do to the measurement what instruments do, by --seed: KIND:STRENGTH,..., as "
+              "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., as "
               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
 DEFINE_double(
     cosine, 0,
@@ -115,26 +121,30 @@ std::optional<double> TiltFromFlag() {
 }  // namespace
 
 SourceOptions SourceOptionsFromFlags() {
-  SourceOptions options = {.noise = FLAGS_noise,
-                           .missing = FLAGS_missing,
-                           .corrupt = FLAGS_corrupt,
-                           .cosine = FLAGS_cosine,
-                           .tilt_deg = TiltFromFlag(),
-                           .seed = static_cast<uint64_t>(FLAGS_seed),
-                           .num_threads = ThreadsFromFlags(),
-                           .max_angle_deg = FLAGS_max_angle,
-                           .min_theta_d_deg = FLAGS_min_theta_d,
-                           .extrapolated = FLAGS_extrapolated,
-                           .outliers = FLAGS_outliers,
-                           .dark_noise = FLAGS_dark_noise,
-                           .radiometry = FLAGS_radiometry};
+  if (FLAGS_data_seed < -1) throw Error("--data_seed must be 0 or more, or -1: as --seed");
+
+  SourceOptions options = {
+      .noise = FLAGS_noise,
+      .missing = FLAGS_missing,
+      .corrupt = FLAGS_corrupt,
+      .cosine = FLAGS_cosine,
+      .tilt_deg = TiltFromFlag(),
+      .seed = static_cast<uint64_t>(FLAGS_data_seed < 0 ? FLAGS_seed : FLAGS_data_seed),
+      .num_threads = ThreadsFromFlags(),
+      .max_angle_deg = FLAGS_max_angle,
+      .min_theta_d_deg = FLAGS_min_theta_d,
+      .extrapolated = FLAGS_extrapolated,
+      .outliers = FLAGS_outliers,
+      .dark_noise = FLAGS_dark_noise,
+      .radiometry = FLAGS_radiometry};
   CheckSourceOptions(options);
   return options;
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",     "missing",     "corrupt",      "tilt",     "cosine",     "seed",
-          "max_angle", "min_theta_d", "extrapolated", "outliers", "dark_noise", "radiometry"};
+  return {"noise",    "missing",    "corrupt",   "tilt",        "cosine",
+          "seed",     "data_seed",  "max_angle", "min_theta_d", "extrapolated",
+          "outliers", "dark_noise", "radiometry"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -58,7 +58,7 @@ Command SynthCommand() {
           ".csv, as synth:linen@9x36,\nwith theta every 10 and phi every 10 degrees, for isotropic "
           "materials, too; or, of isotropic ones,\nof theta_h x theta_d x phi_d bins, as "
           "synth:felt@30x30x60, for tries that take a second; no .binary\nfile holds these.",
-      .flags = {"out", "noise", "missing", "corrupt", "seed", "threads"},
+      .flags = {"out", "noise", "missing", "corrupt", "seed", "data_seed", "threads"},
       .run = RunSynth};
 }
 

@@ -1,9 +1,12 @@
 #include "trilobe/fit/finish_fit.h"
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/system/process.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
@@ -118,10 +121,7 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereSc
     }
     if (!no_harm) no_harm.emplace(fit->objective, model, scores);
     if (!(*no_harm)(matched->model)) continue;
-    const double E = fit->objective.Value(model);
-    fit->matched = {.error_before = matched->error_before,
-                    .error_after = matched->error_after,
-                    .rise = E > 0 ? fit->objective.Value(matched->model) / E - 1 : 0};
+    fit->matched = {.error_before = matched->error_before, .error_after = matched->error_after};
     fit->model = std::move(matched->model);
     return;
   }
@@ -154,66 +154,89 @@ void SmoothOut(const Objective& solved, const FinishOptions& options, SphereScor
   std::optional<SmoothedModel> smoothest =
       Smoothest(solved, fit->model, options.smoothness, is_harmless, options.stop);
   if (!smoothest) return;
-  fit->smoothed = {.rise = smoothest->rise, .stiffness = smoothest->stiffness};
   fit->model = std::move(smoothest->model);
+}
+
+// Notes what a change of the model does to E of the data, and how long it takes.
+void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& change) {
+  const Stopwatch stopwatch;
+  const Objective objective = fit->objective;
+  const FactorModel before = fit->model;
+  change();
+  if (fit->model.spec() == before.spec() &&
+      std::ranges::equal(fit->model.parameters(), before.parameters())) {
+    return;
+  }
+  const double seconds = stopwatch.Seconds();
+  fit->steps.push_back({.name = name,
+                        .objective_before = objective.data().Value(before),
+                        .objective_after = fit->objective.data().Value(fit->model),
+                        .seconds = seconds});
+}
+
+// The form that looks best or, without pictures, fits samples best that are held out. Returns the
+// weighting that it was fitted with.
+Weighting TakeBestForm(const Objective& solved, const FinishOptions& options, SphereScores* scores,
+                       FinishedFit* fit) {
+  const Objective& objective = fit->objective;
+  ChosenModel chosen;
+  if (scores != nullptr) {
+    chosen = ChooseModel(solved, fit->model, ChoiceByScores(scores, options));
+  } else {
+    const HeldOutPart held_out(objective.data().samples(), options.seed, objective.num_threads());
+    fit->held_out = held_out.size();
+    chosen = ChooseModel(solved, held_out, fit->model, options.max_parameters, options.stop);
+  }
+  fit->objective = Objective(objective, chosen.model.spec());
+  fit->model = std::move(chosen.model);
+  if (scores != nullptr || chosen.chosen > 0) {
+    // Forms were judged by some of the samples, which may leave entries unread.
+    SetCanonicalScale(fit->objective.coverage(), &fit->model, fit->objective.num_threads());
+    fit->layout = std::move(chosen.layout);
+  }
+  fit->candidates = std::move(chosen.candidates);
+  fit->chosen = chosen.chosen;
+  return chosen.weighting;
 }
 
 }  // namespace
 
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
+  FinishedFit fit{.objective = objective, .model = std::move(model)};
   // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
-  Objective solved =
-      options.robust > 0 ? FitRobustly(objective, options, &model) : Objective(objective);
-  std::optional<CorrectedOvershoot> overshoot;
-  std::optional<double> tied;
+  Objective solved = objective;
+  if (options.robust > 0) {
+    NoteStep("robust", &fit, [&] { solved = FitRobustly(objective, options, &fit.model); });
+  }
   if (options.prior != nullptr) {
-    overshoot = CorrectOvershoot(*options.prior, options.stop, &solved, &model);
+    NoteStep("between_samples", &fit,
+             [&] { CorrectOvershoot(*options.prior, options.stop, &solved, &fit.model); });
   }
-  if (!options.stop()) {
-    const double before = solved.data().Value(model);
-    if (TieEntriesAtDataEdge(solved, &model, options.stop) && before > 0) {
-      tied = solved.data().Value(model) / before - 1;
-    }
+  if (options.tie_data_edge && !options.stop()) {
+    NoteStep("data_edge", &fit, [&] { TieEntriesAtDataEdge(solved, &fit.model, options.stop); });
   }
-  Canonicalize(objective, &model);
-  FinishedFit fit{
-      .objective = objective, .model = std::move(model), .overshoot = overshoot, .tied = tied};
-  std::optional<SphereScores> scores;
-  if (measured != nullptr) scores.emplace(*measured, options.appearance);
+  Canonicalize(objective, &fit.model);
+  std::optional<SphereScores> of_sphere;
+  if (measured != nullptr) of_sphere.emplace(*measured, options.appearance);
+  SphereScores* const scores = of_sphere ? &*of_sphere : nullptr;
   Weighting weighting = objective.weighting();
   if (options.max_parameters > 0 && !options.stop()) {
-    ChosenModel chosen;
-    if (scores) {
-      chosen = ChooseModel(solved, fit.model, ChoiceByScores(&*scores, options));
-    } else {
-      const HeldOutPart held_out(objective.data().samples(), options.seed, objective.num_threads());
-      fit.held_out = held_out.size();
-      chosen = ChooseModel(solved, held_out, fit.model, options.max_parameters, options.stop);
-    }
-    fit.objective = Objective(objective, chosen.model.spec());
-    fit.model = std::move(chosen.model);
-    if (scores || chosen.chosen > 0) {
-      // Forms were judged by some of the samples, which may leave entries unread.
-      SetCanonicalScale(fit.objective.coverage(), &fit.model, objective.num_threads());
-      fit.layout = std::move(chosen.layout);
-    }
-    fit.candidates = std::move(chosen.candidates);
-    fit.chosen = chosen.chosen;
-    weighting = chosen.weighting;
+    NoteStep("form", &fit, [&] { weighting = TakeBestForm(solved, options, scores, &fit); });
   }
   // A robust fit has given up on some of the light.
-  if (options.match_reflectance && options.robust == 0 && scores &&
+  if (options.match_reflectance && options.robust == 0 && scores != nullptr &&
       !fit.model.spec().anisotropic() && !options.stop()) {
     const Objective weighed =
         weighting.name == objective.weighting().name
             ? fit.objective
             : Objective(objective.samples(), fit.model.spec(), weighting, objective.num_threads());
-    MatchReflectanceOf(weighed, options.stop, &*scores, &fit);
+    NoteStep("reflected_light", &fit,
+             [&] { MatchReflectanceOf(weighed, options.stop, scores, &fit); });
   }
   // Tables of a form that was chosen are thinned.
   if (options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) && !options.stop()) {
-    SmoothOut(solved, options, scores ? &*scores : nullptr, &fit);
+    NoteStep("smoothness", &fit, [&] { SmoothOut(solved, options, scores, &fit); });
   }
   return fit;
 }

@@ -57,6 +57,7 @@ FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
           .init = options.init,
           .weighting = options.weighting.name,
           .objective = summary.final_objective,
+          .solver_objective = summary.final_objective,
           .initial_objective = summary.initial_objective,
           .stop_reason = StopReasonName(summary.stop_reason),
           .iterations = summary.iterations,
@@ -81,6 +82,12 @@ FitOptions CheckOptions(FitOptions options) {
               "finite and 0 or more");
   CheckNumber("smoothness", options.smoothness, options.smoothness >= 0 && options.smoothness <= 1,
               "from 0 to 1");
+  if (options.raw) {
+    if (options.robust > 0) throw Error("raw stores what the solver found; leave out robust");
+    if (options.choose_form) throw Error("raw stores what the solver found; leave out choose_form");
+    options.smoothness = 0;
+    options.match_reflectance = false;
+  }
   const int most = options.max_parameters.value_or(1);
   CheckNumber("max_parameters", most, most >= 1, "at least 1");
   CheckNumThreads(options.num_threads);
@@ -114,6 +121,7 @@ class Fitting {
     PriorWeight(measurement_, options_);  // its error
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
+    fit.raw = options_.raw;
     fit.seconds.prepare = stopwatch_.Lap();
     fit.interrupted = options_.stop();
     if (fit.interrupted) return fit;
@@ -277,11 +285,14 @@ class Fitting {
               FitResult* fit) const {
     // One that was stopped early gains more by going on.
     const bool has_ended = HasEnded(fit->summary.stop_reason);
+    // Steps of another solver would hide what the one that was asked for has found.
+    const bool default_solver = options_.solver == Solvers().front().name;
     FinishOptions finish{.smoothness = has_ended ? options_.smoothness : 0,
                          .robust = options_.robust,
                          .max_parameters = isotropic_budget_,
                          .seed = options_.seed,
-                         .prior = prior,
+                         .prior = options_.raw ? nullptr : prior,
+                         .tie_data_edge = default_solver && !options_.raw,
                          .match_reflectance = options_.match_reflectance && has_ended,
                          .appearance = Appearance(),
                          .stop = options_.stop};
@@ -293,9 +304,7 @@ class Fitting {
     } else {
       fit->objective = finished.objective;
     }
-    fit->finished.overshoot = finished.overshoot;
-    fit->finished.smoothed = finished.smoothed;
-    fit->finished.tied = finished.tied;
+    fit->finished.steps = std::move(finished.steps);
     fit->finished.matched = finished.matched;
     if (isotropic_budget_ > 0) {
       fit->finished.candidates = std::move(finished.candidates);

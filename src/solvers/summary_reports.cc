@@ -41,6 +41,18 @@ int SolverSummary::RejectedSteps() const {
   return static_cast<int>(std::ranges::count(trace, false, &IterationRecord::accepted));
 }
 
+SolverSummary::Raises SolverSummary::FindRaises() const {
+  constexpr double kRounding = 1e-12;
+  Raises raises;
+  for (size_t k = 1; k < trace.size(); ++k) {
+    const double before = trace[k - 1].minimised(), after = trace[k].minimised();
+    if (after <= before * (1 + kRounding)) continue;
+    raises.iterations.push_back(trace[k].iteration);
+    raises.largest = std::max(raises.largest, before > 0 ? after / before - 1 : 0);
+  }
+  return raises;
+}
+
 std::string SolverSummary::BriefReport() const {
   std::ostringstream out;
   out << solver << ": " << iterations << " iterations in " << seconds << " s, E from "
@@ -62,6 +74,11 @@ std::string SolverSummary::FullReport() const {
     out << ", lowest after iteration " << BestIteration();
     if (RejectedSteps() > 0) out << ", " << RejectedSteps() << " steps taken back";
     out << std::setprecision(3) << ", last step " << trace.back().step << " of |x|";
+  }
+  if (const Raises raises = FindRaises(); !raises.iterations.empty()) {
+    out << "\nraised E     in " << raises.iterations.size() << " of " << trace.size() - 1
+        << " iterations, first in " << raises.iterations.front() << ", by up to "
+        << 100 * raises.largest << " %" << std::setprecision(6);
   }
   if (has_prior()) {
     out << std::setprecision(6)

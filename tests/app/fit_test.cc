@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/formats/merl_file.h"
@@ -29,6 +30,13 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Contents(path)); }
+
+// What followed the solver, in order.
+std::vector<std::string> StepsOf(const nlohmann::json& report) {
+  std::vector<std::string> names;
+  for (const auto& step : report["finishing"]) names.push_back(step["step"]);
+  return names;
+}
 
 // Of few bins, which is as good for most and takes a tenth of the time.
 std::vector<std::string> Fit(const std::string& out, const std::vector<std::string>& more = {},
@@ -64,7 +72,7 @@ TEST(Fit, WritesModelTraceAndReport) {
   EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
   EXPECT_EQ(report["stop_reason"], "max_iterations");
   EXPECT_EQ(report["best_iteration"], 3);
-  EXPECT_TRUE(report["matched_reflectance"].is_null());  // it has not converged
+  EXPECT_THAT(StepsOf(report), testing::IsEmpty());  // it has not converged
   EXPECT_EQ(report["rejected_steps"], 0);
   EXPECT_EQ(report["options"]["given"]["max_iterations"], 3);
   EXPECT_TRUE(report["options"]["given"]["max_seconds"].is_null());  // no limit
@@ -284,8 +292,8 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   // So that there is little to do, and an edge of the data.
   const ProgramResult result =
       RunProgram({"fit", "synth:plastic@30x30x60", "--model=auto", "--max_parameters=150",
-                  "--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=40",
-                  "--noise=0.02", "--verbose", "--out=" + out});
+                  "--max_iterations=2", "--lobes=1", "--max_angle=40", "--noise=0.02", "--verbose",
+                  "--out=" + out});
   ASSERT_EQ(result.status, 0) << result.err;
   const ModelFile file = ReadModel(out + "/model.json");
   ASSERT_TRUE(file.layout.has_value());
@@ -298,7 +306,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   EXPECT_EQ(report["parameters"], file.model.spec().num_parameters());
   EXPECT_EQ(report["objective"].get<double>(), file.fit.objective);
   EXPECT_GT(report["seconds"]["finish"], 0);
-  EXPECT_TRUE(report["tied_at_data_edge"].is_number());
+  EXPECT_THAT(StepsOf(report), testing::IsSupersetOf({"data_edge", "form"}));
   const nlohmann::json& candidates = report["candidates"];
   ASSERT_GE(candidates.size(), 4U);  // as fitted, thinned, and two forms
   EXPECT_EQ(candidates[0]["name"], "as fitted");
@@ -322,7 +330,7 @@ TEST(Fit, AutoChoosesAModelWithinTheBudget) {
   EXPECT_THAT(result.out, HasSubstr(", " + std::to_string(parameters) + " of them stored, "));
   EXPECT_THAT(result.out, HasSubstr("\ncandidates   as fitted: PSNR "));
   EXPECT_THAT(result.out, HasSubstr("   <- chosen\n"));
-  EXPECT_THAT(result.out, HasSubstr("\ndata edge    "));
+  EXPECT_THAT(result.out, HasSubstr(" %, after data edge "));
 
   // What was stored scores as the fit said.
   const ProgramResult score = RunProgram({"score", out + "/model.json", "synth:plastic@30x30x60",
@@ -337,16 +345,16 @@ TEST(Fit, WithoutABudgetThereAreNoCandidates) {
   const nlohmann::json report = Json(folder / "out/report.json");
   EXPECT_EQ(report["candidates"], nlohmann::json::array());
   EXPECT_EQ(report["stored_parameters"], 282);
-  EXPECT_TRUE(report["tied_at_data_edge"].is_null());  // all directions were measured
+  EXPECT_THAT(StepsOf(report), testing::Not(testing::Contains("data_edge")));  // all was measured
 }
 
 // The loss that is linear for large errors gives up some of E for it, and what comes after, at the
 // edge of the data, does not win it back.
 TEST(Fit, ARobustFitWeighsLargeErrorsLess) {
   const TemporaryFolder folder;
-  const std::vector<std::string> few = {"--lobes=1",     "--solver=varpro", "--max_iterations=15",
-                                        "--noise=0.3",   "--max_angle=40",  "--nomatch_reflectance",
-                                        "--smoothness=0"};
+  const std::vector<std::string> few = {
+      "--lobes=1",      "--solver=auto",  "--max_iterations=15",  "--noise=0.3",
+      "--max_angle=40", "--smoothness=0", "--nomatch_reflectance"};
   std::vector<double> E;
   for (const char* const robust : {"0", "1e6", "0.01"}) {
     std::vector<std::string> flags = few;
@@ -354,7 +362,7 @@ TEST(Fit, ARobustFitWeighsLargeErrorsLess) {
     const ProgramResult result = RunProgram(Fit(folder / robust, flags));
     ASSERT_EQ(result.status, 0) << result.err;
     const nlohmann::json report = Json(folder / (std::string(robust) + "/report.json"));
-    EXPECT_TRUE(report["tied_at_data_edge"].is_number()) << robust;
+    EXPECT_THAT(StepsOf(report), testing::Contains("data_edge")) << robust;
     E.push_back(report["objective"]);
   }
   EXPECT_NEAR(E[1], E[0], 1e-5 * E[0]);  // no error is so large: the same loss
@@ -394,13 +402,15 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
   const nlohmann::json report = Json(folder / "with/report.json"),
                        plain = Json(folder / "without/report.json");
   ASSERT_EQ(report["stop_reason"], "converged");  // or it is left as it is
-  EXPECT_TRUE(plain["matched_reflectance"].is_null());
+  EXPECT_THAT(StepsOf(plain), testing::IsEmpty());
   EXPECT_THAT(matched.out, HasSubstr("reflectance  was off by "));
-  const nlohmann::json& how = report["matched_reflectance"];
+  ASSERT_THAT(StepsOf(report), testing::ElementsAre("reflected_light"));
+  const nlohmann::json& how = report["finishing"][0];
   EXPECT_GT(how["error_before"], 0.01);
   EXPECT_LT(how["error_after"], 0.6 * how["error_before"].get<double>());
-  const double E = report["objective"], before = plain["objective"];
-  EXPECT_NEAR(how["objective_rise"], E / before - 1, 1e-9);
+  EXPECT_NEAR(how["objective_before"], plain["objective"], 1e-9 * plain["objective"].get<double>());
+  EXPECT_EQ(how["objective_after"], report["objective"]);
+  EXPECT_EQ(report["solver_objective"], plain["solver_objective"]);
   EXPECT_LT(report["appearance"]["mean_color_error"],
             plain["appearance"]["mean_color_error"].get<double>());
   EXPECT_GE(report["appearance"]["psnr_db"], plain["appearance"]["psnr_db"].get<double>() - 0.3);
@@ -417,10 +427,51 @@ TEST(Fit, AThinnedModelReflectsAsMuchToo) {
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json report = Json(folder / "out/report.json");
   EXPECT_LT(report["stored_parameters"], report["parameters"]);
-  const nlohmann::json& how = report["matched_reflectance"];
-  ASSERT_TRUE(how.is_object());
+  ASSERT_THAT(StepsOf(report), testing::Contains("reflected_light"));
+  const nlohmann::json& how = *std::ranges::find_if(
+      report["finishing"], [](const auto& step) { return step["step"] == "reflected_light"; });
   EXPECT_GT(how["error_before"], 0.03);
   EXPECT_LT(how["error_after"], 0.5 * how["error_before"].get<double>());
+}
+
+// What is said of a solver is that solver's: printed, reported, stored and traced alike.
+TEST(Fit, RawReportsAndStoresWhatTheSolverFound) {
+  const TemporaryFolder folder;
+  const ProgramResult result = RunProgram(Fit(folder / "out", {"--raw", "--max_angle=60"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const double E = ReadTrace(folder / "out/trace.csv").back().objective;
+  const nlohmann::json report = Json(folder / "out/report.json");
+  EXPECT_EQ(report["raw"], true);
+  EXPECT_EQ(report["solver_objective"], E);
+  EXPECT_EQ(ReadModel(folder / "out/model.json").fit.solver_objective, E);
+  EXPECT_NEAR(report["objective"], E, 1e-12 * E);
+  EXPECT_THAT(StepsOf(report), testing::IsEmpty());
+  EXPECT_EQ(report["raised"]["iterations"], nlohmann::json::array());
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("\nfinished ")));
+  for (const char* const flag :
+       {"--robust=0.1", "--smoothness=0.01", "--match_reflectance", "--model=auto"}) {
+    const ProgramResult refused = RunProgram(Fit(folder / "refused", {"--raw", flag}));
+    EXPECT_EQ(refused.status, 1) << flag;
+    EXPECT_THAT(refused.err, HasSubstr("--raw stores what the solver found; leave out --")) << flag;
+  }
+}
+
+// So that what differs between seeds is the fit, and not what was fitted.
+TEST(Fit, ADataSeedKeepsTheDataWhileTheSeedMovesTheStart) {
+  const TemporaryFolder folder;
+  const auto initial = [&](const char* name, const std::vector<std::string>& seeds) {
+    const ProgramResult result = RunProgram(Fit(folder / name, seeds));
+    EXPECT_EQ(result.status, 0) << result.err;
+    const nlohmann::json report = Json(folder / (std::string(name) + "/report.json"));
+    return std::pair<double, int>(report["initial_objective"], report["valid_samples"]);
+  };
+  const auto one = initial("one", {"--seed=1"});
+  EXPECT_EQ(initial("same", {"--seed=7", "--data_seed=1"}), one);  // the start is not random
+  EXPECT_NE(initial("other", {"--seed=1", "--data_seed=7"}), one);
+  EXPECT_NE(initial("both", {"--seed=7"}), one);
+  const ProgramResult wrong = RunProgram(Fit(folder / "wrong", {"--data_seed=-2"}));
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("--data_seed must be 0 or more"));
 }
 
 TEST(Fit, CtrlCKeepsTheBestModelSoFar) {

@@ -67,13 +67,72 @@ TEST(Fit, IsAsSmoothAsAsked) {
   options.match_reflectance = false;
   options.smoothness = 0;
   const FitResult least = Fit(measured, options);
-  EXPECT_FALSE(least.finished.smoothed);
+  EXPECT_THAT(least.finished.steps, testing::IsEmpty());
   options.smoothness = 0.01;
   const FitResult smooth = Fit(measured, options);
-  ASSERT_TRUE(smooth.finished.smoothed);
-  EXPECT_LE(smooth.finished.smoothed->rise, 0.01);
-  EXPECT_NEAR(smooth.score.objective, (1 + smooth.finished.smoothed->rise) * least.score.objective,
-              1e-9 * least.score.objective);
+  ASSERT_EQ(smooth.finished.steps.size(), 1U);
+  const FinishingStep& step = smooth.finished.steps[0];
+  EXPECT_EQ(step.name, "smoothness");
+  EXPECT_NEAR(step.objective_before, least.score.objective, 1e-9 * least.score.objective);
+  EXPECT_LE(step.objective_after, 1.01 * step.objective_before);
+  EXPECT_EQ(step.objective_after, smooth.score.objective);
+}
+
+// What a report says of a solver is that solver's: E where it ended, which the trace ends with, and
+// a model that nothing else has changed.
+TEST(Fit, RawIsWhatTheSolverFound) {
+  // With an edge of the data, which joint steps would tie.
+  const Measurement measured =
+      LoadMeasurement("synth:copper@20x20x40", {.noise = 0.02, .max_angle_deg = 60});
+  for (const SolverEntry& solver : Solvers()) {
+    FitOptions options = Quick();
+    options.solver = solver.name;
+    options.raw = true;
+    const FitResult fit = Fit(measured, options);
+    EXPECT_THAT(fit.finished.steps, testing::IsEmpty()) << solver.name;
+    const double E = fit.summary.trace[fit.summary.BestIteration()].objective;
+    EXPECT_EQ(fit.summary.final_objective, E) << solver.name;
+    EXPECT_EQ(fit.file.fit.solver_objective, E) << solver.name;
+    EXPECT_NEAR(fit.score.objective, E, 1e-12 * E) << solver.name;
+  }
+}
+
+TEST(Fit, RawAwlsIsLiteralAwlsAfterEachSweep) {
+  const Measurement measured =
+      LoadMeasurement("synth:copper@20x20x40", {.noise = 0.02, .max_angle_deg = 60});
+  for (const int sweeps : {1, 4}) {
+    FitOptions options = Quick();
+    options.raw = true;
+    options.solver_options = [sweeps](const ModelSpec& /*spec*/) {
+      return SolverOptions{.max_iterations = sweeps, .diagnose = false};
+    };
+    options.solver = "awls";
+    const FitResult fast = Fit(measured, options);
+    options.solver = "awls_literal";
+    const FitResult literal = Fit(measured, options);
+    EXPECT_EQ(fast.summary.iterations, sweeps);
+    EXPECT_NEAR(fast.score.objective, literal.score.objective, 1e-9 * literal.score.objective);
+    const std::vector<double> expected = Parameters(literal), made = Parameters(fast);
+    for (size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_NEAR(made[k], expected[k], 1e-6 * (1e-3 + expected[k])) << sweeps << ' ' << k;
+    }
+  }
+}
+
+// Only the default solver is followed by joint steps, which tie entries at the edge of the data.
+TEST(Fit, TiesTheDataEdgeAfterTheDefaultSolver) {
+  const Measurement measured =
+      LoadMeasurement("synth:copper@20x20x40", {.noise = 0.02, .max_angle_deg = 60});
+  const auto names = [&](const std::string& solver) {
+    FitOptions options = Quick();
+    options.solver = solver;
+    std::vector<std::string> names;
+    for (const FinishingStep& step : Fit(measured, options).finished.steps)
+      names.push_back(step.name);
+    return names;
+  };
+  EXPECT_THAT(names("auto"), testing::Contains("data_edge"));
+  EXPECT_THAT(names("awls"), testing::Not(testing::Contains("data_edge")));
 }
 
 TEST(Fit, ChecksItsOptions) {
@@ -81,6 +140,13 @@ TEST(Fit, ChecksItsOptions) {
   FitOptions options = Quick();
   options.robust = std::nan("");
   EXPECT_THROW(Fit(measured, options), Error);
+  for (const bool robust : {false, true}) {
+    options = Quick();
+    options.raw = true;
+    options.robust = robust ? 0.1 : 0;
+    options.choose_form = !robust;
+    EXPECT_THROW(Fit(measured, options), Error);
+  }
   options = Quick();
   options.choose_form = true;
   options.max_parameters = 0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
@@ -26,35 +27,34 @@ struct FinishOptions {
   double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
   int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)
   uint64_t seed = 1;       // of the samples held out to choose it by, where there is no picture
-  const SyntheticPrior* prior = nullptr;  // that the objective has (CorrectOvershoot)
+  const SyntheticPrior* prior =
+      nullptr;                    // that the objective has (CorrectOvershoot); null: no correction
+  bool tie_data_edge = true;      // entries that few samples read (TieEntriesAtDataEdge)
   bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
   AppearanceOptions appearance;
   StopCheck stop = {};
+};
+
+// A change of the model after the solver had ended.
+struct FinishingStep {
+  // "robust", "between_samples" (CorrectOvershoot), "data_edge" (TieEntriesAtDataEdge), "form"
+  // (ChooseModel), "reflected_light" (MatchReflectance) or "smoothness" (Smoothest), in this order.
+  std::string name;
+  double objective_before = 0, objective_after = 0;  // E of the data
+  double seconds = 0;
 };
 
 struct FinishedFit {
   Objective objective;  // for models of the spec that was chosen
   FactorModel model;    // in canonical form
   std::optional<TableLayout> layout = std::nullopt;
-  // Nothing where the fit did not overshoot between the samples (CorrectOvershoot).
-  std::optional<CorrectedOvershoot> overshoot = std::nullopt;
-  // Nothing if it was not done, or found no smoother model.
-  struct Smoothed {
-    double rise = 0;       // of E, as a fraction
-    double stiffness = 0;  // lambda (Smoothest)
-  };
-  std::optional<Smoothed> smoothed = std::nullopt;
-  // By how much tying entries at the edge of the data raised E, as a fraction; nothing if it was
-  // not done (TieEntriesAtDataEdge). After a robust fit E, here and of candidates, is that of the
-  // reweighted samples.
-  std::optional<double> tied = std::nullopt;
+  std::vector<FinishingStep> steps = {};        // those that changed the model
   std::vector<ModelCandidate> candidates = {};  // empty if none was asked for
   int chosen = -1;                              // which of them
   int held_out = 0;                             // samples that they were judged by; 0: all
-  // Nothing if it was not done (MatchReflectance).
+  // Of the step reflected_light, the error of what is reflected (Reflectance::Error).
   struct Matched {
-    double error_before = 0, error_after = 0;  // Reflectance::Error
-    double rise = 0;                           // of E, as a fraction
+    double error_before = 0, error_after = 0;
   };
   std::optional<Matched> matched = std::nullopt;
 };

@@ -59,6 +59,10 @@ struct FitOptions {
   bool choose_form = false;
   std::optional<int> max_parameters = {};
   bool match_reflectance = true;  // FinishOptions
+  // The result is the model that the solver found: nothing is done to it afterwards, so that
+  // solvers can be compared. Only its scale moves between tables (canonical form), which changes no
+  // value. Not with robust, choose_form, nor a smoothness that is asked for.
+  bool raw = false;
   bool compare = true;  // makes `appearance`, `left_out`, `reach` and `light` of the result, too
   AppearanceOptions appearance = {};  // num_threads is replaced
   uint64_t seed = 1;
@@ -103,9 +107,7 @@ struct FitResult {
   std::optional<Prior> prior = {};
   // What came after the solver (FinishedFit).
   struct Finished {
-    std::optional<CorrectedOvershoot> overshoot = {};
-    std::optional<FinishedFit::Smoothed> smoothed = {};
-    std::optional<double> tied = {};
+    std::vector<FinishingStep> steps = {};
     std::vector<ModelCandidate> candidates = {};
     int chosen = -1;
     int held_out = 0;           // samples that they were judged by; 0: by pictures
@@ -113,7 +115,8 @@ struct FitResult {
     std::optional<FinishedFit::Matched> matched = {};
   } finished = {};
   int stored_parameters = 0;
-  ScoreReport score = {};                           // E of the stored model, on the data alone
+  // E of the stored model, on the data alone; summary.final_objective is that of the solver's.
+  ScoreReport score = {};
   std::optional<AppearanceReport> appearance = {};  // none of samples on no grid
   std::optional<SeenError> samples_seen = {};       // of these
   // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
@@ -124,6 +127,7 @@ struct FitResult {
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
   } seconds = {};
+  bool raw = false;          // FitOptions::raw
   bool interrupted = false;  // by `stop`, at any time
 
   const FactorModel& model() const { return file.model; }

@@ -89,6 +89,13 @@ struct SolverSummary {
 
   int BestIteration() const;  // the returned model's number in the trace
   int RejectedSteps() const;  // iterations whose step was taken back
+  // The iterations that ended above the one before, in what the solver lowers, by more than
+  // rounding (1e-12 of it); AWLS without a filter has none (docs/solvers.md).
+  struct Raises {
+    std::vector<int> iterations;
+    double largest = 0;  // as a fraction of what it was before
+  };
+  Raises FindRaises() const;
   bool has_prior() const {
     return !trace.empty() && trace.front().objective_with_prior.has_value();
   }

@@ -59,6 +59,28 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
   return array;
 }
 
+// What followed the solver, in order.
+Json FinishingJson(const FitReport::Finished& finished) {
+  Json array = Json::array();
+  for (const FinishingStep& step : finished.steps) {
+    array.push_back({{"step", step.name},
+                     {"objective_before", step.objective_before},
+                     {"objective_after", step.objective_after},
+                     {"seconds", step.seconds}});
+    if (step.name == "reflected_light" && finished.matched) {
+      array.back()["error_before"] = finished.matched->error_before;
+      array.back()["error_after"] = finished.matched->error_after;
+    }
+  }
+  return array;
+}
+
+// The iterations that raised what the solver lowers, as the filter of G may.
+Json RaisesJson(const SolverSummary& summary) {
+  const SolverSummary::Raises raises = summary.FindRaises();
+  return {{"iterations", raises.iterations}, {"largest", raises.largest}};
+}
+
 Json ToJson(const NodeChoice& choice) {
   Json tried = Json::array();
   for (const NodeCandidate& candidate : choice.tried) {
@@ -112,22 +134,6 @@ std::string Describe(const FitReport::Prior& prior) {
 // What was chosen, and what it was chosen from.
 std::string Describe(const FitReport::Finished& finished) {
   std::string text;
-  if (finished.overshoot) {
-    text +=
-        "between      the fit reached more than four times the largest measured value between the "
-        "samples, and was drawn to the prior there; E " +
-        Text(finished.overshoot->E_before) + " -> " + Text(finished.overshoot->E_after) + "\n";
-  }
-  if (finished.smoothed) {
-    text += "smooth       the smoothest tables for an E that rose by " +
-            Text(100 * finished.smoothed->rise, 3) + " %\n";
-  }
-  if (finished.tied) {
-    // A fit that was stopped early gains more from the steps of the refit than tying costs.
-    text += "data edge    entries read by few samples follow from their neighbours; E " +
-            std::string(*finished.tied < 0 ? "fell" : "rose") + " by " +
-            Text(100 * std::abs(*finished.tied), 3) + " %\n";
-  }
   if (finished.held_out > 0) {
     text +=
         "held out     " + std::to_string(finished.held_out) +
@@ -142,10 +148,8 @@ std::string Describe(const FitReport::Finished& finished) {
             (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
   }
   if (finished.matched) {
-    const FinishedFit::Matched& matched = *finished.matched;
-    text += "reflectance  was off by " + Text(100 * matched.error_before, 3) + " %, now by " +
-            Text(100 * matched.error_after, 3) + " %; E " + (matched.rise < 0 ? "fell" : "rose") +
-            " by " + Text(100 * std::abs(matched.rise), 3) + " %\n";
+    text += "reflectance  was off by " + Text(100 * finished.matched->error_before, 3) +
+            " %, now by " + Text(100 * finished.matched->error_after, 3) + " %\n";
   }
   return text;
 }
@@ -167,88 +171,78 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const ScoreReport& score = report.score;
   const FitReport::Seconds& seconds = report.seconds;
   const SolverEntry& solver = FindSolver(fit.solver);
-  return {
-      {"verdict", ToJson(VerdictOn(report))},
-      {"source", fit.source},
-      {"noise", report.noise},
-      {"seed", report.seed},
-      {"valid_samples", fit.valid_samples},
-      {"max_angle", fit.max_angle},
-      {"bins", ToJson(report.bins)},
-      {"data_notes", report.data_notes},
-      {"solver", fit.solver},
-      {"init", fit.init},
-      {"weighting", fit.weighting},
-      {"model", ModelName(report.spec)},
-      {"lobes", report.spec.lobes},
-      {"stretch", StretchesToJson<Json>(report.spec)},
-      {"parameters", report.spec.num_parameters()},
-      {"stored_parameters", report.stored_parameters},
-      {"candidates", ToJson(report.finished.candidates)},
-      {"candidates_held_out", report.finished.held_out},
-      {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
-      {"prior", report.prior
-                    ? Json{{"weight", report.prior->weight},
-                           {"samples", report.prior->samples},
-                           {"initial_objective", summary.trace.front().minimised()},
-                           {"objective", summary.trace[summary.BestIteration()].minimised()}}
-                    : Json()},
-      {"matched_reflectance", report.finished.matched
-                                  ? Json{{"error_before", report.finished.matched->error_before},
-                                         {"error_after", report.finished.matched->error_after},
-                                         {"objective_rise", report.finished.matched->rise}}
-                                  : Json()},
-      {"corrected_overshoot", report.finished.overshoot
-                                  ? Json{{"objective_before", report.finished.overshoot->E_before},
-                                         {"objective_after", report.finished.overshoot->E_after}}
-                                  : Json()},
-      {"smoothed", report.finished.smoothed
-                       ? Json{{"objective_rise", report.finished.smoothed->rise},
-                              {"stiffness", report.finished.smoothed->stiffness}}
-                       : Json()},
-      {"tied_at_data_edge", report.finished.tied ? Json(*report.finished.tied) : Json()},
-      {"threads", fit.threads},
-      {"options",
-       {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
-      {"notes", summary.notes},
-      {"starts", ToJson(summary.starts)},
-      {"stop_reason", fit.stop_reason},
-      {"iterations", fit.iterations},
-      {"best_iteration", summary.BestIteration()},
-      {"rejected_steps", summary.RejectedSteps()},
-      {"initial_objective", fit.initial_objective},
-      {"objective", score.objective},
-      {"relative_objective", score.relative_objective},
-      {"irreducible_objective", score.irreducible_objective},
-      {"psnr_db", score.psnr_db},
-      {"psnr_peak", score.psnr_peak},
-      {"rmse", score.rmse},
-      {"mean_relative_error", score.mean_relative_error},
-      {"mean_log_error", score.mean_log_error},
-      {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
-      {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
-      {"reach", report.reach ? Json{{"between_samples", report.reach->between},
-                                    {"beyond_samples", report.reach->beyond}}
-                             : Json()},
-      {"light", ToJson(report.light)},
-      {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
-      {"seconds",
-       {{"read", seconds.read},
-        {"prepare", seconds.prepare},
-        {"init", seconds.init},
-        {"nodes", seconds.nodes},
-        {"solve", seconds.solve},
-        {"finish", seconds.finish},
-        {"score", seconds.score},
-        {"draw", seconds.draw}}},
-      {"phases", ToJson(summary.phases)},
-      {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
-      {"program", fit.program},
-      {"date", fit.date},
-      {"key", report.key},
-      {"interrupted", report.interrupted},
-      {"run", fit.run},
-      {"files", report.files}};
+  return {{"verdict", ToJson(VerdictOn(report))},
+          {"source", fit.source},
+          {"noise", report.noise},
+          {"seed", report.seed},
+          {"data_seed", report.data_seed},
+          {"valid_samples", fit.valid_samples},
+          {"max_angle", fit.max_angle},
+          {"bins", ToJson(report.bins)},
+          {"data_notes", report.data_notes},
+          {"solver", fit.solver},
+          {"init", fit.init},
+          {"weighting", fit.weighting},
+          {"model", ModelName(report.spec)},
+          {"lobes", report.spec.lobes},
+          {"stretch", StretchesToJson<Json>(report.spec)},
+          {"parameters", report.spec.num_parameters()},
+          {"stored_parameters", report.stored_parameters},
+          {"candidates", ToJson(report.finished.candidates)},
+          {"candidates_held_out", report.finished.held_out},
+          {"nodes", report.nodes ? ToJson(*report.nodes) : Json()},
+          {"prior", report.prior
+                        ? Json{{"weight", report.prior->weight},
+                               {"samples", report.prior->samples},
+                               {"initial_objective", summary.trace.front().minimised()},
+                               {"objective", summary.trace[summary.BestIteration()].minimised()}}
+                        : Json()},
+          {"raw", report.raw},
+          {"finishing", FinishingJson(report.finished)},
+          {"threads", fit.threads},
+          {"options",
+           {{"given", ToJson(summary.given, solver)}, {"used", ToJson(summary.used, solver)}}},
+          {"notes", summary.notes},
+          {"starts", ToJson(summary.starts)},
+          {"stop_reason", fit.stop_reason},
+          {"iterations", fit.iterations},
+          {"best_iteration", summary.BestIteration()},
+          {"rejected_steps", summary.RejectedSteps()},
+          {"raised", RaisesJson(summary)},
+          {"initial_objective", fit.initial_objective},
+          {"solver_objective", summary.final_objective},
+          {"objective", score.objective},
+          {"relative_objective", score.relative_objective},
+          {"irreducible_objective", score.irreducible_objective},
+          {"psnr_db", score.psnr_db},
+          {"psnr_peak", score.psnr_peak},
+          {"rmse", score.rmse},
+          {"mean_relative_error", score.mean_relative_error},
+          {"mean_log_error", score.mean_log_error},
+          {"appearance", report.appearance ? ToJson(*report.appearance) : Json()},
+          {"anisotropy_left_out", report.left_out ? Json(*report.left_out) : Json()},
+          {"reach", report.reach ? Json{{"between_samples", report.reach->between},
+                                        {"beyond_samples", report.reach->beyond}}
+                                 : Json()},
+          {"light", ToJson(report.light)},
+          {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
+          {"seconds",
+           {{"read", seconds.read},
+            {"prepare", seconds.prepare},
+            {"init", seconds.init},
+            {"nodes", seconds.nodes},
+            {"solve", seconds.solve},
+            {"finish", seconds.finish},
+            {"score", seconds.score},
+            {"draw", seconds.draw}}},
+          {"phases", ToJson(summary.phases)},
+          {"peak_memory_bytes", report.peak_memory ? Json(*report.peak_memory) : Json()},
+          {"program", fit.program},
+          {"date", fit.date},
+          {"key", report.key},
+          {"interrupted", report.interrupted},
+          {"run", fit.run},
+          {"files", report.files}};
 }
 
 void PrintDetails(const FitReport& report) {

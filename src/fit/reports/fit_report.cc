@@ -53,6 +53,23 @@ std::string FormText(const FitReport& report) {
          finished.candidates[finished.chosen].name + ")";
 }
 
+double RelativeTo(double black, double E) { return black > 0 ? E / black : 0; }
+
+// What followed the solver: by how much each step moved E.
+std::string FinishedText(const FitReport& report) {
+  std::string text;
+  for (const FinishingStep& step : report.finished.steps) {
+    std::string name = step.name;
+    std::ranges::replace(name, '_', ' ');
+    text += (text.empty() ? "" : ", ") + name;
+    if (step.objective_before > 0) {
+      const double percent = 100 * (step.objective_after / step.objective_before - 1);
+      text += (percent < 0 ? " -" : " +") + Text(std::abs(percent), 2) + " %";
+    }
+  }
+  return text;
+}
+
 std::string Hundredths(double seconds) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.2f", seconds);
@@ -67,7 +84,9 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->summary = fit.summary;
   report->nodes = fit.nodes;
   report->prior = fit.prior;
+  report->raw = fit.raw;
   report->finished = fit.finished;
+  report->black_objective = fit.objective.MeasuredEnergy();
   report->stored_parameters = fit.stored_parameters;
   report->score = fit.score;
   report->appearance = fit.appearance;
@@ -126,7 +145,12 @@ void PrintSummary(const FitReport& report) {
             " samples up to " + Text(fit.max_angle) + " deg, by " + FormText(report));
   std::cout << "solver       " << summary.solver << ": " << summary.iterations << " iterations, "
             << EndText(summary.stop_reason) << "; E is "
-            << Text(100 * report.score.relative_objective, 3) << " % of a black model's\n";
+            << Text(100 * RelativeTo(report.black_objective, summary.final_objective), 3)
+            << " % of a black model's\n";
+  if (!report.finished.steps.empty()) {
+    PrintLine("finished     E is " + Text(100 * report.score.relative_objective, 3) + " %, after " +
+              FinishedText(report));
+  }
   if (report.finished.too_few_to_choose > 0) {
     PrintLine("note         no form was chosen, which takes " +
               std::to_string(report.finished.too_few_to_choose) +

@@ -36,7 +36,8 @@ struct FitReport {
   bool interrupted = false;        // by a signal: the solver, or what comes after it
   ModelSpec spec;
   double noise = 0;  // of the source
-  int64_t seed = 0;
+  int64_t seed = 0;       // of the fit
+  int64_t data_seed = 0;  // of what was done to the measurement
   std::vector<std::string> data_notes;  // as in Measurement
   BinCounts bins;                       // of the source: how many were left out, and why
   SolverSummary summary;
@@ -45,6 +46,8 @@ struct FitReport {
   std::optional<Prior> prior;
   using Finished = FitResult::Finished;
   Finished finished;
+  bool raw = false;            // nothing followed the solver (FitOptions::raw)
+  double black_objective = 0;  // E of the black model
   int stored_parameters = 0;
   ScoreReport score;
   std::optional<AppearanceReport> appearance;  // none of samples on no grid, which have no picture

@@ -19,6 +19,7 @@ void VisitFitInfo(Info* fit, const Visitor& visit) {
   visit("init", &fit->init);
   visit("weighting", &fit->weighting);
   visit("objective", &fit->objective);
+  visit("solver_objective", &fit->solver_objective);
   visit("initial_objective", &fit->initial_objective);
   visit("stop_reason", &fit->stop_reason);
   visit("iterations", &fit->iterations);

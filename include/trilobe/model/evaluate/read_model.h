@@ -16,7 +16,8 @@ struct FitInfo {
   std::string solver;
   std::string init;
   std::string weighting;
-  double objective = 0;  // E
+  double objective = 0;         // E of the stored model, on the measured samples
+  double solver_objective = 0;  // E where the solver ended, before what followed
   double initial_objective = 0;
   std::string stop_reason;
   int iterations = 0;
