@@ -35,9 +35,9 @@ struct FitReport {
   std::vector<std::string> files;  // of the run, in its folder
   bool interrupted = false;        // by a signal: the solver, or what comes after it
   ModelSpec spec;
-  double noise = 0;  // of the source
-  int64_t seed = 0;       // of the fit
-  int64_t data_seed = 0;  // of what was done to the measurement
+  double noise = 0;                     // of the source
+  int64_t seed = 0;                     // of the fit
+  int64_t data_seed = 0;                // of what was done to the measurement
   std::vector<std::string> data_notes;  // as in Measurement
   BinCounts bins;                       // of the source: how many were left out, and why
   SolverSummary summary;
