@@ -167,8 +167,8 @@ def test_reads_any_source(source, options):
 
 
 FIT_OPTIONS = ["model", "solver", "lobes", "stretch", "d_nodes", "g_nodes", "f_bins", "nodes", "init", "start",
-               "weighting", "prior", "robust", "smoothness", "match_reflectance", "raw", "max_parameters", "seed", "threads",
-               "max_iterations", "max_seconds", "tolerance", "g_filter", "memory", "starts", "unheard_of"]
+               "weighting", "prior", "robust", "smoothness", "match_reflectance", "raw", "max_parameters", "seed",
+               "threads", "max_iterations", "max_seconds", "tolerance", "g_filter", "memory", "starts", "unheard_of"]
 names = st.sampled_from(["auto", "awls", "lm", "independent", "isotropic", "anisotropic", "moments", "log", "held_out",
                          "6x8", "4rx4"])
 
