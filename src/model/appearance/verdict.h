@@ -23,8 +23,7 @@ namespace trilobe {
 // They were measured of patches, not of spheres; docs/appearance.md has what pictures say of them.
 enum class Visibility { kNone, kHardly, kVisible, kPlain };
 
-// The place that differs most, where one stands out: kRest is all over.
-// What is wrong there, where the differences have something in common.
+// What is wrong in the region that differs most: `place`, or kRest if none stands out.
 enum class Fault { kDifferent, kTooDark, kTooBright, kWrongColor };
 
 struct Verdict {
@@ -42,7 +41,7 @@ std::string Words(const Verdict& verdict);
 std::string NameOf(Visibility visibility);  // "none", "hardly", "visible", "plain"
 std::string NameOf(Fault fault);            // "different", "too_dark", ...
 
-// What is known of a fit besides, on which advice depends.
+// Other facts about a fit, on which advice depends.
 struct FitFacts {
   bool interrupted = false;
   bool ended = true;  // the solver found what it looks for; false: a limit stopped it
@@ -57,15 +56,15 @@ struct FitFacts {
   double reach_beyond = 0;
 };
 
-// What to do about it, or to know; the first is the most urgent.
+// What to do or know, most urgent first.
 enum class Advice {
   kGoOn,          // it was interrupted
   kIterate,       // a limit stopped it
-  kAnisotropic,   // the form leaves the azimuth out
+  kAnisotropic,   // the form ignores azimuths
   kChooseSolver,  // another solver than the default one may be the limit
   kChooseForm,    // the form is the limit
-  kDataDiffer,    // what is left is in good part noise, or not reciprocal: no model follows it
-  kKeepWithin,    // what it says beyond the measured directions is not usable
+  kDataDiffer,    // the remaining error is largely noise or not reciprocal
+  kKeepWithin,    // it is unusable beyond the measured directions
 };
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts);
 std::string NameOf(Advice advice);  // "go_on", "iterate", ...
