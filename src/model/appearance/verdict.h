@@ -9,18 +9,18 @@
 
 namespace trilobe {
 
-// What a person would say who sees the fit beside its measurement, by the CIELAB difference of
-// 1976. Thresholds are those of the mean, and of what 95 % of the pixels stay below:
+// How visible the difference of a fit and its measurement is side by side, by the CIELAB difference
+// of 1976. Thresholds of the mean and of the 95th percentile over the pixels:
 //
-//   kNone     1, 2.3   1 is about the least that a trained eye tells apart of two patches side by
-//                      side; 2.3 is what is just noticeable by Mahy, Van Eycken and Oosterlinck,
+//   kNone     1, 2.3   1 is about the smallest difference of two patches side by side that a
+//                      trained eye sees; 2.3 is just noticeable: Mahy, Van Eycken and Oosterlinck,
 //                      Evaluation of Uniform Color Spaces, Color Research & Application 19(2), 1994
-//   kHardly   2.3, 5   from 5 on two patches pass for two colours: Mokrzycki and Tatol, Colour
+//   kHardly   2.3, 5   from 5 on patches are seen as two colours: Mokrzycki and Tatol, Colour
 //                      difference Delta E: a survey, Machine Graphics & Vision 20(4), 2011
 //   kVisible  5, 10
 //   kPlain    beyond
 //
-// They were measured of patches, not of spheres; docs/appearance.md has what pictures say of them.
+// The thresholds were measured on patches, not spheres; docs/appearance.md tests them on images.
 enum class Visibility { kNone, kHardly, kVisible, kPlain };
 
 // What is wrong in the region that differs most: `place`, or kRest if none stands out.
