@@ -15,12 +15,12 @@
 namespace trilobe {
 namespace {
 
-// [degrees] Nodes are above the surface, so the second stands for the horizon. There G is about 0
-// whatever G / cos theta is, so it takes the first as well to let that grow.
+// [degrees] Nodes must be above the surface, so 89.9 stands for the horizon. G is about 0 there
+// whatever G / cos theta is; the ring at 84 lets G / cos theta grow.
 constexpr double kTowardsHorizon[] = {84, 89.9};
 
-// What is next to a node stands at it, and so does what is between a node and itself, the only one
-// of a circle: no entry is read twice.
+// Snaps to a node within kAtEntry. If both nodes are the same, the only one of a circle, it is read
+// once.
 Between Snapped(Between at) {
   if (at.t > 1 - kAtEntry) return {at.upper, at.upper, 0};
   return at.t < kAtEntry || at.lower == at.upper ? Between{at.lower, at.lower, 0} : at;
@@ -35,7 +35,7 @@ Between LocateTheta(const std::vector<double>& nodes, double degrees) {
   return Snapped({a, a + 1, (degrees - nodes[a]) / (nodes[a + 1] - nodes[a])});
 }
 
-// What reading needs of an axis, at little cost: that its entries are there.
+// A cheap check that all entries exist, before reading.
 void CheckEntries(const Axis& axis) {
   if (!axis.polar()) return;
   if (!axis.theta.empty() && axis.phi_nodes >= 1 &&
@@ -118,7 +118,7 @@ Axis Axis::WithoutHorizon() const {
 Axis Axis::Utia() { return EvenPolar(6, Steps::kOfTheta, 48); }
 
 int Axis::SplineNodesFor(int data_thetas) {
-  // (k + 1/2) 90 / size = 75 for odd multiples of 3 alone.
+  // (k + 1/2) 90 / size = 75 only for odd multiples of 3.
   const int odd = (data_thetas / 2 - 1) / 2 * 2 + 1;
   return 3 * std::clamp(odd, 3, 29);
 }
@@ -183,7 +183,7 @@ void CheckAxis(const Axis& axis, const char* name) {
     fail("of " + std::to_string(axis.size) + " entries cannot have " +
          std::to_string(theta.size()) + " x " + std::to_string(axis.phi_nodes) + " nodes");
   }
-  // Said so that a NaN fails it.
+  // Written so that it fails for NaN.
   const auto not_below = [](double a, double b) { return !(a < b); };
   const bool ascend = std::ranges::adjacent_find(theta, not_below) == theta.end();
   if (!(ascend && theta.front() >= 0 && theta.back() < 90)) {

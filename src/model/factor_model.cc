@@ -12,7 +12,7 @@
 namespace trilobe {
 namespace {
 
-// Where G is a spline, the cosine goes through the same one: over cos theta_k (docs/model.md).
+// If G is a spline, so is the cosine, through cos theta_k at the nodes (docs/model.md).
 double SplinedCosine(const CatmullRom& spline, const Stencil& stencil) {
   double sum = 0;
   for (int k = 0; k < stencil.size; ++k) {

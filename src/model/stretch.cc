@@ -10,7 +10,7 @@
 namespace trilobe {
 namespace {
 
-// theta_d = 90 degrees has no highlight, and must not make it infinite.
+// At theta_d = 90 degrees there is no highlight; avoids infinite factors.
 constexpr double kMinCosine = 1e-4;
 
 }  // namespace

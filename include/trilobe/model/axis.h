@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// Where the entries of a table stand, and so how a direction (theta, phi) reads it: D is read at
-// the half vector, F at (theta_d, 0), G at wi and at wo.
+// The positions of a table's entries, and how a direction (theta, phi) is interpolated between
+// them. D is evaluated at the half vector, F at (theta_d, 0), G at wi and at wo.
 struct Axis {
   enum class Rule {
     kRootTheta,  // bins of equal width in sqrt(theta), linear between their centres
@@ -18,45 +18,45 @@ struct Axis {
   };
   Rule rule = Rule::kTheta;
   int size = 90;  // entries of a table
-  // Of kPolar: theta_a, ascending from 0 or more to below 90 degrees, and how many
-  // phi_b = 360 b / phi_nodes degrees there are.
+  // For kPolar: theta_a, ascending in [0, 90) degrees, and the number of azimuths phi_b = 360 b /
+  // phi_nodes degrees.
   std::vector<double> theta = {};  // [degrees]
   int phi_nodes = 1;
 
-  // These throw Error for fewer than one of theta or phi, or more than kMaxTableSize of either.
+  // These throw Error unless the numbers of theta and of phi are in [1, kMaxTableSize].
   static Axis Polar(std::vector<double> theta_degrees, int phi_nodes);
-  // theta_a at so many even steps from 0 to 75 degrees, the last of UTIA's; or at steps of
-  // sqrt(theta), which are denser where highlights are.
+  // theta_a in even steps from 0 to 75 degrees, the last theta of UTIA, or in even steps of
+  // sqrt(theta), which are denser in highlights.
   enum class Steps { kOfTheta, kOfRoot };
   static Axis EvenPolar(int thetas, Steps steps, int phi_nodes);
-  // The nodes 0, 15, ... 75 degrees by 0, 7.5, ... 352.5 of UTIA's directions (docs/model.md).
+  // The nodes of the UTIA database: theta 0, 15, ... 75 by phi 0, 7.5, ... 352.5 degrees
+  // (docs/model.md).
   static Axis Utia();
 
-  // How many nodes of kSpline suit data at so few even theta: about three for two theta, as nodes
-  // that stand between these would go where they like. And one at 75 degrees, where such data end,
-  // so that none beyond is read by little.
+  // Number of kSpline nodes for data on `data_thetas` even theta: about three for two theta, as
+  // nodes between measured theta would be poorly determined. One node is at 75 degrees, where such
+  // data end, so that no node beyond is read with a small weight.
   static int SplineNodesFor(int data_thetas);
 
   bool polar() const { return rule == Rule::kPolar; }
-  // A polar axis that ends at 75 degrees, with two more rings, at 84 and 89.9; whether its last is
-  // there; and the axis without these two.
+  // For polar axes. ToHorizon appends rings at 84 and 89.9 degrees to an axis that ends at 75,
+  // reaches_horizon tells whether these are present, and WithoutHorizon removes them.
   Axis ToHorizon() const;
   bool reaches_horizon() const;
   Axis WithoutHorizon() const;
 
-  // The entries that a direction reads, with their weights; angles in radians. Constant beyond the
-  // first and the last, periodic in phi, which the others but kPolar do not look at. What is within
-  // 1e-9 of a node, in steps from it to the next, stands at it. Throws Error for angles that are no
-  // numbers, and for an axis that CheckAxis would not take for one.
+  // The stencil of a direction [rad]: constant beyond the first and last entry, periodic in phi,
+  // which only kPolar uses. A direction within 1e-9 node steps of a node reads that node alone.
+  // Throws Error for NaN and infinite angles and for an invalid axis (CheckAxis).
   Stencil At(double theta_radians, double phi_radians) const;
 
-  // Where an entry stands. [rad] These, too, throw Error where there is none.
+  // The angles of an entry [rad]. These also throw Error if there is no such entry.
   double Theta(int entry) const;
-  double Phi(int entry) const;  // 0 but for kPolar
+  double Phi(int entry) const;  // 0 unless kPolar
 
-  // Of kRootTheta the bin of an entry, a ring. Of kPolar the cell of directions around it: from
-  // halfway to the node before it to halfway to the one after it, the outermost as wide outwards as
-  // inwards, within [0, 90 degrees]. [rad]
+  // The cell of an entry [rad]. For kRootTheta, the ring of its bin. For kPolar, the directions up
+  // to halfway to the neighbouring nodes; outermost cells are symmetric in theta about their node,
+  // clipped to [0, 90 degrees].
   struct Cell {
     double theta_begin, theta_end, phi_width;
     double SolidAngle() const;
@@ -67,10 +67,10 @@ struct Axis {
 };
 
 inline constexpr int kMaxTableSize = 2048;
-inline constexpr int kMaxBins = 1024;  // of all but kPolar
+inline constexpr int kMaxBins = 1024;  // of all rules except kPolar
 
-// Throws Error, which names the factor `name`, unless there are 4 to kMaxTableSize or kMaxBins
-// entries, and the nodes are as said above.
+// Throws Error, naming the factor, unless the axis has 4 to kMaxTableSize (kPolar) or kMaxBins
+// entries and its nodes are as described above.
 void CheckAxis(const Axis& axis, const char* name);
 
 }  // namespace trilobe

@@ -13,11 +13,16 @@ namespace trilobe {
 
 // The parameters of a model, all >= 0, in one vector
 //   [ d (3) | s (lobes x 3) | D tables | F tables | G tables ]
-// whose parts the accessors view. A value type: copying it copies the parameters.
+// with views of its parts. A value type: copies are independent.
+//
+//   FactorModel model(ModelSpec::SharedFactors(3));  // 822 zeros
+//   std::ranges::fill(model.d(), 0.1);
+//   model.table(Factor::kF, 0)[89] = 1;              // F of red, last bin of theta_d
+//   const Rgb rho = Evaluate(model, ToDirections(SphericalAngles{.theta_i = 0.5}));
 class FactorModel {
  public:
   FactorModel() : FactorModel(ModelSpec{.lobes = 0}) {}
-  // All parameters zero. Throws Error if the spec is out of range.
+  // Sets all parameters to 0. Throws Error for an invalid spec (CheckSpec).
   explicit FactorModel(const ModelSpec& spec);
 
   const ModelSpec& spec() const { return spec_; }
@@ -36,7 +41,7 @@ class FactorModel {
     return {values_.data() + kChannels * (1 + lobe), kChannels};
   }
 
-  // One table by its number. [spec().table_size(factor)]
+  // A table by its index. [spec().table_size(factor)]
   std::span<double> table(Factor factor, int index) {
     return {values_.data() + TableOffset(factor, index),
             static_cast<size_t>(spec_.table_size(factor))};
@@ -46,7 +51,7 @@ class FactorModel {
             static_cast<size_t>(spec_.table_size(factor))};
   }
 
-  // The table that serves a lobe and channel. [spec().table_size(factor)]
+  // The table of a lobe and channel. [spec().table_size(factor)]
   std::span<const double> D(int lobe, int channel) const {
     return table(Factor::kD, spec_.table(Factor::kD, lobe, channel));
   }
@@ -57,13 +62,13 @@ class FactorModel {
     return table(Factor::kG, spec_.table(Factor::kG, lobe, channel));
   }
 
-  // Parameters of one kind in parameters(): d, then s of each lobe, then each table.
+  // The parts of parameters(): d, s of each lobe, and each table, in order.
   struct Part {
     int begin, size;
   };
   std::vector<Part> Parts() const;
 
-  // Where a table starts in parameters().
+  // Offset of a table in parameters().
   int TableOffset(Factor factor, int index) const {
     return offset_[static_cast<int>(factor)] + index * spec_.table_size(factor);
   }
@@ -74,27 +79,26 @@ class FactorModel {
   std::vector<double> values_;
 };
 
-// Throws Error, with the place of the first that is not, unless all parameters are finite and >= 0.
+// Throws Error, naming the first bad parameter, unless all are finite and >= 0.
 void CheckParameters(const FactorModel& model);
 
-// Throws Error unless there are as many of these as the model has parameters.
+// Throws Error unless `coverage` has a value for each parameter of the model.
 void CheckCoverage(std::span<const double> coverage, const FactorModel& model);
 
-// How one direction pair reads the tables: the model's value is
-//   d + sum_m s (D . its stretch's stencil) (F . stencil) (G . theta_i) (G . theta_o) *
-//   inverse_cosines.
+// The table lookups of one direction pair. The model's value is
+//   d + sum_m s (D . its stretch's stencil) (F . stencil) (G . G_i) (G . G_o) * inverse_cosines.
 struct SampleStencils {
   Stencil D, F, G_i, G_o;
   std::vector<Stencil> more_D =
       {};  // where lobes are stretched differently: of the second stretch on
-  // 1 / (cos theta_i cos theta_o), splined as G is where that is a spline (docs/model.md).
+  // 1 / (cos theta_i cos theta_o); the cosines are splined if G is a spline (docs/model.md).
   double inverse_cosines = 0;
 
-  // By the number of the stretch among the distinct ones.
+  // The stencil of D for one of the distinct stretches.
   const Stencil& DOf(int stretch) const { return stretch == 0 ? D : more_D[stretch - 1]; }
 };
 
-// How ValueOf reads a model's tables at a sample; both outlive this.
+// Table reads of a model at a sample, for ValueOf. Keeps references to both.
 struct ModelReads {
   const FactorModel& model;
   const SampleStencils& at;
@@ -108,25 +112,25 @@ struct ModelReads {
   }
 };
 
-// Stencils at the centre of bin (h, d, p): D and F at their own bins (docs/model.md), a stretched
-// D, and tables of other bins than the grid's, between two. Throws Error for an anisotropic spec,
-// and where the grid has no such bin.
+// Stencils at the centre of bin (h, d, p). D and F read their own bins (docs/model.md), but are
+// interpolated if D is stretched or the tables' bins differ from the grid's. Throws Error for an
+// anisotropic spec and a bin outside the grid.
 SampleStencils GridStencils(const ModelSpec& spec, const MerlGrid& grid, int bin);
 
-// Stencils at any directions, as the axes have it (Axis::At). Angles without azimuths do for
-// isotropic specs only; Error for others.
+// Stencils at any directions, by Axis::At. HalfDiffAngles lack azimuths; Error for anisotropic
+// specs.
 SampleStencils ScatteredStencils(const ModelSpec& spec, const HalfDiffAngles& angles);
 SampleStencils ScatteredStencils(const ModelSpec& spec, const SphericalAngles& angles);
 
-// The sum above, of one channel [1/sr]: what E compares with the measurement. Where the spline
-// through G undershoots, it may be negative.
+// The sum above for one channel [1/sr], which E compares with the measurement. It may be negative
+// where the spline of G undershoots.
 double UnclampedValue(const FactorModel& model, const SampleStencils& stencils, int channel);
 
-// BRDF [1/sr]: the same, but 0 where that is negative.
+// BRDF [1/sr]: the same, clamped at 0.
 Rgb EvaluateAt(const FactorModel& model, const SampleStencils& stencils);
 
-// BRDF [1/sr] for any pair of directions, x being where an anisotropic material's azimuths begin; 0
-// where either is below the surface. Throws Error where one is not a number.
+// BRDF [1/sr] for a pair of directions; x is the origin of azimuths. 0 if either is below the
+// surface. Throws Error for NaN.
 Rgb Evaluate(const FactorModel& model, const DirectionPair& directions);
 
 }  // namespace trilobe

@@ -8,18 +8,18 @@
 
 // The formula of the model,
 //   rho_C = d_C + sum_m s_C^m D^m F_C G^m(wi) G^m(wo) / (cos theta_i cos theta_o)   (paper eq. 3),
-// for numbers of any type, such as double and ceres::Jet, and however tables are shared and read.
+// for any number type, such as double and ceres::Jet, and any sharing and lookup of tables.
 namespace trilobe {
 
-// A lobe's share of a channel, with G for G(wi) G(wo) / (cos theta_i cos theta_o), multiplied from
-// left to right. It is linear in each factor: its derivative is the product with 1 in the place of
-// that factor.
+// The value of a lobe in a channel, where G is G(wi) G(wo) / (cos theta_i cos theta_o), multiplied
+// from left to right. It is linear in each factor: the derivative by a factor is the product with 1
+// in its place.
 template <typename S, typename TableOfD, typename TableOfF, typename Shadow>
 auto LobeValue(const S& s, const TableOfD& D, const TableOfF& F, const Shadow& G) {
   return s * D * F * G;
 }
 
-// G in three factors, each of which multiplies what is before it.
+// G as three factors, which multiply a product one after the other.
 struct Shadowing {
   double i = 0, o = 0;  // G(wi), G(wo)
   double inverse_cosines = 0;
@@ -29,8 +29,8 @@ struct Shadowing {
   }
 };
 
-// The values of a sample in all channels. `reads` reads its tables by lobe and channel: s(m, c),
-// D(m, c), F(m, c) and G(m, c), which LobeValue multiplies. What channels share is read once.
+// The values of a sample in all channels. `reads` provides s(m, c), D(m, c), F(m, c) and G(m, c) of
+// lobe m and channel c, for LobeValue. Tables shared by channels are read once.
 template <typename T, typename Reads>
 std::array<T, kChannels> ValueOf(const ModelSpec& spec, const std::array<T, kChannels>& d,
                                  const Reads& reads) {
@@ -49,7 +49,7 @@ std::array<T, kChannels> ValueOf(const ModelSpec& spec, const std::array<T, kCha
   return rho;
 }
 
-// The same in one channel.
+// The same for one channel.
 template <typename T, typename Reads>
 T ValueOf(const ModelSpec& spec, const T& d, const Reads& reads, int channel) {
   T rho = d;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// The change of E at delta, counted as a decrease only where it exceeds the rounding error of its
-// own terms: candidates at a distance are compared with what stands by more than noise.
+// The change of E at delta. A decrease counts only if it exceeds the rounding error of its own
+// terms, so that distant candidates are compared by more than noise.
 double SafeChange(const ElementQuartic& q, double delta) {
   const double a = std::abs(delta);
   const double terms =

@@ -12,8 +12,8 @@ namespace trilobe {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-// Far above the rounding error of H, so that directions in which that is flat stay put, and too
-// small to slow the others.
+// Far above the rounding error of H, so that flat directions do not move, and too small to slow
+// other directions.
 constexpr double kPenalty = 0x1p-30;
 
 // No allocations: there are thousands of these small problems in a sweep.
@@ -32,8 +32,8 @@ class ActiveSet {
     for (int k = 0; k < h.size(); ++k) free_[k] = lower[k] < 0;
   }
 
-  // The value falls from one minimum over free unknowns to the next, so that no set of them comes
-  // twice; the limit is for rounding and ties.
+  // The value decreases from one minimum over the free unknowns to the next, so no set of them
+  // recurs; the limit guards against rounding and ties.
   Vector Solve() {
     for (int step = 0; step < 4 * h_.size() + 4; ++step) {
       if (MoveToFreeMinimum() && !FreeOne()) break;
@@ -42,8 +42,8 @@ class ActiveSet {
   }
 
  private:
-  // Goes towards the minimum over the free unknowns; those that meet their bound on the way stay
-  // there, and the way ends. True if it was reached.
+  // Moves towards the minimum over the free unknowns until one reaches its bound, where it is then
+  // held. True if the minimum was reached.
   bool MoveToFreeMinimum() {
     const int n = static_cast<int>(h_.size());
     int index[kMaxNonnegativeUnknowns], count = 0;
@@ -77,7 +77,7 @@ class ActiveSet {
     return false;
   }
 
-  // Frees the unknown at its bound whose rise lowers the value most; false if there is none.
+  // Frees the bounded unknown whose increase lowers the value most; false if there is none.
   bool FreeOne() {
     const Vector descent = h_ - C_ * delta_;
     const Vector rounding = 4 * kEpsilon * (h_.cwiseAbs() + C_.cwiseAbs() * delta_.cwiseAbs());
@@ -98,7 +98,7 @@ class ActiveSet {
   bool free_[kMaxNonnegativeUnknowns] = {};
 };
 
-// True where the change is a decrease by more than the rounding errors of its own terms and of g.
+// True if the decrease exceeds the rounding errors of its own terms and of g.
 bool Lowers(const ConstMatrix& H, const ConstVector& g, double E, const Vector& delta) {
   double change = 0, terms = 0;
   for (int k = 0; k < delta.size(); ++k) {
@@ -130,7 +130,7 @@ void SolveNonnegativeLeastSquares(std::span<const double> H_values,
   const int n = static_cast<int>(x.size());
   const ConstMatrix H(H_values.data(), n, n);
   const ConstVector g(g_values.data(), n);
-  // In units in which the diagonal of H is 1. Unknowns that E does not depend on are held.
+  // Scaled so that the diagonal of H is 1. Unknowns without influence on E are held.
   Matrix C(n, n);
   Vector scale(n), h(n), lower(n);
   for (int k = 0; k < n; ++k) {

@@ -13,24 +13,24 @@ namespace trilobe {
 // channel.
 inline constexpr int kMaxNonnegativeUnknowns = 9;
 
-// How E changes when a few parameters x, in which it is quadratic, move by delta and all others
-// stay: exactly  E(x + delta) - E(x) = delta'H delta - 2 g'delta.
+// How E changes when a few parameters x, in which it is quadratic, move by delta and all others are
+// fixed: exactly  E(x + delta) - E(x) = delta'H delta - 2 g'delta.
 //
-// Puts x where that is lowest with x + delta >= 0: non-negative least squares by an active set that
-// starts at x (Lawson and Hanson 1974, chapter 23; Bro and de Jong 1997). H is symmetric and
-// positive semidefinite; in directions in which E is flat, x stays: delta has a penalty of 2^-30 of
-// the diagonal of H. H: [x.size()][x.size()], g: [x.size()].
+// Moves x to the minimum subject to x + delta >= 0: non-negative least squares by an active set
+// that starts at x (Lawson and Hanson 1974, chapter 23; Bro and de Jong 1997). H is symmetric and
+// positive semidefinite; a penalty on delta of 2^-30 of the diagonal of H keeps x in place in flat
+// directions. H: [x.size()][x.size()], g: [x.size()].
 //
-// E does not rise by more than rounding. `E` is that of the residuals that g was summed from, so
-// that g_k may be off by 2 epsilon sqrt(E H_kk). In flat directions that alone promises decreases,
-// and raises E instead: those of less than (4 epsilon)^2 E / 2^-30 are not believed. There, and
-// where an x would pass kMaxParameter, the parameters go to their best places one by one instead
+// E does not rise by more than rounding. `E` is the value of the residuals from which g was summed,
+// so g_k has an error of up to 2 epsilon sqrt(E H_kk). In flat directions this error can predict
+// decreases although E rises; predictions below (4 epsilon)^2 E / 2^-30 are therefore rejected.
+// Then, and if an x would exceed kMaxParameter, the parameters are minimised one by one instead
 // (BestElement).
 void SolveNonnegativeLeastSquares(std::span<const double> H, std::span<const double> g, double E,
                                   std::span<double> x);
 
-// The same for elements wherever they stand, one of them by BestElement: moves them, and says by
-// how much. False if none moved. H, g, E as above. steps: [elements.size()].
+// The same for elements anywhere in memory; a single one uses BestElement. Moves them and returns
+// their steps. False if none moved. H, g, E as above. steps: [elements.size()].
 inline bool MoveToMinimum(std::span<const double> H, std::span<const double> g, double E,
                           std::span<double* const> elements, double* steps) {
   const size_t size = elements.size();

@@ -15,25 +15,24 @@
 
 #include "trilobe/core/base/error.h"
 
-// In the place of OpenBLAS's own function, which asks the environment: how many threads it has. It
-// calls this when it is loaded, and would start as many as there are processors. They would have
-// nothing to do; but where their memory lacks they never end, nor does the program, which waits for
-// them at its end. It must be among the dynamic symbols of a program (src/CMakeLists.txt). Weak, as
-// a static OpenBLAS brings its own.
+// Replaces OpenBLAS's own function, which reads the number of threads from the environment when it
+// is loaded and otherwise starts one per processor. These threads would have no work; but if their
+// memory is short they never end, and the program waits for them at exit. Must be among the dynamic
+// symbols of a program (src/CMakeLists.txt). Weak, as a static OpenBLAS has its own.
 extern "C" [[gnu::weak, gnu::used]] int openblas_num_threads_env() { return 1; }
 
 namespace trilobe {
 namespace {
 
-// A function of OpenBLAS, null where BLAS is another one, or lacks it.
+// A function of OpenBLAS; null for other BLAS libraries, or if it does not exist.
 template <typename Function>
 Function* OfOpenBlas(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
 }
 
-// OpenBLAS takes a processor that is newer than itself for one of 2004 (Debian's 0.3.21 does so
-// with Intel's of 2023), whose kernels are a quarter as fast. The kernels for what the processor
-// says that it has, or null.
+// OpenBLAS treats a processor newer than itself as one of 2004 (Debian's 0.3.21 does so with
+// Intel's of 2023), whose kernels are a quarter as fast. Returns kernels that fit the processor's
+// features, or null.
 const char* BetterKernels() {
 #if defined(__x86_64__)
   auto* const name = OfOpenBlas<char*()>("openblas_get_corename");
@@ -50,16 +49,16 @@ const char* BetterKernels() {
   return nullptr;
 }
 
-// Threads are ours, and bits must not hang on how many OpenBLAS has: one. Before main, since Ceres
-// calls BLAS, too. True where OpenBLAS is built without threads: then it hands the same work space
-// to two callers at once (0.3.21 looks for a free one outside of its lock), whose results are
-// wrong.
+// Sets OpenBLAS to one thread: we have our own, and results must not depend on its number of
+// threads. Runs before main, since Ceres calls BLAS, too. True if OpenBLAS is built without
+// threads: it then gives concurrent callers the same work space (0.3.21 looks for a free one
+// outside its lock), so their results are wrong.
 const bool only_one_caller = [] {
   if (auto* const set = OfOpenBlas<void(int)>("openblas_set_num_threads")) set(1);
   auto* const quit = OfOpenBlas<void()>("gotoblas_dynamic_quit");
   auto* const init = OfOpenBlas<void()>("gotoblas_dynamic_init");
   if (const char* const kernels = BetterKernels(); kernels && quit && init) {
-    // It chooses its kernels once more, as its users would have it do.
+    // Repeats the choice of kernels, as its users can request.
     setenv("OPENBLAS_CORETYPE", kernels, /*overwrite=*/1);
     quit();
     init();
@@ -69,8 +68,7 @@ const bool only_one_caller = [] {
   return parallel != nullptr && parallel() == 0;
 }();
 
-// What each of the callers that OpenBLAS has at the same time needs, on all processors of 64 bits.
-// It is mapped when one is needed, and kept.
+// Work space of one caller on 64-bit processors. It is mapped when first needed, and kept.
 constexpr size_t kWorkSpace = size_t{128} << 20;
 
 bool CanMap(size_t size) {
@@ -81,10 +79,9 @@ bool CanMap(size_t size) {
   return true;
 }
 
-// Without memory for another work space, OpenBLAS tries for ever. So it is made to map those that
-// there will be before its first call, as many as there are processors, and no more may call at
-// the same time: how many that is. None where there is no memory for one; the others leave plenty
-// to others.
+// Without memory for another work space, OpenBLAS retries forever. So all work spaces, one per
+// processor, are mapped before its first call, and no more callers may be active at a time. Returns
+// their number; 0 if memory is short for even one. Ample memory is left for other uses.
 int MapWorkSpaces() {
   if (only_one_caller) return 1;
   auto* const take = OfOpenBlas<void*(int)>("blas_memory_alloc");

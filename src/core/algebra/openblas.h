@@ -3,10 +3,10 @@
 
 namespace trilobe {
 
-// To be held while BLAS or LAPACK is called, and not twice by one thread. Where BLAS is OpenBLAS, a
-// program that links this has one thread of it, and kernels with the vectors that its processor has
-// (openblas.cc). Waits while as many call as can at the same time: no fewer than there are
-// processors, unless memory lacks. Throws Error where it lacks for a single call.
+// Must be held while BLAS or LAPACK is called, once per thread. With OpenBLAS, a program that links
+// this file uses one BLAS thread, and kernels for its processor's vectors (openblas.cc). Waits
+// while the maximum number of callers is active: at least the number of processors unless memory is
+// short. Throws Error if memory is too short for a single call.
 class BlasCall {
  public:
   BlasCall();

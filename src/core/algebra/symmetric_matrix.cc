@@ -43,7 +43,7 @@ void SolveTriangular(const char* trans, int n, int first, const double* L, int c
           B + first, &stride, &info);
 }
 
-// Below this tiles are not worth their while.
+// Below this size tiles do not pay.
 constexpr int kMinTiled = 1024;
 constexpr int kTile = 80;
 
@@ -56,7 +56,7 @@ bool AnyNot0(int rows, int columns, size_t stride, const double* A) {
   return false;
 }
 
-// The lower triangle of a matrix in tiles, and which of them have any numbers in them.
+// The lower triangle of a matrix in tiles, and which of these are not 0.
 class Tiles {
  public:
   Tiles(int n, double* A) : n_(n), A_(A), full_((n + kTile - 1) / kTile) {
@@ -72,8 +72,8 @@ class Tiles {
     return A_ + static_cast<size_t>(j) * kTile * n_ + static_cast<size_t>(i) * kTile;
   }
 
-  // Those of a column below the diagonal that are not all 0, in L as well: what a column takes from
-  // those right of it fills these, wherever both of two are among its own.
+  // The nonzero tiles of column k of L below the diagonal. Its update of the columns to its right
+  // fills the tiles at the intersections of its rows.
   std::vector<int> Below(int k) {
     std::vector<int> below;
     for (int i = k + 1; i < count(); ++i) {
@@ -90,11 +90,11 @@ class Tiles {
   std::vector<std::vector<bool>> full_;  // by column and row
 };
 
-// Left-looking, a column of tiles at a time: from it is taken what those left of it ask, one after
-// the other from left to right, whatever the number of threads; then it is factored. Tiles that are
-// 0, and stay so, are left out. A column is one item of ParallelFor, which must not throw: it waits
-// for those left of it, that were begun before. It waits busily, since there are some fifty waits
-// in some milliseconds.
+// Left-looking factorisation by columns of tiles. A column is updated by those to its left, in
+// order from left to right for any number of threads, and then factored. Tiles that stay 0 are
+// skipped. A column is one item of ParallelFor, which must not throw: it waits for the columns to
+// its left, which started earlier. It waits actively, since there are some fifty waits in a few
+// milliseconds.
 class FactorizationByTiles {
  public:
   FactorizationByTiles(int n, double* A) : n_(n), tiles_(n, A), done_(tiles_.count()) {
@@ -117,14 +117,14 @@ class FactorizationByTiles {
   }
 
  private:
-  // Column j from row j on, less what the tiles [j, ...) of column k make.
+  // Subtracts the update by tiles [j, ...) of column k from column j, from row j on.
   void TakeFrom(int j, int k, std::span<const int> rows) {
     const double one = 1, minus_one = -1;
     const int columns = tiles_.size(j), width = tiles_.size(k);
     const BlasCall call;
     dsyrk_("L", "N", &columns, &width, &minus_one, tiles_.at(j, k), &n_, &one, tiles_.at(j, j),
            &n_);
-    // Those below it in one call for each run of tiles that follow each other.
+    // The tiles below it, in one call for each run of consecutive ones.
     for (size_t t = 1; t < rows.size();) {
       const int begin = rows[t];
       int end = begin + 1;
@@ -185,7 +185,7 @@ void SolveLowerTransposed(int n, const double* L, double* b) {
   SolveTriangular("T", n, 0, L, 1, b);
 }
 
-// In blocks that fit into the cache, of which a row is one thread's.
+// In blocks that fit into the cache; each thread mirrors a row of blocks.
 void MirrorTriangle(Triangle from, size_t n, double* A, int num_threads) {
   constexpr size_t kBlock = 16;
   ParallelFor(static_cast<int>((n + kBlock - 1) / kBlock), num_threads, [&](int row) {

@@ -6,14 +6,13 @@
 
 namespace trilobe {
 
-// By LAPACK, for matrices of a few hundred rows, and by tiles for some thousand. May be called from
-// any number of threads at once (openblas.h). Matrices are stored column by column.
+// By LAPACK for matrices of a few hundred rows, and by tiles for a few thousand. Thread-safe
+// (openblas.h). Matrices are stored column by column.
 
-// Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; what lies
-// above is neither read nor written. False, and no factor, if it is not positive definite.
-// More than one thread helps with large ones; the same bits for any number of them. Of large ones,
-// tiles that are 0 in A and in L cost nothing: rows that have products with few others should come
-// first, and next to these.
+// Overwrites the lower triangle of a symmetric matrix [n][n] with its Cholesky factor L; the upper
+// triangle is neither read nor written. False, and no factor, if it is not positive definite. Large
+// matrices use several threads, with the same bits for any number. In these, tiles that are 0 in A
+// and L cost nothing: rows coupled to few others should come first, next to these.
 bool FactorCholesky(int n, double* A, int num_threads = 1);
 
 // Overwrites the factor L by both triangles of the inverse of L L'.
@@ -24,10 +23,10 @@ void InvertFactored(int n, double* L);
 void SolveLower(int n, const double* L, int columns, double* B, int first_row = 0);
 void SolveLowerTransposed(int n, const double* L, double* b);
 
-// Of a square matrix that is stored row by row, without the diagonal.
+// A triangle without the diagonal of a square matrix stored by rows.
 enum class Triangle { kUpper, kLower };
 
-// Makes A [n][n] symmetric: what is in one triangle goes to the other.
+// Makes A [n][n] symmetric by copying one triangle to the other.
 void MirrorTriangle(Triangle from, size_t n, double* A, int num_threads = 1);
 
 // Eigenvalues of a symmetric matrix [n][n] with finite entries, in ascending order, each to some n

@@ -1,14 +1,14 @@
 #ifndef TRILOBE_CORE_BASE_MULTIVERSION_H_
 #define TRILOBE_CORE_BASE_MULTIVERSION_H_
 
-// Before a function with a hot loop: compiles one copy for each vector width of x86-64, and picks
-// one when the program starts, so that one binary runs on any machine at its best. The copies give
-// the same bits, since no loop reassociates (sums keep 8 lanes whatever the width) and no
-// multiply-add is fused (-ffp-contract=off).
+// TRILOBE_MULTIVERSION, before a function with a hot loop, compiles one copy for each vector width
+// of x86-64 and selects one at program start, so that one binary is fast on any machine. All copies
+// give the same bits: no loop is reassociated (sums keep 8 lanes at any width) and no multiply-add
+// is fused (-ffp-contract=off).
 //
-// Sanitizers instrument the picking, which runs before they are ready: a single copy there. So it
-// is with clang, where the attribute is young. TRILOBE_WIDEST_VECTOR (CMake) leaves wide copies
-// out: what remains is what an older processor runs.
+// There is a single copy under sanitizers, which instrument the selection although it runs before
+// they are initialised, and under clang, whose support is recent. TRILOBE_WIDEST_VECTOR (CMake)
+// leaves out wide copies, to test what older processors run.
 #ifndef TRILOBE_WIDEST_VECTOR
 #define TRILOBE_WIDEST_VECTOR 512
 #endif
@@ -27,18 +27,17 @@
 
 #include <cstring>
 
-// For what such functions call: it must become part of each copy.
+// For functions called by multiversioned ones: they must be inlined into each copy.
 #define TRILOBE_ALWAYS_INLINE [[gnu::always_inline]] inline
 
 namespace trilobe {
 
-// Vectors of doubles that compile to whatever registers there are.
+// Vectors of doubles, compiled to the registers available.
 using Lanes4 = double __attribute__((vector_size(4 * sizeof(double))));
-// This one is for AVX-512: where no register holds it, gcc keeps it in memory, and takes up to
-// twelve times as long.
+// For AVX-512 only: without 512-bit registers gcc keeps it in memory, up to twelve times slower.
 using Lanes8 = double __attribute__((vector_size(8 * sizeof(double))));
 
-// The same for registers of four. Kernels on eight lanes are templates of the one or the other
+// Eight lanes in two vectors of four. Kernels on eight lanes are templates of Lanes8 or TwoLanes4
 // (TRILOBE_FOR_EIGHT).
 struct TwoLanes4 {
   Lanes4 low, high;
@@ -94,7 +93,7 @@ TRILOBE_ALWAYS_INLINE void StoreLanes(const TwoLanes4& from, double* target) {
   StoreLanes(from.low, target);
   StoreLanes(from.high, target + 4);
 }
-// Two vectors of four, one behind the other.
+// Concatenates two vectors of four.
 TRILOBE_ALWAYS_INLINE void Join(const Lanes4& low, const Lanes4& high, Lanes8* joined) {
   *joined = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
@@ -102,8 +101,8 @@ TRILOBE_ALWAYS_INLINE void Join(const Lanes4& low, const Lanes4& high, TwoLanes4
   *joined = {low, high};
 }
 
-// Returns kernel<Lanes>(arguments), a function that becomes part of its callers, from a copy for
-// the widest vectors that the processor has; as TRILOBE_MULTIVERSION, for kernels on eight lanes.
+// Like TRILOBE_MULTIVERSION, for kernels on eight lanes: returns kernel<Lanes>(arguments), inlined
+// into a copy for the widest vectors of the processor.
 #ifdef TRILOBE_HAS_COPIES
 #define TRILOBE_COPY_FOR(instructions, Lanes, kernel, ...)                                     \
   [&]() __attribute__((target(instructions), noinline)) { return kernel<Lanes>(__VA_ARGS__); } \
@@ -122,7 +121,7 @@ TRILOBE_ALWAYS_INLINE void Join(const Lanes4& low, const Lanes4& high, TwoLanes4
 #define TRILOBE_FOR_EIGHT(kernel, ...) return kernel<TwoLanes4>(__VA_ARGS__)
 #endif
 
-// y += a x, for `size` numbers in whole vectors of four.
+// y += a x for `size` numbers, a multiple of 4.
 TRILOBE_ALWAYS_INLINE void AddScaled(int size, double a, const double* x, double* y) {
   for (int k = 0; k < size; k += 4) {
     Lanes4 x_k, y_k;

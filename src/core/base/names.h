@@ -10,8 +10,8 @@
 
 namespace trilobe {
 
-// The entry of `choices` whose member `name` is `name`. Throws Error that lists the known names:
-// "unknown weighting 'x'; known: compressive, log".
+// The entry of `choices` whose member `name` equals `name`. If there is none, throws Error with the
+// known names: "unknown weighting 'x'; known: compressive, log".
 template <typename T>
 const T& FindNamed(std::string_view what, std::string_view name, const std::vector<T>& choices) {
   std::string known;
@@ -22,12 +22,11 @@ const T& FindNamed(std::string_view what, std::string_view name, const std::vect
   throw Error("unknown " + std::string(what) + " '" + std::string(name) + "'; known: " + known);
 }
 
-// How many insertions, deletions and replacements of a character make one name the other
+// Number of character insertions, deletions and replacements that turn one name into the other
 // (Levenshtein 1966).
 size_t EditDistance(std::string_view a, std::string_view b);
 
-// The one of `known`, which is not empty, that is the fewest edits away from
-// `name`; of several, the first.
+// The element of `known` (not empty) with the smallest edit distance to `name`; the first on ties.
 std::string_view NearestName(std::string_view name, const std::vector<std::string_view>& known);
 
 }  // namespace trilobe

@@ -14,7 +14,7 @@ namespace {
 using namespace std::string_view_literals;
 using Kind = Content::Kind;
 
-// Of what this program does not read.
+// Files that this program does not read.
 struct Signature {
   std::string_view begin;
   const char* name;
@@ -22,7 +22,7 @@ struct Signature {
 
 constexpr const char* kJsonInUtf16 = "a JSON file in UTF-16; save it as UTF-8";
 
-// The first that fits counts.
+// The first match counts.
 constexpr Signature kSignatures[] = {
     {"\xFF\xFE{\0"sv, kJsonInUtf16},
     {"\xFE\xFF\0{"sv, kJsonInUtf16},

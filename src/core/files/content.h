@@ -6,8 +6,8 @@
 
 namespace trilobe {
 
-// What a file holds, as far as its first bytes tell (64 are enough but for white space before
-// JSON). Measurements are for their formats to recognise.
+// The content of a file by its first bytes (64 suffice except for white space before JSON).
+// Measurements are recognised by their formats instead.
 struct Content {
   enum class Kind {
     kUnknown,
@@ -20,7 +20,7 @@ struct Content {
 };
 Content RecogniseContent(std::string_view bytes);
 
-// The first 256 bytes of a file, or all that it has; none where it is no file that can be read.
+// The first 256 bytes of a file, or fewer if it is shorter; none if it cannot be read as a file.
 std::string BeginningOf(const std::string& path);
 
 }  // namespace trilobe

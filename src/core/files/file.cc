@@ -45,8 +45,8 @@ class Descriptor {
   int fd_;
 };
 
-// Far above any file that this library knows (a MERL file has 35 MB), far below what would exhaust
-// a machine.
+// Far above any file that this library reads (a MERL file has 35 MB), far below the memory of a
+// machine.
 constexpr off_t kMaxFileSize = off_t{1} << 30;
 
 [[noreturn]] void FailToRead(const std::string& path, const std::string& reason) {
@@ -95,7 +95,7 @@ constexpr std::string_view kTemporaryMark = ".trilobe-tmp-";
 constexpr size_t kTemporaryDigits = 16;
 
 std::string TemporaryName(const std::filesystem::path& target) {
-  // So that the whole is no longer than a file's name may be.
+  // So that the whole name does not exceed the limit of file names.
   const std::string name = target.filename().string().substr(0, 200);
   return target.parent_path() / ("." + name + std::string(kTemporaryMark) + RandomDigits());
 }
@@ -108,9 +108,9 @@ bool IsTemporaryName(std::string_view name) {
              std::string_view::npos;
 }
 
-// A new file beside `target`, which vanishes when it goes out of scope unless it was renamed. It is
-// locked as long as its writer lives: by that, and not by a process number, which another container
-// may have as well, SweepTemporaryFiles knows what has been left behind.
+// A new file beside `target`, removed at the end of its scope unless it was renamed. It is locked
+// while its writer lives. SweepTemporaryFiles recognises abandoned files by the lock, since process
+// numbers may coincide between containers.
 class TemporaryFile {
  public:
   // ok() is false, with errno set, where none can be made.
@@ -122,7 +122,7 @@ class TemporaryFile {
       if (fd < 0 && errno == EEXIST) continue;
       file_ = Descriptor(fd);
       if (fd < 0) break;
-      // Where a file system knows no locks, nothing is swept either.
+      // Without locks in the file system, nothing is swept either.
       flock(fd, LOCK_EX);
       struct stat status {};
       if (fstat(fd, &status) == 0 && status.st_nlink > 0) return;
@@ -143,7 +143,7 @@ class TemporaryFile {
   }
   bool Write(std::string_view bytes) { return WriteAll(file_.get(), bytes); }
   bool RenameTo(const std::string& target) {
-    // Network file systems keep errors back until a descriptor is closed; the lock stays.
+    // Network file systems may report errors only when a descriptor is closed; the lock is kept.
     const int copy = dup(file_.get());
     if (copy < 0 || close(copy) != 0) return false;
     if (std::rename(path_.c_str(), target.c_str()) != 0) return false;
@@ -221,7 +221,7 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
   const std::string target = ResolveTarget(path);
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
-  stream.exceptions(std::ios::badbit);  // or memory that lacks were but a state of it
+  stream.exceptions(std::ios::badbit);  // so that lack of memory throws
   write(stream);
   if (!stream) FailToWrite(path, "its content could not be produced");
 
@@ -241,7 +241,7 @@ void CheckWritable(const std::string& path) {
   if (!std::filesystem::is_directory(target.parent_path(), error)) {
     FailToWrite(path, "'" + target.parent_path().string() + "' is not a directory");
   }
-  // As much as a model and its report take, so that a full disk is seen.
+  // The size of a model and its report, so that a full disk is detected.
   const std::string bytes(size_t{1} << 18, ' ');
   TemporaryFile file(target);
   file.Unlink();  // a signal may end the program at any time

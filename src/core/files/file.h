@@ -7,32 +7,34 @@
 
 namespace trilobe {
 
-// The bytes of a file. Throws Error: missing, a directory, unreadable, changed while read.
+// Returns the bytes of a file. Throws Error if it is missing, a directory, unreadable, or changes
+// while it is read.
 std::string ReadFile(const std::string& path);
 
-// 16 hexadecimal digits that nobody else has, for names.
+// 16 random hexadecimal digits, for unique names.
 std::string RandomDigits();
 
-// The ending of a file's name in lower case, as ".csv"; "" if it has none.
+// The extension of a file name in lower case, such as ".csv"; "" if it has none.
 std::string EndingOf(const std::string& path);
 
-// Writes a whole file or nothing: `write` fills a temporary file beside `path`, which is renamed
-// over it once every byte is on it. On any failure (also of `write` itself) the temporary file is
-// removed, an earlier file at `path` is left as it was, and Error says why ("No space left on
-// device"). `before_renaming` is called when the new file is whole but the old one still there.
+// Writes a file atomically: `write` fills a temporary file beside `path`, which replaces `path`
+// when complete. On any failure, including an exception from `write`, the temporary file is
+// removed, an existing file at `path` is unchanged, and Error gives the reason ("No space left on
+// device"). `before_renaming` is called when the new file is complete and before the old one is
+// replaced.
 void WriteFile(
     const std::string& path, const std::function<void(std::ostream&)>& write,
     const std::function<void()>& before_renaming = [] {});
 
-// Throws the Error that WriteFile would throw for this path, as far as can be known before there is
-// anything to write: makes and removes a temporary file, in the nearest folder that exists.
+// Throws the Error that WriteFile would throw for this path, as far as it can be known in advance.
+// It creates and removes a temporary file in the nearest existing parent folder.
 void CheckWritable(const std::string& path);
 
-// Removes the temporary files that killed runs have left in a folder, and none that a running one
-// still writes. What cannot be removed stays.
+// Removes temporary files left in a folder by killed runs, but not those of running ones. Ignores
+// files that it cannot remove.
 void SweepTemporaryFiles(const std::string& folder);
 
-// Makes a directory and its parents where they are missing. Throws Error.
+// Creates a directory and its missing parents. Throws Error on failure.
 void MakeDirectories(const std::string& path);
 
 }  // namespace trilobe

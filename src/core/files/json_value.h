@@ -8,10 +8,9 @@
 
 namespace trilobe {
 
-// Of the JSON files here the largest that means something is a model of 8 lobes whose 72 tables
-// differ, of 1024 entries each, all of them stored as nodes and listed as unobserved: 221,184
-// numbers, 2 MB on a line a table, 9 MB on a line a number. A scene has room for 150,000 single
-// directions; more of them are a histogram.
+// The largest useful JSON file here is a model of 8 lobes with 72 different tables of 1024 entries,
+// all stored as nodes and listed as unobserved: 221,184 numbers, 2 MB with a table per line, 9 MB
+// with a number per line. A scene can have 150,000 single directions; for more, use a histogram.
 inline constexpr size_t kMaxJsonBytes = size_t{1} << 24;
 inline constexpr size_t kMaxJsonValues = size_t{1} << 20;  // keys count, too
 
@@ -31,13 +30,13 @@ class JsonValue {
   Type type() const { return type_; }
   const char* type_name() const;  // "null", "boolean", "number", "string", "array", "object"
 
-  // Each for values of its type alone.
+  // Each requires a value of its type.
   bool boolean() const { return text_ == "true"; }
   double number() const;
   std::string_view number_text() const { return text_; }  // as it was written
   std::string string() const;
 
-  // Items of an array, or members of an object as they follow each other.
+  // The items of an array, or the members of an object in file order.
   size_t size() const { return type_ == Type::kObject ? parts_.size() / 2 : parts_.size(); }
   const JsonValue& operator[](size_t k) const {
     return type_ == Type::kObject ? parts_[2 * k + 1] : parts_[k];

@@ -10,7 +10,7 @@
 
 namespace trilobe {
 
-// A text, line by line, and where one is in it, for messages.
+// Reads a text line by line and tracks the position for messages.
 class TextLines {
  public:
   TextLines(std::string_view text, const std::string& source);

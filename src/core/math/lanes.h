@@ -13,13 +13,13 @@
 #include "core/base/multiversion.h"
 #include "trilobe/core/math/angles.h"
 
-// How vectors are returned depends on the registers that there are; but all of these functions
-// become part of their callers.
+// The calling convention of vectors depends on the registers available; but all these functions are
+// inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace trilobe {
 
-// Four numbers side by side, which compile to whatever vector registers there are.
+// A vector of four numbers, compiled to the vector registers available.
 template <typename Real>
 struct FourOf;
 template <>
@@ -67,10 +67,9 @@ TRILOBE_ALWAYS_INLINE Lanes SqrtOf(const Lanes& x) {
   return Lanes{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
 
-// Numbers in [0, 2^20] as whole parts k and rests, told as shares: such a number reads the share
-// `lower` of entry k of a table, and `upper` of the next one. Of a whole number, k may be one less,
-// and `upper` 1. By a sum so large that whole numbers are its last digits, which costs less than to
-// convert there and back.
+// Splits x in [0, 2^20], given x - 1/2, into an entry k = floor(x) of a table and the weights
+// `lower` of entry k and `upper` of the next. If x is an integer, k may be one less and `upper` 1.
+// Adding kLarge, whose last digit is 1, rounds to an integer faster than a conversion and back.
 template <typename Real>
 struct Parts {
   TRILOBE_ALWAYS_INLINE explicit Parts(const Four<Real>& less_half) {
@@ -88,8 +87,8 @@ struct Parts {
   typename FourOf<Real>::Digits digits;
 };
 
-// Arc functions of four numbers at once, by polynomials through Chebyshev points of what is
-// analytic up to an interval's length from it: the error falls by 5.8 a degree.
+// Arc functions of four numbers at once, by polynomials through Chebyshev points. The functions are
+// analytic up to an interval's length from it, so each degree reduces the error by a factor of 5.8.
 
 // asin(sqrt(m)) / sqrt(m) for m in [0, 1/2], within 5e-15; of floats 2e-8.
 template <typename Real>
@@ -125,8 +124,7 @@ struct ArcTangent<float> {
       0.042137623589193041, -0.015731249122183653, 0.002766283501762026};
 };
 
-// Of 8, 9, 16 or 17 terms, in steps few of which wait for each other
-// (Estrin's scheme).
+// For 8, 9, 16 or 17 terms, with few dependent steps (Estrin's scheme).
 template <size_t kSize, typename Number, typename Term>
 TRILOBE_ALWAYS_INLINE Number Polynomial(const Term& term, const Number& x) {
   static_assert(kSize == 8 || kSize == 9 || kSize == 16 || kSize == 17);
@@ -143,8 +141,8 @@ TRILOBE_ALWAYS_INLINE Number Polynomial(const Term& term, const Number& x) {
   return eight(0) + (eight(8) + term(16) * x8) * x8;
 }
 
-// Angles from 0 to 90 degrees by the squares of their sines [rad]. Near 0 these are as exact as the
-// squares are, where a cosine would say little. Relative error 6e-15, of floats 1e-6.
+// Angles in [0, 90] degrees from the squares of their sines [rad]. Near 0 they have the precision
+// of the squares, which a cosine would lose. Relative error 6e-15, of floats 1e-6.
 template <typename Real>
 TRILOBE_ALWAYS_INLINE Four<Real> AnglesOfSines2(const Four<Real>& sines2) {
   constexpr auto kTerms = ArcSine<Real>::kTerms;
@@ -168,8 +166,7 @@ TRILOBE_ALWAYS_INLINE Real AngleOfSine2(Real sine2) {
   return sine2 > Real{0.5} ? static_cast<Real>(kPi / 2) - angle : angle;
 }
 
-// From 0 to 180 degrees [rad]: cos x = 1 - 2 sin^2 (x / 2). What is beyond [-1, 1] by rounding is
-// at its end.
+// Angles in [0, 180] degrees from cosines [rad]: cos x = 1 - 2 sin^2 (x / 2). Clamped to [-1, 1].
 template <typename Real>
 TRILOBE_ALWAYS_INLINE Real AngleOfCosine(Real cosine) {
   return 2 * AngleOfSine2((1 - cosine) / 2);
@@ -192,7 +189,7 @@ TRILOBE_ALWAYS_INLINE Four<Real> Turns(const Four<Real>& x, const Four<Real>& y)
   return y < zero ? 1 - turns : turns;
 }
 
-// The sine of an angle in [0, pi] by its cosine; 0 where rounding has that beyond 1.
+// The sine of an angle in [0, pi] from its cosine; 0 if rounding takes that beyond 1.
 template <typename Real>
 inline Real SineOf(Real cosine) {
   return std::sqrt(std::max(1 - cosine * cosine, Real{0}));

@@ -6,14 +6,14 @@
 
 namespace trilobe {
 
-// The integral from 0 to t of the function that goes straight from `a` at 0 to `b` at 1.
+// The integral from 0 to t of the linear function that is `a` at 0 and `b` at 1.
 template <typename Real>
 Real LinearIntegral(Real t, Real a, Real b) {
   return t * (a + Real{0.5} * t * (b - a));
 }
 
-// The t in [0, 1] at which that integral is `value`, where a and b are >= 0: of the two forms of
-// the root the one that does not cancel. 0 where the function vanishes.
+// The t in [0, 1] at which that integral is `value`, for a, b >= 0, by the form of the root without
+// cancellation. 0 if the function vanishes.
 template <typename Real>
 Real InvertLinearIntegral(Real value, Real a, Real b) {
   const Real root = a + std::sqrt(std::max(a * a + 2 * value * (b - a), Real{0}));

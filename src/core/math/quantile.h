@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// The value below which a share, from 0 to 1, of some values lies: one of them, of which there is
-// one at least. Reorders them.
+// The quantile of some values, of which there must be at least one, for a share from 0 to 1; always
+// one of the values. Reorders them.
 inline double Quantile(std::vector<double>* values, double share) {
   const auto at = values->begin() +
                   static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size() - 1));

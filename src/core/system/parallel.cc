@@ -14,14 +14,14 @@
 namespace trilobe {
 namespace {
 
-// Threads that have nothing to do, shared by the jobs that run side by side.
+// Idle threads, shared by jobs that run side by side.
 class IdleThreads {
  public:
   explicit IdleThreads(int count) : count_(count) {}
 
   void Add(int count) { count_ += count; }
 
-  // Takes as many of `wanted` as there are.
+  // Takes as many of `wanted` as are idle.
   int Take(int wanted) {
     int there = count_, taken = 0;
     do {
@@ -34,7 +34,7 @@ class IdleThreads {
   std::atomic<int> count_;
 };
 
-// Those that may help this thread; null if it does not run a job.
+// The threads that may help this one; null outside a job.
 thread_local IdleThreads* helpers = nullptr;
 
 void RunOnThreads(int count, int num_threads, const std::function<void(int)>& work) {
@@ -59,7 +59,7 @@ void RunOnThreads(int count, int num_threads, const std::function<void(int)>& wo
     threads.reserve(num_threads - 1);
     try {
       for (int t = 1; t < num_threads; ++t) threads.emplace_back(run);
-    } catch (const std::system_error&) {  // no thread is left: those that there are do it all
+    } catch (const std::system_error&) {  // no more threads: the existing ones do all items
     }
     run();
   }
@@ -105,8 +105,8 @@ void ParallelJobs(int count, int num_threads, const std::function<void(int)>& wo
   CheckNumThreads(num_threads);
   CheckNotEmpty(work, "work");
   const int own = std::clamp(count, 0, num_threads);
-  // A job on one thread within another one shares its helpers. Otherwise there are but those that
-  // get no item.
+  // A single-threaded job inside another one shares its helpers. Otherwise the helpers are the
+  // threads without an item.
   IdleThreads spare(std::max(num_threads - own, 0));
   IdleThreads* const pool = helpers != nullptr && num_threads <= 1 ? helpers : &spare;
   const int threads = own + pool->Take(count - own);
@@ -114,8 +114,8 @@ void ParallelJobs(int count, int num_threads, const std::function<void(int)>& wo
   RunOnThreads(count, threads, [&](int i) {
     const AtExit done([&, outer = std::exchange(helpers, pool)] {
       helpers = outer;
-      // With fewer items left than threads, there is none for this one. The last to end is the one
-      // that the caller goes on with.
+      // With fewer items left than threads, this thread has no further item. The last to end
+      // continues as the caller's thread.
       const int now = --left;
       if (now > 0 && now < threads) pool->Add(1);
     });

@@ -18,19 +18,18 @@ class Stopwatch {
     return lap.count();
   }
 
-  // The same, without beginning anew.
+  // The same without restarting.
   double Seconds() const { return Stopwatch(*this).Lap(); }
 
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// The time now, ISO 8601: "2024-03-01T12:00:00Z".
+// The current time in ISO 8601: "2024-03-01T12:00:00Z".
 std::string UtcNow();
 
-// The most memory that this process has had resident so far [bytes], as Linux counts it for the
-// program that runs (VmHWM); nothing where it does not say. getrusage would count what the process
-// was before it became this program, too.
+// Peak resident memory of this process [bytes], from Linux's VmHWM; nothing if not available.
+// (getrusage also counts the process before exec.)
 std::optional<int64_t> PeakMemory();
 
 }  // namespace trilobe

@@ -13,7 +13,7 @@ Direction Turned(const Direction& w, double cos_phi, double sin_phi) {
   return {cos_phi * w[0] - sin_phi * w[1], sin_phi * w[0] + cos_phi * w[1], w[2]};
 }
 
-// Light along phi = 0 comes to it along `phi` [rad].
+// A rotated BRDF: azimuth 0 of the result is azimuth `phi` [rad] of `brdf`.
 BrdfFunction TurnedTo(double phi, const BrdfFunction& brdf) {
   if (phi == 0) return brdf;
   return [&brdf, c = std::cos(phi), s = std::sin(phi)](const DirectionPair& pair) {

@@ -20,8 +20,8 @@
 namespace trilobe {
 namespace {
 
-// The directions that a measurement speaks about. A bin whose centre is below the surface has no
-// sample of its own; the part of it that is above belongs to its neighbours.
+// The measured directions. A bin whose centre is below the surface has no sample; its part above
+// the surface belongs to its neighbours.
 class MeasuredDirections {
  public:
   explicit MeasuredDirections(const BrdfTable& table)
@@ -49,7 +49,7 @@ class MeasuredDirections {
   int num_left_out_ = 0;
 };
 
-// As a renderer would have it, whatever the function: no light is taken away.
+// Clamped at 0, as a renderer does.
 AngularBrdf Clamped(const AngularBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const HalfDiffAngles& angles, const Cosines& cosines) {
@@ -59,7 +59,7 @@ AngularBrdf Clamped(const AngularBrdf& brdf) {
   };
 }
 
-// Nothing where nothing was measured.
+// 0 at unmeasured directions.
 BrdfFunction OfMeasured(const AngularBrdf& brdf, const MeasuredDirections& counts) {
   return [&brdf, &counts](const DirectionPair& pair) {
     const HalfDiffAngles angles = ToHalfDiff(pair);
@@ -68,8 +68,8 @@ BrdfFunction OfMeasured(const AngularBrdf& brdf, const MeasuredDirections& count
   };
 }
 
-// At the centres of every few valid bins (offset 1/2), or at their upper corners (offset 1), where
-// all bins around them are valid.
+// At the centres of a subset of valid bins (offset 1/2), or at their upper corners (offset 1) if
+// all bins around these are valid.
 PointErrors CompareAtPoints(const BrdfTable& table, const std::vector<bool>& valid, double offset,
                             const AngularBrdf& measured, const AngularBrdf& fitted,
                             int num_threads) {
@@ -152,7 +152,7 @@ ImagePair RenderPair(const TabulatedBrdf& measured, const AngularBrdf& fitted, c
   return {std::move(spheres[0]), std::move(spheres[1])};
 }
 
-// Everything, measured or not; for `measured` what its table is filled with.
+// Marks all bins as measured, so that the authors' values count.
 BrdfTable AllMeasured(BrdfTable measured) {
   measured.unmeasured.clear();
   return measured;

@@ -10,7 +10,7 @@ namespace trilobe {
 // Luminance of linear sRGB colours (ITU-R BT.709).
 double Luminance(const Rgb& linear);
 
-// The sRGB curve (IEC 61966-2-1), input clipped to [0, 1]; in and out. And its inverse.
+// The sRGB curve (IEC 61966-2-1) and its inverse; the input is clipped to [0, 1].
 double EncodeSrgb(double linear);
 double LinearizeSrgb(double code);
 

@@ -23,8 +23,8 @@ double SmoothStep(double from, double end, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// A rectangle on the sphere of directions, soft at its rim: latitude and longitude of the middle
-// and half its sides [degrees].
+// A soft-edged rectangle on the sphere of directions: latitude and longitude of its centre and half
+// its sides [degrees].
 struct AreaLight {
   double latitude, longitude, half_height, half_width;
   Rgb radiance;
@@ -77,8 +77,9 @@ double RadicalInverse(unsigned n) {
   return inverse;
 }
 
-// Where a running sum (its total last) first exceeds a share of the total, with a fraction. The
-// fraction stays so far below 1 that rounding leads to no next entry, which may have no light.
+// Where a running sum (with its total last) first exceeds a share of the total, with the fraction
+// within the entry. The fraction stays far enough below 1 that rounding does not lead to the next
+// entry, which may have no light.
 double Find(const double* sums, int size, double share) {
   const double wanted = share * sums[size - 1];
   const int i =

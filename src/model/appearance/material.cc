@@ -10,9 +10,9 @@
 namespace trilobe {
 namespace {
 
-// An anisotropic model at angles, not at two vectors, as PreparedModel takes them: at the normal
-// each azimuth is a node of its own, and samples there say which. As ScatteredStencils has it, with
-// half of its arc functions: |wi + wo| = 2 cos theta_d.
+// An anisotropic model at angles, not vectors as in PreparedModel: at the normal, samples
+// distinguish nodes by their azimuth. Same as ScatteredStencils with half the arc functions: |wi +
+// wo| = 2 cos theta_d.
 Rgb EvaluateByAngles(const FactorModel& model, const SphericalAngles& at) {
   const ModelSpec& spec = model.spec();
   const DirectionPair pair = ToDirections(at);

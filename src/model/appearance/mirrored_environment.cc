@@ -12,12 +12,12 @@ constexpr int kSize = 512;       // pixels across the finest map
 constexpr int kSamples = 2;      // of the environment along each side of a pixel
 constexpr int kRings = 26;       // of half vectors
 constexpr double kAspect = 1.5;  // of a cell: along its ring over across it
-// Side of the square that a cell's mean is of, over that of its area: less shows a lamp in spots,
-// more carries light over the horizon.
+// Side of the square over which a cell is averaged, relative to a square of the cell's area. With
+// less, lamps show as spots; with more, light leaks over the horizon.
 constexpr double kBlur = 1.8;
 
-// The environment in the light's direction, nearest pixel. Beyond the rim of the disc the map goes
-// on where a path through the direction behind the object would.
+// The environment in the light's direction, nearest pixel. Beyond the rim of the disc, which is the
+// direction behind the object, the map continues on the opposite side.
 const Rgb& Reflected(const Environment& environment, double x, double y) {
   const double radius = std::hypot(x, y);
   if (radius > 1) {

@@ -12,25 +12,25 @@
 
 namespace trilobe {
 
-// The channels, and what else goes the same way, in the lanes of a vector.
+// The channels, and a fourth value that is summed with them, in the lanes of a vector.
 struct alignas(4 * sizeof(double)) Pixel {
   double lane[kChannels + 1] = {};
 };
 
-// An environment as the eye (kEye, +z) sees it in mirrors: by the normal h of the mirror, which
-// reflects the light from l = 2 (h z) h - z. (h_x, h_y) is a map of all l, a disc, that keeps
-// areas: d omega_l = 4 h_z d omega_h = 4 dh_x dh_y. So its pixels, and their means over 2 x 2, 4 x
-// 4, ... of them, each stand for the same solid angle.
+// An environment as the eye (kEye, +z) sees it in mirrors with normal h, which reflect the light
+// from l = 2 (h z) h - z. (h_x, h_y) maps all l to a disc and preserves areas: d omega_l = 4 h_z d
+// omega_h = 4 dh_x dh_y. So all pixels, and all means over 2 x 2, 4 x 4, ... of them, have the same
+// solid angle.
 class MirroredEnvironment {
  public:
   // Throws Error as CheckEnvironment does.
   explicit MirroredEnvironment(const Environment& environment);
 
-  // The mean radiance of what mirrors reflect whose normals are within a solid angle [sr] around
+  // The mean radiance reflected by mirrors whose normals are within a solid angle [sr] around
   // `half`, above the eye's horizon.
   Rgb Mean(const Direction& half, double solid_angle) const;
 
-  // The same, and its luminance, of `half` turned about the eye by 0, 1, ... quarters, from x
+  // The same with its luminance, for `half` rotated about the eye by 0, 1, ... quarter turns from x
   // towards y.
   template <int kTurns>
   void SetMeans(const Direction& half, double solid_angle, Four<double>* means) const;
@@ -46,9 +46,9 @@ class MirroredEnvironment {
   double finest_pixels_ = 0;   // the side of a square as wide as a mean over the area 1, in pixels
 };
 
-// Linear between the middles of pixels; x and y from -1 to 1. A quarter turn makes the row the
-// column, and the column the row counted from the other end; so the corners of the square around
-// (x, y) keep their weights, and the first one becomes the last.
+// Bilinear between pixel centres; x and y from -1 to 1. A quarter turn maps the row to the column,
+// and the column to the reversed row; so the corners of the square around (x, y) keep their
+// weights, and the first one becomes the last.
 template <int kTurns>
 TRILOBE_ALWAYS_INLINE void MirroredEnvironment::Level::AddAt(double x, double y, double share,
                                                              Four<double>* sums) const {
@@ -58,7 +58,7 @@ TRILOBE_ALWAYS_INLINE void MirroredEnvironment::Level::AddAt(double x, double y,
   const int c = std::min(static_cast<int>(column), last);
   const int r = std::min(static_cast<int>(row), last);
   const double s = column - c, t = row - r;
-  // Of the corners, from the upper left one clockwise.
+  // Of the corners, clockwise from the upper left.
   const double weights[] = {share * (1 - t) * (1 - s), share * (1 - t) * s, share * t * s,
                             share * t * (1 - s)};
   const int squares[] = {r * size + c, (last - c) * size + r, (last - r) * size + last - c,
@@ -87,14 +87,14 @@ TRILOBE_ALWAYS_INLINE void MirroredEnvironment::SetMeans(const Direction& half, 
   levels_[finer + 1].AddAt<kTurns>(half[0], half[1], t, means);
 }
 
-// A piece of the half vectors about a normal, which is z here.
+// A cell of half vectors about a normal, here z.
 struct HalfCell {
   Direction half{};
   double theta = 0, sine = 0;  // from the normal [rad]
   double solid_angle = 0;      // [sr]
 
-  // `half` about another normal, by the smallest turn that takes z there, which is no sudden one
-  // where the eye looks.
+  // `half` about another normal, by the smallest rotation from z to it; continuous where the eye
+  // looks.
   Direction HalfVectorAbout(const Direction& n) const {
     const double along = (n[0] * half[0] + n[1] * half[1]) / (1 + n[2]);
     return {half[0] - n[0] * along + n[0] * half[2], half[1] - n[1] * along + n[1] * half[2],
@@ -102,14 +102,14 @@ struct HalfCell {
   }
 };
 
-// The light that a mirror sends to the eye comes from there.
+// The direction from which a mirror reflects light to the eye.
 inline Direction MirroredEye(const Direction& half) {
   return {2 * half[2] * half[0], 2 * half[2] * half[1], 2 * half[2] * half[2] - 1};
 }
 
-// All half vectors in rings, narrow where highlights are, theta_h being in proportion to the power
-// 5/2 of a ring's number, and cut into a few cells each: what a picture of a material of any gloss
-// is summed over. Turned by a quarter about the normal they are the same.
+// All half vectors in rings, which are narrow in highlights (theta_h is proportional to the power
+// 5/2 of a ring's number) and divided into a few cells each. Images of a material of any gloss are
+// sums over them. A quarter turn about the normal maps the cells to themselves.
 const std::vector<HalfCell>& HalfCells();
 
 }  // namespace trilobe

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kOneStep = 1.0 / 255;  // of an 8-bit picture
 
-// The material where the measurement has values.
+// The material, restricted to measured directions.
 NodeBrdf AtNodesOf(const NodeBrdf& measured, const SphericalBrdf& brdf, int num_threads) {
   NodeTable table = measured.table();
   const int nodes = table.grid.nodes();
@@ -36,7 +36,7 @@ NodeBrdf AtNodesOf(const NodeBrdf& measured, const SphericalBrdf& brdf, int num_
   return NodeBrdf(std::move(table));
 }
 
-// As a renderer would have it, whatever the function: no light is taken away.
+// Clamped at 0, as a renderer does.
 SphericalBrdf Clamped(const SphericalBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
   return [&brdf](const SphericalAngles& at) {
@@ -53,7 +53,7 @@ BrdfFunction OfMeasured(const SphericalBrdf& brdf, const NodeBrdf& measured) {
   };
 }
 
-// At every few pairs of nodes, or half a step of all angles beyond them.
+// At a subset of pairs of nodes, or half a step of all angles beyond them.
 PointErrors CompareAtPoints(const NodeBrdf& measured, const SphericalBrdf& fitted, double steps,
                             int num_threads) {
   const HemisphereGrid& grid = measured.table().grid;
@@ -81,8 +81,8 @@ std::vector<RenderedImage> RenderMeasured(const NodeBrdf& measured,
       .counted;
 }
 
-// Of measured and fitted, on a small sphere: a cloth's formula takes a thousand times as long as a
-// table.
+// Compares measured and fitted on a small sphere: a cloth's formula is a thousand times slower than
+// a table.
 AppearanceReport::FromFormula CompareWithFormula(const NodeBrdf& measured,
                                                  std::span<const SphericalBrdf, 2> brdfs,
                                                  const BrdfFunction& formula,

@@ -14,17 +14,17 @@
 
 namespace trilobe {
 
-// Any model at all pairs of nodes of a grid, clamped at 0, as a measurement would give it. `source`
-// names it in messages. Throws Error if a value overflows.
+// A model at all pairs of nodes of a grid, clamped at 0, as a simulated measurement. `source` names
+// it in messages. Throws Error if a value overflows.
 Measurement ReconstructAtNodes(const FactorModel& model, const std::string& source,
                                const HemisphereGrid& grid);
 
-// Which of several models looks most like a measurement at nodes, between which nothing is known.
-// Interpolation between them is right where highlights are wide. Where they are narrow a good model
-// is nearer to the material than that, and one that looks like the interpolation is a bad one. How
-// far it is off can be told by a model that is about right: by the sphere of the model beside that
-// of its own values at the nodes, interpolated. So a pixel and channel where these differ by h, of
-// encoded values from 0 to 1, weighs 1 / (h^2 + (1/255)^2) in the mean of squares.
+// Selects the model that looks most like a measurement at nodes, whose values between nodes are
+// unknown. Interpolation is accurate for wide highlights. For narrow ones a good model is closer to
+// the material, and a model that looks like the interpolation is bad. An approximately right model
+// tells the interpolation's error: its sphere differs from that of its own interpolated node values
+// by h, per pixel and channel, in encoded values from 0 to 1. That pixel and channel then has
+// weight 1 / (h^2 + (1/255)^2) in the mean of squares.
 class NodeJudge {
  public:
   // `about_right`: a fit of the measurement.
@@ -35,7 +35,7 @@ class NodeJudge {
   double operator()(const SphericalBrdf& fitted) const;
 
  private:
-  // Of the pixels that count: the light, and what it is encoded to.
+  // The light of a material at the pixels that count, and its encoded values.
   std::vector<Rgb> RadianceOf(const SphericalBrdf& brdf) const;
   std::vector<Rgb> PictureOf(const SphericalBrdf& brdf) const;
 

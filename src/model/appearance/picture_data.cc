@@ -21,8 +21,8 @@ constexpr double kFilled = 0.6;   // of these; what is next to a gap would fill 
 
 constexpr int64_t kMostNodes = 3162;  // as of ParseHemisphereGrid
 
-// How many equal steps a range has of which these angles, in [0, range), are ends; 0 where there
-// are no two of them.
+// Number of equal steps of a range whose ends these angles, in [0, range), are; 0 if there is only
+// one.
 int StepsOf(std::vector<double> angles, double range) {
   constexpr double kSame = 1e-6;  // [rad]
   std::ranges::sort(angles);
@@ -78,7 +78,7 @@ std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
                                StepsOf(std::move(phis), 2 * kPi)};
   const int64_t nodes = int64_t{grid.thetas} * grid.phis;
   if (nodes < 1 || nodes > kMostNodes) return std::nullopt;
-  // Up to the last theta.
+  // Pairs up to the last theta.
   const double rings = std::round(scattered.max_theta / grid.ThetaStep()) + 1;
   const double pairs = rings * grid.phis * rings * grid.phis;
   if (scattered.samples.size() < pairs / 2) return std::nullopt;

@@ -11,34 +11,34 @@
 
 namespace trilobe {
 
-// Scattered samples of an isotropic material as a table, for pictures: the mean of those in each
-// bin of the finest of a few grids that has four times as many samples as bins, and at least one in
-// 60 % of the bins; the others are invalid. Nothing where samples are too few, as in car paints
-// that lack what was dark, or azimuths matter.
+// Scattered samples of an isotropic material as a table, for images. Bins hold the mean of their
+// samples; others are invalid. The grid is the finest of a few with four times as many samples as
+// bins and samples in at least 60 % of the bins. Nothing if samples are too few, as for car paints
+// without dark samples, or azimuths matter.
 std::optional<BrdfTable> TableOfSamples(const Measurement& scattered);
 
-// The grid at whose nodes anisotropic samples stand, at most one at each pair: that of their
-// smallest steps. Nothing unless they do, and at half of the pairs up to the last theta or more.
+// The grid with the steps of anisotropic samples. Nothing unless they are at its nodes, at most one
+// per pair, and at half or more of the pairs up to the last theta.
 std::optional<HemisphereGrid> GridOf(const Measurement& scattered);
 
-// What pictures of a measurement are made of: its table, or its values at the nodes of a grid.
-// Neither where scattered samples stand on none, which slices are made of.
+// The data for images of a measurement: its table, or its values at grid nodes. Other scattered
+// samples have neither, and are shown as slices.
 struct PictureData {
   const BrdfTable* table = nullptr;
-  const Measurement* scattered = nullptr;  // if there is neither
+  const Measurement* scattered = nullptr;  // set if there is neither
   std::optional<NodeBrdf> nodes = {};
-  BrdfFunction formula = nullptr;  // what the nodes were measured of, if known
+  BrdfFunction formula = nullptr;  // exact BRDF at the nodes, if known
 
   bool empty() const { return table == nullptr && !nodes; }
 };
 // Keeps a reference to the measurement.
 PictureData PictureDataOf(const Measurement& measurement);
 
-// Throws Error unless there is a table, and an isotropic material to show beside it.
+// Throws Error unless there is a table and `fitted` is isotropic.
 void CheckIsotropic(const PictureData& measured, const Material& fitted);
 
-// CompareAppearance of whichever there is. Throws Error for an anisotropic material beside a table,
-// which knows no azimuths, and where there is neither.
+// CompareAppearance of the table or nodes. Throws Error if there are neither, and for an
+// anisotropic material with a table, which has no azimuths.
 AppearanceReport CompareAppearance(const PictureData& measured, const Material& fitted,
                                    const AppearanceOptions& options);
 

@@ -10,8 +10,8 @@
 
 namespace trilobe {
 
-// What the pixels of a sphere have in common under a light, since the eye is in the same direction
-// (+z) from all of them.
+// Precomputed values of a light for all pixels of a sphere, whose direction to the eye is the same
+// (+z).
 struct PreparedLight {
   Direction half;    // between light and eye
   Direction across;  // half x light: at right angles to the plane of light and eye
@@ -29,13 +29,13 @@ inline PreparedLight Prepare(const Light& light) {
   return {half, across, std::atan2(sin_d, Dot(half, l)), sin_d};
 }
 
-// phi_d of light and eye over a surface, which is on the left of the plane of the two, seen from
-// the half vector towards the light, or else on its right.
+// phi_d of light and eye over a surface. `on_left`: the surface is left of the plane of light and
+// eye, seen from the half vector towards the light.
 inline double PhiDOver(const Cosines& cosines, double sin_h, double sin_d, bool on_left) {
   // cos theta_{i,o} = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
   const double b = 2 * sin_h * sin_d;
   const double cos_phi = b > 0 ? std::clamp((cosines.o - cosines.i) / b, -1.0, 1.0) : 1.0;
-  // phi_d below 0 is that of the exchanged directions, phi_d + pi.
+  // A phi_d below 0 becomes that of the exchanged directions, phi_d + pi.
   const double phi = AngleOfCosine(cos_phi);
   return on_left || phi == 0 ? phi : kPi - phi;
 }

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kTurns = 4;
 
-// Of the points of a sphere that quarter turns take to each other, the one that is right of the
-// middle and not below it; and the middle itself.
+// The points of one quadrant of a sphere, x > 0 and y >= 0, and its centre; quarter turns map them
+// to all others.
 std::vector<SurfacePoint> FirstQuarter(const View& sphere) {
   std::vector<SurfacePoint> quarter;
   for (const SurfacePoint& point : sphere.points) {
@@ -29,10 +29,10 @@ std::vector<SurfacePoint> FirstQuarter(const View& sphere) {
   return quarter;
 }
 
-// Turned by a quarter from x, to the right, towards y, upwards.
+// Rotated by a quarter turn from x, right, towards y, up.
 int Turned(int pixel, int size) { return (size - 1 - pixel % size) * size + pixel / size; }
 
-// The light of a cell that falls on a point and its turned ones.
+// The light from a cell at a point and at its rotated copies.
 struct CellLight {
   int point;
   bool counted;
@@ -40,11 +40,11 @@ struct CellLight {
   double scale;  // of the mean radiance: solid angle times cos theta_i
 };
 
-// Sums of radiance, and in the last lane of the luminance of the light alone, of each turn.
+// Sums of radiance for each turn; the last lane sums the luminance of the light.
 using Sums = std::array<Pixel, kTurns>;
 
-// Adds the light of a cell, by the values of the materials, at each light one after another and in
-// the last lane 1, to the sums [point][material]{of all, of what counts}.
+// Adds the light of a cell to the sums [point][material]{of all, of what counts}. `values` are
+// those of the materials at each light in turn, with 1 in the last lane.
 TRILOBE_MULTIVERSION void AddLights(const MirroredEnvironment& mirrored, double solid_angle,
                                     const std::vector<CellLight>& lights, const Pixel* values,
                                     int materials, Sums* sums) {
@@ -65,7 +65,7 @@ TRILOBE_MULTIVERSION void AddLights(const MirroredEnvironment& mirrored, double 
   }
 }
 
-// The sums of some points, as AddLights has them.
+// The sums of AddLights for some points.
 std::vector<Sums> SumsOf(std::span<const SurfacePoint> points, const MirroredEnvironment& mirrored,
                          std::span<const AngularBrdf> materials,
                          const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts) {
@@ -73,7 +73,7 @@ std::vector<Sums> SumsOf(std::span<const SurfacePoint> points, const MirroredEnv
   std::vector<Sums> sums(points.size() * count * 2);
   std::vector<CellLight> lights;
   std::vector<Pixel> values;
-  // Point by point within a cell: much of what is read of a table for it stays.
+  // All points for one cell at a time: they read nearby table entries, which stay cached.
   for (const HalfCell& cell : HalfCells()) {
     lights.clear();
     values.clear();
@@ -83,7 +83,7 @@ std::vector<Sums> SumsOf(std::span<const SurfacePoint> points, const MirroredEnv
       if (!(half[2] > 0)) continue;
       const Cosines cosines = CosinesOver(points[k], MirroredEye(half));
       if (!(cosines.i > 0)) continue;
-      // As AnglesOver has it, the light being the eye's mirror image at the half vector.
+      // As in AnglesOver; the light is the eye's mirror image at the half vector.
       const double sine2 = half[0] * half[0] + half[1] * half[1];
       const bool on_left = normal[1] * half[0] >= normal[0] * half[1];
       const HalfDiffAngles angles = {cell.theta, AngleOfSine2(sine2),

@@ -11,19 +11,18 @@
 
 namespace trilobe {
 
-// What Render makes, for pictures: under the environment itself instead of points that stand for
-// it, which a glossy material would show one by one. A pixel's light comes from all half vectors
-// about its normal (HalfCells), a cell's being the mean of the environment over the cell. So what
-// is seen is as smooth as the material is, and all materials have the same lights. The same bits
-// for any number of threads.
+// Renders images for display under the environment itself, instead of under drawn lights, which
+// glossy materials would show one by one. A pixel's light comes from all half vectors about its
+// normal (HalfCells), with the mean of the environment over each cell. So images are as smooth as
+// their material, and all materials have the same lights. The same bits for any number of threads.
 RenderedImages RenderUnder(const Environment& environment, const View& view,
                            std::span<const SphericalBrdf> materials,
                            const std::function<bool(const SphericalAngles&)>& counts,
                            int num_threads);
 
-// The same of isotropic materials on ViewSphere(size), much faster: turned by a quarter about the
-// eye's direction a sphere and its half vectors are what they were, and so are the angles between
-// them, so that a fourth of the pixels says what the materials are in all of them.
+// The same for isotropic materials on ViewSphere(size), much faster: a quarter turn about the eye's
+// direction maps the sphere and its half vectors to themselves and preserves all angles, so a
+// quarter of the pixels gives the materials' values at all of them.
 RenderedImages RenderSphereUnder(
     const Environment& environment, int size, std::span<const AngularBrdf> materials,
     const std::function<bool(const HalfDiffAngles&, const Cosines&)>& counts, int num_threads);

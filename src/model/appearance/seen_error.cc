@@ -18,8 +18,8 @@ Rgb Clipped(const Rgb& light) {
   return clipped;
 }
 
-// Of the square of how two colours differ, what more or less light does not mend: light times a
-// factor moves (L + 16, a, b), which are sums of cube roots, along a ray.
+// The fraction of the squared difference of two colours that scaling the light cannot correct.
+// Scaling moves (L + 16, a, b), which are sums of cube roots, along a ray.
 double ColorShare(const Lab& measured, const Lab& fitted) {
   const auto length = [](const Lab& lab) { return std::hypot(lab[0] + 16, lab[1], lab[2]); };
   const double difference = LabDifference(measured, fitted);
@@ -28,7 +28,7 @@ double ColorShare(const Lab& measured, const Lab& fitted) {
   return std::isfinite(along) ? std::max(1 - along * along, 0.0) : 0;
 }
 
-// [1 / luminance] The mean of the clipped luminances grows with it.
+// [1 / luminance] The mean clipped luminance increases with the exposure.
 double ExposureOf(const std::vector<double>& luminances) {
   const double largest = luminances.empty() ? 0 : std::ranges::max(luminances);
   if (!(largest > 0)) return 0;
@@ -79,7 +79,7 @@ void SeenErrorSum::Add(const Rgb& measured, const Rgb& fitted, bool grazing) {
   ++sum.pixels;
   sum.delta_e += difference;
   sum.squares += difference * difference;
-  // By the colour of the light, not of what is left of it where it is clipped: orange turns yellow.
+  // By the colour before clipping: clipping turns orange into yellow.
   sum.color_squares += difference * difference * ColorShare(ToLab(measured), ToLab(fitted));
   sum.lightness += lab_b[0] - lab_a[0];
 }

@@ -15,14 +15,14 @@ Visibility VisibilityOf(const SeenError& error) {
   return within(5, 10) ? Visibility::kVisible : Visibility::kPlain;
 }
 
-// How many times the mean difference elsewhere that of a place is.
+// The mean difference in a region over that elsewhere.
 double StandsOut(const SeenError& error, SeenPlace place) {
   const PlaceError& at = error.at(place);
   const double elsewhere = error.mean_delta_e - at.share * at.mean_delta_e;
   return elsewhere > 0 ? at.mean_delta_e * (1 - at.share) / elsewhere : 0;
 }
 
-// Where differences are larger by half than elsewhere, and enough to matter.
+// The region with differences at least half larger than elsewhere, and large enough to matter.
 SeenPlace PlaceOf(const SeenError& error) {
   constexpr double kMore = 1.5, kMatters = 0.2;
   SeenPlace place = SeenPlace::kRest;
@@ -36,7 +36,7 @@ SeenPlace PlaceOf(const SeenError& error) {
   return place;
 }
 
-// In one place, or in all.
+// In one region, or in all.
 Fault FaultAt(const SeenError& error, SeenPlace place) {
   constexpr double kMost = 0.5;
   PlaceError at = error.at(place);

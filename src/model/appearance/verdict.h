@@ -9,22 +9,21 @@
 
 namespace trilobe {
 
-// What a person would say who sees the fit beside its measurement, by the CIELAB difference of
-// 1976. Thresholds are those of the mean, and of what 95 % of the pixels stay below:
+// How visible the difference of a fit and its measurement is side by side, by the CIELAB difference
+// of 1976. Thresholds of the mean and of the 95th percentile over the pixels:
 //
-//   kNone     1, 2.3   1 is about the least that a trained eye tells apart of two patches side by
-//                      side; 2.3 is what is just noticeable by Mahy, Van Eycken and Oosterlinck,
+//   kNone     1, 2.3   1 is about the smallest difference of two patches side by side that a
+//                      trained eye sees; 2.3 is just noticeable: Mahy, Van Eycken and Oosterlinck,
 //                      Evaluation of Uniform Color Spaces, Color Research & Application 19(2), 1994
-//   kHardly   2.3, 5   from 5 on two patches pass for two colours: Mokrzycki and Tatol, Colour
+//   kHardly   2.3, 5   from 5 on patches are seen as two colours: Mokrzycki and Tatol, Colour
 //                      difference Delta E: a survey, Machine Graphics & Vision 20(4), 2011
 //   kVisible  5, 10
 //   kPlain    beyond
 //
-// They were measured of patches, not of spheres; docs/appearance.md has what pictures say of them.
+// The thresholds were measured on patches, not spheres; docs/appearance.md tests them on images.
 enum class Visibility { kNone, kHardly, kVisible, kPlain };
 
-// The place that differs most, where one stands out: kRest is all over.
-// What is wrong there, where the differences have something in common.
+// What is wrong in the region that differs most: `place`, or kRest if none stands out.
 enum class Fault { kDifferent, kTooDark, kTooBright, kWrongColor };
 
 struct Verdict {
@@ -42,7 +41,7 @@ std::string Words(const Verdict& verdict);
 std::string NameOf(Visibility visibility);  // "none", "hardly", "visible", "plain"
 std::string NameOf(Fault fault);            // "different", "too_dark", ...
 
-// What is known of a fit besides, on which advice depends.
+// Other facts about a fit, on which advice depends.
 struct FitFacts {
   bool interrupted = false;
   bool ended = true;  // the solver found what it looks for; false: a limit stopped it
@@ -57,15 +56,15 @@ struct FitFacts {
   double reach_beyond = 0;
 };
 
-// What to do about it, or to know; the first is the most urgent.
+// What to do or know, most urgent first.
 enum class Advice {
   kGoOn,          // it was interrupted
   kIterate,       // a limit stopped it
-  kAnisotropic,   // the form leaves the azimuth out
+  kAnisotropic,   // the form ignores azimuths
   kChooseSolver,  // another solver than the default one may be the limit
   kChooseForm,    // the form is the limit
-  kDataDiffer,    // what is left is in good part noise, or not reciprocal: no model follows it
-  kKeepWithin,    // what it says beyond the measured directions is not usable
+  kDataDiffer,    // the remaining error is largely noise or not reciprocal
+  kKeepWithin,    // it is unusable beyond the measured directions
 };
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts);
 std::string NameOf(Advice advice);  // "go_on", "iterate", ...

@@ -101,7 +101,7 @@ View ViewSphere(int size, int every) {
     const double z2 = 1 - x * x - y * y;
     if (!(z2 > 0)) continue;
     const Direction normal = {x, y, std::sqrt(z2)};
-    // (0, 1, 0) x normal; the poles are no pixels' middles that the eye sees.
+    // (0, 1, 0) x normal; no visible pixel's centre is at the poles.
     const double around = std::hypot(normal[0], normal[2]);
     const Direction tangent = {normal[2] / around, 0, -normal[0] / around};
     view.points.push_back({index, tangent, Cross(normal, tangent), normal});

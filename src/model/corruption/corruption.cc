@@ -90,7 +90,7 @@ void Corrupt(const std::vector<Corruption>& corruptions, uint64_t seed, int num_
              Measurement* measurement) {
   CheckNumThreads(num_threads);
   NotNull(measurement, "the measurement");
-  // Numbers of their own for each kind.
+  // Each kind has its own random numbers.
   constexpr uint64_t kStep = 0xd1342543de82ef95U;
   uint64_t stream = seed;
   for (const auto& [kind, strength] : corruptions) {

@@ -12,8 +12,8 @@
 namespace trilobe {
 namespace {
 
-// Calls change(signal, number) for each signal, rho cos theta_i of one channel; the number tells it
-// from others, for random numbers.
+// Calls change(signal, number) for each signal, rho cos theta_i of one channel; `number` is unique
+// to it, for random numbers.
 template <typename Change>
 void ForEachSignal(Readings* readings, const Change& change) {
   readings->ForEach([&](int j) {
@@ -125,7 +125,7 @@ void AddStrayLight(double strength, uint64_t /*seed*/, Readings* readings) {
 }
 
 void AddFlare(double strength, uint64_t /*seed*/, Readings* readings) {
-  // The largest signal of each degree of theta_i, which is about that of each direction of light.
+  // The largest signal per degree of theta_i, nearly one for each direction of light.
   constexpr int kDegrees = 90;
   std::array<Rgb, kDegrees> largest{};
   const auto degree_of = [&](int j) {
@@ -194,7 +194,7 @@ void LoseSide(double strength, uint64_t seed, Readings* readings) {
   readings->ForEach([&](int j) {
     const DirectionPair pair = readings->Directions(j);
     const bool left = pair.wi[0] * pair.wo[1] > pair.wi[1] * pair.wo[0];
-    // A bin stands for both sides, and for both orders of its directions: one of these is missing.
+    // A bin stands for both sides and both orders of its directions, one of which is missing.
     const Cosines cosines = readings->CosinesOf(j);
     const bool there = readings->folds_sides() ? cosines.i > cosines.o : left;
     if (there && UniformAt(seed, readings->number(j)) < strength) readings->Lose(j);

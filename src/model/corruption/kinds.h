@@ -5,11 +5,11 @@
 
 #include "model/corruption/readings.h"
 
-// Each kind of corruption, by what CorruptionKinds() has for its formula.
+// The kinds of corruption; CorruptionKinds() has their formulas.
 
 namespace trilobe {
 
-// Of single readings.
+// Faults of single readings.
 void AddNoise(double strength, uint64_t seed, Readings* readings);
 void AddDarkNoise(double strength, uint64_t seed, Readings* readings);
 void AddPhotonNoise(double strength, uint64_t seed, Readings* readings);
@@ -26,13 +26,13 @@ void MultiplyByCosine(double strength, uint64_t seed, Readings* readings);
 void BreakReciprocity(double strength, uint64_t seed, Readings* readings);
 void CastShadow(double strength, uint64_t seed, Readings* readings);
 
-// What is not measured.
+// Missing data.
 void LoseAtRandom(double strength, uint64_t seed, Readings* readings);
 void LoseCone(double strength, uint64_t seed, Readings* readings);
 void LoseBeyond(double strength, uint64_t seed, Readings* readings);
 void LoseSide(double strength, uint64_t seed, Readings* readings);
 
-// Readings of other directions than they are said to be.
+// Readings at other directions than recorded.
 void Tilt(double strength, uint64_t seed, Readings* readings);
 void ShiftOrigin(double strength, uint64_t seed, Readings* readings);
 void BlurByAperture(double strength, uint64_t seed, Readings* readings);

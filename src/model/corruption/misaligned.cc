@@ -11,13 +11,13 @@
 namespace trilobe {
 namespace {
 
-// Turned from z towards x.
+// Rotated from z towards x.
 Direction Turned(const Direction& w, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * w[0] + s * w[2], w[1], c * w[2] - s * w[0]};
 }
 
-// Each reading is that of other directions than it says, by the cosine that it says.
+// Replaces each reading by that of moved directions, divided by the recorded cosine.
 void ReadElsewhere(Readings* readings,
                    const std::function<DirectionPair(const DirectionPair&)>& move) {
   const Readings::Between between = readings->ReadBetween();
@@ -38,7 +38,7 @@ void ReadElsewhere(Readings* readings,
 void Tilt(double strength, uint64_t /*seed*/, Readings* readings) {
   if (strength == 0) return;
   const double angle = DegreesToRadians(strength);
-  // The normal leans towards x: in its frame all directions lean the other way.
+  // The normal leans towards x: in its frame, all directions lean the other way.
   ReadElsewhere(readings, [&](const DirectionPair& pair) {
     return DirectionPair{Turned(pair.wi, -angle), Turned(pair.wo, -angle)};
   });
@@ -54,7 +54,7 @@ void ShiftOrigin(double strength, uint64_t /*seed*/, Readings* readings) {
 
 void BlurByAperture(double strength, uint64_t /*seed*/, Readings* readings) {
   if (strength == 0) return;
-  // Rings of a disc, each of which a point stands for that has the same area.
+  // Points at the middle of rings of equal area of a disc.
   struct Point {
     double radius, azimuth;
   };
@@ -79,7 +79,7 @@ void BlurByAperture(double strength, uint64_t /*seed*/, Readings* readings) {
     Rgb sum{};
     int seen = 0;
     for (const Point& point : points) {
-      // About the normal, and from there to wo.
+      // Around the normal, and from there to wo.
       const Direction near =
           Turned(ToDirection({.theta = radius * point.radius, .phi = point.azimuth}), at.theta);
       const std::optional<Rgb> rho =

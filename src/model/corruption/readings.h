@@ -12,15 +12,15 @@
 
 namespace trilobe {
 
-// The valid samples of a measurement as an instrument read them, to be changed. What it sees is the
-// signal, rho cos theta_i: a lit surface is darker where light comes at a slant.
+// The valid samples of a measurement as raw readings, to be modified. An instrument sees the signal
+// rho cos theta_i, which is smaller for oblique light.
 class Readings {
  public:
-  // Keeps references to both until it is gone.
+  // Keeps a reference to `measurement`.
   Readings(Measurement* measurement, int num_threads);
 
   int size() const { return static_cast<int>(rho_.size()); }
-  // Of the bin or sample: a counter for random numbers, the same whatever else is valid.
+  // Number of the bin or sample: a counter for random numbers that does not depend on validity.
   uint64_t number(int j) const { return table() ? bins_[j] : j; }
 
   const Rgb& rho(int j) const { return rho_[j]; }
@@ -28,28 +28,27 @@ class Readings {
   bool lost(int j) const { return lost_[j] != 0; }
   void Lose(int j) { lost_[j] = 1; }
 
-  // A table has one bin for both sides of the plane of incidence.
+  // Whether one bin stands for both sides of the plane of incidence, as in a table.
   bool folds_sides() const { return table(); }
 
-  // The directions; those of a table, which knows no azimuths, with phi_i = 0.
+  // The directions; phi_i = 0 in a table, which has no azimuths.
   DirectionPair Directions(int j) const;
   Cosines CosinesOf(int j) const;
   double ThetaD(int j) const;
 
-  // Of the mean over the channels; 0 of a black measurement.
+  // Median signal, mean over the channels; 0 for a black measurement.
   double MedianSignal() const;
-  // Of all channels.
+  // Largest signal of all channels.
   double LargestSignal() const;
 
-  // BRDF between samples, as it was before any was changed; nothing where a direction is below the
-  // surface.
+  // The unmodified BRDF, interpolated between samples; nothing if a direction is below the surface.
   using Between = std::function<std::optional<Rgb>(const DirectionPair&)>;
   Between ReadBetween() const;  // throws Error where the data do not allow it
 
   // Calls work(j) for each sample, from several threads.
   void ForEach(const std::function<void(int)>& work) const;
 
-  // Writes what was changed into the measurement.
+  // Writes the changes into the measurement.
   void Store();
 
  private:

@@ -13,12 +13,12 @@
 namespace trilobe {
 namespace {
 
-// Of the half vectors, at least so much is drawn by the cosine, too, lest something that the table
-// has no node at is never drawn: of what the lobes reflect.
+// Minimum probability of the cosine, as a fraction of the lobes' light, so that directions missed
+// by the table's nodes are still sampled.
 constexpr double kCosineShare = 0.01;
 
-// The azimuth between the half vector and wi up to which wo is above the surface, for
-//   0 < cos theta_o = 2 (wi . h) cos theta_h - cos theta_i. [rad]
+// The azimuth [rad] between half vector and wi up to which wo is above the surface:
+//   0 < cos theta_o = 2 (wi . h) cos theta_h - cos theta_i.
 template <typename Real>
 Real MaxPhi(Real cos_i, Real sin_i, Real cos_h, Real sin_h) {
   const Real denominator = 2 * sin_h * cos_h * sin_i;
@@ -31,8 +31,8 @@ Real MaxPhi(Real cos_i, Real sin_i, Real cos_h, Real sin_h) {
   throw Error("the model's values overflow; its factors are too large");
 }
 
-// Of many samples, so many go from step to step together: a processor does the same step of some at
-// once, where it waits from step to step of one.
+// Block size for many samples: the steps of independent samples overlap in the processor, while
+// those of one sample wait for each other.
 constexpr size_t kBlock = 32;
 
 void CheckAsMany(size_t wi, size_t others, size_t results) {
@@ -42,7 +42,7 @@ void CheckAsMany(size_t wi, size_t others, size_t results) {
               " results; give as many of each");
 }
 
-// Above the surface, and a number.
+// Above the surface and not NaN.
 template <typename Vector>
 bool IsAbove(const Vector& w) {
   return w[2] > 0 && std::isfinite(w[0]) && std::isfinite(w[1]) && std::isfinite(w[2]);
@@ -55,7 +55,7 @@ auto MeanOf(const Colour& colour) {
 
 }  // namespace
 
-// theta_i closer together towards grazing, where the lobes change most.
+// Nodes of theta_i, denser towards grazing, where lobes change most.
 template <typename Real>
 struct Bsdf<Real>::Nodes : HalfVectorTable<Real>::Nodes {
   explicit Nodes(const ModelSpec& spec) {
@@ -144,7 +144,7 @@ typename Bsdf<Real>::Incident Bsdf<Real>::Prepare(const Vector& wi) const {
   const bool at_normal = !(incident.sin > static_cast<Real>(1e-9));
   incident.cos_phi = at_normal ? Real{1} : wi[0] / incident.sin;
   incident.sin_phi = at_normal ? Real{0} : wi[1] / incident.sin;
-  // No half vector further than half of theta_i + 90 degrees has a wo above the surface.
+  // Half vectors beyond half of theta_i + 90 degrees have no wo above the surface.
   const Real phi_i =
       anisotropic() ? std::copysign(AngleOfCosine(incident.cos_phi), incident.sin_phi) : Real{0};
   incident.at = half_vectors_.At(AngleOfSine2(incident.sin * incident.sin), phi_i,

@@ -13,15 +13,15 @@
 namespace trilobe {
 namespace {
 
-// Nodes of s that there may be.
+// Maximum number of nodes of s.
 constexpr int kMaxS = 33;
 
-// Bins of theta_i, and of the parts of an integral, by which a search begins.
+// Numbers of bins of theta_i, and of fractions of an integral, from which searches start.
 constexpr int kThetaBins = 1024, kPartBins = 64;
 constexpr double kThetaBin = kPi / 2 / kThetaBins;
 
-// Bins of y of equal width in its logarithm, nearly: of the leading digits of a float, 64 for each
-// factor of 2 below 1.
+// Bins of y of nearly equal width in log y, from the leading bits of a float: 64 per factor of 2
+// below 1.
 constexpr int kYOctaves = 44, kYBins = 64 * kYOctaves;
 int BinOfY(float y) {
   constexpr auto kFirst = static_cast<int32_t>((127 - kYOctaves) << 6);
@@ -110,7 +110,7 @@ typename HalfVectorTable<Real>::Condition HalfVectorTable<Real>::At(Real theta_i
 
 template <typename Real>
 int HalfVectorTable<Real>::IntervalOfY(Real y) const {
-  // A bin may begin a little later than a number that is rounded into it.
+  // Rounding may put y into the next bin.
   int row = y_guide_[BinOfY(static_cast<float>(y))];
   row -= row > 0 && y_[row] > y;
   while (row + 2 < static_cast<int>(y_.size()) && y_[row + 1] <= y) ++row;
@@ -152,8 +152,8 @@ Real HalfVectorTable<Real>::Value(const Condition& at, Real y, Real s) const {
   return sum;
 }
 
-// The interval of y that has a part of the integral: between those of the nodes themselves, by
-// steps that no branch waits for.
+// The interval of y where the cumulated integral reaches `wanted`: a branchless search between the
+// intervals of the individual nodes.
 template <typename Real>
 int HalfVectorTable<Real>::RowWith(const Condition& at, Real wanted) const {
   const int last = static_cast<int>(y_.size()) - 2;
@@ -166,7 +166,7 @@ int HalfVectorTable<Real>::RowWith(const Condition& at, Real wanted) const {
     low = std::min(low, guide[0]);
     high = std::max(high, guide[1]);
   }
-  // A node without light has the part at its end, and the rounded bin may begin a little later.
+  // A node without light has its fractions at its end, and rounding may lead to the next bin.
   while (low > 0 && Cumulated(at, low) > wanted) --low;
   for (int step = static_cast<int>(std::bit_floor(static_cast<unsigned>(high - low + 1))); step > 0;
        step /= 2) {
@@ -185,7 +185,7 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
   const Real part = mass > 0 ? std::clamp((wanted - before) / mass, Real{0}, Real{1}) : Real{0};
   const Real lower = OfRow(at, row), upper = OfRow(at, row + 1);
   const Real t = InvertLinearIntegral(part * (lower + upper) / 2, lower, upper);
-  // The row of values there, as floats: less exact than the numbers are, but as good as a draw.
+  // The row of values at this y, in floats: precise enough for a draw.
   constexpr int kMost = (kMaxS - 1) / 4;
   Four<float> fours[kMost];
   float at_s[kMaxS];
@@ -202,7 +202,7 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
     at_s[end_s] += below * low[end_s] + above * high[end_s];
   }
   for (int g = 0; g < groups; ++g) Store<float>(fours[g], at_s + 4 * g);
-  // Twice what there is up to each fourth node, and that up to each in the four cells there.
+  // Twice the integral up to each fourth node, and within a group up to each of its four cells.
   float sums[kMost + 1];
   sums[0] = 0;
   for (int g = 0; g < groups; ++g) {
@@ -219,7 +219,7 @@ typename HalfVectorTable<Real>::Sample HalfVectorTable<Real>::Draw(const Conditi
   left -= cell == 0 ? 0 : cell == 1 ? one : cell == 2 ? two : three;
   const int k = 4 * group + cell;
   const float f = InvertLinearIntegral(std::max(left / 2, 0.0F), at_s[k], at_s[k + 1]);
-  // Its value, as exactly as Value has it.
+  // The value with the precision of Value().
   const Real g = static_cast<Real>(f);
   Real value = 0;
   for (int n = 0; n < at.count; ++n) {
@@ -249,7 +249,7 @@ std::vector<double> NodesOfY(const ModelSpec& spec) {
       }
     }
   } else {
-    // Halves of bins of sqrt(theta), less where a stretch makes these narrower.
+    // Half bins of sqrt(theta), or smaller if a stretch narrows these.
     const int steps = (spec.stretches.any() ? 4 : 2) * d_axis.size;
     for (int k = 1; k <= steps; ++k) {
       const double x = static_cast<double>(k) / steps;

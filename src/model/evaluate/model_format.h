@@ -3,11 +3,11 @@
 
 namespace trilobe {
 
-// What the reader and the writer of model files share.
+// Shared by the reader and the writer of model files.
 
 inline constexpr const char* kModelFormat = "trilobe-model";
 inline constexpr int kModelVersion = 1;
-// Of models whose highlights are stretched, which readers of version 1 would evaluate wrongly.
+// Version for models with stretched highlights, which readers of version 1 would evaluate wrongly.
 inline constexpr int kStretchedVersion = 2;
 inline constexpr const char* kIsotropicKind = "isotropic";
 inline constexpr const char* kAnisotropicKind = "anisotropic";

@@ -9,7 +9,7 @@
 #include "trilobe/core/math/catmull_rom.h"
 #include "trilobe/model/evaluate/prepared_model.h"
 
-// How a PreparedModel is made; prepared_model.cc evaluates it.
+// Construction of a PreparedModel; prepared_model.cc evaluates it.
 namespace trilobe {
 
 template <typename Real>
@@ -104,7 +104,7 @@ PreparedModel<Real>::PreparedModel(const FactorModel& model)
   }
 }
 
-// Rings of a polar axis go two nodes beyond the circle, the first ones again.
+// Rings of a polar axis repeat their first two nodes at the end.
 template <typename Real>
 void PreparedModel<Real>::SetTables(const FactorModel& model, Factor factor, Tables* tables) const {
   const Axis& axis = model.spec().axis(factor);
@@ -141,7 +141,8 @@ void PreparedModel<Real>::SetSpline(const FactorModel& model) {
   };
   std::vector<double> cosines(spline.nodes());
   for (int k = 0; k < spline.nodes(); ++k) cosines[k] = std::cos(spline.NodeAngle(k));
-  // A channel's tables leave the last lane of a vector free, and so do three lobes' of the first.
+  // Tables per channel leave the last lane of a vector unused, and so do three lobes' in the first
+  // vector.
   cosine_lane_ = g_.per_channel ? 3 : std::max(g_.tables, 3);
   add(cosines, cosine_lane_);
   for (int t = 0; t < g_.tables; ++t) add(model.table(Factor::kG, t), g_.LaneOf(t));

@@ -30,8 +30,8 @@ TRILOBE_ALWAYS_INLINE typename PreparedModel<Real>::Rings::Place PreparedModel<R
   return {at->lower, at->upper, std::min((theta - at->begin) * at->inverse_width, Real{1})};
 }
 
-// The evaluation of a model at pairs of directions. All of it becomes part of its callers, which
-// are compiled for each vector width.
+// Evaluation of a model at pairs of directions. All of it is inlined into its callers, which are
+// compiled for each vector width.
 template <typename Real, PreparedForm kForm>
 class PairEvaluation {
  public:
@@ -51,8 +51,7 @@ class PairEvaluation {
     Sum(at, value);
   }
 
-  // The same by angles of 0 or more, so that theta_h and theta_d need not be found, and by cosines
-  // above 0.
+  // The same from angles >= 0 and cosines > 0, without computing theta_h and theta_d.
   TRILOBE_ALWAYS_INLINE void ValueAt(const HalfDiffAngles& angles, const Cosines& cosines,
                                      Colour* value) const {
     static_assert(kForm == PreparedForm::kIsotropic);
@@ -88,7 +87,7 @@ class PairEvaluation {
   static constexpr bool kPlain = kForm != PreparedForm::kAny;
   static constexpr int kVectors = kPlain ? 1 : kMaxLobes + 1;
 
-  // What one pair of directions reads.
+  // The table coordinates of one pair of directions.
   struct Readings {
     Quad D[kVectors], F[kVectors], G[kVectors];
     Real scale;  // of their product: 1 / (cos theta_i cos theta_o)
@@ -98,12 +97,12 @@ class PairEvaluation {
     return kPlain ? 1 : tables.vectors;
   }
 
-  // What is known of a form, and what the model says of any.
+  // Properties fixed by the form, else read from the model.
   TRILOBE_ALWAYS_INLINE static bool Is(PreparedForm form, bool any) {
     return kPlain ? kForm == form : any;
   }
 
-  // A factor of one lobe, and the product of a lobe's, for each channel.
+  // One factor of a lobe, and the product of a lobe's factors, per channel.
   TRILOBE_ALWAYS_INLINE static Four<Real> FactorOf(const Tables& tables, const Quad* values,
                                                    int lobe) {
     const auto lane = static_cast<unsigned>(lobe * tables.lobe_stride);
@@ -115,7 +114,7 @@ class PairEvaluation {
            FactorOf(model_.f_, at.F, lobe) * FactorOf(model_.g_, at.G, lobe);
   }
 
-  // The diffuse term and all lobes, if that is not negative.
+  // The diffuse term plus all lobes, or 0 if that is negative.
   TRILOBE_ALWAYS_INLINE void Sum(const Readings& at, Colour* value) const {
     Four<Real> rho = Load(model_.diffuse_lanes_.lane);
     if constexpr (kPlain) {
@@ -135,8 +134,8 @@ class PairEvaluation {
     return MaxOf(sines2, Broadcast(std::numeric_limits<Real>::min()));
   }
 
-  // Where the tables are read, by the squares of the sines of theta_h, theta_d, theta_i and
-  // theta_o, which are not 0.
+  // Table coordinates from the squared sines of theta_h, theta_d, theta_i and theta_o, which are
+  // not 0.
   TRILOBE_ALWAYS_INLINE Four<Real> PlacesOf(const Four<Real>& sines2) const {
     const Four<Real> m = MinOf(sines2, Four<Real>{1 - sines2});
     const auto term = [&](size_t k) __attribute__((always_inline)) {
@@ -146,12 +145,12 @@ class PairEvaluation {
     return sines2 > Broadcast<Real>(0.5) ? Load(model_.right_angle_.lane) - places : places;
   }
 
-  // False where the value is 0 whatever the tables say.
+  // False if the value is 0 for any tables.
   TRILOBE_ALWAYS_INLINE bool Read(const Vector& wi, const Vector& wo, Readings* readings) const {
     if (!(wi[2] > 0 && wo[2] > 0)) return false;
     const Vector sum = {wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]};
     const Real across2 = sum[0] * sum[0] + sum[1] * sum[1], length2 = across2 + sum[2] * sum[2];
-    // |wi + wo| = 2 cos theta_d. No numbers, or nothing like unit vectors:
+    // |wi + wo| = 2 cos theta_d. Rejects NaN and vectors far from unit length:
     if (!(length2 > 0 && length2 < 16)) return false;
     const Four<Real> sines2 = AboveZero(
         Four<Real>{across2 / length2, 1 - length2 / 4, 1 - wi[2] * wi[2], 1 - wo[2] * wo[2]});
@@ -164,7 +163,7 @@ class PairEvaluation {
     Four<Real> turn = Broadcast<Real>(-0.5);
     if (Is(PreparedForm::kAnisotropic, model_.anisotropic())) {
       const Four<Real> along = {sum[0], wi[0], wo[0], 1}, across = {sum[1], wi[1], wo[1], 0};
-      // A direction within 1e-9 of the normal has the azimuth 0 (HalfVector).
+      // Directions within 1e-9 of the normal have azimuth 0 (HalfVector).
       const Four<Real> least = {length2 * static_cast<Real>(1e-18), static_cast<Real>(1e-18),
                                 static_cast<Real>(1e-18), 0};
       const Four<Real> turns = Turns<Real>(along, across);
@@ -201,7 +200,7 @@ class PairEvaluation {
     return true;
   }
 
-  // The same from where the tables are read.
+  // The same from table coordinates.
   TRILOBE_ALWAYS_INLINE void ReadIsotropic(const Four<Real>& places, Readings* readings) const {
     const Parts<Real> at(places);
     ReadD(std::sqrt(places[0]), readings->D);
@@ -209,7 +208,7 @@ class PairEvaluation {
     ReadSpline(at, readings);
   }
 
-  // By itself, as a root comes late.
+  // Separate, because of the latency of a root.
   TRILOBE_ALWAYS_INLINE void ReadD(Real place, Quad* values) const {
     const Parts<Real> at(Broadcast(place));
     ReadBins(model_.d_, at.whole(0), at.lower[0], at.upper[0], values);
@@ -287,7 +286,7 @@ class PairEvaluation {
 
 namespace {
 
-// What is compiled for each vector width may not be a template.
+// Multiversioned functions cannot be templates.
 #define TRILOBE_EVALUATE_FORM(Real, kForm)                                                       \
   TRILOBE_MULTIVERSION void EvaluateValues(                                                      \
       const PairEvaluation<Real, kForm>& evaluation, size_t size, const std::array<Real, 3>* wi, \

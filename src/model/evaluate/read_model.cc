@@ -14,7 +14,7 @@
 namespace trilobe {
 namespace {
 
-// A value of the file with the way to it, such as `D[2][17]`, for messages.
+// A value of the file with its path, such as `D[2][17]`, for messages.
 class Node {
  public:
   Node(const JsonValue& json, std::string key, const std::string& source)
@@ -115,7 +115,7 @@ Axis& AxisOf(Factor factor, ModelSpec* spec) {
   return factor == Factor::kD ? spec->d_axis : factor == Factor::kF ? spec->f_axis : spec->g_axis;
 }
 
-// The tables of one factor in the order of their numbers, out of their nest of lobes and channels.
+// The tables of a factor in order, from their nest of lobes and channels.
 std::vector<Node> TableNodes(const Node& nest, const TableSharing& sharing, int lobes) {
   std::vector<Node> nodes = {nest};
   const auto unfold = [&nodes](size_t size) {
@@ -126,7 +126,7 @@ std::vector<Node> TableNodes(const Node& nest, const TableSharing& sharing, int 
     }
     nodes = std::move(inner);
   };
-  // Without a lobe there is no table, and the nest is [] at whichever level comes first.
+  // Without lobes there are no tables, and the nest is [] at its first level.
   if (sharing.per_lobe || lobes == 0) unfold(lobes);
   if (sharing.per_channel) unfold(kChannels);
   return nodes;
@@ -142,7 +142,7 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
   }
 }
 
-// Which readers of version 1 do not know.
+// Members that readers of version 1 do not know.
 void ReadStretch(const Node& root, ModelSpec* spec) {
   if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) return;
   const Node node = root["stretch"];
@@ -165,13 +165,13 @@ void ReadStretch(const Node& root, ModelSpec* spec) {
   }
 }
 
-// Entries of a table: those that the file lists, or, where it lists nodes, as many as it says.
+// Number of entries of a table: listed ones or, for a table of nodes, its "size".
 size_t TableEntries(const Node& table) {
   if (!table.is_object()) return table.ArraySize();
   return table["size"].Integer(kMaxTableSize);
 }
 
-// The nodes of D or G of an anisotropic model: those that the file says, or UTIA's.
+// The nodes of D or G of an anisotropic model: as in the file, or UTIA's.
 Axis ReadPolarAxis(const Node& root, Factor factor) {
   Axis axis = Axis::Utia();
   if (root.has("theta_nodes")) {
@@ -216,7 +216,7 @@ void CheckPolarTable(const Node& table, const Axis& axis) {
   for (size_t a = 0; a < axis.theta.size(); ++a) table[a].CheckArraySize(axis.phi_nodes);
 }
 
-// The shape of the model, bounded before anything is allocated.
+// The model's spec, with limits checked before any allocation.
 ModelSpec ReadSpec(const Node& root) {
   ModelSpec spec;
   spec.lobes = root["lobes"].Integer(kMaxLobes);
@@ -249,14 +249,14 @@ ModelSpec ReadSpec(const Node& root) {
   return spec;
 }
 
-// A number for each channel, or one for all.
+// One number per channel, or one for all.
 bool ReadChannels(const Node& node, std::span<double> values) {
   const bool coloured = node.ArraySize() != 1;
   node.Numbers(coloured ? values : values.first(1));
   return coloured;
 }
 
-// The nodes of a table, whose numbers go to their entries.
+// Reads the nodes of a table and stores their values in its entries.
 std::vector<int> ReadTable(const Node& node, const Axis& axis, std::span<double> table) {
   std::vector<int> entries;
   if (!node.is_object()) {
@@ -333,7 +333,7 @@ void Read(const Node& node, std::string* value) { *value = node.String(); }
 void Read(const Node& node, double* value) { *value = node.Number(); }
 void Read(const Node& node, int* value) { *value = node.Integer(std::numeric_limits<int>::max()); }
 
-// What a file does not say stays unknown.
+// Fields missing in the file stay unknown.
 FitInfo ReadFitInfo(const Node& root) {
   FitInfo fit;
   if (!root.has("fit")) return fit;

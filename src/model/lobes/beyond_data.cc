@@ -18,8 +18,8 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Linear between two observed bins. Beyond the last one the median of the last `looked_at`: one
-// alone, at the edge of the data, may be anything.
+// Linear between two observed bins. Beyond the last one, the median of the last `looked_at`: a
+// single bin at the edge of the data is unreliable.
 void FillUnobservedBins(std::span<const double> coverage, int looked_at, std::span<double> table) {
   const int size = static_cast<int>(table.size());
   std::vector<double> last;  // observed values so far, at most `looked_at`
@@ -39,8 +39,8 @@ void FillUnobservedBins(std::span<const double> coverage, int looked_at, std::sp
   }
 }
 
-// Around each ring of one theta linearly between observed nodes; a ring without any is as the one
-// inside it, or, where there is none, as the one outside it.
+// Linear between observed nodes around each ring of equal theta. A ring without any copies the ring
+// inside it or, if there is none, the one outside.
 void FillUnobservedNodes(const Axis& axis, std::span<const double> coverage,
                          std::span<double> table) {
   const int columns = axis.phi_nodes, rings = axis.size / columns;
@@ -111,7 +111,7 @@ void ContinueShadowing(const Axis& axis, std::span<const double> coverage, std::
   }
 }
 
-// Calls what(factor, coverage, table) for each table that has an observed entry.
+// Calls what(factor, coverage, table) for each table with an observed entry.
 template <typename What>
 void ForEachObservedTable(std::span<const double> coverage, FactorModel* model, const What& what) {
   const ModelSpec& spec = model->spec();
@@ -126,10 +126,10 @@ void ForEachObservedTable(std::span<const double> coverage, FactorModel* model, 
   }
 }
 
-// Beyond the last observed half vector D stays as it is, while G^2 / (cos cos) may grow a
-// thousandfold: F and G trade for each other along a highlight, and a lobe that is dark where it
-// was measured outshines all others next to it. So D falls there, as far as it takes for a lobe to
-// reflect no more per half vector than about the last observed ones.
+// Beyond the last observed half vector D would be constant, while G^2 / (cos cos) may grow a
+// thousandfold: F and G compensate each other along a highlight, and a lobe that is dark where
+// measured would outshine all others next to it. So D is reduced there until the lobe reflects no
+// more per half vector than about the last observed ones.
 void DimBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   if (spec.d_axis.polar() || spec.lobes == 0) return;
@@ -143,7 +143,7 @@ void DimBeyondData(std::span<const double> coverage, int num_threads, FactorMode
     any = any || (!observed[t].empty() && observed[t].back() < spec.d_axis.size - 1);
   }
   if (!any) return;
-  // A lobe whose factors are 1 tells how many half vectors read an entry.
+  // A lobe with all factors 1 counts the half vectors that read an entry.
   FactorModel flat(spec);
   std::ranges::fill(flat.parameters(), 1.0);
   const std::vector<double> everywhere(coverage.size(), 1);
@@ -189,7 +189,7 @@ void ContinueBeyondData(std::span<const double> coverage, int num_threads, Facto
     }
   });
   DimBeyondData(coverage, num_threads, model);
-  // What was right but for rounding stays as it was: to do it again changes no bit.
+  // Keeps values that are correct up to rounding: repeating this changes no bit.
   constexpr double kRounding = 1e-13;
   for (size_t k = 0; k < coverage.size(); ++k) {
     double& x = model->parameters()[k];

@@ -23,7 +23,7 @@ double WithoutRounding(double norm) {
   return norm;
 }
 
-// Calls what(lobe, channel) for each that the table serves.
+// Calls what(lobe, channel) for each lobe and channel of the table.
 template <typename What>
 void ForEachServed(const ModelSpec& spec, Factor factor, int index, const What& what) {
   for (int m = 0; m < spec.lobes; ++m) {
@@ -37,8 +37,8 @@ bool AnyCovered(std::span<const double> coverage) {
   return std::ranges::any_of(coverage, [](double weight) { return weight > 0; });
 }
 
-// Calls what(factor, index) for each table that has an observed entry. Tables of channels without
-// any data keep their scale.
+// Calls what(factor, index) for each table with an observed entry. Tables of channels without data
+// keep their scale.
 template <typename What>
 void ForEachObservedTable(std::span<const double> coverage, const FactorModel& model,
                           const What& what) {
@@ -50,10 +50,9 @@ void ForEachObservedTable(std::span<const double> coverage, const FactorModel& m
   }
 }
 
-// Divides a table by its norm, and gives the lost factor to the s that it serves (twice for G,
-// which enters squared). A norm that is a power of two but for rounding is taken for one. To divide
-// by it rounds nothing: a model that is in canonical form stays the same to the bit, and equal
-// tables stay equal.
+// Divides a table by its norm and multiplies s of its lobes by it (twice for G, which is squared).
+// A norm within rounding of a power of two is rounded to it, so that the division is exact: a model
+// in canonical form is unchanged to the bit, and equal tables stay equal.
 void DivideTable(Factor factor, int index, double norm, FactorModel* model) {
   norm = WithoutRounding(norm);
   for (double& x : model->table(factor, index)) x /= norm;
@@ -61,8 +60,8 @@ void DivideTable(Factor factor, int index, double norm, FactorModel* model) {
                 [&](int m, int c) { model->s(m)[c] *= factor == Factor::kG ? norm * norm : norm; });
 }
 
-// If the observed entries of a table are 0, its lobes reflect nothing. It becomes a constant
-// instead, which has a norm, and s says that they are dark.
+// If all observed entries of a table are 0, it becomes constant, which has a norm, and s of its
+// lobes 0.
 void MoveZeroToS(std::span<const double> coverage, Factor factor, int index, FactorModel* model) {
   const std::span<double> table = model->table(factor, index);
   const int offset = model->TableOffset(factor, index);
@@ -73,7 +72,7 @@ void MoveZeroToS(std::span<const double> coverage, Factor factor, int index, Fac
   ForEachServed(model->spec(), factor, index, [&](int m, int c) { model->s(m)[c] = 0; });
 }
 
-// Solid angle over the projected hemisphere that each entry of D stands for. [axis.size]
+// Projected solid angle of each entry of D. [axis.size]
 std::vector<double> ProjectedAngles(const Axis& axis) {
   // The integral of cos sin dtheta dphi is phi width (sin^2 upper - sin^2 lower) / 2.
   std::vector<double> angles(axis.size);
@@ -88,8 +87,8 @@ double WeightedSum(std::span<const double> weights, std::span<const double> valu
   return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0);
 }
 
-// exp(mean of log x) of the entries that have a weight and are not 0; 0 where there are none.
-// Relative to the entry of most weight, so that logarithms stay small where weight is.
+// exp(mean of log x) of the nonzero entries with a weight; 0 if there are none. Computed relative
+// to the entry of largest weight, to keep logarithms small.
 double GeometricMean(std::span<const double> weights, std::span<const double> table) {
   double most = 0, reference = 0;
   for (size_t k = 0; k < table.size(); ++k) {
@@ -107,8 +106,8 @@ double GeometricMean(std::span<const double> weights, std::span<const double> ta
   return total > 0 ? reference * std::exp(sum / total) : 0;
 }
 
-// By lobe and channel what is reflected and 4 s, of those that reflect; and by table of F and G
-// what s has gained by its scale: F loses as much, G the root of it.
+// Reflected light and 4 s of each lobe and channel that reflects, and the factor that s has gained
+// from each table of F and G: F is divided by it, G by its square root.
 struct Balance {
   std::vector<Rgb> reflected, four_s;
   std::vector<double> F_gain, G_gain;
@@ -123,14 +122,14 @@ Balance MakeBalance(std::span<const double> coverage, const LobeLight& light,
                   .four_s = std::vector<Rgb>(spec.lobes),
                   .F_gain = std::vector<double>(spec.num_tables(Factor::kF), 1),
                   .G_gain = std::vector<double>(spec.num_tables(Factor::kG), 1)};
-  // G as well, though its scale will follow: so that s is no extreme number on the way.
+  // Also for G, although its scale is set later, to keep s in range.
   ForEachObservedTable(coverage, model, [&](Factor factor, int t) {
     if (factor == Factor::kD) return;
     const std::span<const double> table = model.table(factor, t);
     const auto through =
         std::span(light.through).subspan(model.TableOffset(factor, t), table.size());
     double mean = GeometricMean(through, table);
-    // Without light any entry is as good as the others.
+    // Without light all entries have equal weight.
     if (!(mean > 0)) mean = GeometricMean(std::vector<double>(table.size(), 1), table);
     balance.gain(factor)[t] = factor == Factor::kG ? mean * mean : mean;
   });
@@ -149,8 +148,8 @@ Balance MakeBalance(std::span<const double> coverage, const LobeLight& light,
   return balance;
 }
 
-// Scales each table of a factor so that the lobes and channels that it serves have the sum of 4 s
-// that they reflect; by how much the sums were off at most, relative.
+// Scales each table of a factor so that its lobes and channels, summed, reflect 4 s. Returns the
+// largest relative deviation before.
 double MatchReflected(const ModelSpec& spec, Factor factor, Balance* balance) {
   double off = 0;
   for (int t = 0; t < spec.num_tables(factor); ++t) {
@@ -168,10 +167,10 @@ double MatchReflected(const ModelSpec& spec, Factor factor, Balance* balance) {
   return off;
 }
 
-// F and G can still exchange scale where they serve the same lobes and channels: there the tables
-// of F get back their geometric mean, 1, taken together.
+// F and G can still exchange scale if they serve the same lobes and channels: resets the joint
+// geometric mean of these tables of F to 1.
 void ShareScale(const ModelSpec& spec, std::span<const double> F_before, Balance* balance) {
-  // Lobes that share one of the two hang together, and so do channels.
+  // Lobes that share one of the two are in one group, and so are channels.
   const bool by_lobe = spec.F.per_lobe && spec.G.per_lobe;
   const bool by_channel = spec.F.per_channel && spec.G.per_channel;
   const auto group = [&](int m, int c) {
@@ -200,9 +199,9 @@ void ShareScale(const ModelSpec& spec, std::span<const double> F_before, Balance
   }
 }
 
-// Brings the largest observed entry of each table into [1/2, 1) by a power of two, which rounds
-// nothing, so that products of entries neither overflow nor vanish. Tables without a value become
-// constant (MoveZeroToS).
+// Scales the largest observed entry of each table into [1/2, 1) by a power of two, which is exact,
+// so that products of entries neither overflow nor vanish. Tables of zeros become constant
+// (MoveZeroToS).
 void ScaleIntoRange(std::span<const double> coverage, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   std::vector<std::array<int, kChannels>> moved(spec.lobes);  // exponents, from tables to s
@@ -226,7 +225,7 @@ void ScaleIntoRange(std::span<const double> coverage, FactorModel* model) {
   }
 }
 
-// The canonical scale (gauge.h) of a model in that range: `light` is what it reflects.
+// The canonical scale (gauge.h) of a model scaled into range; `light` is its reflected light.
 void ScaleByLight(std::span<const double> coverage, const LobeLight& light, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   const std::vector<double> half_vectors =
@@ -235,9 +234,9 @@ void ScaleByLight(std::span<const double> coverage, const LobeLight& light, Fact
     if (factor != Factor::kD) return;
     DivideTable(factor, t, WeightedSum(half_vectors, model->table(factor, t)), model);
   });
-  // Iterative proportional fitting (Deming and Stephan 1940). What s ends as is unique; begun with
-  // G, whose scale is arbitrary here, the tables are as well. Of 63 measured materials 3 to 61
-  // passes do.
+  // Iterative proportional fitting (Deming and Stephan 1940). The resulting s is unique; starting
+  // with G, whose scale is arbitrary here, makes the tables unique, too. 63 measured materials took
+  // 3 to 61 passes.
   constexpr int kMostPasses = 1000;
   constexpr double kRounding = 1e-14;
   Balance balance = MakeBalance(coverage, light, *model);
@@ -309,7 +308,7 @@ void Canonicalize(std::span<const double> coverage, FactorModel* model, LobeOrde
   ContinueBeyondData(coverage, num_threads, model);
   ScaleByLight(coverage, light, model);
   const ModelSpec& spec = model->spec();
-  // The coverage of D is that of its lobe's stretch.
+  // D has the coverage of its lobe's stretch.
   const bool may_change_places = !spec.stretches.several();
   if (order == LobeOrder::kByLight && spec.lobes > 1 && may_change_places) {
     std::vector<int> lobes(spec.lobes);

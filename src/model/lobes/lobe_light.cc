@@ -17,37 +17,36 @@
 namespace trilobe {
 namespace {
 
-// Of phi_d, over [0, 90 degrees]: of isotropic models the other half holds the exchanged
+// Steps of phi_d over [0, 90 degrees]; in isotropic models the other half has the exchanged
 // directions.
 constexpr int kPhiSteps = 12;
 
-// Pairs of directions whose half vectors are at an entry of D, and theta_d in a bin of F.
+// Direction pairs with the half vector at an entry of D and theta_d in a bin of F.
 class Cells {
  public:
   explicit Cells(const ModelSpec& spec)
       : spec_(spec),
         grid_{.theta_h = spec.d_axis.size, .theta_d = spec.f_axis.size, .phi_d = 2 * kPhiSteps} {}
 
-  // Of anisotropic models wi and wo exchanged are half a turn of phi_d away.
+  // In anisotropic models, exchanging wi and wo moves phi_d by half a turn.
   int phi_steps() const { return spec_.d_axis.polar() ? 2 * kPhiSteps : kPhiSteps; }
 
-  // The measure of a pair's share, in some unit.
+  // Measure of a pair, up to a constant factor.
   double SolidAngle(int h, int d) const {
     if (!spec_.d_axis.polar()) return grid_.SolidAngle(h, d);
     const double theta_d = grid_.ThetaD(d + 0.5);
     return spec_.d_axis.CellOf(h).SolidAngle() * std::sin(theta_d) * std::cos(theta_d);
   }
 
-  // Two directions above the surface, theta and, where G is polar, phi, but for D's own.
+  // Two directions above the surface: theta and, if G is polar, phi relative to D's.
   struct Pair {
     int d;
-    // The half vectors of an entry that is read by a stretched theta_h, over those without a
-    // stretch.
+    // Density of half vectors of a stretched entry relative to an unstretched one.
     double half_vectors;
     Cosines cosines;
     double theta_i, phi_i, theta_o, phi_o;
   };
-  // The same for all entries of D of the theta_h of entry h, read by a stretch.
+  // The pairs for all entries of D with the theta_h of entry h, read with a stretch.
   std::vector<Pair> PairsAt(int h, const Stretch& stretch) const {
     std::vector<Pair> pairs;
     for (int d = 0; d < spec_.f_axis.size; ++d) {
@@ -79,7 +78,7 @@ class Cells {
     return pairs;
   }
 
-  // How they read G.
+  // The stencils of G for a pair.
   std::pair<Stencil, Stencil> ReadG(int h, const Pair& pair) const {
     const Axis& g = spec_.g_axis;
     if (!g.polar()) return {g.At(pair.theta_i, 0), g.At(pair.theta_o, 0)};
@@ -98,8 +97,8 @@ double Total(const LobeLight& light) {
   return total;
 }
 
-// Which entries of the tables that these lobes read are observed, by factor and entry: in all
-// tables of F and G, and of D in those of these lobes, alike, but for channels without weight.
+// Which entries of these lobes' tables are observed, by factor and entry: in all tables of F and G,
+// and the lobes' tables of D, alike, except for channels without weight.
 using Observed = std::array<std::vector<bool>, std::size(kFactors)>;
 Observed ObservedBy(std::span<const int> lobes, std::span<const double> coverage,
                     const FactorModel& model) {
@@ -127,8 +126,8 @@ bool AllOf(const std::vector<bool>& observed, const Stencil& stencil) {
   return true;
 }
 
-// What lobes of one stretch reflect, and what is diffuse, over some of the places where they read
-// D: `all` is what a white diffuse surface does there, in the same unit.
+// Light reflected by lobes of one stretch and by the diffuse term over a part of the domain of D;
+// `all` is that of a white diffuse surface, in the same unit.
 struct Part {
   double all = 0;
   LobeLight light;
@@ -151,7 +150,7 @@ void Add(const Part& part, Part* sum) {
   for (size_t k = 0; k < from.through.size(); ++k) light.through[k] += from.through[k];
 }
 
-// Adds what lobes reflect where they read the entries of D at one theta_h, a ring.
+// Adds the light reflected by lobes at the entries of D with one theta_h, a ring.
 void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lobes,
              const Observed& observed, const FactorModel& model, int ring, Part* sum) {
   const ModelSpec& spec = model.spec();
@@ -201,14 +200,15 @@ void AddRing(const Cells& cells, const Stretch& stretch, std::span<const int> lo
   }
 }
 
-// Of the lobes of a stretch, over all places where they read D.
+// Light of the lobes of one stretch over the whole domain of D.
 Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const double> coverage,
             const FactorModel& model, int num_threads) {
   const Cells cells(model.spec());
   const Observed observed = ObservedBy(lobes, coverage, model);
   const Axis& axis = model.spec().d_axis;
   const int rings = axis.size / axis.phi_nodes;
-  // So many sums, each over every kSums-th ring, whatever the number of threads.
+  // The number of partial sums, each over every kSums-th ring, does not depend on the number of
+  // threads.
   constexpr int kSums = 6;
   std::vector<Part> sums(kSums, {.all = 0, .light = Darkness(model)});
   ParallelFor(kSums, num_threads, [&](int k) {

@@ -25,14 +25,14 @@ double Size(const FactorModel& model, int lobe, ModelSpec::ChannelRange channels
   return sum;
 }
 
-// Solid angle that an entry of D stands for, in some unit.
+// Solid angle of an entry of D, up to a constant factor.
 double SolidAngle(const Axis& axis, int entry) {
   if (axis.polar()) return axis.CellOf(entry).SolidAngle();
   const MerlGrid grid{.theta_h = axis.size};
   return std::sin(grid.ThetaH(entry + 0.5)) * (grid.ThetaH(entry + 1) - grid.ThetaH(entry));
 }
 
-// Entries from the lobe's middle outwards: by theta_h, or, where a lobe need not be round, by D.
+// Entries from the centre of a lobe outwards: by theta_h or, if the lobe may be asymmetric, by D.
 std::vector<int> Outwards(const Axis& axis, std::span<const double> D) {
   std::vector<int> order(axis.size);
   std::iota(order.begin(), order.end(), 0);
@@ -40,9 +40,9 @@ std::vector<int> Outwards(const Axis& axis, std::span<const double> D) {
   return order;
 }
 
-// The share of each entry that stays with the narrow part: a smooth step from 1 to 0 at the one
-// that halves the integral of sqrt(D). The root weighs the flanks of a lobe, which a second one is
-// to take over, against its peak.
+// The fraction of each entry that stays in the narrow part: a smooth step from 1 to 0 at the entry
+// that halves the integral of sqrt(D). The root gives weight to the flanks of a lobe, for the
+// second lobe.
 std::vector<double> NarrowShare(const Axis& axis, std::span<const double> D) {
   constexpr double kSteepness = 8;
   std::vector<double> u(axis.size);

@@ -11,7 +11,7 @@
 namespace trilobe {
 namespace {
 
-// Samples that one item of work evaluates.
+// Samples per item of work.
 constexpr int kChunk = 1 << 14;
 
 // `value(j)` for j < size, in parallel.

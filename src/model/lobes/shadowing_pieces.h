@@ -8,10 +8,10 @@
 
 namespace trilobe {
 
-// The cosines of the nodes in pieces: they go through the same spline as G.
+// The spline pieces of the cosines at the nodes of G.
 std::vector<CatmullRom::Piece> CosinePieces(const CatmullRom& spline);
 
-// The G tables of a model in pieces, [num_tables][interval].
+// The spline pieces of a model's G tables. [num_tables][interval]
 std::vector<std::vector<CatmullRom::Piece>> ShadowingPieces(const FactorModel& model);
 
 }  // namespace trilobe

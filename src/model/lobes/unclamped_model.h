@@ -12,16 +12,15 @@
 
 namespace trilobe {
 
-// The sum of an isotropic model's lobes without its bound at 0, at angles or at bins of a grid, as
-// E compares it with a measurement (UnclampedValue), prepared for many calls: what PreparedModel,
-// the bounded value of two directions, cannot say.
+// The value of an isotropic model without clamping at 0, at angles or grid bins, as E compares it
+// with a measurement (UnclampedValue), prepared for many calls. PreparedModel has clamped values
+// only.
 class UnclampedModel {
  public:
   // Keeps a reference to `model`, which must outlive it. Throws Error for an anisotropic one.
   explicit UnclampedModel(const FactorModel& model);
 
-  // [1/sr], where D, by the number of the stretch, and F are read through these stencils. Cosines
-  // in (0, 1].
+  // The value [1/sr] from stencils of F and, for each distinct stretch, of D. Cosines in (0, 1].
   Rgb operator()(std::span<const Stencil> D, const Stencil& F, const Cosines& cosines) const;
 
   // D and F linear between bin centres. `cosines` are those of `angles`.

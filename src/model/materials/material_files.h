@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-// The files of materials/: a model file each, and materials.json, which says what they are.
+// The files in materials/: one model file each, and materials.json, which describes them.
 std::span<const EmbeddedFile> MaterialFiles();
 
 }  // namespace trilobe

@@ -35,7 +35,7 @@ Anisotropy AnisotropyOf(const Measurement& scattered) {
     keys.push_back(KeyOf(scattered.samples.directions[j], j));
   }
   std::ranges::stable_sort(keys, {}, &TurnedSample::key);
-  // Squares neither vanish nor overflow where the largest value is 1.
+  // Scaled to a largest value of 1, so that squares neither vanish nor overflow.
   double largest = std::numeric_limits<double>::min();
   for (const Rgb& values : rho) largest = std::max({largest, values[0], values[1], values[2]});
   Anisotropy anisotropy;

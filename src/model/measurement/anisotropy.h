@@ -5,16 +5,16 @@
 
 namespace trilobe {
 
-// How much of what a material shows depends on how it is turned about its normal.
+// How much a material changes when rotated about its normal.
 struct Anisotropy {
   int samples = 0;   // those that have another one with the material turned
-  double share = 0;  // of their energy that is not that of the mean over all turns, 0 to 1
+  double share = 0;  // fraction of energy not explained by the mean over rotations
 };
 
-// Of scattered samples: among those of the same theta_i, theta_o and phi_o - phi_i, to 1e-6,
+// For scattered samples, among those of equal theta_i, theta_o and phi_o - phi_i, to 1e-6,
 //   share = Sum c^2 (rho - mean)^2 / Sum c^2 rho^2, c = cos theta_i cos theta_o,
-// over samples and channels: the energy of what is seen, as light of theta_i counts by its cosine
-// and the surface that is seen by that of theta_o. Noise counts as anisotropy.
+// over samples and channels: a fraction of the visible energy, as cos theta_i weights the incident
+// light and cos theta_o the visible surface. Includes noise.
 Anisotropy AnisotropyOf(const Measurement& scattered);
 
 }  // namespace trilobe

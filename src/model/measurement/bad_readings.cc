@@ -18,12 +18,12 @@
 namespace trilobe {
 namespace {
 
-// What surrounds a bin of a grid: 3 x 3 x 5 bins of theta_h, theta_d and phi_d, itself among them,
-// or, where these hold too few, `reach` times as many of theta_d and phi_d to each side.
+// The neighbourhood of a bin: 3 x 3 x 5 bins of theta_h, theta_d and phi_d with itself or, if these
+// have too few values, `reach` times as many of theta_d and phi_d to each side.
 constexpr int kFewestAround = 9;  // values that tell what surrounds one
 constexpr int kWidestReach = 8;   // it doubles up to that
 
-// Calls work(theta_h, theta_d) for each row of bins there.
+// Calls work(theta_h, theta_d) for each row of the neighbourhood.
 template <typename Work>
 void ForEachRowAround(const MerlGrid& grid, int h, int d, int reach, const Work& work) {
   for (int i = std::max(h - 1, 0); i <= std::min(h + 1, grid.theta_h - 1); ++i) {
@@ -33,8 +33,8 @@ void ForEachRowAround(const MerlGrid& grid, int h, int d, int reach, const Work&
   }
 }
 
-// Calls work(first, end) for the ranges of phi_d in a row about bin `p`; 180 degrees further on it
-// begins again, each bin being there once.
+// Calls work(first, end) for the ranges of phi_d in a row around bin `p`, periodic in 180 degrees;
+// no bin occurs twice.
 template <typename Work>
 void ForEachRangeAround(const MerlGrid& grid, int p, int reach, const Work& work) {
   const int phis = grid.phi_d, bins = std::min(4 * reach + 1, phis);
@@ -60,8 +60,8 @@ struct Count {
   bool FarOff() const { return 2 * brighter > bins || 2 * darker > bins; }
 };
 
-// Whether a value is off the median of some by more than kOff and by kScatter times what these are
-// off it themselves, in the median. Reorders them.
+// Whether a value differs from the median by a factor above kOff, and in the logarithm by more than
+// kScatter times the values' own median deviation. Reorders them.
 bool StandsOut(double own, std::vector<double>* values) {
   const double median = Quantile(values, 0.5);
   if (!(own > median * kOff || own < median / kOff)) return false;
@@ -72,7 +72,7 @@ bool StandsOut(double own, std::vector<double>* values) {
   return std::abs(std::log(own / median)) > kScatter * Quantile(&off, 0.5);
 }
 
-// The samples by the bins of their grid, in which scattered ones lie as well.
+// The samples by bins of their grid, also scattered ones.
 class Surroundings {
  public:
   Surroundings(const BrdfSamples& samples, int num_threads)
@@ -101,7 +101,7 @@ class Surroundings {
     });
   }
 
-  // What is said of a sample of this value if it is far off the median around it.
+  // The outlier if this value is far off the median around it.
   std::optional<Outlier> FarOff(int sample, double own) const {
     const int row = bins_[sample] / grid_.phi_d, p = bins_[sample] % grid_.phi_d;
     const int h = row / grid_.theta_d, d = row % grid_.theta_d;
@@ -118,7 +118,7 @@ class Surroundings {
       if (!all.Tells()) continue;
       const bool far_off = all.FarOff() && (!same_h.Tells() || same_h.FarOff()) &&
                            (!same_d.Tells() || same_d.FarOff());
-      // Samples that lie farther apart, or anywhere, differ by what is between them, too.
+      // More distant and scattered samples also differ by what is between them.
       const bool close = on_grid_ && reach == 1;
       if (!far_off && !(close && StandsOut(h, d, p, reach, own))) return std::nullopt;
       return Outlier{.sample = sample, .median = MedianAround(h, d, p, reach), .far = far_off};
@@ -127,13 +127,13 @@ class Surroundings {
   }
 
  private:
-  // Of the five bins about one in its row.
+  // Looks at the five bins around it in its row.
   struct Line {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     int samples = 0;
   };
 
-  // Among all around it, those of its own theta_h, and those of its own theta_d.
+  // Compares with the neighbourhood, its bins of the same theta_h, and those of the same theta_d.
   bool StandsOut(int h, int d, int p, int reach, double own) const {
     std::vector<double> all, same_h, same_d;
     ForEachRowAround(grid_, h, d, reach, [&](int i, int j) {
@@ -157,7 +157,7 @@ class Surroundings {
     return Quantile(&values, 0.5);
   }
 
-  // What is true of nearly all samples, and soon known.
+  // A fast test that accepts nearly all samples.
   bool IsLikeAllAround(int h, int d, int p, double own) const {
     Line around;
     ForEachRowAround(grid_, h, d, 1, [&](int i, int j) {
@@ -170,7 +170,7 @@ class Surroundings {
            around.least >= own / kOff;
   }
 
-  // The samples of a row about phi_d bin `p`.
+  // The samples of a row around phi_d bin `p`.
   template <typename Work>
   void ForEachInLine(int row, int p, int reach, const Work& work) const {
     ForEachRangeAround(grid_, p, reach, [&](int first, int end) {
@@ -187,11 +187,11 @@ class Surroundings {
   std::vector<Line> lines_;     // by bins
 };
 
-// FourReadings neighbours along phi_d.
+// Four neighbours along phi_d.
 struct FourReadings {
   double signal = 0;      // mean
   double difference = 0;  // third one
-  double before = 0;      // that of the four that begins one bin earlier; 0 where there is none
+  double before = 0;      // that of the group one bin earlier; 0 if there is none
 };
 
 std::vector<FourReadings> FoursOf(const BrdfTable& table, const std::vector<bool>& valid,
@@ -220,7 +220,7 @@ std::vector<FourReadings> FoursOf(const BrdfTable& table, const std::vector<bool
   return fours;
 }
 
-// The median of a number of some fours.
+// The median of number(four) over a range.
 template <typename Number>
 double MedianOf(const FourReadings* begin, const FourReadings* end, const Number& number) {
   std::vector<double> numbers;
@@ -228,7 +228,7 @@ double MedianOf(const FourReadings* begin, const FourReadings* end, const Number
   return Quantile(&numbers, 0.5);
 }
 
-// The median of a channel about a valid bin; `values` is room for it.
+// The median of a channel around a valid bin; `values` is scratch space.
 double MedianAround(const BrdfTable& table, const std::vector<bool>& valid, int channel, int h,
                     int d, int p, std::vector<double>* values) {
   const MerlGrid& grid = table.grid;
@@ -250,7 +250,7 @@ DarkNoise DarkNoiseOf(const BrdfTable& table, const std::vector<bool>& valid, in
   std::vector<FourReadings> fours = FoursOf(table, valid, channel);
   constexpr size_t kFewest = 1000;
   if (fours.size() < kFewest) return {};
-  // From the darkest on.
+  // Sorted from dark to bright.
   const std::ptrdiff_t quarter = static_cast<std::ptrdiff_t>(fours.size()) / 4;
   for (int k = 1; k < 4; ++k) {
     std::nth_element(
@@ -271,7 +271,7 @@ DarkNoise DarkNoiseOf(const BrdfTable& table, const std::vector<bool>& valid, in
   DarkNoise found{.deviation = noise(kSecond)};
   const double darkest = noise(kDarkest), third = noise(kThird);
   if (!(darkest > 0)) return found;
-  // All is noise where there is no signal.
+  // Without signal, all is noise.
   constexpr double kMost = 1e9;
   found.relative = std::min(darkest / signal(kDarkest), kMost);
   found.rise = std::min(darkest / third * (signal(kThird) / signal(kDarkest)), kMost);

@@ -14,30 +14,29 @@ struct Outlier {
   bool far = true;    // by more than 8 times
 };
 
-// The samples that are far off what surrounds them: a dead reading, a glint. Such a
-// sample is more than 8 times brighter or darker, in the mean over the channels, than the median of
-// the samples around it, itself included: of 3 x 3 x 5 bins of theta_h, theta_d and phi_d or, where
-// these hold fewer than 9, of two, four or eight times as many of theta_d and phi_d to each side;
-// where all hold fewer, it is none. A highlight falls by less from one theta_h to the next, and a
-// median has half of the samples on either side. The same must be true of the median of those of
-// its own theta_h, and of its own theta_d, where they are 9: all samples of a theta_h or theta_d
-// may be darker than the next ones, as an entry of D or F says. Where the samples in the nearest
-// bins of a table agree better than that, less is enough (Hampel 1974): a sample that is more than
-// twice as bright or dark as each of these medians, by more than 7 times the median difference of
-// the samples' own logarithms. Scattered samples lie in the bins of their grid, as those of a table
-// do. Ascending. The same for any number of threads.
+// Finds samples far off their neighbourhood, such as dead readings and glints. The neighbourhood is
+// 3 x 3 x 5 bins of theta_h, theta_d and phi_d, with the sample itself; if it has fewer than 9
+// samples, two, four or eight times as many bins of theta_d and phi_d to each side; if it still has
+// fewer, the sample is not an outlier. An outlier is more than 8 times brighter or darker, in the
+// mean over the channels, than the neighbourhood's median; a highlight changes less per theta_h
+// bin. The same must hold for the medians of the neighbours with the same theta_h, and with the
+// same theta_d, if there are 9: a whole theta_h or theta_d may be darker than the next, as an entry
+// of D or F. In the nearest bins of a table a smaller deviation suffices if the neighbours agree
+// (Hampel 1974): a factor above 2 from each of these medians, and in the logarithm more than 7
+// times the neighbours' median deviation. Scattered samples are sorted into the bins of their grid.
+// Ascending. The same for any number of threads.
 std::vector<Outlier> FindOutliers(const BrdfSamples& samples, int num_threads);
 
-// By how much they are off the medians, as a share of the reflected light that the others and these
-// medians have: sum W c |rho - median| / sum W c rho, of means over the channels, with solid angles
-// W and c = cos theta_i cos theta_o.
+// Deviation of outliers from the medians as a fraction of the reflected light with outliers
+// replaced by medians: sum W c |rho - median| / sum W c rho, of means over the channels, with solid
+// angles W and c = cos theta_i cos theta_o.
 double LightOf(const std::vector<Outlier>& outliers, const BrdfSamples& samples);
 
-// Noise of one channel that does not fall with its signal b = rho cos theta_i, as dark current and
-// read-out make: by third differences along phi_d, of every third row. Of each four neighbours
-// these are 0 where b is a parabola, and sqrt(20) times its noise where that is independent; the
-// medians of their absolute values, each over a quarter of all from the darkest to the brightest
-// fours, tell the noise there.
+// Noise of one channel that does not decrease with its signal b = rho cos theta_i, as from dark
+// current and read-out. Estimated from third differences along phi_d, of every third row: for four
+// neighbours they are 0 if b is a parabola, and sqrt(20) times the noise if that is independent.
+// The medians of their absolute values, over each quarter of all groups of four from the darkest to
+// the brightest, give the noise there.
 struct DarkNoise {
   double deviation = 0;  // standard deviation of b, of the second quarter: the darkest have been
                          // cut off at 0
@@ -49,12 +48,12 @@ struct DarkNoise {
 };
 DarkNoise DarkNoiseOf(const BrdfTable& table, int channel);
 
-// Where the dark noise of a channel, if there is any, is more than a tenth of the signal around a
-// bin, its value becomes the median of what surrounds it: of the valid ones of 3 x 3 x 5 bins of
-// theta_h, theta_d and phi_d or, where these are fewer than 9, of up to eight times as many of
-// theta_d and phi_d to each side. A mean would be too bright where signals below 0 have been cut
-// off. A value that itself is more than 20 times the noise, as of a narrow highlight, stays.
-// Returns how many bins have a new value. The same for any number of threads.
+// If the dark noise of a channel exceeds a tenth of the signal around a bin, the value becomes the
+// median of the valid values around it: of 3 x 3 x 5 bins of theta_h, theta_d and phi_d or, if
+// these are fewer than 9, of up to eight times as many of theta_d and phi_d to each side. (A mean
+// would be too bright if signals below 0 were cut off.) Values above 20 times the noise, as in
+// narrow highlights, are kept. Returns the number of changed bins. The same for any number of
+// threads.
 int SmoothDarkReadings(int num_threads, BrdfTable* table);
 
 }  // namespace trilobe

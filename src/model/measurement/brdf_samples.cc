@@ -82,7 +82,7 @@ void CheckAngles(const BrdfSamples& samples) {
 bool IsValid(double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); }
 
 bool AreValid(std::span<const double> values) {
-  // 0 * x is NaN for an infinite x, and the least of all is below 0 where one is.
+  // 0 * x is NaN for an infinite or NaN x, and the minimum is negative if a value is.
   const double* const x = values.data();
   const size_t size = values.size();
   double least = 0, zero = 0;
@@ -103,7 +103,7 @@ void CheckSamples(const BrdfSamples& samples) {
   } else {
     CheckAngles(samples);
   }
-  // All at once first, which is several times as fast.
+  // Checks all at once first, which is several times as fast.
   const bool valid = AreValid({samples.rho.empty() ? nullptr : samples.rho.front().data(),
                                samples.rho.size() * kChannels}) &&
                      AreValid(samples.multiplicity);
@@ -180,8 +180,8 @@ void CheckStride(int stride) {
               "; give a stride of 1 or more");
 }
 
-// A number of each sample on a grid, so that those whose number a stride divides are spread evenly;
-// of an exchanged pair the same. Primes, which have no common factor with a smaller stride, so that
+// A phase of each grid sample, equal for exchanged pairs, such that samples with phases divisible
+// by a stride are spread evenly. Primes have no factor in common with smaller strides, so
 // neighbouring rows differ.
 int PhaseOnGrid(const MerlGrid& grid, int h, int d, int p) {
   return std::min(p, grid.phi_d - 1 - p) + 29 * h + 37 * d;
@@ -193,7 +193,7 @@ int PhaseOnGrid(const BrdfSamples& samples, int j) {
   return PhaseOnGrid(grid, row / grid.theta_d, row % grid.theta_d, bin % grid.phi_d);
 }
 
-// Fractions of the multiples of the golden ratio: evenly spread over any regular order.
+// Fractional parts of multiples of the golden ratio: evenly spread over any regular order.
 double GoldenFraction(int n) {
   constexpr double kGolden = 0.6180339887498949;
   const double place = n * kGolden;
@@ -268,7 +268,7 @@ BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride) {
 BrdfSamples EvenlySpread(const BrdfSamples& samples, int count) {
   CheckNumber("the number of samples", count, count >= 1, "1 or more");
   int stride = std::max(1, samples.size() / count);
-  // One that has no factor in common with the number of bins of phi_d visits all of these.
+  // A stride coprime to the number of phi_d bins visits all of these.
   while (std::gcd(stride, samples.grid.phi_d) > 1) ++stride;
   std::vector<int> kept;
   for (int j = 0; j < samples.size(); j += stride) kept.push_back(j);
@@ -281,8 +281,7 @@ BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {
     throw Error("at least " + std::to_string(least) + " samples a place; give 1 or more");
   }
   CheckSamples(samples);
-  // The bins of theta_h, theta_d, theta_i and theta_o; the last two, which may be exchanged, in one
-  // table.
+  // Bins of theta_h, theta_d, theta_i and theta_o; the last two may be exchanged and share a table.
   const MerlGrid& grid = samples.grid;
   using Places = std::array<int, 4>;
   const auto places_of = [&](int j) -> Places {
@@ -311,7 +310,7 @@ BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {
     int fewest = samples.size();
     for (const int place : places[j]) fewest = std::min(fewest, counts[place]);
     const int own_stride = std::clamp(fewest / least, 1, stride);
-    // Not by the remainders that Thinned goes by, which may thin what is left once more.
+    // Independent of the remainders used by Thinned, which may thin the result again.
     const int number = samples.on_grid() ? PhaseOnGrid(samples, j) : j;
     if (GoldenFraction(number) * own_stride >= 1) continue;
     kept.push_back(j);

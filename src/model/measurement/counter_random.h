@@ -8,8 +8,7 @@
 
 namespace trilobe {
 
-// Random numbers that are pure functions of a seed and a counter, so that they can be made in any
-// order.
+// Random numbers as pure functions of a seed and a counter, computable in any order.
 
 // Uniform in (0, 1): SplitMix64 (Steele, Lea, Flood 2014) at position `counter` of stream `seed`.
 inline double UniformAt(uint64_t seed, uint64_t counter) {

@@ -12,7 +12,7 @@
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
 
-// Symptoms that show in how values change with the directions.
+// Symptoms in how values change with the directions.
 namespace trilobe {
 namespace {
 
@@ -20,7 +20,7 @@ double MeanOfBin(const BrdfTable& table, int bin) {
   return Mean({table.Value(0, bin), table.Value(1, bin), table.Value(2, bin)});
 }
 
-// A bin and the one with its directions exchanged, both above 0, whose cosines are far apart.
+// A bin and its exchanged one, both above 0, with very different cosines.
 struct ExchangedPair {
   Cosines cosines;       // of the first
   double first, second;  // means over the channels
@@ -49,7 +49,7 @@ std::vector<ExchangedPair> ExchangedPairsOf(const BrdfTable& table) {
   return pairs;
 }
 
-// The median over pairs of some number.
+// The median of a number over pairs.
 template <typename Number>
 double MedianOf(const std::vector<ExchangedPair>& pairs, const Number& number) {
   std::vector<double> numbers(pairs.size());
@@ -61,7 +61,7 @@ double ErrorOf(const std::vector<ExchangedPair>& pairs) {
   return MedianOf(pairs, [](const ExchangedPair& pair) { return std::abs(pair.LogRatio()); });
 }
 
-// Of the bins that are valid, of which there is one; looks at some of them.
+// Over a subset of the valid bins, of which there is at least one.
 double MedianSignalOf(const BrdfTable& table) {
   const std::vector<bool> valid = ValidBins(table);
   const GridCosines cosines(table.grid);
@@ -117,7 +117,7 @@ RepetitionSymptom RepetitionOf(const BrdfTable& table) {
   const std::vector<bool> valid = ValidBins(table);
   if (std::ranges::find(valid, true) == valid.end()) return {};
   const TabulatedBrdf brdf(table);
-  // By how much values change from one theta_i to the next, in the median over the other angles.
+  // The change of values from one theta_i to the next, median over the other angles.
   std::vector<double> changes;
   for (int k = 0; k < kSteps; ++k) {
     std::vector<double> of_step;
@@ -140,7 +140,7 @@ RepetitionSymptom RepetitionOf(const BrdfTable& table) {
   constexpr size_t kFewestRepeated = 3, kBefore = 5;
   constexpr double kLess = 0.1;
   for (size_t begin = kBefore + 1; begin + kFewestRepeated <= changes.size(); ++begin) {
-    // The step before is between: it begins before the last angle.
+    // Without step begin - 1, which starts before the angle.
     std::vector<double> before(changes.begin() + static_cast<std::ptrdiff_t>(begin - kBefore - 1),
                                changes.begin() + static_cast<std::ptrdiff_t>(begin - 1));
     const double most =
@@ -182,12 +182,12 @@ TiltSymptom TiltOf(const BrdfTable& table) {
         }
         const double above = std::max(rho - largest / 2, 0.0) * area;
         light += above;
-        // wi is at phi_d from the direction in which h is off the normal.
+        // wi is at phi_d from the azimuth of h.
         const HalfDiffAngles at = grid.Center(bin);
         along += above * at.theta_h * std::cos(at.phi_d);
       }
     }
-    // A highlight, and not the light of all directions.
+    // A highlight rather than diffuse light.
     if (!(light > 0 && at_rim > 0 && rim / at_rim < largest / 3)) continue;
     middles.push_back(RadiansToDegrees(along / light));
   }

@@ -19,7 +19,7 @@ namespace {
 
 using MeasuredAt = std::function<std::optional<Rgb>(const DirectionPair&)>;
 
-// What a measurement that is no list of samples has for single directions.
+// For measurements that are not lists of samples: the value at single directions.
 MeasuredAt FunctionOf(const Measurement& measurement) {
   if (measurement.look_up) {
     const double limit = measurement.table ? measurement.table->max_theta : kPi / 2;

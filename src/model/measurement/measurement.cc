@@ -16,9 +16,9 @@
 namespace trilobe {
 namespace {
 
-// The same for samples that reciprocity makes equal [1e-6 rad]: the smaller theta, the larger, and
-// the angle between the azimuths; or, where azimuths matter, theta and phi of the smaller direction
-// and of the larger.
+// Equal for samples that reciprocity makes equal [1e-6 rad]: the smaller theta, the larger one and
+// the azimuth difference; for anisotropic data, theta and phi of the smaller and of the larger
+// direction.
 using ReciprocalKey = std::array<int64_t, 4>;
 
 struct KeyedSample {
@@ -48,7 +48,7 @@ KeyedSample KeyOf(const SphericalAngles& angles, bool anisotropic, int sample) {
           .sample = sample};
 }
 
-// Samples of the same directions, exchanged or not, one after the other.
+// Sorts samples so that those of the same directions, exchanged or not, are adjacent.
 std::vector<KeyedSample> ByDirections(const Measurement& scattered) {
   std::vector<KeyedSample> keys;
   keys.reserve(scattered.samples.directions.size());
@@ -59,8 +59,8 @@ std::vector<KeyedSample> ByDirections(const Measurement& scattered) {
   return keys;
 }
 
-// Where azimuths matter, neighbours may be far apart; but nothing that reflects from wi into wo
-// reflects nothing from wo into wi.
+// In anisotropic data neighbours may be far apart; but by reciprocity, a pair of directions that
+// reflects cannot be black when exchanged.
 std::vector<Outlier> DeadReadings(const Measurement& scattered) {
   const std::vector<KeyedSample> keys = ByDirections(scattered);
   std::vector<Outlier> dead;
@@ -83,7 +83,7 @@ std::vector<Outlier> DeadReadings(const Measurement& scattered) {
 
 constexpr double kRounding = 1e-9;  // of degrees that became radians: 60 are not beyond 60
 
-// Leaves only these samples, and counts the others as left out for this reason.
+// Keeps only these samples and counts the others as left out for this reason.
 void Keep(const std::vector<int>& kept, int BinCounts::*reason, Measurement* measurement) {
   const int left_out = measurement->samples.size() - static_cast<int>(kept.size());
   if (left_out == 0) return;
@@ -241,7 +241,7 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
     throw Error("the share of missing directions is " + std::to_string(share) +
                 "; it must be from 0 up to 1");
   }
-  // Not the numbers that noise of the same seed is made of.
+  // Different from the random numbers of noise with the same seed.
   const auto is_lost = [&](uint64_t k) { return UniformAt(~seed, k) < share; };
   if (measurement->table) {
     BrdfTable& table = *measurement->table;
@@ -286,8 +286,8 @@ SampleCollector::SampleCollector(const std::string& source, const std::string& k
 }
 
 void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
-  // The horizon is below the surface, too; whoever takes the samples asks by the cosines of the
-  // half and difference angles.
+  // The horizon counts as below the surface, too; users of the samples test cosines computed from
+  // the half and difference angles.
   const bool above = std::max(angles.theta_i, angles.theta_o) < kPi / 2;
   const HalfDiffAngles half_diff = above ? ToHalfDiff(ToDirections(angles)) : HalfDiffAngles{};
   const Cosines cosines = ToCosines(half_diff);

@@ -13,7 +13,7 @@
 namespace trilobe {
 namespace {
 
-// Against the mean, which is rounded to 0 where one is 0 and the other the least number there is.
+// Relative to the mean, which rounds to 0 if one value is 0 and the other the smallest number.
 double RelativeDifference(double a, double b) {
   const double mean = a / 2 + b / 2;
   return a == b ? 0 : mean > 0 ? std::abs(a - b) / mean : 2;

@@ -22,7 +22,7 @@ Between BetweenThetas(const HemisphereGrid& grid, double theta) {
   return {a, std::min(a + 1, grid.thetas - 1), place - a};
 }
 
-// The four nodes between which a direction lies, with their weights.
+// The four nodes around a direction, with weights.
 struct Corners {
   std::array<int, 4> node;
   std::array<double, 4> weight;
@@ -44,7 +44,7 @@ size_t IndexOf(const HemisphereGrid& grid, int i, int o) {
   return static_cast<size_t>(i) * grid.nodes() + o;
 }
 
-// Breadth first from all pairs with a value at once: each hands its own on to its neighbours.
+// Breadth first from all pairs with a value: each passes its value on to its neighbours.
 std::vector<Rgb> Filled(const NodeTable& table) {
   const HemisphereGrid& grid = table.grid;
   std::vector<Rgb> rho = table.rho;

@@ -24,7 +24,7 @@ constexpr double kBrightShare = 0.8;               // of the samples, where the 
 
 constexpr double kStepRounding = 1e-6;  // of degrees that became radians and back
 
-// The value below which this share of them lies, linear between two of them; 0 of none.
+// The quantile of a share, interpolated linearly; 0 if there are no values.
 double InterpolatedQuantile(double share, std::vector<double> values) {
   if (values.empty()) return 0;
   std::ranges::sort(values);
@@ -40,7 +40,7 @@ int WholeSteps(double angle, double per_degree) {
 
 using LitSamples = std::array<std::vector<double>, kSteps + kFurther>;  // by steps of theta_h
 
-// The median of the light from the step `first` to the step `last`; 0 where too little is known.
+// The median light of steps `first` to `last`; 0 if too little is known.
 double Brightness(const LitSamples& lit, int first, int last) {
   std::vector<double> values;
   for (int step = std::max(first, 0); step <= last; ++step) {
@@ -77,8 +77,8 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
     around[step] = Brightness(lit, step - kAround, step + kAround);
   }
 
-  // The middle, 1 where it is as bright as the light there and further out: a highlight falls with
-  // theta_h, so one that is narrow for the samples' steps is no shadow.
+  // Brightness of the centre relative to the light further out. A highlight decreases with theta_h,
+  // so one that is narrow relative to the samples' steps is not a shadow.
   std::vector<double> middle;
   for (const auto& [degree, step, value] : highlight) {
     if (degree < kShadowedDegrees && further[step] > 0) middle.push_back(value / further[step]);
@@ -87,13 +87,13 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
   const double ratio = InterpolatedQuantile(0.5, middle);
   if (!(ratio < kDark)) return {};
 
-  // By theta_d: the highlight, 1 where it is as bright as the light at the same theta_h.
+  // By theta_d: the highlight relative to the light at the same theta_h.
   std::array<std::vector<double>, kLitDegrees> ratios;
   for (const auto& [degree, step, value] : highlight) {
     const double bright = around[step] > 0 ? around[step] : further[step];
     if (bright > 0) ratios[degree].push_back(value / bright);
   }
-  // The samples next below `end`, of as many degrees as it takes to have enough.
+  // The samples just below `end`, over enough degrees for a sufficient number.
   const auto below = [&](int end) {
     std::vector<double> found;
     while (end > 0 && found.size() < kFewest) {

@@ -78,7 +78,7 @@ QuantizationSymptom QuantizationOf(const BrdfTable& table) {
   const std::vector<bool> valid = ValidBins(table);
   const GridCosines cosines(grid);
   std::vector<double> signals;
-  // Not those with the directions exchanged, which may be equal.
+  // Not the exchanged ones, which may be equal.
   for (int row = 0; row < grid.theta_h * grid.theta_d; row += 3) {
     for (int bin = row * grid.phi_d; bin < row * grid.phi_d + (grid.phi_d + 1) / 2; ++bin) {
       const double signal = valid[bin] ? table.Value(1, bin) * cosines(bin).i : 0;
@@ -124,7 +124,7 @@ NoiseSymptom NoiseOf(const BrdfTable& table) {
 
 namespace {
 
-// That of the highlight, which is all that FindOwnShadow looks at.
+// Only the part in the highlight, which is all that FindOwnShadow examines.
 OwnShadow ShadowOf(const BrdfTable& table) {
   const MerlGrid& grid = table.grid;
   const std::vector<bool> valid = ValidBins(table);
@@ -148,7 +148,7 @@ std::string Said(const Parts&... parts) {
   return text.str();
 }
 
-// What is said of each, in this order, if it is there.
+// The sentences for each symptom present, in this order.
 constexpr std::string (*kTelling[])(const BrdfTable&) = {
     [](const BrdfTable& table) -> std::string {
       const CosineSymptom cosine = CosineOf(table);

@@ -9,16 +9,16 @@
 
 namespace trilobe {
 
-// What the values of a table tell of its measurement, each with the limits beyond which it is told;
-// docs/robustness.md says how often that is right.
+// Symptoms of faults in the values of a table, each with its reporting threshold;
+// docs/robustness.md gives their reliability.
 
-// Were values multiplied by cos^k theta_i, log(rho / rho with wi and wo exchanged) would be
-// k log(cos theta_i / cos theta_o): k is the median of the ratio of the two, over pairs whose
-// cosines differ by a factor of 1.5 or more.
+// If values were multiplied by cos^k theta_i, log(rho / rho with wi and wo exchanged) would be k
+// log(cos theta_i / cos theta_o). k is the median ratio of the two, over pairs whose cosines differ
+// by a factor of at least 1.5.
 struct CosineSymptom {
   double exponent = 0;
-  // Medians of |log(rho / rho exchanged)| over these pairs, as it is and with k = 1 or -1, the
-  // nearer one, divided out.
+  // Medians of |log(rho / rho exchanged)| over these pairs, as measured and after dividing by the
+  // cosines with k = 1 or -1, the nearer one.
   double error = 0, error_without = 0;
   bool IsOneTooMany() const { return IsFar() && exponent > 0.65; }
   bool IsOneTooFew() const { return IsFar() && exponent < -0.65; }
@@ -28,10 +28,10 @@ struct CosineSymptom {
 };
 CosineSymptom CosineOf(const BrdfTable& table);
 
-// Where the same light were added to all signals, the BRDF, which is divided by cos theta_i, would
-// have it times 1/cos theta_i, and with its directions exchanged times 1/cos theta_o: its share of
-// the median signal, by the median over the pairs of a cosine's symptom, and the error of these as
-// it is and without that light.
+// If the same light were added to all signals, the BRDF, which is divided by cos theta_i, would
+// contain it times 1/cos theta_i, and when exchanged times 1/cos theta_o. Gives the light as a
+// fraction of the median signal, by the median over the pairs of the cosine symptom, and their
+// error with and without it.
 struct StrayLightSymptom {
   double share = 0;
   double error = 0, error_without = 0;
@@ -39,46 +39,47 @@ struct StrayLightSymptom {
 };
 StrayLightSymptom StrayLightOf(const BrdfTable& table);
 
-// The angle [deg] beyond which theta_i makes no difference any more: to the last angle measured, 6
-// degrees at least, all steps of 2 degrees change values by less than a tenth of what the five
-// before did, in medians over theta_o from 10 to 45 degrees and all azimuths.
+// The angle [deg] beyond which values no longer depend on theta_i: from there to the last measured
+// angle, at least 6 degrees, each step of 2 degrees changes values by less than a tenth of the
+// change in the five steps before, by medians over theta_o from 10 to 45 degrees and all azimuths.
 struct RepetitionSymptom {
   double degrees = 0;
   bool IsThere() const { return degrees > 0; }
 };
 RepetitionSymptom RepetitionOf(const BrdfTable& table);
 
-// By how much values scatter about a parabola through their neighbours in phi_d: the standard
-// deviation of normal noise of log rho that has the same median of third differences, of the green
-// of every third row.
+// Scatter of values about a parabola through their neighbours in phi_d: the standard deviation of
+// normal noise of log rho with the same median third difference, from the green channel of every
+// third row.
 struct NoiseSymptom {
   double relative = 0;
   bool IsThere() const { return relative > 0.03; }
 };
 NoiseSymptom NoiseOf(const BrdfTable& table);
 
-// How many values have the largest signal, rho cos theta_i, of their channel, or the largest rho,
-// to 1e-9, and of how many rows of one theta_h and theta_d: where a detector was saturated there is
-// a plateau. One row may be constant without that, as of a BRDF of theta_h and theta_d only, and so
-// may be more than half of a table, as of a matt one.
+// Number of values with the largest signal, rho cos theta_i, of their channel or with the largest
+// rho, to 1e-9, and of their (theta_h, theta_d) rows: a saturated detector makes a plateau. A
+// single row may be constant without saturation, as for a BRDF of theta_h and theta_d only, and so
+// may more than half of the table, as for a matt material.
 struct PlateauSymptom {
   int values = 0, rows = 0, valid = 0;
   bool IsThere() const { return values >= 10 && rows >= 2 && values <= valid / 2; }
 };
 PlateauSymptom PlateauOf(const BrdfTable& table);
 
-// The share of the darker half of the signals above 0 that have another one within 1e-9, the green
-// of every third row, one order of the directions: a quantised measurement has few different ones.
+// Fraction of the darker half of the positive signals with another one within 1e-9, in the green
+// channel of every third row and one order of the directions: quantised measurements have few
+// different values.
 struct QuantizationSymptom {
   double share = 0;
   bool IsThere() const { return share > 0.1; }
 };
 QuantizationSymptom QuantizationOf(const BrdfTable& table);
 
-// By how much the middle of the highlight is off theta_h = 0, towards wi [deg]: the median over
-// theta_d from 10 to 60 degrees of the centroid of what is above half of the largest value within
-// theta_h = 15 degrees, where that is three times as bright as the rim; and how far its quartiles
-// are apart. There is a highlight where ten theta_d at least have one.
+// Displacement [deg] of the highlight's centre from theta_h = 0 towards wi, and its interquartile
+// range: the median over theta_d from 10 to 60 degrees of the centroid of values above half of the
+// maximum within theta_h = 15 degrees, where that is three times as bright as the rim. There is a
+// highlight if at least ten theta_d have one.
 struct TiltSymptom {
   bool highlight = false;
   double degrees = 0, spread = 0;
@@ -88,10 +89,10 @@ struct TiltSymptom {
 };
 TiltSymptom TiltOf(const BrdfTable& table);
 
-// A sentence each; empty where nothing looks wrong.
+// One sentence per symptom; empty if nothing looks wrong.
 std::vector<std::string> SymptomsOf(const BrdfTable& table, int num_threads);
 
-// Adds those of a measurement that has a table to its notes.
+// Adds them to the notes of a measurement with a table.
 void NoteSymptoms(int num_threads, Measurement* measurement);
 
 }  // namespace trilobe

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kNone = -1;
 
-// LinearStencil, with two bins wherever it has one.
+// LinearStencil, but always with two bins.
 struct Place {
   int bin[2];
   double weight[2];
@@ -28,8 +28,8 @@ struct Place {
   }
 };
 
-// Replaces each kNone of a sequence of `count` bins, `stride` apart, by the nearest other entry; of
-// two at the same distance, by the earlier.
+// Replaces each kNone in a sequence of `count` bins, `stride` apart, by the nearest other entry; on
+// ties, the earlier one.
 void FillFromNearest(int* first, int count, int stride, bool cyclic) {
   const auto at = [&](int i) -> int& { return first[i * stride]; };
   int missing = 0;

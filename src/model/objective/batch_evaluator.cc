@@ -10,7 +10,7 @@
 namespace trilobe {
 namespace {
 
-// Of the paper's sharing: a lobe has one D and one G, a channel one F.
+// For the paper's sharing: one D and one G per lobe, one F per channel.
 constexpr LaneLayout kByLobe{
     .per_lobe = true, .per_channel = false, .stride = kVector, .size = kVector};
 constexpr LaneLayout kByChannel{
@@ -38,7 +38,7 @@ struct ReadJob {
   double *residual, *amplitude, *D_slope, *F_slope, *shadow;
 };
 
-// Of the lobes in a channel.
+// The factors of all lobes in a channel.
 template <int kBlocks>
 TRILOBE_ALWAYS_INLINE void LobesOf(LaneLayout layout, int c, const double* lookup, Lanes4* lobes) {
   const double* const first = lookup + layout.First(c);
@@ -69,7 +69,7 @@ TRILOBE_ALWAYS_INLINE void ToTables(LaneLayout layout, int c, const Lanes4* lobe
   }
 }
 
-// What the compiler knows of the tables.
+// Table properties known at compile time.
 enum class Known {
   kNothing,
   kOneVector,     // all tables of each factor have their lanes in one vector

@@ -10,23 +10,22 @@
 
 namespace trilobe {
 
-// Numbers of several lobes or tables lie side by side in vectors, padded to whole ones.
+// Numbers of several lobes or tables are adjacent in vectors, padded to whole vectors.
 inline constexpr int kVector = 4;
 constexpr int PaddedToVectors(int size) { return (size + kVector - 1) / kVector * kVector; }
 
-// How the tables of a factor lie in lanes: those of the lobes follow each other, once or channel by
-// channel.
+// The lanes of a factor's tables: lobes are consecutive, once or for each channel.
 struct LaneLayout {
   bool per_lobe = false, per_channel = false;
   int stride = 0;  // from one channel's lanes to the next one's
   int size = 0;    // of all, padded
 
-  // The first of the lanes that serve a channel: one a lobe, or one for all of them.
+  // First lane of a channel: one lane per lobe, or one for all.
   int First(int channel) const { return per_channel ? channel * stride : 0; }
   bool operator==(const LaneLayout&) const = default;
 };
 
-// And which lane each of them has.
+// The lane of each table.
 struct TableLanes : LaneLayout {
   TableLanes() = default;
   TableLanes(const ModelSpec& spec, Factor factor);
@@ -42,8 +41,8 @@ class BatchEvaluator {
  public:
   static constexpr int kBatch = 64;
 
-  // One batch. Each array is [kBatch][...], lanes as TableLanes has them; lanes that belong to no
-  // table are finite and mean nothing.
+  // One batch. Arrays are [kBatch][...] with lanes as in TableLanes; unused lanes are finite and
+  // have no meaning.
   struct Batch {
     explicit Batch(const BatchEvaluator& reader);
 
@@ -58,26 +57,26 @@ class BatchEvaluator {
 
   BatchEvaluator(const FoldedSamples& samples, const ModelSpec& spec);
 
-  // From now on, this model's parameters are read. It is not kept.
+  // Sets the parameters from a model, which is not kept.
   void SetModel(const FactorModel& model);
 
-  // Whether slopes are wanted, besides residuals and lookups.
+  // Whether to compute slopes in addition to residuals and lookups.
   enum class Slopes { kNone, kAll };
 
-  // Samples [begin, end), kBatch at most.
+  // Evaluates samples [begin, end), at most kBatch.
   void Read(int begin, int end, Slopes slopes, Batch* batch) const;
 
   const FoldedSamples& samples() const { return samples_; }
   const ModelSpec& spec() const { return spec_; }
   const TableLanes& lanes(Factor factor) const { return lanes_[static_cast<int>(factor)]; }
   int lobe_lanes() const { return lobe_lanes_; }
-  // Whether the lobes, and the tables of each factor, have their lanes in one vector.
+  // Whether the lobes, and each factor's tables, fit into one vector.
   bool one_vector() const { return one_vector_; }
   const double* s() const { return s_.data(); }  // of the model. [kChannels][lobe_lanes]
   int amplitude_lanes() const { return PaddedToVectors(1 + spec_.lobes); }
 
  private:
-  // The number of the lookup that reads a table of D, F or, of both, the first of G.
+  // Index of the lookup of a table of D or F, or the first lookup of G.
   int LookupOf(Factor factor, int table) const;
 
   const FoldedSamples& samples_;
@@ -85,7 +84,7 @@ class BatchEvaluator {
   const int lobe_lanes_;
   bool one_vector_;
   std::array<TableLanes, 3> lanes_;
-  // Of D for each stretch, with zeros for the lobes that have another; then of F and G.
+  // Tables of D for each stretch, with zeros for lobes of other stretches; then of F and G.
   std::vector<std::vector<double>> tables_;  // [entry][lanes]
   std::array<double, kChannels> d_{};
   std::vector<double> s_;  // [kChannels][lobe_lanes]

@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// Brings a model of the objective's spec into the canonical form (gauge.h), by what its samples
-// cover and with its threads.
+// Brings a model of the objective's spec into canonical form (gauge.h), by the coverage of its
+// samples and with its threads.
 inline void Canonicalize(const Objective& objective, FactorModel* model,
                          LobeOrder order = LobeOrder::kByLight) {
   Canonicalize(objective.coverage(), model, order, objective.num_threads());

@@ -98,7 +98,7 @@ FoldedGrid Fold(const BrdfSamples& samples, int g_nodes, const Weighting& weight
           const double rho1 = first[c], rho2 = second[c];
           const double w1 = multiplicity1 * weight1[c], w2 = multiplicity2 * weight2[c];
           const double w = w1 + w2;
-          // As rho1 plus a share of the difference: exact when the two agree.
+          // rho1 plus a fraction of the difference: exact if both are equal.
           const double share = w > 0 ? w2 / w : 0;
           const double difference = rho2 - rho1;
           folded.weight[c][n] = w;

@@ -11,7 +11,7 @@
 namespace trilobe {
 namespace {
 
-// The cells of one table, each once.
+// The distinct cells of one table.
 class CellIndex {
  public:
   int Find(const Stencil& stencil) {
@@ -32,7 +32,7 @@ class CellIndex {
     return id;
   }
 
-  // Orders the cells by their entries; returns what each number became.
+  // Sorts the cells by entries and returns the new number of each.
   std::vector<int> Sort() {
     std::vector<int> order(cells_.size()), rank(cells_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -57,10 +57,10 @@ class CellIndex {
   std::vector<std::vector<int>> by_first_entry_;
 };
 
-// Between and at neighbouring nodes of a table there are at most four kinds of cells a node.
+// At and between neighbouring nodes of a table there are at most four kinds of cells per node.
 static_assert(4 * kMaxTableSize <= std::numeric_limits<uint16_t>::max());
 
-// A sample on its way into the order.
+// A sample to be sorted.
 struct Item {
   std::array<uint16_t, LookupOrder::kMost> cell{};  // G first: theta_i, theta_o, D, F
   uint64_t hash = 0;                                // of the weights, rounded
@@ -81,10 +81,10 @@ const Stencil& StencilOf(const SampleStencils& at, const LookupOrder& order, int
   return (lookup == order.G_i()) != exchanged ? at.G_i : at.G_o;
 }
 
-// Where an item has a lookup's cell: those of G are first.
+// Position of a lookup's cell in an item: G comes first.
 int PlaceInItem(const LookupOrder& order, int lookup) { return (lookup + 2) % order.count(); }
 
-// The same for weights that differ by rounding errors, but for a few of a million.
+// Equal for weights that differ by rounding, except for a few in a million.
 uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
   uint64_t hash = 0;
   const LookupOrder order = OrderOf(at);
@@ -99,8 +99,7 @@ uint64_t RoundedHash(const SampleStencils& at, bool exchanged) {
   return hash;
 }
 
-// True where the values of all models are the same but for rounding: that of computing the
-// directions of an exchanged pair.
+// Whether all models have the same value up to the rounding of an exchanged pair's directions.
 bool ReadAlike(const WeightedSample& a, bool a_exchanged, const WeightedSample& b,
                bool b_exchanged) {
   constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
@@ -159,7 +158,7 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
   if (!samples.empty()) folded.order = OrderOf(samples.front().stencils);
   const LookupOrder& order = folded.order;
   const std::vector<Item> items = Sorted(samples, &folded);
-  // Where those begin that read alike.
+  // Start of each run of samples that read alike.
   std::vector<int> begin;
   for (size_t n = 0; n < items.size(); ++n) {
     if (n > 0) {
@@ -203,7 +202,7 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
         const WeightedSample& sample = samples[items[i].sample];
         const double more = sample.weight[c];
         folded.measured_energy += more * sample.rho[c] * sample.rho[c];
-        // As the old mean plus a share of the difference: exact when the two agree.
+        // The old mean plus a fraction of the difference: exact if both are equal.
         const double share = i == begin[n] ? 1 : w + more > 0 ? more / (w + more) : 0;
         const double difference = sample.rho[c] - rho;
         folded.constant += w * share * difference * difference;

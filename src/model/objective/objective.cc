@@ -19,10 +19,9 @@
 namespace trilobe {
 namespace {
 
-// Whether the samples stand at the bins of the tables, each of which then reads one of D and of F.
-// A stretched D is read between bins, differently along a row of the grid, and so are tables of
-// other bins than the grid has. Without lobes there are no tables to read; but lists are made that
-// have a place for each entry.
+// Whether each sample reads a single entry of D and of F: the samples are on a grid with the
+// tables' bins, and D is not stretched. Without lobes nothing is read, but the tables must have an
+// entry for each bin of the grid.
 bool ReadsBinByBin(const ModelSpec& spec, const BrdfSamples& samples) {
   if (!samples.on_grid() || spec.stretches.any()) return false;
   const int d = spec.d_axis.size, f = spec.f_axis.size;
@@ -40,7 +39,7 @@ void CheckReadable(const ModelSpec& spec, const BrdfSamples& samples) {
   }
 }
 
-// Products of factors and squares of residuals neither overflow nor vanish in this range. Black
+// In this range products of factors and squares of residuals neither overflow nor vanish. Black
 // measurements are exact.
 void CheckRange(const BrdfSamples& samples) {
   constexpr double kMinBrdf = 1e-50, kMaxBrdf = 1e50;
@@ -60,7 +59,7 @@ void CheckRange(const BrdfSamples& samples) {
   throw Error(message.str());
 }
 
-// What weights make of it.
+// Checks that weights are >= 0 and keep E in range.
 void CheckWeights(const std::string& weighting, bool nonnegative, double energy) {
   constexpr double kMinEnergy = 1e-200, kMaxEnergy = 1e200;
   if (!nonnegative) {
@@ -121,7 +120,7 @@ CoverageByChannel ScatteredCoverage(const FoldedSamples& samples, const ModelSpe
   return coverage;
 }
 
-// Gives each parameter the weight of the samples of the channels that it serves.
+// Sums for each parameter the weight of its channels' samples.
 std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
                                          const ModelSpec& spec) {
   FactorModel coverage(spec);  // borrowed for its layout: an entry a parameter
@@ -285,8 +284,8 @@ BrdfSamples Reweighted(const Objective& objective, const FactorModel& model, dou
   const double unit = level > 0 ? level : 1;
   samples.multiplicity.resize(samples.rho.size());
   for (int j = 0; j < samples.size(); ++j) {
-    // In units of the level, where the weighting is. Without the solid angle, which says how often
-    // a sample counts and not how far off it is.
+    // In units of the level if the weighting uses it. Without the solid angle, which is a number of
+    // samples and not an error.
     const Rgb w = objective.weighting()({samples.rho[j], samples.CosinesOf(j)});
     double square = 0;
     for (int c = 0; c < kChannels; ++c) {

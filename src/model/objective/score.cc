@@ -17,7 +17,7 @@ constexpr int kChunk = 1 << 14;
 constexpr size_t kWorst = 10;
 constexpr double kRelativeErrorFloor = 1e-3;  // [1/sr]
 
-// Largest error first; equal ones in the order of the samples.
+// Sorts by error, largest first; ties in sample order.
 bool Worse(const WorstSample& a, const WorstSample& b) {
   return std::tuple(-a.error, a.sample, a.channel) < std::tuple(-b.error, b.sample, b.channel);
 }

@@ -17,7 +17,7 @@ namespace {
 
 double Square(double x) { return x * x; }
 
-// A formula that looks at one channel at a time.
+// A formula for one channel at a time.
 std::function<Rgb(const WeightedPoint&, double)> ByChannel(double (*weight)(double, double)) {
   return [weight](const WeightedPoint& point, double /*level*/) {
     const auto [r, g, b] = point.rho;
@@ -43,7 +43,8 @@ double CosineWeight(double /*rho_star*/, double cos_i) { return Square(cos_i); }
 
 double UniformWeight(double /*rho_star*/, double /*cos_i*/) { return 1; }
 
-// The squared slope of f(b) = (b + epsilon)^(1 - exponent) or log(b + epsilon), but for its factor.
+// The squared slope of f(b) = (b + epsilon)^(1 - exponent) or log(b + epsilon), up to a constant
+// factor.
 struct Power {
   double exponent = 1;
   double epsilon = 1e-3;  // [1/sr], or of the level
@@ -54,14 +55,14 @@ struct Power {
 
   Rgb operator()(const WeightedPoint& point, double level) const {
     const double cosine = both_cosines ? point.cosines.i * point.cosines.o : point.cosines.i;
-    // Of values over the level, where relative, so that the unit does not matter for any exponent.
-    // A black measurement has no level; any will do. So for one next to nothing, whose weights
+    // Values are relative to the level if `relative`, so that no exponent depends on the unit. A
+    // black measurement has no level; any value works. So for an extremely dark one, whose weights
     // would be infinite.
     const double scale = relative && level > 1e-100 ? 1 / level : 1;
     const double area = solid_angle == 0 ? 1 : std::pow(point.solid_angle, solid_angle);
     const auto weight = [&](double rho_star) {
       const double x = rho_star * scale * cosine + epsilon;
-      // The logarithm, without the time of a power.
+      // The logarithm; avoids the cost of a power.
       const double slope = exponent == 1 ? 1 / x : std::pow(x, -exponent);
       return area * Square(cosine * slope);
     };

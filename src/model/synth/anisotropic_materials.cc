@@ -11,7 +11,7 @@ double Gaussian(double x, double sigma) {
   return std::exp(-x * x / (2 * sigma * sigma)) / (sigma * std::sqrt(2 * kPi));
 }
 
-// Of unpolarised light by a dielectric.
+// Fresnel reflectance of a dielectric for unpolarised light.
 double FresnelReflectance(double eta, double cosine) {
   const double inside = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
   const double s = (cosine - eta * inside) / (cosine + eta * inside);
@@ -51,7 +51,7 @@ Direction UnitHalf(const DirectionPair& pair) {
 
 double Square(double x) { return x * x; }
 
-// Standard deviations of the slopes along x and y, or what corresponds to them.
+// Standard deviations of the slopes along x and y, or similar parameters.
 struct Roughness {
   double x = 0.1, y = 0.1;
 };
@@ -214,7 +214,7 @@ MicrocylinderBrdf::MicrocylinderBrdf(const Cloth& cloth) : cloth_(cloth), gap_(1
     const double length = std::accumulate(thread.lengths.begin(), thread.lengths.end(), 0.0);
     for (size_t part = 0; part < thread.lengths.size(); ++part) {
       const double begin = thread.tangent_offsets[part], end = thread.tangent_offsets[part + 1];
-      // Steps of half a standard deviation of the narrowest term make a sum smooth.
+      // Steps of half the narrowest term's standard deviation make a smooth sum.
       const int count =
           std::max(1, static_cast<int>(std::ceil(std::abs(end - begin) / (thread.gamma_s / 2))));
       for (int step = 0; step < count && thread.lengths[part] > 0; ++step) {

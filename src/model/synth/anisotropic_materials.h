@@ -15,7 +15,7 @@ namespace trilobe {
 // 2013. Angles in degrees.
 struct Thread {
   double eta = 1.5;                     // index of refraction
-  Rgb color{};                          // A, of what is scattered inside
+  Rgb color{};                          // A, of light scattered inside
   double k_d = 0;                       // share of that which is scattered to all sides alike
   double gamma_s = 10, gamma_v = 20;    // widths of surface reflection and volume scattering
   double area = 0.5;                    // share of the cloth that this family covers
@@ -47,12 +47,12 @@ class MicrocylinderBrdf {
  public:
   explicit MicrocylinderBrdf(const Cloth& cloth);
 
-  // As published, which is not reciprocal since Q is that of one direction, and near the horizon
-  // reflects more light than it gets. [1/sr]; both directions above the surface.
+  // The published model. It is not reciprocal, since Q depends on one direction, and near the
+  // horizon it reflects more light than it receives. [1/sr]; both directions above the surface.
   Rgb Published(const DirectionPair& pair) const;
 
-  // The geometric mean of that for both orders of the directions: reciprocal, as cloth is, and it
-  // reflects no more than it gets.
+  // The geometric mean of that for both orders of the directions: reciprocal, and reflects no more
+  // than it receives.
   Rgb operator()(const DirectionPair& pair) const;
 
  private:
@@ -61,7 +61,7 @@ class MicrocylinderBrdf {
     double weight = 0;        // area x length
     int thread = 0;
   };
-  // Of a pair and of the pair with its directions exchanged.
+  // For a pair and its exchanged one.
   struct BothOrders {
     Rgb rho{}, exchanged{};
   };
@@ -72,7 +72,8 @@ class MicrocylinderBrdf {
   double gap_ = 0;  // share of the cloth that no thread covers
 };
 
-// The anisotropic ones of SynthMaterials(): woven cloths, metals and coats with a grain along x.
+// The anisotropic materials of SynthMaterials(): woven cloths, metals and coats with a grain along
+// x.
 std::vector<SynthMaterial> AnisotropicMaterials();
 
 }  // namespace trilobe

@@ -18,7 +18,7 @@ namespace {
 
 // --- Building blocks, all reciprocal ------------------------------------------------------------
 
-// What the analytic lobes need to know about two directions.
+// The angles of two directions for the analytic lobes.
 struct Geometry {
   explicit Geometry(const DirectionPair& pair)
       : cos_i(pair.wi[2]), cos_o(pair.wo[2]), wi_dot_wo(Dot(pair.wi, pair.wo)) {
@@ -163,7 +163,7 @@ void CheckBrdf(const SynthMaterial& material) {
   if (!material.brdf) throw Error("synth:" + material.name + " has no BRDF");
 }
 
-// A material as measured at the pair of directions number `index`; nothing where it is lost.
+// Simulated measurement of direction pair `index`; nothing if it is lost.
 std::optional<Rgb> Measure(const SynthMaterial& material, const DirectionPair& pair, double noise,
                            uint64_t seed, uint64_t index) {
   // Counters 8 index .. 8 index + 7: a pair of uniforms a channel, and one for the loss.

@@ -8,13 +8,12 @@
 
 #include "trilobe/core/base/error.h"
 
-// What public functions ask of their arguments. Each throws Error, which names the argument, where
-// it is not so.
+// Checks of arguments by public functions. Each throws Error with the argument's name if it fails.
 namespace trilobe {
 
 [[noreturn]] void FailNumber(const std::string& name, double value, const std::string& must_be);
 
-// "stride is 0; it must be 1 or more".
+// CheckNumber("stride", 0, stride >= 1, "1 or more"): "stride is 0; it must be 1 or more".
 inline void CheckNumber(const std::string& name, double value, bool holds,
                         const std::string& must_be) {
   if (!holds) FailNumber(name, value, must_be);

@@ -11,15 +11,15 @@
 
 namespace trilobe {
 
-// Bad input or an impossible request. what() is one line that a user can act on: what is wrong,
-// where (file, bin, key), and what to do; Printable, whatever the names in it. The program prints
-// it and exits with status 1. Programming errors are glog CHECKs, never this.
+// Bad input or an impossible request. what() is one printable line that a user can act on: what is
+// wrong, where (file, bin, key), and what to do. The program prints it and exits with status 1.
+// Programming errors are glog CHECKs instead.
 class Error : public std::runtime_error {
  public:
   explicit Error(std::string_view message) : std::runtime_error(Printable(message)) {}
 };
 
-// What to tell, in one line, of what ended one of many pieces of work while the others go on.
+// One line about the exception that ended one of many jobs, while the other jobs continue.
 inline std::string MessageOf(const std::exception& exception) {
   if (dynamic_cast<const Error*>(&exception) != nullptr) return exception.what();
   if (dynamic_cast<const std::bad_alloc*>(&exception) != nullptr) {

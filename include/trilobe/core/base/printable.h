@@ -6,9 +6,9 @@
 
 namespace trilobe {
 
-// A text that may hold anything, as a name of a file may, on one line that means what it shows:
-// "a\nb\x1b[31m". What is not UTF-8, breaks a line, steers a terminal or changes the direction of
-// writing is shown by its bytes. What is printable already stays as it is.
+// Escapes arbitrary text, such as a file name, so that it is safe to print on one line:
+// "a\nb\x1b[31m". Invalid UTF-8, line breaks, terminal control codes and bidirectional marks become
+// their bytes. Printable characters are unchanged.
 std::string Printable(std::string_view text);
 
 }  // namespace trilobe

@@ -8,12 +8,13 @@
 
 namespace trilobe {
 
-// What long work asks now and then: true to stop. An empty one never says so.
+// A callback that long computations poll; true asks them to stop. An empty one always returns
+// false.
 class StopCheck {
  public:
   StopCheck() = default;
   StopCheck(std::nullptr_t) {}  // NOLINT(google-explicit-constructor)
-  // Any function is one.
+  // Converts implicitly from any predicate.
   template <std::predicate F>
   requires(!std::same_as<F, StopCheck>)  // NOLINTNEXTLINE(google-explicit-constructor)
       StopCheck(F ask)

@@ -23,8 +23,8 @@ struct HalfDiffAngles {
   double phi_d = 0;
 };
 
-// Throws Error unless the angles are numbers, theta_h and theta_d from 0 to 90 degrees (a little
-// more by rounding) and phi_d from 0 to 180.
+// Throws Error unless all angles are numbers, theta_h and theta_d are in [0, 90] degrees and phi_d
+// in [0, 180], up to rounding.
 void CheckAngles(const HalfDiffAngles& angles);
 
 // Incident and outgoing directions.
@@ -33,23 +33,24 @@ struct DirectionPair {
   Direction wo{};
 };
 
-// The pair of directions with these angles, half vector in the xz plane (phi_h = 0).
+// The directions with these angles. The half vector is in the xz plane (phi_h = 0).
 DirectionPair ToDirections(const HalfDiffAngles& angles);
 
 // The inverse, up to a rotation about the normal. wi and wo must not be opposite.
 HalfDiffAngles ToHalfDiff(const DirectionPair& pair);
 
-// A pair of directions as a goniometer gives it [rad]: theta from the normal, phi from x towards y.
+// A pair of directions as a goniometer reports it [rad]: theta from the normal, phi from x towards
+// y.
 struct SphericalAngles {
   double theta_i = 0;
   double phi_i = 0;
   double theta_o = 0;
   double phi_o = 0;
 };
-// Finite, and theta_i and theta_o from 0 to below 90 degrees.
+// True if all angles are finite and theta_i and theta_o are in [0, 90) degrees.
 bool IsAboveSurface(const SphericalAngles& angles);
 DirectionPair ToDirections(const SphericalAngles& angles);
-SphericalAngles ToSphericalAngles(const DirectionPair& pair);  // phi from -pi to pi
+SphericalAngles ToSphericalAngles(const DirectionPair& pair);  // phi in [-pi, pi]
 
 // A direction in polar coordinates [rad].
 struct PolarAngles {
@@ -57,12 +58,11 @@ struct PolarAngles {
   double phi = 0;
 };
 Direction ToDirection(const PolarAngles& angles);
-PolarAngles ToPolarAngles(const Direction& w);  // of any length; phi from -pi to pi
-// The half vector of two directions above the surface; its phi is 0 where it is within 1e-9 of the
-// normal.
+PolarAngles ToPolarAngles(const Direction& w);  // w of any length; phi in [-pi, pi]
+// The half vector of two directions above the surface. Its phi is 0 within 1e-9 of the normal.
 PolarAngles HalfVector(const DirectionPair& pair);
 
-// cos theta_i and cos theta_o, straight from the angles:
+// Computed directly from the angles:
 // cos theta_{i,o} = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
 struct Cosines {
   double i = 0;

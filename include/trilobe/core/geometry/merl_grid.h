@@ -9,8 +9,9 @@
 
 namespace trilobe {
 
-// The half-angle grid of the MERL database (docs/samples.md), of any resolution: theta_h bins are
-// equal steps of sqrt(theta_h), theta_d and phi_d bins equal steps of the angle. Angles in radians.
+// The half-angle grid of the MERL database (docs/samples.md), at any resolution. Bins of theta_h
+// have equal width in sqrt(theta_h), bins of theta_d and phi_d equal width in the angle. Angles in
+// radians.
 struct MerlGrid {
   int theta_h = 90;
   int theta_d = 90;
@@ -18,31 +19,32 @@ struct MerlGrid {
 
   int size() const { return theta_h * theta_d * phi_d; }
 
-  // Bins lie phi_d fastest, theta_h slowest, as in a MERL file.
+  // phi_d varies fastest, theta_h slowest, as in a MERL file.
   int Index(int h, int d, int p) const { return p + phi_d * (d + theta_d * h); }
 
-  // Lower edge of theta_h bin `h`; h = theta_h gives pi/2. A fractional h is a point in the bin.
+  // Lower edge of theta_h bin `h`; h = theta_h gives pi/2. A fractional h is a point inside the
+  // bin.
   double ThetaH(double h) const { return h / theta_h * (h / theta_h) * (kPi / 2); }
   double ThetaD(double d) const { return d / theta_d * (kPi / 2); }
   double PhiD(double p) const { return p / phi_d * kPi; }
 
-  // The centre of a bin, in index space.
+  // The centre of a bin in index space.
   HalfDiffAngles Center(int h, int d, int p) const {
     return {ThetaH(h + 0.5), ThetaD(d + 0.5), PhiD(p + 0.5)};
   }
-  HalfDiffAngles Center(int bin) const {  // throws Error where there is no such bin
+  HalfDiffAngles Center(int bin) const {  // throws Error if out of range
     CheckIndex(bin, size(), "the bin");
     return Center(bin / (theta_d * phi_d), bin / phi_d % theta_d, bin % phi_d);
   }
 
-  // The measure of the pairs of directions in a bin (h, d), of any phi_d, in some unit:
+  // The measure, up to a constant factor, of the direction pairs in bin (h, d, any phi_d):
   // d omega_i d omega_o = 4 cos theta_d d omega_h d omega_d, where d theta_h ~ sqrt(theta_h).
   double SolidAngle(int h, int d) const {
     const double a = ThetaH(h + 0.5), b = ThetaD(d + 0.5);
     return std::sqrt(a) * std::sin(a) * std::sin(b) * std::cos(b);
   }
 
-  // Where an angle lies in index space: bin `i` covers [i, i + 1).
+  // Angle to index space: bin `i` covers [i, i + 1).
   double ThetaHCoordinate(double angle) const { return theta_h * std::sqrt(angle / (kPi / 2)); }
   double ThetaDCoordinate(double angle) const { return theta_d * (angle / (kPi / 2)); }
 
@@ -57,7 +59,7 @@ struct MerlGrid {
   bool operator==(const MerlGrid&) const = default;
 };
 
-// Throws Error unless the grid has bins, and no more than an int can count.
+// Throws Error unless the grid has at least one bin and their number fits in an int.
 void CheckGrid(const MerlGrid& grid);
 
 }  // namespace trilobe

@@ -9,12 +9,12 @@
 
 namespace trilobe {
 
-// Catmull-Rom spline through values at theta_k = (k + 1/2) * 90/nodes degrees, k = 0..nodes-1, with
-// one-sided slopes at the two ends and constant beyond the end nodes
+// Catmull-Rom spline through values at theta_k = (k + 1/2) * 90/nodes degrees, k = 0..nodes-1.
+// Slopes at the two end nodes are one-sided, and values beyond them constant
 // (Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 8.6.1; docs/model.md).
 class CatmullRom {
  public:
-  // A place on the spline: between node `interval` and the next, `t` in [0, 1] of the way.
+  // A point on the spline: at fraction `t` in [0, 1] from node `interval` to the next node.
   struct Location {
     int interval = 0;  // 0..nodes-2
     double t = 0;
@@ -25,27 +25,27 @@ class CatmullRom {
 
   int nodes() const { return nodes_; }
   double NodeAngle(int k) const;        // [rad]
-  Location Locate(double theta) const;  // throws Error where theta is not a number
+  Location Locate(double theta) const;  // throws Error if theta is NaN
 
-  // Weights of the nodes interval-1 .. interval+2 at t; those of nodes that do not exist are 0.
+  // Weights at t of nodes interval-1 .. interval+2; nodes outside the spline have weight 0.
   std::array<double, 4> Weights(const Location& at) const;
 
-  // The same as a stencil over existing nodes.
+  // The same weights as a stencil over existing nodes.
   Stencil StencilAt(const Location& at) const;
   Stencil StencilAt(double theta) const { return StencilAt(Locate(theta)); }
 
-  // The four weights as polynomials: weight[a] = sum_k c[a][k] t^k (1 - t)^(3 - k), the Bernstein
-  // basis but for its binomials. A weight that vanishes at an end of the interval has no terms
-  // that do not, so near there it keeps its digits, as powers of t alone would not.
+  // The four weights as polynomials, weight[a] = sum_k c[a][k] t^k (1 - t)^(3 - k): the Bernstein
+  // basis without its binomials. Unlike powers of t, it keeps relative precision near an end where
+  // a weight vanishes.
   using Cubic = std::array<double, 4>;
   std::array<Cubic, 4> WeightPolynomials(int interval) const;
 
-  // One interval of a spline: a straight line and what bends it,
-  //   (1 - t) f0 + t f1 + t (1 - t) ((1 - t) a0 + t a1),
-  // which is as exact near a small value at one end as at that end itself.
+  // One interval of a spline: a straight line plus a bend,
+  //   (1 - t) f0 + t f1 + t (1 - t) ((1 - t) a0 + t a1).
+  // This form keeps relative precision near an end with a small value.
   struct Piece {
     double f0 = 0, f1 = 0;  // values at the ends
-    double a0 = 0, a1 = 0;  // minus half the second difference there, 0 at the spline's own ends
+    double a0 = 0, a1 = 0;  // minus half the second difference; 0 at the ends of the spline
 
     // `v` is t - 1/2.
     double operator()(double v) const {
@@ -54,8 +54,8 @@ class CatmullRom {
     }
   };
 
-  // The spline through `values` [nodes], interval by interval. [nodes - 1]
-  // Throws Error for another number of values.
+  // The pieces of the spline through `values` [nodes]. [nodes - 1]
+  // Throws Error if the number of values differs.
   std::vector<Piece> Pieces(std::span<const double> values) const;
 
  private:

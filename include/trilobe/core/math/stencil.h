@@ -6,8 +6,8 @@
 
 namespace trilobe {
 
-// A table lookup as a short weighted sum: sum_k weight[k] * table[index[k]], k < size.
-// Weights add up to 1.
+// A table lookup as a short weighted sum: sum_k weight[k] * table[index[k]], k < size. The weights
+// sum to 1.
 struct Stencil {
   static constexpr int kMaxSize = 4;
   int size = 0;
@@ -20,7 +20,7 @@ struct Stencil {
     return sum;
   }
 
-  // The weight of one table entry, 0 where the stencil does not reach it.
+  // The weight of a table entry, 0 if the stencil does not read it.
   double WeightOf(int entry) const {
     for (int k = 0; k < size; ++k) {
       if (index[k] == entry) return weight[k];
@@ -29,26 +29,26 @@ struct Stencil {
   }
 };
 
-// What is nearer to an entry than this, in steps from it to the next, stands at it: else rounding
-// would have it read the next one, too.
+// Coordinates within this distance of an entry [steps between entries] snap to it, so that rounding
+// does not add a neighbour to the stencil.
 inline constexpr double kAtEntry = 1e-9;
 
-// A place between two neighbours: `t` in [0, 1) of the way from the lower to the upper.
+// A position between two neighbours: fraction `t` in [0, 1) from the lower to the upper.
 struct Between {
   int lower = 0, upper = 0;
   double t = 0;
 };
 
-// Where an angle [rad], lies among `count` >= 1 at even steps from 0 around a circle. Throws Error
-// for other counts, and for an angle that is not finite.
+// Position of an angle [rad] among `count` >= 1 entries spaced evenly around a circle from 0.
+// Throws Error for other counts and angles that are not finite.
 Between OnCircle(double radians, int count);
 
-// The entry itself.
+// Reads one entry with weight 1.
 Stencil PointStencil(int index);
 
-// Linear between the centres of `bins` unit bins (centre of bin i at i + 1/2), constant beyond the
-// outer centres; within kAtEntry of a centre that entry alone. `coordinate` is in [0, bins], where
-// bins >= 2. Throws Error where it is not a number, and for fewer bins.
+// Linear between the centres of `bins` >= 2 unit bins (centre of bin i at i + 1/2), constant beyond
+// the outer centres. Within kAtEntry of a centre it reads that entry alone. `coordinate` is in [0,
+// bins]. Throws Error for NaN and for fewer bins.
 Stencil LinearStencil(double coordinate, int bins);
 
 }  // namespace trilobe

@@ -20,8 +20,8 @@
 
 namespace trilobe {
 
-// How two spheres differ to the eye. All pixels of the sphere count on which any light counts
-// (RenderSpheres). Beside a black measurement, whatever is not black is white.
+// Visible difference of two spheres, over all pixels with coverage > 0 (RenderSpheres). Against a
+// black measurement, every fitted pixel that is not black counts as white.
 struct SphereError : SeenError {
   // |mean fitted - mean measured| / |mean measured|, linear RGB; 0 for a black measurement.
   double mean_color_error = 0;
@@ -29,27 +29,28 @@ struct SphereError : SeenError {
 };
 SphereError CompareSpheres(const RenderedImage& measured, const RenderedImage& fitted);
 
-// What the model makes of directions that were not measured.
+// The model at directions that were not measured.
 struct BeyondData {
-  double share = 0;  // of the bins above the surface that are not measured
-  // The largest rho cos theta, theta the steeper of the two angles, there and where data are.
+  double share = 0;  // unmeasured fraction of the bins above the surface
+  // Largest rho cos theta, theta the steeper angle, outside and within the measured directions.
   double largest = 0, largest_within = 0;
-  double psnr_db = 0;  // of the whole sphere, against the measurement extended by whoever made it,
-                       // or else by its nearest valid bins
+  // Of the whole sphere. Unmeasured bins have the authors' values or else the nearest valid ones.
+  double psnr_db = 0;
 };
 
-// How like its measurement a material looks.
+// How closely a material resembles its measurement.
 struct AppearanceReport {
   std::string environment;
   int lights = 0, size = 0;
   SphereError sphere;
   AlbedoError albedo;
-  // Of every few bins; between: at their corners. Or at nodes, and in the middle between them.
+  // Errors at a subset of bin centres, and between them at bin corners; or at nodes and midway
+  // between.
   PointErrors at_centers, between_centers;
   bool at_nodes = false;
-  std::optional<BeyondData> beyond;  // nothing where the measurement covers all directions
-  // Where it is known what was measured, a synthetic material: how far from that, on the sphere,
-  // are the fit and the measurement itself, interpolated.
+  std::optional<BeyondData> beyond;  // nothing if all directions are measured
+  // For synthetic materials: the errors of the fit and of the interpolated measurement against the
+  // exact formula, on the sphere.
   struct FromFormula {
     SphereError fitted, measured;
   };
@@ -58,34 +59,34 @@ struct AppearanceReport {
 
 struct AppearanceOptions {
   const Environment* environment = nullptr;  // null: StudioEnvironment()
-  int lights = 600;                          // drawn from it
-  int size = 96;                             // of the sphere, in pixels
+  int lights = 600;                          // number of lights drawn from it
+  int size = 96;                             // diameter of the sphere in pixels
   int num_threads = 1;
 };
 
-// What they are lit by.
+// The environment that is used.
 const Environment& EnvironmentOf(const AppearanceOptions& options);
 
-// Compares a material with a measurement, which is linear between bin centres, or between nodes.
-// `fitted` is a function of any two directions. The same bits for any number of threads. Throws
-// Error when no bin is valid, the environment is black, or the material's values overflow.
+// Compares a material with a measurement, interpolated linearly between bin centres or nodes.
+// `fitted` accepts any directions above the surface. The same bits for any number of threads.
+// Throws Error if no bin is valid, the environment is black, or the material's values overflow.
 AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,
                                    const AppearanceOptions& options);
 AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf& fitted,
                                    const AppearanceOptions& options,
                                    const BrdfFunction& formula = nullptr);
 
-// Throws Error, which names the source, where a figure overflows.
+// Throws Error, naming the source, if a result overflows.
 void CheckFinite(const AppearanceReport& report, const std::string& source);
 
-// The part of it that says most, for comparing many materials with one measurement, whose sphere is
-// rendered once: on a quarter of the pixels, which tells them apart in a quarter of the time.
+// A fast version for comparing many materials with one measurement: the sphere error alone, on a
+// quarter of the pixels, with the measured sphere rendered once.
 class SphereJudge {
  public:
-  // Throws Error when no bin is valid or the environment is black.
+  // Throws Error if no bin is valid or the environment is black.
   SphereJudge(const BrdfTable& measured, const AppearanceOptions& options);
-  // Looks at all directions: at what whoever made the measurement took for those that it lacks, or
-  // else at its nearest valid bins (BeyondData::psnr_db).
+  // Compares all directions. Unmeasured bins have the values of the measurement's authors, or else
+  // of the nearest valid bins (BeyondData::psnr_db).
   static SphereJudge OfAllDirections(const BrdfTable& measured, const AppearanceOptions& options);
 
   SphereError operator()(const AngularBrdf& fitted) const;
@@ -102,31 +103,31 @@ class SphereJudge {
   const RenderedImage measured_;
 };
 
-// Two images, whose coverage is the share of the light whose directions were measured.
+// Two images; coverage is the fraction of the light from measured directions.
 struct ImagePair {
   RenderedImage measured, fitted;
 };
-// The pair that is compared: a sphere under the points that stand for the environment, from
-// measured directions alone.
+// The images that are compared: spheres under the lights drawn from the environment, for measured
+// directions only.
 ImagePair RenderMeasuredPair(const BrdfTable& measured, const AngularBrdf& fitted,
                              const AppearanceOptions& options);
 ImagePair RenderMeasuredPair(const NodeBrdf& measured, const SphericalBrdf& fitted,
                              const AppearanceOptions& options);
 
-// What pictures show, under the environment itself (RenderUnder): from measured directions alone,
-// and from all; the nearest bins or nodes stand for those that were not measured.
+// Images for display, under the full environment (RenderUnder): `counted` from measured directions
+// only, `whole` from all, with the nearest bins or nodes in place of unmeasured ones.
 struct ImagePairs {
   ImagePair counted, whole;
 };
 ImagePairs PairsOf(RenderedImages&& images);  // of two materials
 ImagePairs RenderPicture(const BrdfTable& measured, const AngularBrdf& fitted,
                          const AppearanceOptions& options);
-// On a sphere, or on cloth (ViewCloth).
+// On a sphere or on cloth (ViewCloth).
 enum class Shape { kSphere, kCloth };
 ImagePairs RenderPicture(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
                          const AppearanceOptions& options);
 
-// A material alone on a sphere, from all directions.
+// A single material on a sphere, for all directions.
 RenderedImage RenderPicture(const Material& material, const AppearanceOptions& options);
 
 }  // namespace trilobe

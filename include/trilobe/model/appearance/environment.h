@@ -9,31 +9,31 @@
 
 namespace trilobe {
 
-// Light from everywhere, by direction, as a picture in latitude and longitude. The world: x to the
-// right, y up, z towards the eye. Rows go from +y down to -y; columns go around, the middle one
-// behind the object (-z), as a camera in its place would see it.
+// Incident radiance by direction, as a latitude-longitude image. World: x right, y up, z towards
+// the eye. Rows run from +y to -y; the middle column is behind the object (-z), as seen by a camera
+// in its place.
 struct Environment {
   std::string name;
   int width = 0, height = 0;
   std::vector<Rgb> radiance;  // [height * width], row by row, >= 0 and finite
 };
 
-// Throws Error unless it is as said above, and of one pixel or more.
+// Throws Error unless the environment is as described above, with at least one pixel.
 void CheckEnvironment(const Environment& environment);
 
-// A fixed one, for when no probe is given: a sky brighter towards the horizon, dark ground, a sun,
-// and three area lights of different colours.
+// The default environment: a sky that is brighter towards the horizon, dark ground, a sun, and
+// three area lights of different colours.
 const Environment& StudioEnvironment();
 
-// A light so far away that its rays are parallel.
+// A directional light.
 struct Light {
   Direction direction;  // towards it, in the world
   Rgb irradiance;       // on a surface that faces it
 };
 
-// `count` lights of equal luminance that stand for the environment: the points of a Hammersley set,
-// drawn in proportion to luminance. Deterministic. Throws Error for an environment that is none or
-// black, and for fewer lights than one.
+// Approximates the environment by `count` lights of equal luminance at a Hammersley set,
+// distributed in proportion to luminance. Deterministic. Throws Error for an invalid or black
+// environment and for count < 1.
 std::vector<Light> DrawLights(const Environment& environment, int count);
 
 }  // namespace trilobe

@@ -10,22 +10,22 @@
 
 namespace trilobe {
 
-// BRDF [1/sr] of an isotropic material for two directions above the surface, by their angles.
+// BRDF [1/sr] of an isotropic material by the angles of two directions above the surface.
 using AngularBrdf = std::function<Rgb(const HalfDiffAngles&, const Cosines&)>;
 
-// The same of any material, phi being from its x towards its y.
+// The same for any material; phi is measured from its x towards its y.
 using SphericalBrdf = std::function<Rgb(const SphericalAngles&)>;
 
 // A measurement, linear between bin centres. Keeps a reference to `table`.
 AngularBrdf Interpolated(const TabulatedBrdf& table);
 
-// A material to be rendered. Anisotropic ones have no `angular`, which is faster.
+// A material to render. `angular`, which is faster, is empty for anisotropic materials.
 struct Material {
   AngularBrdf angular;
   SphericalBrdf spherical;
 };
 Material Isotropic(const AngularBrdf& brdf);
-// A model as it is now. Throws Error for parameters that are not finite and 0 or more.
+// A material from a copy of the model. Throws Error unless all parameters are finite and >= 0.
 Material MaterialOf(const FactorModel& model);
 
 }  // namespace trilobe

@@ -10,40 +10,40 @@
 
 namespace trilobe {
 
-// Both pictures get the exposure that takes the mean luminance of the measured one to this.
+// Both images are exposed so that the measured one has this mean luminance.
 inline constexpr double kMeanLuminance = 0.35;
 
-// Where in a picture: grazing is where light or eye stand further than 60 degrees from the normal
-// (on a sphere, of the eye: the rim, a quarter of the disc); highlights are what else has at least
-// twice the mean luminance, measured or fitted.
+// Regions of an image. Grazing: theta of light or eye exceeds 60 degrees (on a sphere, theta of the
+// eye: the rim, a quarter of the disc). Highlights: other pixels with at least twice the mean
+// luminance, measured or fitted.
 enum class SeenPlace { kHighlights, kGrazing, kRest };
 inline constexpr double kGrazingAngleDegrees = 60;
 inline constexpr size_t kNumPlaces = 3;
 const char* NameOf(SeenPlace place);  // "highlights"
 
-// Of the CIELAB differences in one place; all 0 if it has no pixel.
+// CIELAB differences in one region; all 0 if it has no pixel.
 struct PlaceError {
-  double share = 0;    // of all pixels
-  double squares = 0;  // of the sum of the squares of all differences
+  double share = 0;    // fraction of all pixels
+  double squares = 0;  // fraction of the sum of all squared differences
   double mean_delta_e = 0;
   double lightness = 0;  // mean of fitted - measured L
-  double color = 0;      // of the sum of squares here, what more or less light would not mend
+  double color = 0;      // fraction of its squares that scaling the light cannot correct
 };
 
-// How two pictures differ to the eye.
+// The visible difference of two images.
 struct SeenError {
-  double psnr_db = 0;       // of the encoded values, peak 1; +infinity for equal pictures
+  double psnr_db = 0;       // of the encoded values, peak 1; +infinity for equal images
   double mean_delta_e = 0;  // CIELAB, 1976
-  double delta_e_95 = 0;    // 95 % of the pixels stay below
+  double delta_e_95 = 0;    // 95th percentile over the pixels
   std::array<PlaceError, kNumPlaces> places = {};  // [SeenPlace]
 
   const PlaceError& at(SeenPlace place) const { return places[static_cast<size_t>(place)]; }
 };
 
-// Sums it up, pixel by pixel.
+// Accumulates SeenError pixel by pixel.
 class SeenErrorSum {
  public:
-  // Exposed light, which is clipped at 1 and encoded by the sRGB curve.
+  // Takes exposed light, which is clipped at 1 and encoded by the sRGB curve.
   void Add(const Rgb& measured, const Rgb& fitted, bool grazing);
 
   SeenError Total() const;
@@ -59,10 +59,10 @@ class SeenErrorSum {
   std::array<Sum, kNumPlaces> sums_ = {};
 };
 
-// How measured and fitted samples differ to the eye where they make no picture: each is a patch
-// under a light of its own, as bright as rho cos theta_i. As a camera sets itself, the exposure is
-// that of which the mean luminance of the measured ones, clipped at 1, is kMeanLuminance, or nearly
-// 1 where so many are black that none is; 0 for a black measurement. `fitted`: [samples.size()]
+// The visible difference of samples that form no image: each is a patch of brightness rho cos
+// theta_i. The exposure makes the mean clipped luminance of the measured samples kMeanLuminance; if
+// too few of them are not black, these are exposed to nearly 1. 0 for a black measurement.
+// `fitted`: [samples.size()]
 SeenError CompareSamples(const BrdfSamples& samples, const std::vector<Rgb>& fitted);
 
 }  // namespace trilobe

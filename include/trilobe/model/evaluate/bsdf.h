@@ -14,41 +14,42 @@
 
 namespace trilobe {
 
-// The theta up to which models are tabulated [rad], of wi as of wo: of models whose cosines are
-// splined, as the paper's, G / cos theta is constant beyond. What is made of a model for renderers
-// (Bsdf, files) takes what lies beyond as it is there.
+// The largest theta of wi and wo in tables for renderers (Bsdf, files) [rad]; beyond it they use
+// the values at it. In models with splined cosines, such as the paper's, G / cos theta is constant
+// there.
 inline constexpr double kGrazingTheta = DegreesToRadians(89.5);
 
-// A fitted material as a renderer holds it: value, sampling, albedo, for models of every form. Made
-// once from a model, immutable, safe to use from any number of threads; no call allocates.
+// A fitted material for a renderer: evaluation, sampling and albedo of models of every form.
+// Immutable and thread-safe; no call allocates. Real is double or float.
 //
 //   const trilobe::Bsdf<float> bsdf(trilobe::ReadModel("model.json").model);
+//   const auto f = bsdf.Value(wi, wo);           // RGB [1/sr], without the cosine
+//   const auto next = bsdf.SampleWo(wi, {u, v});
+//   if (next.pdf > 0) throughput *= next.weight;
 //
-// Directions are unit vectors away from the surface, z along the normal, x where an anisotropic
-// material's azimuths begin. Values are f [1/sr], without a cosine, and 0 where a direction is
-// below the surface or not a number. Reciprocal. Real is double or float.
+// Directions are unit vectors away from the surface; z is the normal, x the origin of azimuths.
+// Values are 0 if a direction is below the surface or NaN. Value is reciprocal.
 //
-// Order of arguments, everywhere: wi, then wo. wi is the direction that is known, and wo the one
-// that is drawn; so have it Mitsuba, and the RGL files and their loader, whose tables depend on
-// theta_i. A path tracer that comes from the eye passes the direction to the eye as wi.
+// Arguments are always wi, then wo. wi is given and wo is sampled, as in Mitsuba and in RGL files,
+// whose tables depend on theta_i. A path tracer that starts at the eye passes the direction to the
+// eye as wi.
 //
-// Sampling. A mixture of two: a cosine for the diffuse term, and half vectors of all lobes together
-// from a table for each of some directions wi, made when the object is (HalfVectorTable). The table
-// has what the lobes reflect, f cos theta_o, in the mean over the channels, over two numbers:
-//   y = sin^2 theta_h, by which equal steps are equal projected solid angles of h (paper eq. 8
-//   assumes equal bins of theta_h, which MERL's are not), and
-//   s, the azimuth of h from that of wi, in parts of the range phi_max in which wo is above the
+// Sampling mixes two densities: a cosine for the diffuse term, and for all lobes together a table
+// of half vectors for each of several wi (HalfVectorTable), computed in the constructor. It
+// tabulates f cos theta_o of the lobes, averaged over the channels, over two variables:
+//   y = sin^2 theta_h: equal steps are equal projected solid angles of h (paper eq. 8 assumes
+//   equal bins of theta_h, which MERL's are not), and
+//   s, the azimuth of h from that of wi as a fraction of phi_max, up to which wo is above the
 //   surface: cos phi_max = -cot theta_i cot 2 theta_h.
-// So nothing that is drawn lies below the horizon, whatever theta_i; and G, F and the stretch of a
-// lobe, which reads its D elsewhere, are in the table as well as D is. Which of the two is drawn is
-// chosen by what they reflect at this theta_i, so that weights stay near the albedo.
+// So no sample is below the horizon, and the table includes D, F, G and the stretch. The mixture
+// weights are the albedos of the two parts at theta_i, so sample weights stay near the albedo.
 template <typename Real>
 class Bsdf {
  public:
   using Vector = std::array<Real, 3>;
   using Colour = std::array<Real, kChannels>;
 
-  // Throws Error for parameters that are not finite and 0 or more, or whose products overflow.
+  // Throws Error unless all parameters are finite and >= 0 and their products do not overflow.
   explicit Bsdf(const FactorModel& model);
 
   int lobes() const { return model_.lobes(); }
@@ -56,21 +57,21 @@ class Bsdf {
 
   Colour Value(const Vector& wi, const Vector& wo) const { return model_.Value(wi, wo); }
 
-  // The diffuse term, and each lobe's part of the value, of which that is the sum (or 0 where that
-  // is negative). `values` has lobes() entries.
+  // The diffuse term, and the value of each lobe. Value is their sum, or 0 if that is negative.
+  // `values` has lobes() entries.
   const Colour& diffuse() const { return model_.diffuse(); }
   void LobeValues(const Vector& wi, const Vector& wo, Colour* values) const {
     model_.LobeValues(wi, wo, values);
   }
 
-  // Directional albedo: the share of the light from w that is reflected, the integral of
-  // f cos theta over the hemisphere. From the tables of the sampling: of smooth tables, within 3 %
-  // of itself up to 75 degrees from the normal, 6 % up to 85.
+  // Directional albedo: the reflected share of the light from w, the integral of f cos theta over
+  // the hemisphere. Computed from the sampling tables: for smooth models the relative error is at
+  // most 3 % up to 75 degrees from the normal and 6 % up to 85.
   Colour Albedo(const Vector& w) const;
 
-  // A direction wo for a given wi, by two numbers in [0, 1] (what is outside counts as its end):
-  // `weight` is f cos theta_o / pdf, and pdf the density by solid angle [1/sr]. Where wi is below
-  // the surface and, rarely, by rounding, where wo is, pdf and weight are 0: skip these.
+  // Samples wo for a given wi from two numbers in [0, 1] (clamped). `weight` is f cos theta_o /
+  // pdf, `pdf` the density per solid angle [1/sr]. Both are 0, and the sample must be skipped, if
+  // wi or, rarely, by rounding, wo is below the surface.
   struct Sample {
     Vector wo{};
     Real pdf = 0;
@@ -81,11 +82,10 @@ class Bsdf {
   // The density with which SampleWo draws wo for wi [1/sr]; not symmetric.
   Real Pdf(const Vector& wi, const Vector& wo) const;
 
-  // What half vectors are drawn by.
+  // The distribution of half vectors.
   const HalfVectorTable<Real>& half_vectors() const { return half_vectors_; }
 
-  // The same for many pairs or directions at once, the same numbers. Throw Error unless there are
-  // as many of each.
+  // The same for many pairs or directions, with identical results. Throw Error if the sizes differ.
   void Values(std::span<const Vector> wi, std::span<const Vector> wo,
               std::span<Colour> values) const {
     model_.Values(wi, wo, values);
@@ -95,7 +95,7 @@ class Bsdf {
   void Pdfs(std::span<const Vector> wi, std::span<const Vector> wo, std::span<Real> pdfs) const;
 
  private:
-  // A direction wi, what is drawn for it, and how often the cosine is.
+  // A direction wi, its half-vector distribution, and the probability of the cosine.
   struct Incident {
     Real sin, cos_phi, sin_phi;
     typename HalfVectorTable<Real>::Condition at;

@@ -12,26 +12,29 @@
 
 namespace trilobe {
 
-// The forms that most models have, with D and G by the lobe and F by the channel, of no more lobes
-// than a vector has room for, are compiled by themselves: what depends on the form is decided then.
+// Common forms that have compiled kernels of their own: D and G per lobe, F per channel, and no
+// more lobes than fit into a vector.
 enum class PreparedForm : char {
   kAny,
-  kIsotropic,    // D over the root of theta_h, unstretched; G a spline
-  kAnisotropic,  // D and G over azimuths, too
+  kIsotropic,    // D over sqrt(theta_h), unstretched; G a spline
+  kAnisotropic,  // D and G also over azimuths
 };
 
-// A model of any form as a function of directions, prepared for many calls: the splines through G
-// and the cosines are cubics, tables lie side by side as they are read, and azimuths are taken
-// where a table has some. Angles are polynomials, four at once (core/math/lanes.h). The
-// same value as Evaluate(model, directions), to rounding, but 0 where that throws. Real is double
-// or float. Immutable; any number of threads may use one object, and no call allocates.
+// A model of any form, prepared for many evaluations: G and the cosines are cubic pieces, tables
+// are interleaved, angles are polynomials of four at once (core/math/lanes.h), and azimuths are
+// computed only if a table needs them. The value is that of Evaluate(model, directions) up to
+// rounding, but 0 where that throws. Real is double or float. Immutable and thread-safe; no call
+// allocates.
+//
+//   const PreparedModel<float> prepared(model);
+//   const auto f = prepared.Value(wi, wo);  // RGB [1/sr]
 template <typename Real>
 class PreparedModel {
  public:
   using Vector = std::array<Real, 3>;
   using Colour = std::array<Real, kChannels>;
 
-  // Copies what it needs. Throws Error for parameters that are not finite and 0 or more.
+  // Keeps no reference to `model`. Throws Error unless all parameters are finite and >= 0.
   explicit PreparedModel(const FactorModel& model);
 
   int lobes() const { return lobes_; }
@@ -40,37 +43,37 @@ class PreparedModel {
   // The diffuse term [1/sr].
   const Colour& diffuse() const { return diffuse_; }
 
-  // BRDF [1/sr], without a cosine, for two unit vectors away from the surface; 0 where one is below
-  // it or not a number.
+  // BRDF [1/sr], without the cosine, for two unit vectors away from the surface; 0 if either is
+  // below the surface or NaN.
   Colour Value(const Vector& wi, const Vector& wo) const {
     Colour value;
     Evaluate(1, &wi, &wo, &value);
     return value;
   }
 
-  // Of an isotropic model, by the angles of two directions, which are sooner read than found, and
-  // by their cosines. 0 where the surface hides one, or an angle is below 0 or not a number.
+  // For isotropic models, from angles and cosines; faster, as no angles are computed. 0 if a
+  // direction is below the surface or an angle is negative or NaN.
   Colour Value(const HalfDiffAngles& angles, const Cosines& cosines) const;
 
-  // Of many pairs, the same numbers. Throws Error unless there are as many of each.
+  // The same for many pairs, with identical results. Throws Error if the sizes differ.
   void Values(std::span<const Vector> wi, std::span<const Vector> wo,
               std::span<Colour> values) const;
 
-  // The same lobe by lobe: Value is diffuse() and the sum of these, or 0 where that is negative, as
-  // a lobe may be where the spline through its G undershoots. `values` has lobes() entries.
+  // The value of each lobe. Value is diffuse() plus their sum, or 0 if that is negative: a lobe may
+  // be negative where the spline of its G undershoots. `values` has lobes() entries.
   void LobeValues(const Vector& wi, const Vector& wo, Colour* values) const;
 
  private:
   struct alignas(4 * sizeof(Real)) Quad {
     Real lane[4];
   };
-  // A factor's tables, lane by lane: entry e is entries[e * vectors ... ]. A table for each channel
-  // has the lane of the channel, in a vector for each lobe that has its own; else each lobe's table
-  // has a lane. Before the first entry of
-  // a table by bins it stands once more, and after the last twice, so that no place is beyond.
+  // A factor's tables, interleaved by lane: entry e begins at entries[e * vectors]. With a table
+  // per channel, the lane is the channel, and each lobe with its own table has a vector; else each
+  // lobe's table has a lane. In tables by bins the first entry is repeated once before and the last
+  // twice after, so that reads need no bounds check.
   struct Tables {
     Tables() = default;
-    // With room for so many lanes after the tables' own.
+    // Leaves room for `more_lanes` after the tables' own.
     Tables(const ModelSpec& spec, Factor factor, int more_lanes);
     int LaneOf(int table) const {
       return per_channel ? table / kChannels * 4 + table % kChannels : table;
@@ -80,7 +83,7 @@ class PreparedModel {
     int lobe_stride = 0;  // lanes from one lobe's table to the next one's
     std::vector<Quad> entries;
   };
-  // Where theta lies among the rings of a polar axis.
+  // Locates theta among the rings of a polar axis.
   class Rings {
    public:
     struct Place {
@@ -97,7 +100,7 @@ class PreparedModel {
       int lower, upper;
     };
     std::vector<Interval> intervals_;
-    std::vector<int> first_;  // an interval that does not begin above theta = k / scale_
+    std::vector<int> first_;  // an interval that begins at or below theta = k / scale_
     Real scale_ = 0;
   };
   void SetTables(const FactorModel& model, Factor factor, Tables* tables) const;
@@ -116,16 +119,16 @@ class PreparedModel {
   bool stretched_ = false;
   PreparedForm form_{};
   Axis d_axis_, f_axis_, g_axis_;
-  // Of theta_h, theta_d, theta_i and theta_o up to 45 degrees: the polynomial whose product with
-  // the sine is where tables are read, in bins (of bins of the root of theta, the square of that);
-  // what that is at 90 degrees; and half a bin less than how many entries are before the first
-  // bin's centre. Where a table is not read by bins, an angle [rad].
+  // For theta_h, theta_d, theta_i and theta_o up to 45 degrees: the polynomial that, multiplied by
+  // the sine, gives the table coordinate in bins (for bins of sqrt(theta) its square); the
+  // coordinate of 90 degrees; and the number of entries before the first bin's centre minus half a
+  // bin. For tables without bins, the angle [rad].
   static constexpr int kTerms = sizeof(Real) == sizeof(double) ? 16 : 8;
   std::array<Quad, kTerms> terms_{};
   Quad right_angle_{};
   bool by_root_ = false;
-  Quad azimuths_{};             // how many D, G and G have, where these are polar
-  Tables d_, f_, g_;            // of a spline g_ has no entries
+  Quad azimuths_{};             // number of azimuths of D, G and G, if polar
+  Tables d_, f_, g_;            // if G is a spline, g_ has no entries
   int cosine_lane_ = 0;         // of g_
   std::vector<Quad> g_pieces_;  // f0, f1, a0, a1 of each vector of g_ [interval][vector]
   Rings d_rings_, g_rings_;

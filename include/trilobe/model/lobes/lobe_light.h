@@ -9,33 +9,33 @@
 
 namespace trilobe {
 
-// What the parts of a model reflect of light that comes from everywhere alike, over the directions
-// that read no unobserved entry. These figures do not depend on the gauge, but for `through`.
+// The share of uniform incident light that each part of a model reflects, over the directions that
+// read no unobserved entry. Independent of the gauge, except `through`.
 struct LobeLight {
   // Bihemispherical albedo, integral of rho cos theta_i cos theta_o d omega_i d omega_o / pi, of
   // the diffuse term and of each lobe. [lobes]
   Rgb diffuse{};
   std::vector<Rgb> lobes;
 
-  // The light that goes through each entry of a table, a spline's shared out by its weights; 0 for
-  // d and s. In the order of FactorModel::parameters(): those of a table of D or F have the sum of
-  // the albedos of the lobes and channels that it serves.
+  // The reflected light by table entry, in the order of FactorModel::parameters(); spline weights
+  // divide it among entries, and d and s have 0. The sum over a table of D or F is the sum of the
+  // albedos of its lobes and channels.
   std::vector<double> through;
 
-  // The part of all that the model reflects, mean over the channels, that a lobe does; 0 where the
-  // model is black. Throws Error if there is no such lobe.
+  // A lobe's fraction of all reflected light, averaged over the channels; 0 for a black model.
+  // Throws Error if there is no such lobe.
   double Share(int lobe) const;
   double DiffuseShare() const;
 };
 
-// `coverage` (Objective::coverage(), or no more than > 0 for observed and 0 for unobserved entries)
-// is in the order of model.parameters(). The same bits for any number of threads.
+// `coverage`, in the order of model.parameters(), is Objective::coverage(); only whether a value is
+// > 0 (observed) matters. The same bits for any number of threads.
 LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& model,
                            int num_threads = 1);
 
-// How much of the directions with a half vector in each bin of theta_h lies above the surface,
-// times the solid angle of the bin: 2 pi sin theta_h dtheta_h v(theta_h), v(0) = 1. What a D
-// reflects in the bin is in proportion to it. [bins]
+// For each bin of theta_h, its solid angle times the fraction of directions with that half vector
+// that are above the surface: 2 pi sin theta_h dtheta_h v(theta_h), v(0) = 1. The light that D
+// reflects in the bin is proportional to it. [bins]
 std::vector<double> VisibleSolidAngles(int bins);
 
 }  // namespace trilobe

@@ -10,19 +10,18 @@
 
 namespace trilobe {
 
-// The model's BRDF [1/sr] at every sample, in their order. On a grid whose theta_h and theta_d bins
-// are those of the spec, D and F are read at their own bins; elsewhere they are interpolated
-// (docs/model.md). Nothing stops the product of huge factors from overflowing to infinity or NaN.
-// Throws Error for samples that are none (CheckSamples).
+// The model's BRDF [1/sr] at every sample, in order. If the grid has the theta_h and theta_d bins
+// of the spec, D and F are read at their own bins, else interpolated (docs/model.md). Huge factors
+// may overflow to infinity or NaN. Throws Error for invalid samples (CheckSamples).
 std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& samples,
                                  int num_threads);
 
-// The same without the bound at 0: what E compares with the measurement (UnclampedValue).
+// The same without clamping at 0, as E compares it with the measurement (UnclampedValue).
 std::vector<Rgb> UnclampedSamples(const FactorModel& model, const BrdfSamples& samples,
                                   int num_threads);
 
-// The model in MERL layout: EvaluateSamples at all bins above the surface, the others invalid.
-// `source` names the table in messages. Throws Error if a value overflows.
+// The model as a MERL table: EvaluateSamples at all bins above the surface; other bins are invalid.
+// `source` is the table's name in messages. Throws Error if a value overflows.
 BrdfTable Reconstruct(const FactorModel& model, const std::string& source,
                       const MerlGrid& grid = {}, int num_threads = 1);
 

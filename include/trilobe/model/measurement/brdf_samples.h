@@ -12,25 +12,24 @@
 
 namespace trilobe {
 
-// What a fit sees: measured directions and values, all valid, whatever the file was.
-// Either every sample stands at the centre of a bin of `grid` (`bins` says which, ascending), or
-// the samples are scattered (`angles` says where) and the grid only names the tables' bins.
+// The samples of a fit: measured directions and values, all valid, from any file format. Samples
+// are either at bin centres of `grid` (`bins`, ascending), or scattered (`angles`); then the grid
+// only gives the bins of the tables.
 struct BrdfSamples {
   std::string source;
   MerlGrid grid;
   std::vector<int> bins;               // [n], or empty when scattered
   std::vector<HalfDiffAngles> angles;  // [n], or empty when on the grid
   std::vector<Rgb> rho;                // [n], BRDF [1/sr], finite and >= 0
-  // [n], or empty where all are 1: what the weighting's weight of a sample is multiplied by, finite
-  // and >= 0; how often the sample counts.
+  // [n], or empty if all are 1: how often a sample counts, a factor of its weight; finite and >= 0.
   std::vector<double> multiplicity = {};
-  // Scattered samples may know their directions besides, with the order of wi and wo and their
-  // azimuths, which `angles` do not tell and anisotropic models ask for: [n], or empty.
+  // [n], or empty: directions of scattered samples, with the order of wi and wo and the azimuths,
+  // which `angles` lack and anisotropic models need.
   std::vector<SphericalAngles> directions = {};
 
   int size() const { return static_cast<int>(rho.size()); }
   bool on_grid() const { return angles.empty(); }
-  // These and what follows throw Error where there is no such sample.
+  // All functions below throw Error if there is no such sample.
   double Multiplicity(int j) const {
     CheckIndex(j, size(), "the sample");
     return multiplicity.empty() ? 1 : multiplicity[j];
@@ -43,47 +42,45 @@ struct BrdfSamples {
     CheckIndex(j, static_cast<int64_t>(bins.size()), "the sample");
     return grid.Center(bins[j]);
   }
-  // Of wi and wo in this order, where the directions are known: `angles` may exchange them.
+  // cos theta_i and cos theta_o, in the order of `directions` if known; `angles` may exchange them.
   Cosines CosinesOf(int j) const;
-  // The measure of the pairs of directions that a sample stands for, in some unit; 1 where
-  // scattered.
+  // The measure of the sample's direction pairs, up to a constant factor; 1 if scattered.
   double SolidAngle(int j) const;
 };
 
-// Throws Error, with the source and the first sample that is wrong, unless the samples are as said
-// above: bins of the grid, or angles, of two directions above the surface, and as many as values.
+// Throws Error, with the source and the first bad sample, unless the samples are as described
+// above: one bin of the grid or angles of directions above the surface for each value.
 void CheckSamples(const BrdfSamples& samples);
 
-// The valid bins of a table. Throws Error when there is none.
+// The valid bins of a table. Throws Error if there are none.
 BrdfSamples ValidSamples(const BrdfTable& table);
 
-// The samples whose numbers in `samples` are these, in this order. [any size] Throws Error for a
-// number that none has.
+// The samples with these indices, in this order. Throws Error for an index out of range.
 BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers);
 
-// About one in `stride` >= 1 of them, for a cheap look at the same problem: on a grid, of each
-// (theta_h, theta_d) every stride-th phi_d and its mirror, 180 degrees - phi_d, beginning with
-// another one in each row; of scattered ones evenly spread over their order. At least one, where
-// there is any. Throws Error for other strides.
+// About one in `stride` >= 1 samples, for a cheaper version of the problem. On a grid, each
+// (theta_h, theta_d) row keeps every stride-th phi_d and its mirror, 180 degrees - phi_d, from a
+// different start; scattered samples are spread evenly over their order. At least one unless there
+// are none. Throws Error for other strides.
 BrdfSamples Thinned(const BrdfSamples& samples, int stride);
 
-// Those of every other (theta_h, theta_d), as on a chessboard; at least one, where there is any.
-// Throws Error for scattered ones.
+// Every other (theta_h, theta_d) row, as on a chessboard; at least one sample unless there are
+// none. Throws Error for scattered samples.
 BrdfSamples InEveryOtherRow(const BrdfSamples& samples);
 
-// The samples of a grid with half the bins of theta_h and of theta_d: means of up to four, which
-// count as often as these together, of one in `stride` >= 1 of its bins, chosen as in Thinned.
-// None for a bin whose own centre is of a direction below the surface. Throws Error for other
-// strides, scattered samples, and an odd number of bins of theta_h or theta_d.
+// Samples of a grid with half the bins of theta_h and theta_d: means of up to four samples, with
+// the sum of their multiplicities, at one in `stride` >= 1 bins chosen as in Thinned. Bins whose
+// centre is below the surface are omitted. Throws Error for other strides, scattered samples, and
+// odd numbers of theta_h or theta_d bins.
 BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride);
 
-// About `count` >= 1 of them for a mean, evenly spread over their order, or all if there are fewer
-// than twice as many. On a grid they are of all phi_d. Throws Error for other counts.
+// About `count` >= 1 samples for a mean, spread evenly over their order (on a grid, over all
+// phi_d), or all if there are fewer than twice as many. Throws Error for other counts.
 BrdfSamples EvenlySpread(const BrdfSamples& samples, int count);
 
-// The same as Thinned where few samples lie by smaller strides, down to 1, so that about `least` >=
-// 1 of each bin of theta_h, of theta_d, and of each degree of theta_i and theta_o are left, or all
-// that there are. Each counts as many times as there are in its stride. Throws Error as above.
+// Like Thinned with smaller strides, down to 1, where samples are sparse: about `least` >= 1 remain
+// in each bin of theta_h, of theta_d, and each degree of theta_i and theta_o, if there are as many.
+// Multiplicities are scaled by the local stride. Throws Error as above.
 BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least);
 
 }  // namespace trilobe

@@ -12,29 +12,28 @@
 
 namespace trilobe {
 
-// BRDF [1/sr] = stored value x this, for the planes R, G, B of a MERL file.
+// BRDF [1/sr] = stored value x this, for the R, G and B planes of a MERL file.
 inline constexpr Rgb kMerlScale = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
-// Why a bin does not count as measured, whatever value it holds. Of several reasons the first that
-// was found stays.
+// Why a bin is not a measured one, whatever its value. The first reason found is kept.
 enum class Unmeasured : uint8_t {
-  kNo,              // it was measured
-  kExtrapolated,    // filled by the authors of the file, from other directions
+  kNo,              // measured
+  kExtrapolated,    // filled in by the file's authors
   kBeyondNodes,     // theta_i or theta_o is beyond the last theta_i at which the file has data
-  kBeyondMaxAngle,  // theta_i or theta_o is beyond the angle that the user set
-  kBelowMinThetaD,  // theta_d is below the one that the user set
+  kBeyondMaxAngle,  // theta_i or theta_o is beyond the user's limit
+  kBelowMinThetaD,  // theta_d is below the user's limit
 };
 
-// A measurement in MERL layout. It keeps the numbers as a MERL file stores them, so that reading
-// and writing one changes no bit.
+// A measurement in MERL layout. Numbers are kept as a MERL file stores them, so that reading and
+// writing a file changes no bit.
 struct BrdfTable {
   std::string source;  // file name or synth:NAME, for messages and reports
   MerlGrid grid;
   std::array<std::vector<double>, kChannels> stored;  // [kChannels][grid.size()], < 0 is invalid
-  std::vector<Unmeasured> unmeasured = {};  // [grid.size()], or empty where all bins are measured
+  std::vector<Unmeasured> unmeasured = {};            // [grid.size()], or empty: all measured
   double max_theta = kPi / 2;  // [rad] theta_i and theta_o beyond this are not measured
 
-  // BRDF [1/sr] of one bin, whether valid or not.
+  // BRDF [1/sr] of a bin, valid or not.
   double Value(int channel, int bin) const { return stored[channel][bin] * kMerlScale[channel]; }
 
   // Stores a BRDF value [1/sr].
@@ -43,36 +42,36 @@ struct BrdfTable {
   }
 };
 
-// Throws Error unless the table has a value of each channel for each bin, and a mark of each or
+// Throws Error unless the table has a value of each channel for each bin, and marks for all bins or
 // none.
 void CheckTable(const BrdfTable& table);
 
-// A table of `grid` where every bin is marked invalid (-1).
-// These and what follows throw Error for a grid or a table that is none.
+// A table with all bins invalid (-1). This and all functions below throw Error for an invalid grid
+// or table.
 BrdfTable MakeInvalidTable(const std::string& source, const MerlGrid& grid);
 
-// True where both directions are above the surface at the bin's centre. [grid.size()]
+// Whether both directions at a bin's centre are above the surface. [grid.size()]
 std::vector<bool> BinsAboveSurface(const MerlGrid& grid);
 
-// True where the bin is above the surface, all three stored values are finite and >= 0, and it was
-// measured (docs/samples.md). [grid.size()]
+// Whether a bin is above the surface, measured, and has finite values >= 0 in all channels
+// (docs/samples.md). [grid.size()]
 std::vector<bool> ValidBins(const BrdfTable& table);
 
-// What the table says of one bin.
+// The reason that a bin is not measured, or kNo.
 inline Unmeasured ReasonOf(const BrdfTable& table, int bin) {
   return table.unmeasured.empty() ? Unmeasured::kNo : table.unmeasured[bin];
 }
 
-// An angle, table.max_theta, in degrees, to show: 60 where the user said 60, whatever radians made
-// of it.
+// max_theta in degrees, for display: exactly 60 if the user entered 60, despite rounding in
+// radians.
 double MaxAngleDegrees(double max_theta);
 double MaxAngleDegrees(const BrdfTable& table);
 
-// From now on nothing is measured where theta_i or theta_o, at the centre of a bin above the
-// surface, is beyond `max_theta` >= 0 [rad]. Bins that were not measured before keep their reason.
+// Marks bins above the surface with theta_i or theta_o beyond `max_theta` >= 0 [rad] at the centre
+// as not measured, for this reason. Bins that are not measured already keep their reason.
 void LimitAngles(double max_theta, Unmeasured reason, BrdfTable* table);
 
-// The same where theta_d is below `min_theta_d` [rad], nowhere if that is below 0.
+// The same for theta_d below `min_theta_d` [rad]; no effect if that is negative.
 void LimitThetaD(double min_theta_d, BrdfTable* table);
 
 }  // namespace trilobe

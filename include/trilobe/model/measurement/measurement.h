@@ -16,93 +16,92 @@
 
 namespace trilobe {
 
-// What data that can be read between their samples say of a pair of directions.
+// An interpolated value of a measurement.
 struct MeasuredValue {
-  Rgb rho{};             // [1/sr], >= 0; 0 where a direction is below the surface
-  bool measured = true;  // and not made up by whoever wrote the file
+  Rgb rho{};             // [1/sr], >= 0; 0 if a direction is below the surface
+  bool measured = true;  // false: extrapolated by the file's authors
 };
 
-// What was measured of a material, and where it comes from: a table where the data are on a MERL
-// grid, else scattered samples.
+// A measurement of a material: a table if the data are on a MERL grid, else scattered samples.
+//
+//   Measurement m = Source("silk.csv").Read();  // trilobe/io/formats/source.h
+//   LimitAngles(DegreesToRadians(80), &m);
+//   const BrdfSamples samples = SamplesOf(m);
 struct Measurement {
   std::string source;  // file name or synth:NAME, for messages and reports
   std::string kind;    // "MERL measurement"
   std::optional<BrdfTable> table = {};
-  // Of data that can be read between their samples, as those of an RGL file.
+  // Interpolates data that allow it, such as an RGL file.
   std::function<MeasuredValue(const DirectionPair&)> look_up = nullptr;
-  bool anisotropic = false;             // azimuths matter, not only how far apart they are
-  BrdfFunction formula = nullptr;       // of a synthetic material: what was measured
-  std::vector<std::string> notes = {};  // one sentence each: what looks wrong in the data
+  bool anisotropic = false;        // values depend on the azimuths, not only on their difference
+  BrdfFunction formula = nullptr;  // the exact BRDF of a synthetic material
+  std::vector<std::string> notes = {};  // sentences about suspicious data
 
-  // Of scattered data:
-  BrdfSamples samples = {};    // the valid ones, with their directions
-  BinCounts counts = {};       // samples of the file: all, valid ones, why others were left out
-  int out_of_gamut = 0;        // with a channel set to 0, as sRGB cannot show the colour
-  double max_theta = kPi / 2;  // [rad] no theta_i or theta_o of a valid sample is beyond this
+  // For scattered data:
+  BrdfSamples samples = {};    // valid samples, with directions
+  BinCounts counts = {};       // samples in the file: all, valid, left out by reason
+  int out_of_gamut = 0;        // samples with a channel set to 0, outside sRGB
+  double max_theta = kPi / 2;  // [rad] upper bound of theta_i and theta_o of valid samples
 };
 
-// What a fit sees of it. Throws Error where nothing is valid.
+// The valid samples, for a fit. Throws Error if there are none.
 BrdfSamples SamplesOf(const Measurement& measurement);
 
-// The table. Throws Error, which says that a table is needed, where there is none.
+// The table. Throws Error if there is none.
 const BrdfTable& TableOf(const Measurement& measurement);
 BrdfTable TableOf(Measurement&& measurement);
 
-// Bins or samples: all, valid ones, and why the others are left out.
+// Numbers of bins or samples: all, valid, and left out by reason.
 BinCounts CountsOf(const Measurement& measurement);
 
-// theta_i and theta_o of what is valid are at most this, in degrees, to show.
+// Upper bound of theta_i and theta_o of valid data, in degrees, for display.
 double MaxAngleDegrees(const Measurement& measurement);
 
-// Throws Error, with the source, unless each scattered sample knows its directions and its value.
-// All that follows does.
+// Throws Error, with the source, unless each scattered sample has directions and a value. All
+// functions below check this.
 void CheckDirections(const Measurement& scattered);
 
-// From now on nothing is valid where theta_i or theta_o is beyond `max_theta` >= 0 [rad].
+// Marks data with theta_i or theta_o beyond `max_theta` >= 0 [rad] as not valid.
 void LimitAngles(double max_theta, Measurement* measurement);
 
-// The same where theta_d is below `min_theta_d` [rad], nowhere if that is below 0.
+// The same for theta_d below `min_theta_d` [rad]; no effect if that is negative.
 void LimitThetaD(double min_theta_d, Measurement* measurement);
 
-// The same of scattered samples where they show that the detector stood in its own light
-// (OwnShadow), with a note that says so.
+// The same for scattered samples shaded by the detector (OwnShadow), if any; adds a note.
 void LeaveOutOwnShadow(Measurement* measurement);
 
-// Leaves out the samples that are far off what surrounds them (FindOutliers), as if they were lost,
-// with a note that says so, where they are 10 or more, of scattered samples one in 500 or more, and
-// off by 2e-5 of the light that is reflected, or more: clean materials have some that are no error,
-// in the dark; those that are off by less than 8 times only where they are one in 500 or more.
-// Where azimuths matter, instead, those that are 0 while one with wi and wo exchanged is not.
+// Leaves out outliers (FindOutliers) and adds a note, if there are at least 10 (scattered samples:
+// and one in 500) and they change the reflected light by at least 2e-5; clean materials have a few
+// in the dark. Outliers by a factor below 8 count only if they are at least 10 and one in 500. For
+// anisotropic data, instead, outliers are samples of 0 whose exchanged sample is not 0.
 void LeaveOutOutliers(int num_threads, Measurement* measurement);
 
-// Of a table, replaces readings that are lost in dark noise by medians of what surrounds them
-// (SmoothDarkReadings), with a note that says so, where there is such noise.
+// For tables, replaces readings lost in dark noise by medians of their neighbours
+// (SmoothDarkReadings) and adds a note, if there is such noise.
 void SmoothDarkReadings(int num_threads, Measurement* measurement);
 
-// Leaves out a share, from 0 up to 1, of the valid bins or samples, chosen by `seed`, as if it had
-// been lost: a table marks them as it marks lost bins, and of samples they are missing. Throws
-// Error for other shares.
+// Leaves out a random share in [0, 1) of the valid bins or samples, chosen by `seed`, as lost data:
+// bins are marked lost, samples removed. Throws Error for other shares.
 void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement);
 
-// How far apart scattered samples are that were measured in both directions: those with
-// (theta_i, theta_o) against those with the two swapped, at the same angle between the azimuths or,
-// where azimuths matter, at the same azimuths, to 1e-6. What was measured several times counts by
-// its mean.
+// Deviation of scattered samples from reciprocity: those with (theta_i, theta_o) against those with
+// the two swapped, at the same azimuth difference or, for anisotropic data, the same azimuths, to
+// 1e-6. Repeated measurements are averaged.
 PairError ReciprocityError(const Measurement& scattered);
 
-// Gathers scattered samples as a reader finds them, and counts what is not valid: a direction below
-// the surface, a value that is not finite, one below 0 (docs/samples.md).
+// Collects scattered samples for a reader and counts invalid ones: a direction below the surface, a
+// value that is negative or not finite (docs/samples.md).
 class SampleCollector {
  public:
   SampleCollector(const std::string& source, const std::string& kind);
   void Add(const SphericalAngles& angles, const Rgb& rho);  // [1/sr]
-  // A channel below 0, which no measured value is, becomes 0; for colours of valid spectra.
+  // Clamps negative channels to 0, for colours computed from valid spectra.
   void AddColor(const SphericalAngles& angles, const Rgb& rho);
-  // Counts a sample that the file itself marks as none.
+  // Counts a sample that the file marks as invalid.
   void LeaveOut(int BinCounts::*reason);
   Measurement Take();
-  // The same of a format that does not say whether azimuths matter: they do where light comes from
-  // several, at theta_i > 0.
+  // The same for formats that do not tell whether data are anisotropic: they are if light comes
+  // from several azimuths at theta_i > 0.
   Measurement TakeByAzimuths();
 
  private:

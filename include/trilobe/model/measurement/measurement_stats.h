@@ -13,15 +13,15 @@
 
 namespace trilobe {
 
-// Bins of a table by what can be done with them; the reasons do not overlap.
+// Numbers of bins by status; each bin has exactly one.
 struct BinCounts {
   int total = 0;
   int valid = 0;
   int below_surface = 0;  // a direction is below the surface at the centre
-  int non_finite = 0;     // above it, but a channel is NaN or infinite
-  int negative = 0;       // above it and finite, but a channel is below 0: marked as lost
-  int missing = 0;        // above it, but the file has no value there
-  // None of these, but not measured (Unmeasured).
+  int non_finite = 0;     // above it, a channel is NaN or infinite
+  int negative = 0;       // above it and finite, a channel is below 0: lost
+  int missing = 0;        // above it, without a value in the file
+  // None of these, but not measured, by reason (Unmeasured).
   int extrapolated = 0;
   int beyond_nodes = 0;
   int beyond_max_angle = 0;
@@ -32,18 +32,18 @@ BinCounts CountBins(const BrdfTable& table);
 // "12 of 20 bins valid".
 std::string ValidText(const BinCounts& counts, const std::string& whole);
 
-// What part of the bins above the surface is valid, for each cell of 1 degree x 1 degree of
-// (theta_i, theta_o), [90][90], theta_o fastest; NaN where a cell holds no such bin's centre.
+// Valid fraction of the bins above the surface, by cells of 1 x 1 degree of (theta_i, theta_o).
+// [90][90], theta_o fastest; NaN for a cell without bin centres.
 std::vector<double> ValidShares(const BrdfTable& table);
 
-// Smallest and largest value of the valid bins [1/sr]; 0 where there is none.
+// Smallest and largest value of the valid bins [1/sr]; 0 if there are none.
 struct ValueRange {
   Rgb min{}, max{};
 };
 ValueRange RangeOfValidBins(const BrdfTable& table);
 
-// How far apart pairs of values are that should be equal: |a - b| / ((a + b) / 2), from 0 to 2,
-// over all pairs and channels.
+// Relative differences of pairs of values that should be equal: |a - b| / ((a + b) / 2), from 0 to
+// 2, over all pairs and channels.
 struct PairError {
   int pairs = 0;
   double median = 0;
@@ -53,13 +53,13 @@ struct PairError {
 PairError ErrorOfPairs(std::span<const std::pair<Rgb, Rgb>> pairs);
 
 // Exchange error of a table: bin (h, d, p) against (h, d, phi_d - 1 - p), where both are valid. The
-// two stand for swapped directions after a reflection in the plane of the half vector and the
-// normal, so isotropic, reciprocal and mirror-symmetric materials have none. (Reciprocity alone
-// cannot be checked: a bin holds both orders.)
+// second has exchanged directions, reflected in the plane of half vector and normal, so the error
+// of an isotropic, reciprocal and mirror-symmetric material is 0. (Reciprocity alone cannot be
+// tested: a bin holds both orders.)
 PairError ExchangeError(const BrdfTable& table);
 
-// Reciprocity error of a function: rho(wi, wo) against rho(wo, wi), at the centres of the bins of
-// `grid` that are above the surface and where both orders were measured, as the function says.
+// Reciprocity error of a function: rho(wi, wo) against rho(wo, wi), at bin centres of `grid` above
+// the surface for which `measured` is true in both orders.
 using MeasuredFunction = std::function<bool(const DirectionPair&)>;
 PairError ReciprocityError(
     const BrdfFunction& brdf, const MerlGrid& grid, int num_threads,

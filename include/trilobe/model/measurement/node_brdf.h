@@ -11,9 +11,9 @@
 
 namespace trilobe {
 
-// Directions above a sample at equal steps: node phis * a + b has theta = 90 a / thetas and
-// phi = 360 b / phis degrees. So the horizon is no node, and the normal is one for each phi. The
-// default is the grid of the UTIA BRDF database: 15 and 7.5 degrees (Filip and Vavra 2014).
+// Directions at equal steps: node phis * a + b has theta = 90 a / thetas and phi = 360 b / phis
+// degrees. The horizon is not a node, and the normal is one for each phi. The default is the grid
+// of the UTIA BRDF database: 15 and 7.5 degrees (Filip and Vavra 2014).
 struct HemisphereGrid {
   int thetas = 6;
   int phis = 48;
@@ -21,10 +21,10 @@ struct HemisphereGrid {
   constexpr int nodes() const { return thetas * phis; }
   double ThetaStep() const { return kPi / 2 / thetas; }
   double PhiStep() const { return 2 * kPi / phis; }
-  // These throw Error where there is no such node.
+  // These throw Error if there is no such node.
   double Theta(int node) const { return ThetaAt(node, 0); }
   double Phi(int node) const { return PhiAt(node, 0); }
-  // Of nodes i and o, moved by so many steps in all four angles.
+  // The angles of nodes i and o, all four increased by `steps` grid steps.
   SphericalAngles Angles(int i, int o, double steps = 0) const {
     return {ThetaAt(i, steps), PhiAt(i, steps), ThetaAt(o, steps), PhiAt(o, steps)};
   }
@@ -46,39 +46,38 @@ struct HemisphereGrid {
   }
 };
 
-// Throws Error unless the grid has nodes, and no more than ten million pairs of them.
+// Throws Error unless the grid has nodes, and at most ten million pairs of them.
 void CheckHemisphereGrid(const HemisphereGrid& grid);
 
-// Values at all pairs of nodes of a grid.
+// Values at pairs of nodes of a grid.
 struct NodeTable {
   std::string source;
   HemisphereGrid grid;
   std::vector<Rgb> rho;        // [nodes()][nodes()], incidence first [1/sr]
-  std::vector<bool> present;   // [nodes()][nodes()], where there is a value
-  double max_theta = kPi / 2;  // [rad] of what is present
+  std::vector<bool> present;   // [nodes()][nodes()], whether there is a value
+  double max_theta = kPi / 2;  // [rad] of present values
 };
 
-// A measurement at nodes as a function of directions: linear in theta_i, phi_i, theta_o and phi_o
-// between nodes, periodic in phi, constant beyond the last theta. A node without a value takes that
-// of the nearest one that has one, by the number of steps from node to node.
+// A measurement at nodes as a function of directions: linear in theta_i, phi_i, theta_o and phi_o,
+// periodic in phi, constant beyond the last theta. A missing value is that of the nearest pair that
+// has one, in grid steps.
 class NodeBrdf {
  public:
-  // Throws Error unless there is a value, and as many as there are pairs.
+  // Throws Error unless there is a value, and array sizes match the grid.
   explicit NodeBrdf(NodeTable table);
 
   const NodeTable& table() const { return table_; }
-  // Of all pairs, whether they had a value or not. [nodes()][nodes()]
+  // Values of all pairs, with missing ones filled. [nodes()][nodes()]
   const std::vector<Rgb>& values() const { return filled_; }
 
   // BRDF [1/sr] of two directions above the surface.
   Rgb operator()(const SphericalAngles& at) const;
 
-  // Whether the measurement speaks about these directions: no theta is beyond max_theta, and the
-  // nearest pair of nodes has a value.
+  // Whether these directions are measured: no theta is beyond max_theta, and the nearest pair of
+  // nodes has a value.
   bool Measured(const SphericalAngles& at) const;
 
-  // Whether all 16 pairs have a value between which the directions lie that are half a step beyond
-  // nodes i and o.
+  // Whether all 16 pairs around the directions half a step beyond nodes i and o have values.
   bool MeasuredAround(int i, int o) const;
 
  private:

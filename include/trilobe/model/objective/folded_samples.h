@@ -11,27 +11,26 @@
 
 namespace trilobe {
 
-// One measured direction pair as an element of the objective.
+// A sample of the objective: a measured direction pair.
 struct WeightedSample {
   SampleStencils stencils;
-  Rgb weight{};  // w, one a channel
+  Rgb weight{};  // w, per channel
   Rgb rho{};     // measured BRDF [1/sr]
 };
 
-// Entries of a table that are read together: a stencil without its weights, which differ from
-// sample to sample where the entries do not.
+// The table entries that a stencil reads, without weights; many samples share a cell.
 struct Cell {
   int size = 0;
   std::array<int, Stencil::kMaxSize> entry{};  // each once
 };
 
-// A sample's lookups, by number. A lookup is the value of a table at a sample, the sum over the
-// entries e of a cell of weight_e table[e]: of D, once for each of the lobes' stretches, of F, and
-// of G for each direction.
+// Indices of a sample's lookups. A lookup is the value of a table at a sample, the sum over the
+// entries e of a cell of weight_e table[e]. There is one of D per distinct stretch, one of F, and
+// one of G for each direction.
 struct LookupOrder {
   static constexpr int kMost = kMaxLobes + 3;
 
-  int of_D = 1;  // how many
+  int of_D = 1;  // number of lookups of D
 
   int F() const { return of_D; }
   int G_i() const { return of_D + 1; }
@@ -42,16 +41,16 @@ struct LookupOrder {
   }
 };
 
-// Any samples, folded and sorted. Samples that read alike, exchanged directions included, since the
-// model's value does not change with them, become one with
+// Any samples, folded and sorted. Samples with the same stencils, also after exchanging directions,
+// have the same model value and merge into one with
 //   w = w1 + w2,  rho* = (w1 rho1 + w2 rho2) / w,
-// and E = sum w (rho - rho*)^2 + constant, as in FoldedGrid. They are sorted by their cells of G,
-// then those of D and F, so that what lies side by side reads and adds to the same few places.
+// and E = sum w (rho - rho*)^2 + constant, as in FoldedGrid. They are sorted by cells of G, then of
+// D and F, so that consecutive samples access the same memory.
 struct FoldedSamples {
-  // One of the lookups, of all samples.
+  // One lookup, for all samples.
   struct Lookup {
     std::vector<int> cell;  // [size]
-    // That of the cell's k-th entry, 0 beyond the last. [most entries of a cell of the table][size]
+    // Weight of the cell's k-th entry, 0 beyond the last. [largest cell size of the table][size]
     std::vector<std::vector<double>> weight;
   };
   // Samples [begin, end) share both cells of G.
@@ -66,7 +65,7 @@ struct FoldedSamples {
   std::array<std::vector<double>, kChannels> weight;  // [kChannels][size]
   std::array<std::vector<double>, kChannels> rho;     // [kChannels][size], [1/sr]
   std::vector<Pair> pairs;
-  double constant = 0;         // the part of E that no model changes
+  double constant = 0;         // the irreducible part of E
   double measured_energy = 0;  // sum w rho*^2 of the unfolded samples
 
   int size() const { return static_cast<int>(inverse_cosines.size()); }

@@ -5,17 +5,17 @@
 
 namespace trilobe {
 
-// The state of a fit after one iteration (for AWLS, a sweep over all parameters).
+// The state of a fit after one iteration (in AWLS, one sweep over all parameters).
 struct IterationRecord {
   int iteration = 0;      // 0 is the starting point
-  double seconds = 0;     // since Solve() was called, its own preparations included
-  double objective = 0;   // E of the data, by Objective::Value
-  bool filtered = false;  // the Gaussian filter ran after this iteration, so E may have risen
-  bool accepted = true;   // false: the step that was tried did not lower E, and was taken back
-  double step = 0;        // |x - x before| / |x before| over all parameters; 0 at the start
-  // Scaled projected gradient (docs/solvers.md), by the solvers that know it at each iteration.
+  double seconds = 0;     // since the start of Solve(), with its preparations
+  double objective = 0;   // E of the data (Objective::Value)
+  bool filtered = false;  // the Gaussian filter ran after it; E may have risen
+  bool accepted = true;   // false: the step did not lower E and was undone
+  double step = 0;        // |x - previous x| / |previous x|; 0 at the start
+  // Scaled projected gradient (docs/solvers.md), if the solver computes it.
   std::optional<double> optimality = std::nullopt;
-  // With a prior: E of the data and of what the prior says, which the solver lowers.
+  // With a prior: E of data and prior samples together, which the solver minimises.
   std::optional<double> objective_with_prior = std::nullopt;
 
   double minimised() const { return objective_with_prior.value_or(objective); }

@@ -6,10 +6,10 @@
 
 namespace trilobe {
 
-// The least-squares problem  E(x) = |r(x)|^2,  r_jC = sqrt(w_jC) (rho_C(j) - rho*_jC), J = dr/dx,
-// to second order around one point x, in the order of FactorModel::parameters():
+// Second-order expansion of  E(x) = |r(x)|^2,  r_jC = sqrt(w_jC) (rho_C(j) - rho*_jC), J = dr/dx,
+// about a point x, in the order of FactorModel::parameters():
 //   E(x + s) / 2 = E / 2 + g's + s'H s / 2.
-// Rows and columns of unobserved bins are 0.
+// Rows and columns of unobserved entries are 0.
 struct QuadraticModel {
   double objective = 0;          // E = r'r
   std::vector<double> gradient;  // g = J'r. [num_parameters]
@@ -19,12 +19,12 @@ struct QuadraticModel {
 
 enum class Hessian {
   kGaussNewton,  // J'J
-  kNewton,       // J'J + sum w (rho - rho*) d2 rho / dx2: all of it, perhaps indefinite
+  kNewton,       // J'J + sum w (rho - rho*) d2 rho / dx2, possibly indefinite
 };
 
-// How many accumulators share a pass over folded samples: as many whatever the number of threads,
-// so that they always add up in the same order, and few where there are few samples, since each has
-// to be cleared and added to the others.
+// Number of accumulators in a pass over folded samples. It does not depend on the number of
+// threads, so that the order of addition is fixed. It is small for few samples, since each
+// accumulator must be cleared and added to the others.
 constexpr int NumAccumulators(int samples) { return std::clamp(samples / 65536, 2, 8); }
 
 }  // namespace trilobe

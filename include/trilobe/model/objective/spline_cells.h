@@ -9,13 +9,13 @@
 
 namespace trilobe {
 
-// The folded samples once more, sorted by cell (knot interval of theta_i, knot interval of
-// theta_o), in which the spline of G is one pair of cubics: for passes that sum products of its
-// weights. Within a cell the samples keep their order.
+// The folded samples sorted by cell (knot interval of theta_i, knot interval of theta_o), in which
+// the spline of G is one pair of cubics: for passes that sum products of its weights. Order within
+// a cell is kept.
 struct SplineCells {
   explicit SplineCells(const FoldedGrid& folded);
 
-  // The samples of one pair of knot intervals; cells without any are left out.
+  // The samples of a pair of knot intervals; empty cells are omitted.
   struct Cell {
     int interval_i = 0, interval_o = 0;
     int begin = 0, end = 0;
@@ -23,7 +23,7 @@ struct SplineCells {
 
   MerlGrid grid;
   std::vector<Cell> cells;
-  // As in FoldedGrid, by cell. [size]
+  // As in FoldedGrid, sorted by cell. [size]
   std::vector<int> row;
   std::vector<double> t_i, t_o, inverse_cosines;
   std::array<std::vector<double>, kChannels> weight, rho;

@@ -17,21 +17,20 @@
 
 namespace trilobe {
 
-// All of them, the default one (that `./run` fits) first.
+// All synthetic materials; the first is the default (fitted by `./run`).
 const std::vector<SynthMaterial>& SynthMaterials();
 
-// Throws Error that lists the known names.
+// Throws Error with the known names if there is none.
 const SynthMaterial& FindSynthMaterial(std::string_view name);
 
-// A measurement of it as a gonioreflectometer would give it: each value multiplied by log-normal
-// noise of relative standard deviation `noise`, the same for the same seed; with
-// noise, also a few grazing bins are lost (invalid), as in the MERL files.
-// Throws Error unless noise is in [0, 1], and for anisotropic materials, which do not fit a MERL
-// table.
+// A simulated gonioreflectometer measurement: values have log-normal noise of relative standard
+// deviation `noise`, reproducible by seed; with noise, a few grazing bins are lost (invalid), as in
+// MERL files. Throws Error unless noise is in [0, 1], and for anisotropic materials, which need
+// more than a MERL table.
 BrdfTable Synthesize(const SynthMaterial& material, double noise, uint64_t seed,
                      const MerlGrid& grid = {}, int num_threads = 1);
 
-// The same as scattered samples, at all pairs of nodes of a grid; what is lost is missing.
+// The same as scattered samples at all pairs of nodes of a grid; lost samples are missing.
 Measurement SynthesizeSamples(const SynthMaterial& material, double noise, uint64_t seed,
                               const HemisphereGrid& grid, int num_threads = 1);
 
