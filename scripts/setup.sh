@@ -38,10 +38,10 @@ slowly() {
 }
 
 # tell_progress COMMAND...: passes on what COMMAND says, and tells file descriptor 3 how many of ninja's
-# steps ("[12/63] ...") or ctest's tests (" 12/63 Test ...") are done, and how long the others take if they
-# take as long each.
+# steps ("[12/63] ...") or ctest's tests (" 12/63 Test ...") are done; and how long other steps take if they
+# take as long each, which tests do not: ctest starts with the longest.
 tell_progress() {
-  local begin=$EPOCHSECONDS told=$EPOCHSECONDS line='' part status made=0 all=0
+  local begin=$EPOCHSECONDS told=$EPOCHSECONDS line='' part status made=0 all=0 kind='' to_go
   "$@" 2>&1 | while true; do
     IFS= read -r -t 1 part && status=0 || status=$?
     line+=$part
@@ -49,13 +49,17 @@ tell_progress() {
       ((status == 0)) || [[ -n $line ]] || break
       printf '%s\n' "$line"
       if [[ $line =~ ^\ *\[?([0-9]+)/([0-9]+)(\]|\ Test\ ) ]]; then
-        made=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]}
+        made=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} kind=${BASH_REMATCH[3]}
       fi
       line=''
     fi
     if ((made > 0 && EPOCHSECONDS - told >= progress_seconds)); then
       told=$EPOCHSECONDS
-      step "$made of $all done; at this pace $(duration $(((all - made) * (told - begin) / made))) to go" >&3
+      to_go=''
+      if [[ $kind == ']' ]]; then
+        to_go="; at this pace $(duration $(((all - made) * (told - begin) / made))) to go"
+      fi
+      step "$made of $all done$to_go" >&3
     fi
   done
 }

@@ -103,7 +103,12 @@ class Experiment:
         return self.page.read_text().splitlines()[0].removeprefix("# ")
 
     def settings(self, form="full", changes=()):
-        return manifest.load(self.folder / "manifest.json", form, changes)
+        return settings(self.name, form, changes)
+
+
+def settings(name, form="full", changes=()):
+    """What the experiment's manifest says, whose code this does not load."""
+    return manifest.load(FOLDER / name / "manifest.json", form, changes)
 
 
 def names():

@@ -236,8 +236,7 @@ def run(experiment, options):
 def list_experiments():
     """A line or two for each."""
     for name in experiments.names():
-        experiment = experiments.load(name)
-        print(f"{name}\n    {experiment.settings()['question']}")
+        print(f"{name}\n    {experiments.settings(name)['question']}")
 
 
 def _same_run(folder, other):

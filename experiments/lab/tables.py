@@ -2,8 +2,6 @@
 import csv
 import math
 
-from lab import stats
-
 
 def _text(value):
     if value is None:
@@ -59,6 +57,7 @@ def groups(rows, *keys):
 def quartiles(values, form=".3g"):
     """"median [first, third quartile]" of what is known: None and nan are not, and their number is
     told; – for what is infinite."""
+    from lab import stats  # here: it needs numpy, without which the experiments can be listed
     known = [value for value in values if value is not None and not math.isnan(value)]
     low, middle, high = (format(value, form) if math.isfinite(value) else "–"
                          for value in (stats.quantile(known, q) for q in (.25, .5, .75)))

@@ -29,6 +29,7 @@
 #include "fit/scene/fit_cache.h"
 #include "io/pictures/gnuplot.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/materials/load_model.h"
@@ -219,11 +220,9 @@ int RunFitOfOne(const std::string& source) {
     PrintSeconds(run.report);
     std::cout << "written      nothing; give --out=DIR to keep the model\n";
   } else {
-    try {
-      WriteOtherFiles(&run, settings, into);
-    } catch (const Error& error) {
-      throw Error(std::string(error.what()) + "; the model is in '" + into->PathOf("model.json") +
-                  "'");
+    const std::string undrawn = WriteOtherFiles(&run, settings, into);
+    if (!undrawn.empty()) {
+      std::cerr << "trilobe: pictures are missing: " << Printable(undrawn) << "\n";
     }
     PrintSeconds(run.report);
     PrintLine("written      " + Joined(run.report.files) + " in " + out);

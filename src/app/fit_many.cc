@@ -163,8 +163,11 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
   std::optional<FitRun> run = RunOneFit(
       outcome->source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
   if (!run) return;
-  WriteOtherFiles(&*run, settings, folder);
+  outcome->undrawn = WriteOtherFiles(&*run, settings, folder);
   TakeReport(ToJson(run->report), outcome);
+  const std::vector<std::string>& files = run->report.files;
+  outcome->has_picture =
+      outcome->has_picture && std::ranges::find(files, outcome->picture) != files.end();
   outcome->state =
       run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
 }
@@ -200,6 +203,10 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   }
   if (!outcome.error.empty()) std::cout << ": " << outcome.error;
   std::cout << std::endl;
+  if (!outcome.undrawn.empty()) {
+    std::cerr << "trilobe: pictures of " << Printable(outcome.name)
+              << " are missing: " << Printable(outcome.undrawn) << "\n";
+  }
 }
 
 }  // namespace

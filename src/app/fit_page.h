@@ -12,7 +12,8 @@ struct FitOutcome {
 
   std::string name, source;
   State state = State::kMissing;
-  std::string error = {};  // of kFailed: why
+  std::string error = {};    // of kFailed: why
+  std::string undrawn = {};  // why pictures are missing; "" if they are not
   // What a person would see, of a model: in words, and how much (NameOf(Visibility)).
   std::string verdict = {}, visibility = {};
   // Of the sphere (AppearanceReport) and of the fit; 0 where there is none.

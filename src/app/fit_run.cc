@@ -1,11 +1,11 @@
 #include "app/fit_run.h"
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <limits>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <utility>
@@ -48,27 +48,43 @@ constexpr const char* kAtNodesName = "reconstruction.bin";
 constexpr const char* kPairName = "pair.png";
 constexpr const char* kViewName = "view.html";
 
-// On a disk that has filled up meanwhile, a model is saved elsewhere rather than lost.
+// Writes a model to where there is room, on a disk that has filled up, or where the folder has
+// gone, rather than lose it. Returns its path; "" if there is no such place.
+std::string SaveElsewhere(const ModelFile& file, const ResultFolder& folder) {
+  const std::string text = FormatModel(file);
+  std::error_code ignored;
+  const std::filesystem::path places[] = {std::filesystem::temp_directory_path(ignored),
+                                          std::filesystem::current_path(ignored), "/dev/shm"};
+  for (const std::filesystem::path& place : places) {
+    std::string path = place / ("trilobe-" + folder.run() + ".json");
+    try {
+      WriteFile(path, [&](std::ostream& out) { out << text; });
+      return path;
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  return "";
+}
+
 void WriteModelInto(const ModelFile& file, ResultFolder* folder) {
   const std::string text = FormatModel(file);
-  const auto write = [&](std::ostream& out) { out << text; };
   try {
-    folder->Write(kModelName, write);
+    folder->Write(kModelName, [&](std::ostream& out) { out << text; });
   } catch (const Error& error) {
-    std::error_code ignored;
-    const std::filesystem::path places[] = {std::filesystem::temp_directory_path(ignored),
-                                            std::filesystem::current_path(ignored), "/dev/shm"};
-    for (const std::filesystem::path& place : places) {
-      const std::string path = place / ("trilobe-" + folder->run() + ".json");
-      try {
-        WriteFile(path, write);
-      } catch (const Error&) {
-        continue;
-      }
-      throw Error(std::string(error.what()) + "; the model is saved as '" + path + "' instead");
-    }
-    throw;
+    const std::string path = SaveElsewhere(file, *folder);
+    if (path.empty()) throw;
+    throw Error(std::string(error.what()) + "; the model is saved as '" + path + "' instead");
   }
+}
+
+// For the end of an Error. Somebody may have removed the folder meanwhile.
+std::string WhereModelIs(const ModelFile& file, const ResultFolder& folder) {
+  const std::string path = folder.PathOf(kModelName);
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return "; the model is in '" + path + "'";
+  const std::string saved = SaveElsewhere(file, folder);
+  return saved.empty() ? "" : "; the model is saved as '" + saved + "' instead";
 }
 
 void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* folder) {
@@ -78,6 +94,64 @@ void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* fol
   const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, seen,
                                    report.summary.trace, settings.fit.appearance);
   folder->Write(kViewName, [&](std::ostream& out) { out << page.text; });
+}
+
+// As WriteOtherFiles.
+std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
+  const Objective& objective = run->objective;
+  const int threads = objective.num_threads();
+  FitReport& report = run->report;
+  Stopwatch stopwatch;
+  WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
+  if (settings.convergence) run->convergence.Write(folder->PathOf(kConvergenceName), objective);
+  if (settings.reconstruction) {
+    const FactorModel& model = run->file.model;
+    const std::string& source = run->file.fit.source;
+    if (model.spec().anisotropic()) {
+      WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(kAtNodesName));
+    } else {
+      // A MERL file has one grid, whatever that of the fit was.
+      WriteMerl(Reconstruct(model, source, {}, threads), folder->PathOf(kReconstructionName));
+    }
+  }
+  const PictureData pictured =
+      settings.pair || settings.plots ? PictureDataOf(run->measured) : PictureData{};
+  AppearanceOptions appearance = settings.fit.appearance;
+  appearance.num_threads = threads;
+  std::mutex mutex;
+  std::string failure;
+  std::vector<std::function<void()>> drawings;
+  if (settings.view) drawings.emplace_back([&] { WriteView(*run, settings, folder); });
+  if (settings.pair && !pictured.empty()) {
+    drawings.emplace_back([&] {
+      WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
+    });
+  }
+  if (settings.plots) {
+    drawings.emplace_back([&] {
+      std::optional<SphereError> sphere;
+      if (report.appearance) sphere = report.appearance->sphere;
+      DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance, sphere);
+    });
+  }
+  // Who ends the program early does not wait for pictures.
+  if (report.interrupted) drawings.clear();
+  ParallelFor(static_cast<int>(drawings.size()), threads, [&](int k) {
+    try {
+      drawings[k]();
+    } catch (const Error& error) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (failure.empty()) failure = error.what();
+    }
+  });
+  if (!failure.empty()) report.key.clear();  // not what such a fit leaves
+  report.files = folder->Files();
+  report.files.emplace_back(kReportName);
+  report.seconds.draw = stopwatch.Lap();
+  folder->Write(kReportName, [&report](std::ostream& out) {
+    out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  });
+  return failure;
 }
 
 }  // namespace
@@ -198,59 +272,12 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                 .convergence = std::move(convergence)};
 }
 
-void WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
-  const Objective& objective = run->objective;
-  const int threads = objective.num_threads();
-  FitReport& report = run->report;
-  Stopwatch stopwatch;
-  WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
-  if (settings.convergence) run->convergence.Write(folder->PathOf(kConvergenceName), objective);
-  if (settings.reconstruction) {
-    const FactorModel& model = run->file.model;
-    const std::string& source = run->file.fit.source;
-    if (model.spec().anisotropic()) {
-      WriteUtia(ReconstructAtNodes(model, source, kUtiaGrid), folder->PathOf(kAtNodesName));
-    } else {
-      // A MERL file has one grid, whatever that of the fit was.
-      WriteMerl(Reconstruct(model, source, {}, threads), folder->PathOf(kReconstructionName));
-    }
-  }
-  const PictureData pictured =
-      settings.pair || settings.plots ? PictureDataOf(run->measured) : PictureData{};
-  AppearanceOptions appearance = settings.fit.appearance;
-  appearance.num_threads = threads;
-  std::exception_ptr failure;
-  std::vector<std::function<void()>> drawings;
-  if (settings.view) drawings.emplace_back([&] { WriteView(*run, settings, folder); });
-  if (settings.pair && !pictured.empty()) {
-    drawings.emplace_back([&] {
-      WriteSpherePair(pictured, MaterialOf(run->file.model), folder->PathOf(kPairName), appearance);
-    });
-  }
-  if (settings.plots) {
-    drawings.emplace_back([&] {
-      std::optional<SphereError> sphere;
-      if (report.appearance) sphere = report.appearance->sphere;
-      DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance, sphere);
-    });
-  }
-  // Who ends the program early does not wait for pictures.
-  if (report.interrupted) drawings.clear();
+std::string WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
   try {
-    if (!drawings.empty()) {
-      ParallelFor(static_cast<int>(drawings.size()), threads, [&](int k) { drawings[k](); });
-    }
-  } catch (const Error&) {
-    failure = std::current_exception();
-    report.key.clear();  // not what such a fit leaves
+    return WriteFiles(run, settings, folder);
+  } catch (const Error& error) {
+    throw Error(error.what() + WhereModelIs(run->file, *folder));
   }
-  report.files = folder->Files();
-  report.files.emplace_back(kReportName);
-  report.seconds.draw = stopwatch.Lap();
-  folder->Write(kReportName, [&report](std::ostream& out) {
-    out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
-  });
-  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace trilobe

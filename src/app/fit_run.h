@@ -76,9 +76,10 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                                 const std::function<void()>& on_begin,
                                 const std::function<void(const IterationRecord&)>& on_iteration);
 
-// Writes the other files, the report last: where it is, all are. If a picture cannot be drawn, the
-// others are written before Error is thrown.
-void WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder);
+// Writes the other files, the report last: where it is, all are but pictures that could not be
+// drawn. Returns why these could not; "" if all are there. Throws Error for other files,
+// which says where the model is.
+std::string WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder);
 
 }  // namespace trilobe
 

@@ -113,11 +113,39 @@ TEST(FitFolder, WithoutGnuplotAllButThePicturesIsThere) {
   const std::string out = folder / "out";
   const ProgramResult result = RunProgram(
       Quick({"fit", "synth:felt@30x30x60", "--plots", "--out=" + out}), {"PATH=/nowhere"});
-  ExpectRefusal(result, "gnuplot");
-  EXPECT_THAT(result.err, HasSubstr("; the model is in '" + out + "/model.json'"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err,
+            "trilobe: pictures are missing: pictures need gnuplot, which is not on the PATH; "
+            "install the package gnuplot-nox\n");
   EXPECT_THAT(Names(out),
               UnorderedElementsAre("model.json", "trace.csv", "report.json", "view.html"));
   EXPECT_EQ(Json(out + "/report.json")["run"], ReadModel(out + "/model.json").fit.run);
+}
+
+// Somebody removes the folder while the program draws into it.
+TEST(FitFolder, ThatHasGoneCostsNoModel) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out", tools = folder / "tools", elsewhere = folder / "tmp";
+  std::filesystem::create_directory(tools);
+  std::filesystem::create_directory(elsewhere);
+  std::ofstream(tools + "/gnuplot") << "#!/bin/sh\nrm -rf '" << out << "'\nexit 1\n";
+  std::filesystem::permissions(tools + "/gnuplot", std::filesystem::perms::owner_all);
+  const ProgramResult result =
+      RunProgram(Quick({"fit", "synth:felt@30x30x60", "--plots", "--out=" + out}),
+                 {"PATH=" + tools + ":/usr/bin:/bin", "TMPDIR=" + elsewhere});
+  ExpectRefusal(result, "cannot write '" + out + "/report.json'");
+  ASSERT_THAT(Names(elsewhere), ::testing::SizeIs(1));
+  const std::string saved = elsewhere + "/" + Names(elsewhere)[0];
+  EXPECT_THAT(result.err, HasSubstr("; the model is saved as '" + saved + "' instead"));
+  EXPECT_THAT(result.err, ::testing::Not(HasSubstr("the model is in")));
+  EXPECT_EQ(ReadModel(saved).fit.source, "synth:felt@30x30x60");
+
+  const ProgramResult many =
+      RunProgram(Quick({"fit", "synth:felt@30x30x60", "--shard=1/1", "--plots", "--out=" + out}),
+                 {"PATH=" + tools + ":/usr/bin:/bin", "TMPDIR=" + elsewhere});
+  EXPECT_EQ(many.status, 3);
+  EXPECT_THAT(many.out, HasSubstr("; the model is saved as '" + elsewhere));
+  EXPECT_THAT(Names(elsewhere), ::testing::SizeIs(2));
 }
 
 TEST(Outputs, AreNeverInputs) {
@@ -281,8 +309,10 @@ TEST(FitMany, WhatIsNotWholeIsFittedAgain) {
   const std::vector<std::string> command =
       Quick({"fit", "synth:felt@30x30x60", "--shard=1/1", "--plots", "--out=" + out});
   const ProgramResult without = RunProgram(command, {"PATH=/nowhere"});
-  EXPECT_EQ(without.status, 3);
-  EXPECT_THAT(without.out, HasSubstr("felt: failed: pictures need gnuplot"));
+  EXPECT_EQ(without.status, 0);
+  EXPECT_THAT(without.out, HasSubstr("felt: fitted"));
+  EXPECT_THAT(without.err, StartsWith("trilobe: pictures of felt are missing: pictures need"));
+  EXPECT_EQ(std::ranges::count(without.err, '\n'), 1) << without.err;
   EXPECT_TRUE(std::filesystem::exists(out + "/felt/pair.png"));
   const ProgramResult with = RunProgram(command);
   EXPECT_EQ(with.status, 0);

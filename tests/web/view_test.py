@@ -179,6 +179,7 @@ def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Pa
         ('{"format": "other"}', "key 'format'"),
         ('{"format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes": 99}', "key 'lobes'"),
         ('{"format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes": 1, "d": [1, 1, -1]}', "key 'd'"),
+        ('{"format": "trilobe-model", "version": 1, "stretch": {"along": 1, "across": 0}}', "key 'stretch' needs"),
         ("hello", "not a MERL file"),
         ("theta_i,phi_i,theta_o,phi_o,r,g\n", "header"),
         ("theta_i,phi_i,theta_o,phi_o,r,g,b\n1,2,3\n", "row 2"),

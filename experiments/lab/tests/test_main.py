@@ -1,6 +1,9 @@
 """What the command leaves behind: tables and pictures that are whole, and exit statuses."""
 import contextlib
 import io
+import os
+import subprocess
+import sys
 import types
 import unittest
 import unittest.mock
@@ -144,6 +147,15 @@ class MainTest(FolderTest):
               contextlib.redirect_stderr(io.StringIO()) as said):
             self.assertEqual(main.main(["x", "--quick"]), 2)
         self.assertRegex(said.getvalue(), "^trilobe-experiments: error: this Python has no numpy; .*check.*\n$")
+
+    def test_the_list_needs_no_packages(self):
+        for name in ("numpy", "matplotlib", "PIL", "markdown"):
+            (self.folder / f"{name}.py").write_text(f"raise ModuleNotFoundError(name='{name}')")
+        program = PUBLISHED / "trilobe-experiments"
+        done = subprocess.run([sys.executable, program, "list"], capture_output=True, text=True,
+                              check=False, env={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, "(?m)^final_error$")
 
     def test_settings_that_make_no_sense_are_refused(self):
         self.module.units = lambda setting: setting.manifest["flags"]["none"]

@@ -232,6 +232,20 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
   if (!file.RenameTo(target)) FailToWrite(path, std::strerror(errno));
 }
 
+NamelessFile MakeNamelessFile(const std::string& path) {
+  const std::string name = TemporaryName(ResolveTarget(path));
+  const int fd = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) FailToWrite(path, WhyNot(path));
+  unlink(name.c_str());
+  NamelessFile file(fdopen(fd, "w+"));
+  if (!file) {
+    const std::string reason = std::strerror(errno);
+    close(fd);
+    FailToWrite(path, reason);
+  }
+  return file;
+}
+
 void CheckWritable(const std::string& path) {
   std::filesystem::path target = ResolveTarget(path);
   std::error_code error;

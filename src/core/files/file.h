@@ -1,7 +1,9 @@
 #ifndef TRILOBE_CORE_FILES_FILE_H_
 #define TRILOBE_CORE_FILES_FILE_H_
 
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <ostream>
 #include <string>
 
@@ -25,6 +27,15 @@ std::string EndingOf(const std::string& path);
 void WriteFile(
     const std::string& path, const std::function<void(std::ostream&)>& write,
     const std::function<void()>& before_renaming = [] {});
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using NamelessFile = std::unique_ptr<std::FILE, CloseFile>;
+
+// A file to write and read in the folder where WriteFile would write `path`. It has no name, and is
+// gone when it is closed, however the program ends. Throws Error.
+NamelessFile MakeNamelessFile(const std::string& path);
 
 // Throws the Error that WriteFile would throw for this path, as far as it can be known in advance.
 // It creates and removes a temporary file in the nearest existing parent folder.

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "core/base/names.h"
@@ -238,6 +238,11 @@ void ReadLimits(const Node& node, const std::string& scene_file, SceneMaterial* 
   if (node.Has("leave_out")) ReadReductions(node["leave_out"], &material->reductions);
 }
 
+std::string LowerCase(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
 std::string ReadName(const Node& node) {
   std::string name = node.String();
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
@@ -247,9 +252,7 @@ std::string ReadName(const Node& node) {
               " bytes, no '/', no control character, no '.' in front");
   }
   // NAME.json is written beside plan.json; some file systems take Plan for plan.
-  std::string lower = name;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (lower == "plan") node.Fail("is kept for plan.json; give the material another name");
+  if (LowerCase(name) == "plan") node.Fail("is kept for plan.json; give the material another name");
   return name;
 }
 
@@ -305,14 +308,18 @@ Scene ParseScene(std::string_view text, const std::string& path) {
   materials.CheckArray("materials");
   if (materials.size() == 0) materials.Fail("is empty; give at least one material");
   Scene scene{path, {}};
-  std::set<std::string> names;
+  std::map<std::string, std::string> name_of;  // by the file, where case does not count
   for (size_t k = 0; k < materials.size(); ++k) {
     scene.materials.push_back(ReadMaterial(materials[k], path, defaults));
     const std::string& name = scene.materials.back().name;
-    if (!names.insert(name).second) {
-      materials[k]["name"].Fail(Quoted(name) +
-                                " is the name of another material; give each its own");
-    }
+    const auto [other, is_new] = name_of.emplace(LowerCase(name), name);
+    if (is_new) continue;
+    materials[k]["name"].Fail(
+        Quoted(name) +
+        (other->second == name ? " is the name of another material"
+                               : " and " + Quoted(other->second) +
+                                     ", another material, are one file where case does not count") +
+        "; give each its own");
   }
   return scene;
 }

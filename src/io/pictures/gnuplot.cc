@@ -16,7 +16,6 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <sstream>
@@ -31,18 +30,6 @@ namespace {
 
 constexpr const char* kNoGnuplot =
     "pictures need gnuplot, which is not on the PATH; install the package gnuplot-nox";
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-// Nameless and gone when closed. Unlike pipes, files cannot block one side on the other.
-using TemporaryFile = std::unique_ptr<std::FILE, CloseFile>;
-
-TemporaryFile MakeTemporaryFile() {
-  TemporaryFile file(std::tmpfile());
-  if (!file) throw Error(std::string("cannot make a temporary file: ") + std::strerror(errno));
-  return file;
-}
 
 std::string ReadAll(std::FILE* file) {
   std::rewind(file);
@@ -80,13 +67,14 @@ std::optional<int> WaitFor(pid_t pid, double max_seconds) {
   return std::nullopt;
 }
 
-// gnuplot's standard output for a script on its standard input.
-std::string RunGnuplot(const std::string& script, double max_seconds) {
-  const TemporaryFile in = MakeTemporaryFile(), out = MakeTemporaryFile(),
-                      err = MakeTemporaryFile();
+// gnuplot's standard output for a script on its standard input. Both go through files where the
+// picture will be: unlike pipes, these cannot block one side on the other.
+std::string RunGnuplot(const std::string& path, const std::string& script, double max_seconds) {
+  const NamelessFile in = MakeNamelessFile(path), out = MakeNamelessFile(path),
+                     err = MakeNamelessFile(path);
   if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
       std::fflush(in.get()) != 0) {
-    throw Error(std::string("cannot write a temporary file: ") + std::strerror(errno));
+    throw Error("cannot write what gnuplot reads beside '" + path + "': " + std::strerror(errno));
   }
   std::rewind(in.get());
 
@@ -247,7 +235,7 @@ void RequireGnuplot() {
 
 void DrawPng(const std::string& path, int width, int height, const std::string& script,
              double max_seconds) {
-  const std::string png = RunGnuplot(CommonStyle(width, height) + script, max_seconds);
+  const std::string png = RunGnuplot(path, CommonStyle(width, height) + script, max_seconds);
   WriteFile(path, [&](std::ostream& out) {
     out.write(png.data(), static_cast<std::streamsize>(png.size()));
   });

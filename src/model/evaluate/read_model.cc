@@ -144,7 +144,12 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
 
 // Members that readers of version 1 do not know.
 void ReadStretch(const Node& root, ModelSpec* spec) {
-  if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) return;
+  if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) {
+    if (!root.has("stretch")) return;
+    root["stretch"].Fail("needs \"version\": " + std::to_string(kStretchedVersion) +
+                         ", as readers of version " + std::to_string(kModelVersion) +
+                         " leave it out");
+  }
   const Node node = root["stretch"];
   if (spec->anisotropic()) node.Fail("is for isotropic models");
   const auto read = [](const Node& table) {

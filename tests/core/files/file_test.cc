@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -229,6 +230,17 @@ TEST(WriteFile, ShowsTheOldFileUntilTheNewOneIsWhole) {
                Error);
   EXPECT_EQ(TestDirectory::Content(path), "new");
   EXPECT_THAT(directory.Names(), ElementsAre("file"));
+}
+
+TEST(MakeNamelessFile, IsInNoFolder) {
+  const TestDirectory directory;
+  const NamelessFile file = MakeNamelessFile(directory.Path("a.png"));
+  EXPECT_THAT(directory.Names(), IsEmpty());
+  EXPECT_GE(std::fputs("text", file.get()), 0);
+  std::rewind(file.get());
+  EXPECT_EQ(std::fgetc(file.get()), 't');
+  EXPECT_THAT(ErrorOf([&] { MakeNamelessFile(directory.Path("none/a.png")); }),
+              HasSubstr("there is no folder '"));
 }
 
 TEST(CheckWritable, FindsOutBeforeAndLeavesNothing) {

@@ -418,6 +418,11 @@ TEST(ModelFile, KeepsAStretch) {
   json without = document;
   without.erase("stretch");
   EXPECT_THAT(ErrorOfText(without.dump()), HasSubstr("key 'stretch' is missing"));
+  json older = document;
+  older["version"] = 1;
+  EXPECT_THAT(
+      ErrorOfText(older.dump()),
+      HasSubstr("key 'stretch' needs \"version\": 2, as readers of version 1 leave it out"));
 }
 
 TEST(ModelFile, RefusesOtherFormatsKindsAndVersions) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "core/files/file.h"
 #include "core/system/process.h"
@@ -141,6 +142,22 @@ TEST_F(GnuplotTest, SaysWhichPackageIsMissing) {
     EXPECT_THAT(error.what(), testing::HasSubstr("gnuplot-nox"));
   }
   setenv("PATH", path.c_str(), 1);
+}
+
+// Other folders may be full, or closed.
+TEST_F(GnuplotTest, ReadsAndWritesBesideThePicture) {
+  const FakeGnuplot fake(folder_, "ls -l /proc/$$/fd | sed -n 's/.* \\([012]\\) -> //p' >" +
+                                      Path("files") + "\nexit 1\n");
+  std::filesystem::create_directory(Path("out"));
+  EXPECT_THROW(DrawPng(Path("out/a.png"), 400, 300, "plot x\n"), Error);
+  std::istringstream files(ReadFile(Path("files")));
+  int count = 0;
+  for (std::string file; std::getline(files, file); ++count) {
+    EXPECT_THAT(file, testing::StartsWith(Path("out/")));
+    EXPECT_THAT(file, testing::EndsWith("(deleted)"));
+  }
+  EXPECT_EQ(count, 3);
+  EXPECT_TRUE(std::filesystem::is_empty(Path("out")));
 }
 
 // Whether a process runs; one that was killed may stay as a zombie for a while.
