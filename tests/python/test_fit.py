@@ -38,6 +38,13 @@ def without_times(text):
             if not any(f'"{key}"' in line for key in ("seconds", "date", "run"))]
 
 
+def without_seconds(value):
+    """Of a list of steps; anything else as it is."""
+    if not isinstance(value, list):
+        return value
+    return [{**step, "seconds": None} if isinstance(step, dict) else step for step in value]
+
+
 @needs_program
 @pytest.mark.parametrize(("source", "flags"), [
     (SMALL, {}),
@@ -59,7 +66,7 @@ def test_is_the_programs_to_the_bit(source, flags, tmp_path):
     for key, value in report.items():
         if key not in ("seconds", "phases", "peak_memory_bytes", "key", "run", "files", "date", "candidates",
                        "nodes"):
-            assert result.report[key] == value, key
+            assert without_seconds(result.report[key]) == without_seconds(value), key
     rows = np.genfromtxt(tmp_path / "program" / "trace.csv", delimiter=",", names=True)
     np.testing.assert_array_equal(result.trace["objective"], rows["objective"])
     np.testing.assert_array_equal(result.trace["step"], rows["step"])
