@@ -7,28 +7,28 @@
 
 namespace trilobe {
 
-// A subcommand of the program. Flags are gflags, defined in the command's file (shared ones in
-// flags.h); a command that is given one of another is an error.
+// A subcommand of the program. Its flags are gflags, defined in its own file or, if shared, in
+// flags.cc. Flags that it does not list are an error.
 struct Command {
   std::string name;
   std::string summary;    // one line for `trilobe help`
   std::string arguments;  // "SOURCE", "MODEL SOURCE", ...
   int min_arguments = 0;
   int max_arguments = 0;
-  std::string details;  // some lines for `trilobe help NAME`: what it reads, does and writes
-  std::vector<std::string> flags;  // those that it takes, listed in its help
-  // For a flag whose values bring flags of their own, as --solver does: those of all its values,
-  // and what the help is to say about the value given and its flags.
+  std::string details;  // text for `trilobe help NAME`: what it reads, does and writes
+  std::vector<std::string> flags;  // accepted flags, listed in its help
+  // Flags that only some values of another flag accept (--solver): those of all values, and the
+  // help of the given value.
   std::vector<std::string> particular_flags = {};
   std::string (*particular_help)() = nullptr;
-  // Positional arguments only. Returns the exit status; throws Error for bad input.
+  // Runs the command with its positional arguments. Returns the exit status. Throws Error.
   int (*run)(std::span<const std::string> arguments) = nullptr;
 };
 
-// Exit status where all was tried and some of it failed, as of the experiments.
+// Exit status if some of several inputs failed; also that of the experiments.
 inline constexpr int kSomeFailed = 3;
 
-// One function a command, each in its own file.
+// The commands, each defined in its own file.
 Command CompareCommand();
 Command ConvertCommand();
 Command FitCommand();

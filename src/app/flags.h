@@ -9,7 +9,7 @@
 
 #include "trilobe/model/appearance/appearance.h"
 
-// Flags that several commands take.
+// Flags shared by several commands.
 DECLARE_int32(threads);
 DECLARE_int32(lobes);
 DECLARE_int64(seed);
@@ -27,42 +27,42 @@ DECLARE_bool(dark_noise);
 DECLARE_string(weighting);
 DECLARE_string(out);
 
-// What lights the spheres of fit, score and plot.
+// Light of the spheres of fit, score and plot.
 DECLARE_string(probe);
 
-// What `score` and `info` print: a table for people, or one JSON object.
+// Whether `score` and `info` print a JSON object instead of a table.
 DECLARE_bool(json);
-// What `fit` and `score` print: a verdict and a few lines, or all there is to say.
+// Whether `fit` and `score` print all details, not only the verdict and a few lines.
 DECLARE_bool(verbose);
 
 namespace trilobe {
 
 struct SourceOptions;
 
-// True unless the flag was given a value other than its default.
+// Whether the flag has its default value.
 bool IsDefault(const std::string& flag);
 
-// The flags of these that were given, by name, as text.
+// Which of these flags were given: name to value.
 std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags);
 
 // A flag for `trilobe help COMMAND`: "  --lobes=3", and its description on the next line.
 std::string FlagHelp(const std::string& flag);
 
-// --threads, with 0 meaning all cores, and no more than these: beyond, the first call says so on
-// standard error. Throws Error if negative.
+// --threads, at most the number of cores; 0: all cores. The first call with more prints a warning
+// on standard error. Throws Error if negative.
 int ThreadsFromFlags();
 
-// What says how a source is read: for Source::Read. Throws Error for bad values. And the names of
-// these flags.
+// Options for Source::Read. Throws Error for bad values.
 SourceOptions SourceOptionsFromFlags();
+// `others` and the names of the flags that SourceOptionsFromFlags reads.
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others);
-// Those of them that are for measurements alone: all but --threads.
+// The names of these flags without --threads.
 std::vector<std::string> MeasurementFlags();
 
-// Throws Error where one of these flags is given, since `path` is a model and no measurement.
+// Throws Error if one of these flags was given, for a `path` that is a model.
 void RefuseForModel(const std::string& path, const std::vector<std::string>& flags);
 
-// The light of --probe, or the built-in one, and --threads. Reads the probe at the first call.
+// Options by --probe (default: the built-in light) and --threads. Reads the probe once.
 AppearanceOptions AppearanceOptionsFromFlags();
 
 }  // namespace trilobe

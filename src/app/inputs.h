@@ -9,28 +9,28 @@
 
 namespace trilobe {
 
-// True of material:NAME, and if the file can be read and begins like a JSON object, as model files
-// do and no measurement does.
+// Whether the name is material:NAME or a readable file that begins like a JSON object, as only
+// model files do.
 bool IsModelFile(const std::string& path);
 
-// The model that an argument MODEL stands for: LoadModel, and of a file that holds something else
-// the Error says what that is.
+// Loads the model of an argument MODEL (LoadModel). Throws Error, which names the format if the
+// file is not a model.
 ModelFile ModelOfSource(const std::string& path);
 
-// Throws Error for material:NAME, which is a model where a measurement is asked for.
+// Throws Error for material:NAME, a model where a measurement is needed.
 void RefuseMaterial(const std::string& source);
 
-// The measurement that an argument SOURCE stands for. Throws Error.
+// Loads the measurement of an argument SOURCE. Throws Error.
 Measurement MeasurementOfSource(const std::string& source, const SourceOptions& options);
 
-// --out, or an Error that says what it is for: "trilobe synth needs --out=FILE".
+// --out. Throws Error without it: "trilobe synth needs --out=FILE, ...".
 std::string RequiredOut(const std::string& command, const std::string& what);
 
-// Throws Error where --out ends as no PNG picture does.
+// Throws Error if --out has an extension other than .png.
 void CheckPictureOut();
 
-// The same for a command that writes a measurement, as WriteMeasurement does; also an Error where
-// the name ends otherwise, as "felt.bsdf" does.
+// --out of a command that calls WriteMeasurement. Throws Error without it, and if its extension is
+// not that of a format that can be written, as in "felt.bsdf".
 std::string RequiredMeasurementOut(const std::string& command);
 
 }  // namespace trilobe

@@ -18,48 +18,50 @@
 
 namespace trilobe {
 
-// What is made of the model that a solver has found, before it is stored. Interrupted, it keeps to
-// no budget of parameters unless it has begun to choose.
+// Which steps follow the solver. If stopped before a form is chosen, the model may exceed
+// max_parameters.
 struct FinishOptions {
-  // Above 0: at the end the smoothest model whose E is at most that share higher takes the place of
-  // what was found (Smoothest), if it does no harm. Not of a form that max_parameters chooses.
+  // Above 0: replaces the model by the smoothest one whose E is higher by at most this fraction
+  // (Smoothest), if scores hardly suffer. Not applied to a form that max_parameters chooses.
   double smoothness = 0;
-  double robust = 0;       // above 0: passes of reweighting with this delta (Reweighted)
-  int max_parameters = 0;  // above 0: the form that looks best within so many (ChooseModel)
-  uint64_t seed = 1;       // of the samples held out to choose it by, where there is no picture
+  double robust = 0;       // above 0: refits with weights of this delta (Reweighted)
+  int max_parameters = 0;  // above 0: chooses the best form of at most this size (ChooseModel)
+  uint64_t seed = 1;       // of the held-out samples that choose the form without pictures
   const SyntheticPrior* prior =
-      nullptr;                    // that the objective has (CorrectOvershoot); null: no correction
-  bool tie_data_edge = true;      // entries that few samples read (TieEntriesAtDataEdge)
-  bool match_reflectance = true;  // where that is off, as far as it does no harm (MatchReflectance)
+      nullptr;                    // the objective's, for CorrectOvershoot; null: no correction
+  bool tie_data_edge = true;      // TieEntriesAtDataEdge
+  bool match_reflectance = true;  // MatchReflectance, if scores hardly suffer
   AppearanceOptions appearance;
   StopCheck stop = {};
 };
 
-// A change of the model after the solver had ended.
+// A step after the solver that changed the model.
 struct FinishingStep {
-  // "robust", "between_samples" (CorrectOvershoot), "data_edge" (TieEntriesAtDataEdge), "form"
-  // (ChooseModel), "reflected_light" (MatchReflectance) or "smoothness" (Smoothest), in this order.
+  // In this order: "robust", "between_samples" (CorrectOvershoot), "data_edge"
+  // (TieEntriesAtDataEdge), "form" (ChooseModel), "reflected_light" (MatchReflectance),
+  // "smoothness" (Smoothest).
   std::string name;
   double objective_before = 0, objective_after = 0;  // E of the data
   double seconds = 0;
 };
 
 struct FinishedFit {
-  Objective objective;  // for models of the spec that was chosen
+  Objective objective;  // for the spec of `model`
   FactorModel model;    // in canonical form
   std::optional<TableLayout> layout = std::nullopt;
-  std::vector<FinishingStep> steps = {};        // those that changed the model
-  std::vector<ModelCandidate> candidates = {};  // empty if none was asked for
-  int chosen = -1;                              // which of them
-  int held_out = 0;                             // samples that they were judged by; 0: all
-  // Of the step reflected_light, the error of what is reflected (Reflectance::Error).
+  std::vector<FinishingStep> steps = {};        // steps that changed the model
+  std::vector<ModelCandidate> candidates = {};  // empty without max_parameters
+  int chosen = -1;                              // index of the chosen candidate
+  int held_out = 0;                             // samples that judged them; 0: pictures did
+  // Reflectance::Error before and after the step "reflected_light".
   struct Matched {
     double error_before = 0, error_after = 0;
   };
   std::optional<Matched> matched = std::nullopt;
 };
 
-// `measured`: what pictures are made of, which match_reflectance needs; null where there is none.
+// Applies the steps to a solver's model. `measured` is the table whose pictures judge models, or
+// null; match_reflectance needs it.
 FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options);
 

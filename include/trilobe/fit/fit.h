@@ -32,115 +32,116 @@ namespace trilobe {
 
 struct FitResult;
 
-// How a measurement is fitted; the defaults are those of `trilobe fit`.
+// Options of Fit. The defaults are those of `trilobe fit`.
 struct FitOptions {
   FormOptions form = {};
   std::string init = InitialModels().front().name;
-  // In their place: a model to start from, whose form the fit then has.
+  // Model to start from. Replaces `form` and `init`.
   std::optional<FactorModel> start_model = {};
-  // Which of the measured samples count, and how; all as they are without it. What is left is no
-  // picture any more, so that no reflectance is matched and no appearance compared.
+  // Selects or changes the samples to fit; null: all measured samples. With it, no reflectance is
+  // matched and no appearance is compared.
   std::function<BrdfSamples(BrdfSamples)> select = nullptr;
   std::string solver = Solvers().front().name;
-  // Of the solver, for the form that it is to fit; on_iteration and stop are replaced. Asked when
-  // it begins.
+  // Returns the solver's options for a spec. Called before the solver starts; on_iteration and stop
+  // are replaced.
   std::function<SolverOptions(const ModelSpec&)> solver_options = [](const ModelSpec& /*spec*/) {
     return SolverOptions();
   };
   Weighting weighting = Weightings().front();
-  // Of scattered samples, SyntheticPriorOptions::weight, or 0 for no prior; where it is not given,
-  // 1, and with kAnisotropic 0.
+  // For scattered samples: SyntheticPriorOptions::weight, or 0 for no prior. Default: 1, with
+  // kAnisotropic 0. An error for a table.
   std::optional<double> prior = {};
-  double smoothness = 0.005;  // FinishOptions, as the next
-  double robust = 0;
-  // --model=auto: the form that looks best, within so many parameters; by default 822 of a table,
-  // and of scattered samples as many as that of `form` has. Beside a picture of tables and of
-  // samples at the nodes of a grid; of others by samples that are held out, if there are enough.
+  double smoothness = 0.005;  // FinishOptions::smoothness
+  double robust = 0;          // FinishOptions::robust
+  // --model=auto: chooses the best form of at most max_parameters parameters (default: 822 for a
+  // table, else the size of `form`). Forms of tables, and of samples on a grid of directions, are
+  // compared by rendered pictures; others by held-out samples, if there are enough.
   bool choose_form = false;
   std::optional<int> max_parameters = {};
-  bool match_reflectance = true;  // FinishOptions
-  // The result is the model that the solver found: nothing is done to it afterwards, so that
-  // solvers can be compared. Only its scale moves between tables (canonical form), which changes no
-  // value. Not with robust, choose_form, nor a smoothness that is asked for.
+  bool match_reflectance = true;  // FinishOptions::match_reflectance
+  // Returns the solver's model unchanged except for canonical form, which changes no value. Sets
+  // smoothness to 0 and match_reflectance to false. An error with robust or choose_form.
   bool raw = false;
-  bool compare = true;  // makes `appearance`, `left_out`, `reach` and `light` of the result, too
+  bool compare = true;  // computes the result's appearance, samples_seen, left_out, reach and light
   AppearanceOptions appearance = {};  // num_threads is replaced
   uint64_t seed = 1;
   int num_threads = 1;
 
-  // All of what follows but `stop` is called from the thread that fits.
-  // When the input has proved right, and before the first step.
+  // The fitting thread calls all callbacks but `stop`.
+  // Called after the input has been checked, before the first step.
   std::function<void()> on_begin = [] {};
-  // After each iteration: of whatever is fitted on the way, and of the solver's own; where it fits
-  // several forms, those of the first.
+  // Called after each iteration of every fit.
   std::function<void(const IterationRecord&)> on_progress = [](const IterationRecord&) {};
+  // Called after each iteration of the solver; with several forms, for the first form only.
   std::function<void(const IterationRecord&, const FactorModel&)> on_iteration =
       [](const IterationRecord&, const FactorModel&) {};
-  // There is a model: as the solver left it, when nobody has asked to stop, and once more when it
-  // is finished. Of the result the file is made, and `summary`.
+  // Called with the solver's model, unless the fit was stopped, and with the finished model. `file`
+  // and `summary` of the result are valid.
   std::function<void(const FitResult&)> on_model = [](const FitResult&) {};
-  // Asked after each step, from several threads: true to end with the best so far.
+  // Called after each step, from several threads. Return true to end with the best model so far.
   StopCheck stop = {};
 };
 
-// A measurement, as it is fitted.
+// The objectives of a fit.
 struct FitProblem {
-  Objective data;  // by which models are judged
-  // What the solver lowers: with scattered samples, those of a prior besides (WithPrior).
+  Objective data;  // judges models
+  // Data and samples of a prior (WithPrior), if there is one: the solver minimises this.
   std::optional<Objective> with_prior = {};
 
   const Objective& solved() const { return with_prior ? *with_prior : data; }
 };
 
 struct FitResult {
-  Objective objective;  // of the data, for models of the file's spec
-  // The model in canonical form, its layout, and how it came about; program, date and run are left
-  // to whoever writes it.
+  Objective objective;  // of the data, for the spec of file.model
+  // The model in canonical form, its layout and fit information. The writer sets program, date and
+  // run.
   ModelFile file = {};
   SolverSummary summary = {};
-  std::optional<NodeChoice> nodes = {};  // of those of D and G, where it was asked for
-  // Samples that joined the data for the solver.
+  std::optional<NodeChoice> nodes = {};  // with FormOptions::nodes_by_held_out
+  // Samples of the prior that joined the data, and the weight of each.
   struct Prior {
     double weight = 0;
     int samples = 0;
   };
   std::optional<Prior> prior = {};
-  // What came after the solver (FinishedFit).
+  // What changed the model after the solver (FinishedFit).
   struct Finished {
     std::vector<FinishingStep> steps = {};
     std::vector<ModelCandidate> candidates = {};
     int chosen = -1;
-    int held_out = 0;           // samples that they were judged by; 0: by pictures
-    int too_few_to_choose = 0;  // where a form was to be chosen, the samples that this takes
+    int held_out = 0;           // samples that judged the candidates; 0: pictures did
+    int too_few_to_choose = 0;  // samples that choose_form needs, if there were fewer; else 0
     std::optional<FinishedFit::Matched> matched = {};
   } finished = {};
   int stored_parameters = 0;
-  // E of the stored model, on the data alone; summary.final_objective is that of the solver's.
+  // Of the stored model, on the data alone. summary.final_objective is of the solver's model.
   ScoreReport score = {};
-  std::optional<AppearanceReport> appearance = {};  // none of samples on no grid
-  std::optional<SeenError> samples_seen = {};       // of these
-  // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
-  // of the sample leaves out (AnisotropyOf).
+  std::optional<AppearanceReport> appearance = {};  // for a table or samples on a grid
+  std::optional<SeenError> samples_seen = {};       // for other samples
+  // For an isotropic model of anisotropic data: the share of the energy that the mean over
+  // rotations of the sample loses (AnisotropyOf).
   std::optional<double> left_out = {};
-  std::optional<Reach> reach = {};  // of scattered samples
+  std::optional<Reach> reach = {};  // for scattered samples
   LobeLight light = {};
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
   } seconds = {};
   bool raw = false;          // FitOptions::raw
-  bool interrupted = false;  // by `stop`, at any time
+  bool interrupted = false;  // `stop` has returned true
 
   const FactorModel& model() const { return file.model; }
 };
 
-// From a measurement to the model that `trilobe fit` writes, and all that it reports: the form, the
-// start, the choice of nodes, the prior, the solver, what comes after it, and the score. The same
-// bits for the same options; functions that are empty are as those by default. Stopped before
-// on_begin it returns no model. Throws Error.
+// Fits a measurement as `trilobe fit` does: chooses form, start and nodes, fits the prior, runs the
+// solver, finishes the model and scores it. The same input gives the same bits. Empty callbacks
+// stand for the defaults. If stopped before on_begin, the result has no model. Throws Error. Use:
+//
+//   const FitResult fit = Fit(LoadMeasurement("synth:plastic"), {.num_threads = 4});
+//   WriteModel(fit.file, "plastic.json");
 FitResult Fit(const Measurement& measurement, const FitOptions& options = {});
 
-// What Fit fits, where no nodes are to be chosen; for whoever goes on from its model, whose spec
-// this is. The prior is fitted here, which takes time.
+// The objectives that Fit uses for models of this spec, without a choice of nodes. Fits the prior,
+// which takes time.
 FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
                       const ModelSpec& spec);
 

@@ -10,7 +10,7 @@
 
 namespace trilobe {
 
-// Adds the time of its own life to a phase.
+// Adds its lifetime to *seconds.
 class ScopedTimer {
  public:
   explicit ScopedTimer(double* seconds) : seconds_(seconds) {}
@@ -25,12 +25,12 @@ class ScopedTimer {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// E of a model whose every value is off by a few rounding errors of the measured one: nothing lower
-// means anything.
+// E of a model whose values differ from the measured ones by four rounding errors. A lower E means
+// nothing.
 double ExactObjective(const Objective& objective);
 
-// What all solvers share, from the start of a run to its summary: the clock, the trace, the best
-// model, the stopping test and the callback. A solver makes its steps in between:
+// The part of a run that all solvers share: clock, trace, best model, stopping test, callbacks and
+// summary. A solver makes the steps in between:
 //
 //   Run run("name", objective, options, model);
 //   { auto timer = run.Time(&PhaseSeconds::preparing); ...sort, copy... }
@@ -41,39 +41,40 @@ double ExactObjective(const Objective& objective);
 //   return run.Finish();
 class Run {
  public:
-  // What a solver knows of an iteration besides the model.
+  // What a solver reports of an iteration besides the model.
   struct Step {
     bool filtered = false;
     bool accepted = true;
-    bool may_converge = true;  // false where more is to come, however little this one lowered E
+    bool may_converge = true;  // false: a small decrease of E does not end the run
     std::optional<double> optimality = std::nullopt;
     std::optional<double> objective =
-        std::nullopt;  // Objective::Value of the model, if it has been computed
+        std::nullopt;  // Objective::Value of the model, if known
   };
 
-  // The clock starts here. *model is the starting point, and receives the best point.
+  // Starts the clock. *model is the starting point and receives the best point.
   Run(std::string solver, const Objective& objective, const SolverOptions& options,
       FactorModel* model);
 
   const SolverOptions& options() const { return summary_.used; }
-  SolverSummary& summary() { return summary_; }  // for used options, notes and phases
+  SolverSummary& summary() { return summary_; }  // to set used options, notes and phases
   ScopedTimer Time(double PhaseSeconds::*phase) { return ScopedTimer(&(summary_.phases.*phase)); }
   double seconds() const;
-  double best_objective() const { return best_objective_; }  // of what is minimised
+  double best_objective() const { return best_objective_; }  // minimised E of the best point
 
-  // Records the starting point; false when there is nothing to do. Throws Error if E overflows
-  // there.
+  // Records the starting point. Returns false if the run is to stop there. Throws Error if E
+  // overflows.
   bool Start(std::optional<double> optimality = std::nullopt);
 
-  // Records the next iteration; false when it is time to stop. A step that was not accepted comes
-  // with the model before it.
+  // Records the next iteration. Returns false if the run is to stop. For a rejected step, `current`
+  // is the model before it.
   bool Record(const FactorModel& current, const Step& step);
   bool Record(const FactorModel& current) { return Record(current, Step()); }
 
-  // Ends the run for a reason that only the solver knows. Keeps an earlier reason.
+  // Ends the run for a reason of the solver's. An earlier reason is kept.
   void Stop(StopReason reason);
   bool stopped() const { return reason_.has_value(); }
-  // Whether there is no time for more, in the midst of an iteration. From any thread.
+  // For use within an iteration: whether max_seconds is over or the stop callback returns true.
+  // Thread-safe.
   bool IsToStop() const;
 
   SolverSummary Finish();
@@ -91,8 +92,8 @@ class Run {
   SolverSummary summary_;
 };
 
-// The loop of the solvers that do nothing but repeat: `sweep` updates every parameter of its
-// argument once; then comes the filter on G where the options ask for it.
+// Repeats `sweep`, which updates every parameter of its argument once, until the run stops. Applies
+// the filter on G after each sweep if the options ask for it.
 void RepeatSweeps(const std::function<void(FactorModel*)>& sweep, const Objective& objective,
                   FactorModel current, Run* run);
 

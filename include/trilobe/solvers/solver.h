@@ -15,12 +15,12 @@
 
 namespace trilobe {
 
-// Why a run ended: one list for all solvers.
+// Why a run ended; the same list for all solvers.
 enum class StopReason {
-  kConverged,   // relative decrease of E in one iteration below the tolerance
-  kOptimal,     // scaled projected gradient below the tolerance, or what is left to gain is below
-                // the rounding of E
-  kExactFit,    // E is at the rounding error of the data: nothing left to fit
+  kConverged,   // the relative change of E in one iteration is below the tolerance
+  kOptimal,     // the scaled projected gradient is at most the tolerance, or a step would lower E
+                // by less than its rounding error
+  kExactFit,    // E is at the rounding error of the data
   kNoDecrease,  // the solver finds no step that lowers E
   kMaxIterations,
   kMaxSeconds,
@@ -28,85 +28,91 @@ enum class StopReason {
 };
 const char* StopReasonName(StopReason reason);  // "converged", "exact_fit", ...
 
-// Where the time of a run went [s], summed over what ran side by side. What a solver does besides
-// is in none of them.
+// Time spent in each phase of a run [s]. Times of phases that run in parallel are added up. The
+// phases do not cover all of a run.
 struct PhaseSeconds {
-  double reading = 0;         // not a solver's: for the caller to fill
+  double reading = 0;         // filled by the caller, not by a solver
   double preparing = 0;       // sorting and copying before the first iteration
   double evaluating = 0;      // passes over the samples: E, sums, normal equations
-  double tracing = 0;         // passes for E where only trace and stopping test want it
+  double tracing = 0;         // evaluations of E for the trace and the stopping test only
   double linear_algebra = 0;  // factorisations and element updates
   double diagnosing = 0;
 
   PhaseSeconds& operator+=(const PhaseSeconds& other);
 };
 
-// How good a point is, by measures that do not depend on the gauge (docs/solvers.md).
+// First- and second-order measures of a point that do not depend on the gauge (docs/solvers.md).
 struct Diagnosis {
   // dE/dx / 2 = J'r, in the order of FactorModel::parameters(); 0 at unobserved bins.
   std::vector<double> gradient;
 
-  // The largest projected component of the gradient in the scale in which every column of J has
-  // length 1, over |r|: the cosine between the residual and the direction that lowers E most.
-  // 0 at a stationary point, at most 1.
+  // The largest component of the projected gradient over |r|, with the columns of J scaled to
+  // length 1. 0 at a stationary point, at most 1.
   double optimality = 0;
 
-  int observed_parameters = 0;  // those that data touch
-  // Of J with its columns scaled to length 1, columns of length 0 left out: singular values above
-  // `rank_tolerance` times the largest, and the largest over the smallest of those.
+  int observed_parameters = 0;  // parameters that affect the value of a sample
+  // Of J with its columns scaled to length 1 and zero columns removed: `rank` is the number of
+  // singular values above `rank_tolerance` times the largest, `condition` the largest of them over
+  // the smallest.
   int rank = 0;
   double rank_tolerance = 0;
   double condition = 0;
-  // Columns that are not 0, less the directions along which scale moves between tables and s
-  // without changing any value, less `rank`: what J'J cannot tell from 0, but theory does.
+  // Directions that J'J cannot tell from 0 although they are not gauge directions: nonzero columns
+  // minus gauge directions (which move scale between tables and s) minus `rank`.
   int unresolved = 0;
 };
 
-// Where one of several starting points led.
+// Result of one starting point.
 struct StartResult {
   std::string name;
-  double objective = 0;  // E there
+  double objective = 0;  // final E
 };
 
 struct SolverSummary {
   std::string solver;
-  std::vector<std::string> own_options;  // that it reads and not all do, if MakeSolver made it
+  std::vector<std::string> own_options;  // SolverEntry::options; empty without MakeSolver
   StopReason stop_reason = StopReason::kMaxIterations;
-  // E of the data at the start and of the returned model. That is the one with the lowest recorded
-  // E of what is minimised, which with a prior is another (IterationRecord::objective_with_prior).
+  // E of the data at the start and of the returned model. The returned model is the recorded one
+  // with the lowest minimised E, which includes the prior if there is one
+  // (IterationRecord::objective_with_prior).
   double initial_objective = 0;
   double final_objective = 0;
-  int iterations = 0;                  // made, which may be more than the returned model's number
-  double seconds = 0;                  // of the last record: without the diagnosis
+  int iterations = 0;                  // number made; at least BestIteration()
+  double seconds = 0;                  // of the last record; excludes the diagnosis
   std::vector<IterationRecord> trace;  // trace[0] is the starting point
 
-  SolverOptions given;  // as they came, without the callbacks
-  SolverOptions used;   // as the solver replaced what it could not honour or was free to choose
-  std::vector<std::string> notes;  // one sentence for each such choice, and for each warning
+  SolverOptions given;  // as passed to Solve, without the callbacks
+  SolverOptions used;   // after the solver replaced unsupported or automatic values
+  std::vector<std::string> notes;  // one sentence for each replacement and each warning
   PhaseSeconds phases;
-  std::vector<StartResult> starts;     // of a solver that tries several, best first
+  std::vector<StartResult> starts;     // of solvers with several starts, best first
   std::optional<Diagnosis> diagnosis;  // of the returned model
 
-  int BestIteration() const;  // the returned model's number in the trace
-  int RejectedSteps() const;  // iterations whose step was taken back
-  // The iterations that ended above the one before, in what the solver lowers, by more than
-  // rounding (1e-12 of it); AWLS without a filter has none (docs/solvers.md).
+  int BestIteration() const;  // index of the returned model in the trace
+  int RejectedSteps() const;  // number of iterations whose step was rejected
+  // Iterations that raised the minimised E by more than rounding (1e-12 of it). AWLS without a
+  // filter has none (docs/solvers.md).
   struct Raises {
     std::vector<int> iterations;
-    double largest = 0;  // as a fraction of what it was before
+    double largest = 0;  // relative to the value before
   };
   Raises FindRaises() const;
   bool has_prior() const {
     return !trace.empty() && trace.front().objective_with_prior.has_value();
   }
 
-  // One line: solver, iterations, E from and to, why it stopped.
+  // One line: solver, iterations, initial and final E, stop reason.
   std::string BriefReport() const;
-  // Several lines, each with its newline: that, and options, notes, diagnosis and phases.
+  // Several lines, each ending in a newline: also options, notes, diagnosis and phases.
   std::string FullReport() const;
 };
 
-// Fits a model to an objective. Stateless: everything about a run is in its arguments.
+// Fits a model to an objective. A solver has no state of its own. Use:
+//
+//   const Objective objective(SamplesOf(measurement), ModelSpec(), Weightings().front());
+//   FactorModel model = FindInitialModel("analytic").make(objective, /*seed=*/1);
+//   const SolverSummary summary = MakeSolver("varpro")->Solve(objective, {}, &model);
+//   std::cout << summary.FullReport();
 class Solver {
  public:
   Solver() = default;
@@ -114,29 +120,29 @@ class Solver {
   Solver& operator=(const Solver&) = delete;
   virtual ~Solver() = default;
 
-  // Starts at *model, whose spec is the objective's and whose parameters are finite and >= 0, and
-  // leaves the best model found there; unobserved bins stay as they were.
-  // Throws Error, with *model as it was, if that is no such model or E overflows there, if an
-  // option is out of its range, or if this solver cannot work on this objective.
+  // Starts at *model and replaces it by the best model found. *model must have the objective's
+  // spec and parameters that are finite and >= 0. Unobserved bins do not change.
+  // Throws Error, and leaves *model unchanged, if *model is invalid, E overflows at it, an option
+  // is out of range, or the solver does not support the objective.
   SolverSummary Solve(const Objective& objective, const SolverOptions& options,
                       FactorModel* model) const;
 
  private:
   friend std::unique_ptr<Solver> MakeSolver(std::string_view name);
 
-  // Solve, of arguments that have been checked.
+  // Implements Solve; the arguments have been checked.
   virtual SolverSummary DoSolve(const Objective& objective, const SolverOptions& options,
                                 FactorModel* model) const = 0;
 
   std::vector<std::string> own_options_;
 };
 
-// A solver by name, for flags and lists.
+// A registered solver.
 struct SolverEntry {
   std::string name;
   std::string description;                // one line
-  std::string reference;                  // where the method is from
-  std::vector<std::string> options = {};  // that it reads and not all do (AllSolverOptions)
+  std::string reference;                  // publication of the method
+  std::vector<std::string> options = {};  // names of the non-common options that it reads
   std::function<std::unique_ptr<Solver>()> make;
 };
 

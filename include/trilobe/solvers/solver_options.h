@@ -16,10 +16,10 @@
 
 namespace trilobe {
 
-// How the joint solvers keep parameters >= 0 (docs/solvers.md compares them).
+// How `lm` keeps parameters >= 0 (docs/solvers.md).
 enum class Positivity {
-  kActiveSet,  // step in the parameters that are free to move, projected on x >= 0
-  kBounds,     // Ceres' lower bounds: projected steps with a line search
+  kActiveSet,  // holds parameters at 0 whose gradient is positive; steps in the others
+  kBounds,     // only Ceres' lower bounds: projected steps with a line search
 };
 
 const char* PositivityName(Positivity positivity);  // "active_set", "bounds"
@@ -27,11 +27,10 @@ const char* PositivityName(Positivity positivity);  // "active_set", "bounds"
 enum class TrustRegion { kLevenbergMarquardt, kDogleg };
 const char* TrustRegionName(TrustRegion trust_region);  // "levenberg_marquardt", "dogleg"
 
-// How Ceres solves the linear least-squares problem of a step: ceres::LinearSolverType. Those by QR
-// and dense Cholesky store the whole Jacobian, [3 samples][parameters]; a Schur complement
-// eliminates rows of D.
+// ceres::LinearSolverType of a step. kDenseQr and kDenseNormalCholesky store the whole Jacobian,
+// [3 samples][parameters]. The Schur solvers eliminate rows of D.
 enum class LinearSolver {
-  kAuto,  // dense QR where the Jacobian takes at most 64 MiB, else sparse Cholesky
+  kAuto,  // kDenseQr if the Jacobian takes at most 64 MiB, else kSparseNormalCholesky
   kDenseQr,
   kDenseNormalCholesky,
   kSparseNormalCholesky,
@@ -42,9 +41,9 @@ enum class LinearSolver {
 };
 const char* LinearSolverName(LinearSolver linear_solver);  // "auto", "dense_qr", ...
 
-// What a run is asked to do. The first part is common to all solvers; each option of the second
-// part is one that only some solvers read, and SolverEntry::options says which. What else there is
-// to say of an option (flag, help, range) is in AllSolverOptions(), a row an option.
+// Options of a run. All solvers read the options before g_filter_sigma and `stop`. The others are
+// read only by solvers whose SolverEntry::options name them. AllSolverOptions() has flag, help and
+// range of each.
 struct SolverOptions {
   int max_iterations = 100;
   double max_seconds = std::numeric_limits<double>::infinity();
@@ -52,89 +51,88 @@ struct SolverOptions {
   // Stop when an accepted iteration changes E by less than this fraction of it.
   double relative_decrease_tolerance = 1e-5;
 
-  // Stop when the scaled projected gradient (Diagnosis::optimality) is at most this, where the
-  // solver knows it.
+  // Stop when Diagnosis::optimality is at most this, in solvers that compute it.
   double optimality_tolerance = 1e-10;
 
-  // Fill SolverSummary::diagnosis: one pass over the data and one eigenvalue decomposition.
+  // Fill SolverSummary::diagnosis. Costs a pass over the data and an eigenvalue decomposition.
   bool diagnose = true;
 
-  // Sees every record and the model it belongs to, from the solving thread; returns false to stop.
+  // Called with every record and its model, from the solving thread. Return false to stop.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
 
-  // Asked after every record, and where an iteration takes long in the midst of it, from several
-  // threads: true to stop, as if on_iteration had said so.
+  // Called after every record and within long iterations, from several threads. Return true to
+  // stop.
   std::function<bool()> stop = nullptr;
 
-  // Standard deviation, in G nodes, of the paper's Gaussian filter on G after each sweep; 0 for no
-  // filter. With the filter E may rise.
+  // Standard deviation [G nodes] of the paper's Gaussian filter on G after each sweep; 0 for none.
+  // The filter may raise E.
   double g_filter_sigma = 0;
 
-  // Sees the model after every update of a single element, or of a block of elements that move
-  // together, where a solver makes such updates. Slow; for checking that E never rises.
+  // Called with the model after every update of an element or a block of elements, by solvers that
+  // make such updates. Slow; for tests that E never rises.
   std::function<void(const FactorModel&)> on_element = nullptr;
 
   Positivity positivity = Positivity::kActiveSet;
   TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
 
-  // Of Ceres, under the names that it has for them in ceres::Solver::Options.
-  bool nonmonotonic = false;  // use_nonmonotonic_steps: judged against several before
+  // Members of ceres::Solver::Options.
+  bool nonmonotonic = false;  // use_nonmonotonic_steps: a step is compared with several before
   LinearSolver linear_solver = LinearSolver::kAuto;
-  bool inner_iterations = false;  // use_inner_iterations: then block by block, after each step
+  bool inner_iterations = false;  // use_inner_iterations: minimise block by block after each step
 
-  // Earlier iterates that an accelerated solver combines.
+  // Number of earlier iterates that Anderson acceleration combines.
   int memory = 5;
 
-  // Starting points to try, the given one among them, and the seed of the random ones.
+  // Number of starting points, including the given one, and the seed of the random ones.
   int starts = 8;
   uint64_t seed = 1;
 };
 
-// Choices are given by their names.
+// Value of an option. Enumerators are given by name.
 using OptionValue = std::variant<bool, int, uint64_t, double, std::string>;
 
-// Which numbers an option may be.
+// Valid numbers of an option.
 struct OptionRange {
   const char* must_be = "";                // for errors: "0 or more"
-  bool (*holds)(double number) = nullptr;  // null: any
+  bool (*holds)(double number) = nullptr;  // null: all numbers are valid
 };
 
-// A member of SolverOptions that is no callback: all that programs and reports need to know of it.
+// Describes a member of SolverOptions that is not a callback.
 struct SolverOption {
-  // Of a flag that is not simply the member, but a number to make it from.
+  // For a flag in another unit than the member.
   struct FlagUnit {
     double default_value = 0;
     OptionRange range = {};
-    double (*to_member)(double flag, const ModelSpec& spec) = nullptr;  // null: as it is
+    double (*to_member)(double flag, const ModelSpec& spec) = nullptr;  // null: no conversion
   };
 
-  std::string name = {};  // of the member, and in reports
-  bool common = false;    // all solvers read it; else those whose SolverEntry::options name it
-  std::string flag = {};  // of the program; by default the name
-  std::string help = {};  // of the flag; none where the program has that flag for more than solvers
+  std::string name = {};  // of the member, also used in reports
+  bool common = false;    // read by all solvers; else by those whose SolverEntry::options name it
+  std::string flag = {};  // flag of the program; empty: `name`
+  std::string help = {};  // help of the flag; empty if the flag is not for solvers alone
   OptionRange range = {};
   std::optional<FlagUnit> unit = std::nullopt;
 
   std::function<OptionValue(const SolverOptions&)> get = {};
-  // `value` is of the type that `get` returns. Throws Error for a choice that there is not.
+  // `value` has the type that `get` returns. Throws Error for an unknown enumerator.
   std::function<void(const OptionValue& value, SolverOptions* options)> set = {};
 };
 
-// In the order of SolverOptions.
+// All options, in the order of SolverOptions.
 const std::vector<SolverOption>& AllSolverOptions();
 
-// Throws Error that lists the known names.
+// Throws Error for an unknown name; the message lists the known ones.
 const SolverOption& FindSolverOption(std::string_view name);
 
-// The options that all solvers read and those of `particular` (SolverEntry::options), in the order
-// of SolverOptions.
+// The common options and those named in `particular` (SolverEntry::options), in the order of
+// SolverOptions.
 std::vector<const SolverOption*> OptionsReadBy(std::span<const std::string> particular);
 
-// Throws Error, with the name and the value, where a number is out of its range.
+// Throws Error with name and value if a number is out of range.
 void CheckInRange(const std::string& name, const OptionValue& value, const OptionRange& range);
 void CheckSolverOptions(const SolverOptions& options);
 
-// "60", "0.001", "true", "active_set".
+// For example "60", "0.001", "true", "active_set".
 std::string ToText(const OptionValue& value);
 
 }  // namespace trilobe

@@ -10,26 +10,26 @@
 
 namespace trilobe {
 
-// By how much a PSNR falls [dB]: 0 where both are infinite, as those of exact fits are.
+// Decrease of a PSNR [dB]; 0 if both are infinite (exact fits).
 double PsnrFall(double before, double after);
 
-// "0.1, 0.2, 0.3".
+// Formats as "0.1, 0.2, 0.3".
 std::string Text(const Rgb& rgb);
 
-// Right-justified in `width` columns, or after two spaces where it is wider.
+// Right-justifies in `width` columns; a wider text follows two spaces.
 std::string AlignRight(const std::string& text, int width);
 
-// A line of standard output, whatever names are in it (Printable).
+// Prints a line on standard output; unprintable characters are replaced (Printable).
 void PrintLine(const std::string& text);
 
-// "label", spaces up to a fixed column, "value", on such a line.
+// Prints label and value on such a line, with the value at a fixed column.
 void PrintLine(const std::string& label, const std::string& value);
 
-// What a measurement's reader found wrong with it, a line each on standard error.
+// Prints the notes of a measurement, one per line, on standard error.
 void PrintNotes(const Measurement& measurement);
 
-// One object and a newline on standard output. A number that is not finite becomes null, text that
-// is not UTF-8 is repaired.
+// Prints an object and a newline on standard output. Numbers that are not finite become null;
+// invalid UTF-8 is repaired.
 void PrintJson(const nlohmann::ordered_json& json);
 
 }  // namespace trilobe

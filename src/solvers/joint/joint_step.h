@@ -16,61 +16,62 @@
 
 namespace trilobe {
 
-// Damped Newton or Gauss-Newton iterations on all parameters at once, under x >= 0, one trial step
-// at a time. Damping as in Levenberg-Marquardt, by Nielsen's rule (Damping parameter in Marquardt's
-// method, 1999): lambda falls smoothly with the gain of an accepted step, and rises ever faster
-// while steps are rejected. A parameter that the data hardly see is damped like its table's others
-// (docs/solvers.md): on its own it could go anywhere, and where its partners in the product
-// are small it would go far, and spoil the product once they grow.
+// Damped Newton or Gauss-Newton steps in all parameters under x >= 0, one trial step at a time.
+// lambda follows Nielsen's rule (Damping parameter in Marquardt's method, 1999): it decreases
+// smoothly with the gain of an accepted step and increases ever faster while steps are rejected.
+// A parameter that the data hardly determine is damped like the others of its table
+// (DampingMetric). Use:
+//
+//   JointStepper stepper(objective, Curvature::kByProgress, Trial::kProjected, &phases);
+//   stepper.Restart(model);
+//   while (!stepper.exhausted() && !converged) stepper.Step();
 class JointStepper {
  public:
-  // Which Hessian: J'J makes the longer steps as long as there is much to gain, but is blind to
-  // directions in which E curves down; all of it finds those, and is right near the end.
+  // The Hessian of a step. J'J makes longer steps while E is far from its minimum, but does not see
+  // directions of negative curvature. The exact Hessian does, and converges faster near the end.
   enum class Curvature {
     kGaussNewton,
     kNewton,
-    kByProgress,  // J'J until a step lowers E little; again after one that lowered it much
+    kByProgress,  // exact after a step that lowers E by less than 0.1 %, else J'J
   };
 
-  // What becomes of a trial point before it is judged.
+  // How a trial point is changed before E decides on it.
   enum class Trial {
     kAsItIs,
-    kProjected,  // d, s, D and F are put where E is lowest, block by block, given G and the others
+    kProjected,  // E is minimised over d, s, D and F block by block, with G held
   };
 
-  // Times go to *phases. With a reduction, which must outlive the stepper, the steps are of its
-  // parameters y; trials cannot be projected then.
+  // Adds times to *phases. With a reduction, which must outlive the stepper, steps are in its
+  // parameters y and `trial` must be kAsItIs.
   JointStepper(const Objective& objective, Curvature curvature, Trial trial, PhaseSeconds* phases,
                const Reduction* reduction = nullptr);
 
-  // Goes on from another point, with the same damping. With a reduction the point must be one of
-  // its own.
+  // Moves to another point and keeps the damping. With a reduction, the point must be B y for some
+  // y.
   void Restart(const FactorModel& model);
 
-  // Tries one step; false if it did not lower E, so that the point stayed where it was.
+  // Tries one step. Returns false, and keeps the point, if it did not lower E.
   bool Step();
-  // No damping leads to a lower E.
+  // Whether lambda has reached its maximum: no step lowers E.
   bool exhausted() const;
-  // Damping, not the shape of E, made the last step short: that it lowered E little says nothing
-  // about how much there is to gain.
+  // Whether lambda was so large that the last step had to be short. A small decrease of E is then
+  // no sign of convergence.
   bool held_back() const { return held_back_; }
-  // The last step was taken back, damping had not made it short, and it would have lowered E by
-  // less than E is rounded by: whether another one lowers E is up to its last bits, which differ
-  // between processors.
+  // Whether the last step was rejected, not held back, and predicted to lower E by less than its
+  // rounding error. Further steps would depend on the processor's last bits.
   bool settled() const { return settled_; }
 
   const FactorModel& current() const { return current_; }
   double E() const { return E_; }
-  // Gives back what it can make again, some hundred megabytes for a model of 2,000 parameters,
-  // until the next step.
+  // Frees memory until the next step: some hundred megabytes for 2,000 parameters.
   void ReleaseScratch();
-  // Diagnosis::optimality of the point. Passes over the data when the point is new.
+  // Diagnosis::optimality of the point. Makes a pass over the data if the point is new.
   double Optimality();
 
  private:
   void MakeScratch();
   double Evaluate(const FactorModel& model);
-  // What the sum of so many terms may be off by, if each rounds either way.
+  // Rounding error of E: sqrt(number of terms) eps E.
   double RoundingOfE() const;
   void Linearize();
   NonnegativeStep NewStep() const;
@@ -81,26 +82,25 @@ class JointStepper {
   Hessian hessian_;  // of the next point
   PhaseSeconds* const phases_;
   const Trial trial_;
-  // None from ReleaseScratch to the next step; a sweep only if trials are projected.
+  // Empty from ReleaseScratch to the next step; sweep_ is null unless trials are projected.
   std::optional<NormalEquations> equations_;
   std::unique_ptr<Sweep> sweep_;
   FactorModel current_;
   double E_ = 0;
   bool linearized_ = false;
   QuadraticModel at_;      // of the current point, if linearized_; in y with a reduction
-  std::vector<double> y_;  // what steps move: the reduction's parameters, or all
+  std::vector<double> y_;  // parameters of the steps: y of the reduction, or all x
   NonnegativeStep step_;
   std::vector<bool> binding_;
   double lambda_;
   bool held_back_ = false, settled_ = false;
-  double growth_ = 2;      // of lambda when the next step is rejected
-  double indefinite_ = 0;  // the lambda that the current H needed to become positive; 0 for none
+  double growth_ = 2;      // factor of lambda after the next rejection
+  double indefinite_ = 0;  // lambda that made the current H positive definite; 0: not needed
 };
 
-// The point after so many steps of curvature kByProgress from this one, and E there; after fewer
-// where no damping leads lower, after a step that lowers E by less than the fraction `small` of it
-// though damping did not hold it back, and once `stop` is true. Trials are projected, unless there
-// is a reduction.
+// Makes up to `steps` steps of curvature kByProgress. Stops earlier if the stepper is exhausted, if
+// a step that was not held back lowers E by less than the fraction `small`, or if `stop` returns
+// true. Trials are projected unless there is a reduction.
 struct SteppedModel {
   FactorModel model;
   double E;
@@ -109,13 +109,12 @@ SteppedModel JointSteps(const Objective& objective, const FactorModel& start, in
                         const StopCheck& stop, const Reduction* reduction = nullptr,
                         double small = 0);
 
-// The metric S of the damping of steps in parameters that make up these parts, from the squared
-// lengths of the columns of J. 0 where that is 0.
+// The damping metric S: the length of each column of J, but at least 1/10 of the root mean square
+// within its part; 0 for zero columns.
 std::vector<double> DampingMetric(std::span<const FactorModel::Part> parts,
                                   std::span<const double> squared_lengths);
 
-// Makes and records steps of the stepper, which stands at the run's last point, until the run
-// stops.
+// Makes and records steps until the run stops. The stepper must be at the run's last point.
 void RepeatJointSteps(JointStepper* stepper, Run* run);
 
 }  // namespace trilobe

@@ -17,47 +17,46 @@
 
 namespace trilobe {
 
-// Nodes of D and G that a fit could have.
+// A choice of nodes of D and G.
 struct NodeCandidate {
-  std::string name;  // "D 12rx36, G 6x24": an r for even steps of the root of theta
+  std::string name;  // "D 12rx36, G 6x24"; r: even steps of the square root of theta
   ModelSpec spec;
-  double error = 0;  // E on the held-out samples, over the black model's
+  double error = 0;  // E on the held-out samples, relative to a black model
   double seconds = 0;
 };
 
-// `spec` on nodes from coarse to fine, for data with so many theta and phi: D from 8r x 24 to
-// 24r x 72, G from 6 x 16 to 10 x 48, no more phi of D than the data have, and half of these of G.
-// The second is what such data get by default. G has rings towards the horizon if that of `spec`
-// has. `error` and `seconds` are 0.
+// `spec` on nodes from coarse to fine, for data with these numbers of theta and phi: D from 8r x 24
+// to 24r x 72, G from 6 x 16 to 10 x 48. D has at most as many phi as the data, G half of that. The
+// second candidate is the default. G has rings towards the horizon if that of `spec` has. `error`
+// and `seconds` are 0.
 std::vector<NodeCandidate> NodeLadder(const ModelSpec& spec, int thetas, int phis);
 
-// About every fifth pair of directions, [n] of the samples: whether it is held out. A function of
-// the pair and the seed alone, whichever of the two directions is wi. Throws Error for samples
-// without directions.
+// Whether each sample is held out, about one in five. [n] Depends only on the seed and the
+// unordered pair of directions. Throws Error for samples without directions.
 std::vector<bool> HeldOut(const BrdfSamples& samples, uint64_t seed);
 
 struct NodeChoiceOptions {
   uint64_t seed = 1;
   double prior = 1;                         // SyntheticPriorOptions::weight, or 0 for no prior
   std::optional<HemisphereGrid> grid = {};  // SyntheticPriorOptions::grid
-  // As of SolverOptions, of each candidate's fit; returns false to stop.
+  // SolverOptions::on_iteration of each candidate's fit.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
   StopCheck stop = {};
 };
 
 struct NodeChoice {
-  FactorModel model;                      // the chosen one, as fitted to what was not held out
-  std::vector<NodeCandidate> tried = {};  // from the first of the ladder on
-  int chosen = 0;                         // which of them
-  int held_out = 0;                       // samples
-  double seconds = 0;                     // of all
+  FactorModel model;                      // of the chosen nodes, fitted to the other samples
+  std::vector<NodeCandidate> tried = {};  // the first candidates of the ladder
+  int chosen = 0;                         // index of the chosen one
+  int held_out = 0;                       // number of samples
+  double seconds = 0;                     // total
 };
 
-// Climbs the ladder as long as the error on held-out pairs of directions falls, each time by 1 % or
-// more. Every candidate is fitted, in few iterations, to the other pairs and to a prior made from
-// these; each starts from the one before. Deterministic, for any number of threads; stopped, it
-// chooses among what it has tried. Throws Error where there is no ladder, where the samples know no
-// directions, and where there are too few to hold any out.
+// Tries the candidates in order while the error on held-out pairs of directions falls by at least
+// 1 %. Each is fitted by a few iterations, starting from the one before, to the other pairs and to
+// a prior made from them. The result does not depend on the number of threads. If stopped, chooses
+// among those tried. Throws Error for an empty ladder, samples without directions, and too few
+// samples to hold any out.
 NodeChoice ChooseNodes(const Objective& data, const std::vector<NodeCandidate>& ladder,
                        const NodeChoiceOptions& options);
 

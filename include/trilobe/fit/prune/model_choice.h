@@ -14,45 +14,42 @@
 namespace trilobe {
 
 struct ModelChoiceOptions {
-  int max_parameters = 822;  // stored: values, without the places of nodes
-
-  // How good a model is to the eye [dB]; the highest wins, the first of equals.
+  int max_parameters = 822;  // stored values, not counting positions of nodes
+  // Score of a model [dB]. The highest wins, the first of equals.
   std::function<double(const FactorModel&)> judge;
 
-  // How good one is in all directions, where some were not measured. One that is more than
-  // 3 dB below the fitted model there, and more than half of what it gains where data are, runs
-  // astray where they end, and is not taken.
+  // Score in all directions [dB], if some were not measured. A form is rejected if it loses more
+  // than 3 dB here and more than half of what it gains by `judge`, both against the fitted model.
   std::function<double(const FactorModel&)> judge_beyond = nullptr;
 
-  // Asked after each step; true to stop with the best so far that keeps to the budget.
+  // Called after each step. Return true to stop with the best form so far within the budget.
   StopCheck stop = {};
 };
 
-// One form that was tried.
+// A form that was tried.
 struct ModelCandidate {
   std::string name;           // "as fitted", "stretched", "stretched, thinned", ...
   int num_parameters = 0;     // stored
-  double E = 0;               // Objective::Value; of a form that is not stored, about that
-  double score = 0;           // by the judge; -infinity where that says NaN
-  bool fails_beyond = false;  // beyond the data, and not chosen for that
-  double seconds = 0;         // that it took to make, from the one that it came from
+  double E = 0;               // Objective::Value; approximate for a form that is not stored
+  double score = 0;           // of `judge`; -infinity for NaN
+  bool fails_beyond = false;  // rejected by `judge_beyond`
+  double seconds = 0;         // to make it from the form that it is derived from
 };
 
 struct ChosenModel {
-  FactorModel model;    // of full-size tables, in canonical form but for the order of its lobes
-  TableLayout layout;   // which of its parameters are stored
-  Weighting weighting;  // by which the form was fitted; that of the objective or by channel
-  std::vector<ModelCandidate> candidates;  // in the order in which they were tried
-  int chosen = -1;                         // which of them; there is always one
+  FactorModel model;    // with full-size tables, in canonical form except for the order of lobes
+  TableLayout layout;   // which parameters are stored
+  Weighting weighting;  // of the fit of this form: the objective's, or by channel
+  std::vector<ModelCandidate> candidates;  // in the order tried
+  int chosen = -1;                         // index of the chosen candidate; always set
 };
 
-// The form that looks best within a budget of parameters (docs/model-choice.md): the fitted model
-// itself, thinned if it has more parameters; or one whose lobes are stretched, that is weighed by
-// channel, shares neither F nor D, or has a lobe more, fitted from there by some joint
-// steps and thinned to the budget. Where one parameter a table is too much, what Prune makes of the
-// fitted model, with fewer lobes or colours. `fitted` is a fit of the objective, in canonical form,
-// and has its spec. The same bits for any number of threads, as long as `stop` stays false. Throws
-// Error for a budget below 1.
+// Chooses the form with the highest score within a budget of parameters (docs/model-choice.md).
+// Candidates: the fitted model, thinned if it is too large; and forms with stretched lobes, weights
+// by channel, unshared F or D, or one more lobe, each fitted from it by joint steps and thinned to
+// the budget. If one parameter per table exceeds the budget, Prune reduces lobes or colours.
+// `fitted` is a fit of the objective, with its spec and in canonical form. Unless stopped, gives
+// the same bits for any number of threads. Throws Error for a budget below 1.
 ChosenModel ChooseModel(const Objective& objective, const FactorModel& fitted,
                         const ModelChoiceOptions& options);
 

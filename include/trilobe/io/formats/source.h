@@ -15,27 +15,29 @@
 
 namespace trilobe {
 
-// Where a measurement comes from, by the name that a user types: a path to a file of one of
-// MeasurementFormats(), or `synth:NAME`, or `synth:NAME@18x72`, at the directions of that
-// HemisphereGrid, or `synth:NAME@30x30x60`, a table of that MerlGrid.
+// A source of a measurement, by name: a path to a file of one of MeasurementFormats();
+// `synth:NAME`, a synthetic material; `synth:NAME@18x72`, the same at the directions of that
+// HemisphereGrid; or `synth:NAME@30x30x60`, a table of that MerlGrid. Use:
+//
+//   const Measurement measurement = Source("synth:plastic@30x30x60").Read({.noise = 0.02});
 class Source {
  public:
-  // Reads the file of that name, if it is one. Throws Error where that fails.
+  // Reads the file unless the name is synth:NAME. Throws Error if that fails.
   explicit Source(std::string name);
-  // A file whose bytes are at hand. Messages have its name, whose ending tells the format where the
-  // bytes could be of several.
+  // A file with these bytes. `name` appears in messages; its extension selects the format if the
+  // bytes do not.
   Source(std::string name, std::string bytes);
 
   const std::string& name() const { return name_; }
-  const std::string& bytes() const { return bytes_; }  // of the file; none if synthetic
+  const std::string& bytes() const { return bytes_; }  // of the file; empty if synthetic
   bool synthetic() const;
 
-  // The measurement, read from the file or made by formula, and then, in the same way for both,
-  // corrupted, rid of what is no measurement, and limited, as the options say. Throws Error.
+  // Parses the file or evaluates the formula. Then applies the corruptions, removes invalid
+  // readings, and limits the angles, as the options say. Throws Error.
   Measurement Read(const SourceOptions& options = {}) const;
 
-  // Sources of one fingerprint give the same measurement by the same options. It is a synthetic
-  // source's name, or a hash of the bytes.
+  // Name of a synthetic source, else a hash of the bytes. Equal fingerprints and options give equal
+  // measurements.
   std::string Fingerprint() const;
 
  private:
@@ -49,43 +51,43 @@ class Source {
 // Source(name).Read(options).
 Measurement LoadMeasurement(const std::string& name, const SourceOptions& options = {});
 
-// The same where a table is needed. Throws Error for scattered data, too.
+// The same for a table. Throws Error also for scattered data.
 BrdfTable LoadTable(const std::string& name, const SourceOptions& options = {});
 
-// Whether a name is synth:NAME, and if it is, what it says: the material, and the grid of
-// directions or of bins; anisotropic materials have the former. Throws Error for an unknown NAME,
-// and for grids of more than ten million samples.
+// Whether a name is synth:NAME.
 bool IsSynthetic(std::string_view name);
+// The material and grid of such a name; an anisotropic material has a HemisphereGrid. Throws Error
+// for an unknown NAME and for grids of more than ten million samples.
 struct SynthSource {
   const SynthMaterial& material;
   std::variant<MerlGrid, HemisphereGrid> grid;
 };
 SynthSource SynthSourceOf(std::string_view name);
 
-// A step of Source::Read: corrupts what was read, and takes a tilt and a cosine out of it, by the
-// options.
+// A step of Source::Read: applies SourceOptions::corrupt, then removes `tilt_deg` and `cosine`.
 void CorruptBy(const SourceOptions& options, Measurement* measurement);
 
-// Its last step: decides, by the options, which bins or samples that were read count as measured.
+// The last step of Source::Read: decides which bins or samples count as measured.
 void DecideMeasured(const SourceOptions& options, BrdfTable* table);
 void DecideMeasured(const SourceOptions& options, Measurement* measurement);
 
-// Those of the library, in the order in which they are asked.
+// All formats, in the order in which RecogniseFormat tries them.
 const std::vector<MeasurementFormat>& MeasurementFormats();
 
-// The first that recognises the bytes of a file, or its beginning; null where none does.
+// The first format that recognises the bytes, which may be the beginning of a file. Null if none
+// does.
 const MeasurementFormat* RecogniseFormat(std::string_view bytes);
 
-// Throws Error "WHAT: this is a MERL .binary file" for the bytes of a file, or its beginning, that
-// are known, and are no JSON text.
+// Throws Error, for example "WHAT: this is a MERL .binary file", if the bytes (or the beginning of
+// a file) have a known format that is not JSON.
 void CheckMayBeJson(std::string_view bytes, const std::string& what);
 
-// The one in which a file of this name is written, by its ending; without one, the first. Throws
-// Error, which names the endings that there are, for others.
+// The format with the extension of `path`; without an extension, the first that can be written.
+// Throws Error, which lists the known extensions, for others.
 const MeasurementFormat& WritableFormat(const std::string& path);
 
-// Writes a measurement so. Returns what was written, for a message: "CSV, 12 samples". Throws Error
-// where the format has no place for the data.
+// Writes a measurement in WritableFormat(path). Returns a description for a message: "CSV, 12
+// samples". Throws Error if the format cannot hold the data.
 std::string WriteMeasurement(const Measurement& measurement, const std::string& path,
                              int num_threads = 1);
 
