@@ -15,7 +15,7 @@ struct Command {
   std::string arguments;  // "SOURCE", "MODEL SOURCE", ...
   int min_arguments = 0;
   int max_arguments = 0;
-  std::string details;  // text for `trilobe help NAME`: what it reads, does and writes
+  std::string details;             // text for `trilobe help NAME`: what it reads, does and writes
   std::vector<std::string> flags;  // accepted flags, listed in its help
   // Flags that only some values of another flag accept (--solver): those of all values, and the
   // help of the given value.

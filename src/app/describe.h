@@ -5,9 +5,8 @@
 
 namespace trilobe {
 
-// The two halves of `trilobe info`: print what a measurement, or a model file, is, as a table or,
-// with
-// --json, as one object. Both throw Error for bad input.
+// Print `trilobe info` of a measurement and of a model file, as a table or, with --json, as one
+// object. Both throw Error for bad input.
 void DescribeMeasurement(const std::string& source);
 void DescribeModel(const std::string& path);
 

@@ -10,14 +10,14 @@
 
 namespace trilobe {
 
-// What the folders of fits in a folder say of them, by their names. Throws Error where there is
-// none.
+// Reads the outcomes of all fits in the subfolders of a folder, sorted by name. Throws Error if
+// there is none.
 std::vector<FitOutcome> ReadFitsIn(const std::string& folder);
 
-// `trilobe fit SOURCE... --out=DIR`, where a SOURCE may be a folder of measurements: fits each, on
-// a thread of its own, into the folder DIR/NAME, leaves out those of which that folder already has
-// what would come out, and gathers all in DIR/fits.csv and DIR/index.html. Returns the exit status:
-// 3 if one or more could not be fitted, which does not stop the others.
+// Runs `trilobe fit SOURCE... --out=DIR`; a SOURCE may be a folder of measurements. Fits each on a
+// thread of its own into DIR/NAME and skips those whose result is already there. Writes
+// DIR/fits.csv and DIR/index.html. Returns the exit status: 3 if a fit failed, which does not stop
+// the others.
 int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings);
 
 }  // namespace trilobe

@@ -17,14 +17,14 @@
 
 namespace trilobe {
 
-// How a fit's errors go down with time, measured without delaying the fit: it keeps copies of
-// models at seconds that grow by a constant factor, and scores them when the fit is over.
+// Errors of a fit over time, measured without delaying the fit: copies models at times that grow by
+// a constant factor, and scores the copies after the fit.
 class ConvergenceCurve {
  public:
-  // The first model, and each that comes when enough time has gone by since the one before.
+  // Keeps the first model, and each that comes long enough after the last one kept.
   void Keep(const IterationRecord& record, const FactorModel& model);
 
-  // Writes convergence.csv (docs/file-formats.md): those kept, and the last model of the fit.
+  // Writes convergence.csv (docs/file-formats.md): the kept models and the last model.
   void Write(const std::string& path, const Objective& objective) const;
 
  private:
@@ -36,29 +36,29 @@ class ConvergenceCurve {
   Point last_;
 };
 
-// How `trilobe fit` fits, whatever it is given.
+// Settings of `trilobe fit` that are the same for all of its measurements.
 struct FitSettings {
-  FitOptions fit;  // its threads and callbacks are replaced
+  FitOptions fit;  // num_threads and callbacks are replaced
   SourceOptions source;
-  // What is written besides model.json, trace.csv and report.json: files of these names.
+  // Files to write besides model.json, trace.csv and report.json.
   bool convergence = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail
   bool view = false;                // view.html, a page
   std::vector<std::string> inputs;  // files that all fits read
-  std::string key;                  // all of this but the measurement, files by their content
+  std::string key;                  // encodes these settings, with input files by their content
 };
 
-// Names of all files that a fit may leave in its folder.
+// Names of all files that a fit may write into its folder.
 const std::vector<std::string>& FitFileNames();
 
-// Of these every such folder has one.
+// Every folder of a fit has at least one of these files.
 const std::vector<std::string>& FitFolderMarks();
 
-// What the result depends on: settings, the measurement's content, the program's version.
-// 32 hexadecimal digits.
+// Hash of everything that the result depends on: settings, content of the measurement, version of
+// the program. 32 hexadecimal digits.
 std::string FitKey(const FitSettings& settings, const Source& source);
 
-// A fit that is through, and in its folder if it has one, as far as the model goes.
+// A finished fit, whose model has been written if there is a folder.
 struct FitRun {
   Measurement measured;
   Objective objective;
@@ -67,18 +67,17 @@ struct FitRun {
   ConvergenceCurve convergence;
 };
 
-// Reads a measurement, fits it, writes the model into `folder` (none if null), and only then scores
-// it. A signal ends it early, with the best model so far, or with nothing while it reads.
-// `on_begin` is called when it has read all and there begins to be something to lose; an
-// InterruptGuard must live from then on. Throws Error.
+// Reads and fits a measurement, writes the model into `folder` (unless null), then scores it. A
+// signal ends the fit early with the best model so far; while reading, nothing is returned.
+// `on_begin` is called after reading; from then on an InterruptGuard must exist. Throws Error.
 std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& settings,
                                 int num_threads, ResultFolder* folder,
                                 const std::function<void()>& on_begin,
                                 const std::function<void(const IterationRecord&)>& on_iteration);
 
-// Writes the other files, the report last: where it is, all are but pictures that could not be
-// drawn. Returns why these could not; "" if all are there. Throws Error for other files,
-// which says where the model is.
+// Writes the other files. The report is last, so its presence means that all are written except
+// pictures that could not be drawn. Returns why these could not; empty if all are there. Throws
+// Error, which says where the model is, if another file cannot be written.
 std::string WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder);
 
 }  // namespace trilobe

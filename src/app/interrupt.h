@@ -5,11 +5,10 @@
 
 namespace trilobe {
 
-// While one lives, the first SIGINT (Ctrl-C), SIGTERM or SIGHUP does not end the program but is
-// kept in signal(), and acknowledged on standard error; the next one ends it, unless there is a
-// model that is not yet on disk (UnsavedModel): then the program goes on until it is. A third one
-// ends it in any case. A signal that the program was started to ignore stays ignored. A reader of
-// standard output that has gone away is an error of writing.
+// While an object exists, the first SIGINT (Ctrl-C), SIGTERM or SIGHUP is stored in signal() and
+// acknowledged on standard error. The second one ends the program, after an UnsavedModel is
+// written. The third one ends it at once. Signals that were ignored at the start stay ignored. A
+// closed standard output is a write error, not a signal.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -24,8 +23,8 @@ class InterruptGuard {
   }, old_term_{}, old_hup_{}, old_pipe_{};
 };
 
-// One lives as long as there is something that must reach the disk. With the last of them the
-// program ends, if more than one signal has come.
+// Exists while a model is not yet on disk. The destructor of the last one ends the program if more
+// than one signal has come.
 class UnsavedModel {
  public:
   UnsavedModel();

@@ -9,14 +9,14 @@
 
 namespace trilobe {
 
-// The form that --model, --lobes, --stretch, --d_nodes, --f_bins, --g_nodes and --nodes ask for.
-// Throws Error for what no measurement could mend.
+// The form by --model, --lobes, --stretch, --d_nodes, --f_bins, --g_nodes and --nodes. Throws Error
+// for values that are invalid for every measurement.
 FormOptions FormFromFlags();
 
 // Whether one of these flags was given.
 bool ModelIsGiven();
 
-// Whether the form of the model is to be chosen by what looks best (--model=auto).
+// Whether --model=auto was given.
 bool ChoosesModel();
 
 std::vector<std::string> ModelFlags();

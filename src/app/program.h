@@ -5,12 +5,11 @@
 
 namespace trilobe {
 
-// "trilobe VERSION", as files name what wrote them.
+// "trilobe VERSION", as written into files.
 std::string ProgramName();
 
-// Which build of it this is: a hash of the bytes of the program, and of the shared library if it
-// has one. Results are taken for one's own only if they are of the same build, since what was built
-// of other sources may fit otherwise. Empty where these bytes cannot be read.
+// Identifies the build: a hash of the bytes of the program and of its shared library. Results of
+// another build are not reused, because it may fit differently. Empty if the bytes cannot be read.
 const std::string& ProgramBuild();
 
 }  // namespace trilobe

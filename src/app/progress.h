@@ -10,8 +10,8 @@
 
 namespace trilobe {
 
-// One line on a terminal that is redrawn as a fit goes on: iteration, E, its relative change, and
-// an upper bound on the time left. Draws nothing where standard error is not a terminal.
+// Progress of a fit on one line of a terminal: iteration, E, its relative change, and an upper
+// bound on the time left. Draws nothing if standard error is not a terminal.
 class Progress {
  public:
   explicit Progress(const SolverOptions& options);
@@ -28,8 +28,8 @@ class Progress {
   IterationRecord last_;
 };
 
-// How many of some jobs are finished, on one line of a terminal: "3 of 100 materials finished, last
-// felt, about 5 min left". Draws nothing where standard error is not a terminal.
+// Number of finished jobs on one line of a terminal: "3 of 100 materials finished, last felt, about
+// 5 min left". Draws nothing if standard error is not a terminal.
 class JobProgress {
  public:
   JobProgress(size_t count, std::string what);
@@ -37,10 +37,9 @@ class JobProgress {
   JobProgress(const JobProgress&) = delete;
   JobProgress& operator=(const JobProgress&) = delete;
 
-  // A job is through. What took no time, since it had been done before, says nothing about the
-  // rest.
+  // Counts a finished job. Reused results (took_time false) do not count for the time left.
   void Done(const std::string& name, bool took_time = true);
-  // Clears the line, to print something else; the next Done draws it again.
+  // Clears the line until the next Done.
   void Clear() const;
 
  private:

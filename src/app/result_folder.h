@@ -12,49 +12,48 @@
 
 namespace trilobe {
 
-// The files that a command reads, which it must not write. `synth:` sources are no files.
+// Input files of a command, which it must not overwrite. `synth:` sources are ignored.
 class Inputs {
  public:
   Inputs() = default;
   explicit Inputs(const std::vector<std::string>& paths);
 
-  // Throws Error if `path` is one of them, under whatever name or link, or if no file can be
-  // written there, as far as can be known now. Removes what killed runs have left beside it.
+  // Throws Error if `path` is an input, under any name or link, or cannot be written. Removes
+  // temporary files that killed runs have left beside it.
   void CheckOutput(const std::string& path) const;
-  // The former alone.
+  // Throws Error if `path` is an input.
   void CheckNotRead(const std::string& path) const;
 
  private:
   std::map<std::pair<dev_t, ino_t>, std::string> name_of_;
 };
 
-// A folder that holds one result: the files of one run. A run replaces those of an earlier one from
-// the moment that its first file is whole, and not before: then all files of the earlier run go, so
-// that files of two runs never lie side by side, however the program ends. Other files are left
-// alone. Not for several threads at once.
+// A folder with the files of one run. When the first file of a new run is complete, all files of
+// the earlier run are removed, so the files of two runs never mix, however the program ends. Other
+// files are kept. Not thread-safe.
 class ResultFolder {
  public:
-  // `names`: of all files that a run, this or an earlier one, may leave in the folder. Makes
-  // nothing yet. The first is the one that a complete run writes last. Throws Error where one of
-  // them is an input or cannot be written, and where a folder has some but none of `marks`, of
-  // which every run leaves one: then they are somebody else's.
+  // `names`: all files that this or an earlier run may write; first the one that a complete run
+  // writes last. `marks`: every run writes at least one of these. Does not create the folder.
+  // Throws Error if a file is an input or cannot be written, or if the folder has some of the files
+  // but no mark, and so does not come from a run.
   ResultFolder(std::string path, std::vector<std::string> names,
                const std::vector<std::string>& marks, const Inputs& inputs);
 
   const std::string& path() const { return path_; }
   std::string PathOf(const std::string& name) const { return path_ + "/" + name; }
-  // Distinguishes this run from all others: 16 hexadecimal digits.
+  // Unique identifier of this run: 16 hexadecimal digits.
   const std::string& run() const { return run_; }
-  // Makes the folder, and removes what a killed run has left of its temporary files.
+  // Creates the folder and removes temporary files of killed runs.
   void Open() const;
 
-  // Writes a file of the run while all of the earlier one is still there; it stays when that goes.
+  // Writes a file of this run without removing the earlier run; the first Write keeps it.
   void WriteAhead(const std::string& name, const std::function<void(std::ostream&)>& write);
-  // Writes a file of the run, the first time in the place of the earlier run. After that, others
-  // may write theirs.
+  // Writes a file of this run. The first call removes the files of the earlier run; after it, other
+  // code may write files of the run directly.
   void Write(const std::string& name, const std::function<void(std::ostream&)>& write);
 
-  // Which of the names the folder has. Once the run has written a file, these are the run's.
+  // Which of the names exist in the folder. After the first Write they are all of this run.
   std::vector<std::string> Files() const;
 
  private:
@@ -64,7 +63,7 @@ class ResultFolder {
   std::vector<std::string> names_;
   std::string run_;
   bool begun_ = false;
-  std::vector<std::string> ahead_;  // the first files of the run
+  std::vector<std::string> ahead_;  // written by WriteAhead
 };
 
 }  // namespace trilobe

@@ -9,14 +9,14 @@
 
 namespace trilobe {
 
-// What each material of a scene needs and why, and what is left out.
+// Prints what each material of a scene needs and why, and what is left out.
 void PrintPlan(const SceneRun& run, std::ostream& out);
 
 // plan.json (docs/scene.md).
 nlohmann::ordered_json PlanToJson(const SceneRun& run);
 
-// `trilobe fit --scene=SCENE --out=DIR`: a model file a material, plan.json and plan.txt. Returns
-// the exit status.
+// Runs `trilobe fit --scene=SCENE --out=DIR`: writes a model file per material, plan.json and
+// plan.txt. Returns the exit status.
 int RunSceneFit(const std::string& path);
 
 }  // namespace trilobe

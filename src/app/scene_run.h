@@ -15,34 +15,34 @@ DECLARE_bool(nocache);
 
 namespace trilobe {
 
-// The flags of the commands that fit scenes; those that only some solvers read are not among them.
+// Flags of commands that fit scenes, without those that only some solvers read.
 std::vector<std::string> SceneFlags();
 
-// The flags on which the models depend.
+// Flags that affect the models.
 std::vector<std::string> SceneModelFlags();
 
 // The materials of a scene, fitted.
 struct SceneRun {
   Scene scene;
-  std::vector<MaterialFit> fits = {};  // those that were finished, in the order of the scene
+  std::vector<MaterialFit> fits = {};  // finished fits, in the order of the scene
   struct Failure {
     std::string name, error;
   };
   std::vector<Failure> failures = {};
   int threads = 0;
-  // From the first file read to the last model, all side by side. Where fits came from the cache,
-  // that says nothing: then it is what the parts took when they were made, spread over the threads.
+  // Wall time from the first file read to the last model. If fits came from the cache: the sum of
+  // the times when they were made, divided by the threads.
   double seconds = 0;
-  int reused = 0;       // materials that took something from the cache
-  int interrupted = 0;  // the signal that ended it; 0 for none
+  int reused = 0;       // materials with a cached part
+  int interrupted = 0;  // the signal that ended the run; 0: none
 };
 
-// What the flags of a scene ask for. Throws Error for a value that makes no sense.
+// Settings by the flags of a scene. Throws Error for bad values.
 SceneFitSettings SceneSettingsFromFlags();
 
-// Fits the scene. With a terminal it shows how far it is; Ctrl-C keeps what is finished. `on_done`
-// sees each material when it is finished, one at a time. A material that fails does not stop the
-// others. An InterruptGuard must live.
+// Fits the scene and shows progress on a terminal. Ctrl-C keeps the finished materials. `on_done`
+// is called with each finished material, one call at a time. A failed material does not stop the
+// others. An InterruptGuard must exist.
 SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
                   const std::function<void(const MaterialFit&)>& on_done);
 

@@ -9,22 +9,22 @@
 
 namespace trilobe {
 
-// --solver. Throws Error that lists the known names.
+// The solver of --solver. Throws Error for an unknown name; the message lists the known ones.
 const SolverEntry& SolverFromFlags();
 
-// Makes a flag of each option of AllSolverOptions() that has none. Before flags are parsed.
+// Defines a flag for each option of AllSolverOptions() without one. Call it before flags are
+// parsed.
 void DefineSolverFlags();
 
-// The flags that stand for SolverOptions: those that every solver reads, and those that only some
-// do.
+// Flags of SolverOptions that every solver reads, and those that only some read.
 std::vector<std::string> CommonSolverFlags();
 std::vector<std::string> ParticularSolverFlags();
 
-// The options that the flags ask for. `spec` turns the degrees of --g_filter into nodes of G.
-// Throws Error for a value that makes no sense, and for a flag that this solver does not read.
+// Options by the flags. `spec` converts the degrees of --g_filter to nodes of G. Throws Error for
+// bad values and for flags that this solver does not read.
 SolverOptions SolverOptionsFromFlags(const SolverEntry& solver, const ModelSpec& spec);
 
-// Some lines for people: name, description, reference, and the flags of this solver alone.
+// Help text: name, description, reference, and the flags that only some solvers read.
 std::string DescribeSolver(const SolverEntry& solver);
 
 }  // namespace trilobe

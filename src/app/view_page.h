@@ -15,12 +15,12 @@ namespace trilobe {
 
 struct ViewedPage {
   std::string text;
-  bool has_measured = false;  // pictures of the measurement, not of the model alone
+  bool has_measured = false;  // the page also shows the measurement
 };
 
-// The page of a model (io/page/page.h), beside `measured` where that is not null. `seen` is how the
-// two differ on the sphere; where it is not given it is found out. `path` is what names the
-// material where the model does not say of what it is a fit.
+// The page of a model (io/page/page.h), compared with `measured` unless that is null. `seen` is
+// their difference on the sphere; computed if not given. `path` names the material if the model
+// does not name its source.
 ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
                     const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
                     const AppearanceOptions& appearance);

@@ -9,9 +9,9 @@
 
 namespace trilobe {
 
-// A model where it might have been measured: an isotropic one at all bins of MERL's grid, with both
-// directions above the surface, an anisotropic one at all pairs of nodes of `grid`. `source` is
-// what messages call it.
+// Evaluates a model as a measurement: an isotropic one at all bins of MERL's grid with both
+// directions above the surface, an anisotropic one at all pairs of nodes of `grid`. `source` names
+// it in messages.
 Measurement AsMeasurement(const FactorModel& model, const std::string& source, int num_threads,
                           const HemisphereGrid& grid);
 

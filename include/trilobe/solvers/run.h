@@ -48,7 +48,7 @@ class Run {
     bool may_converge = true;  // false: a small decrease of E does not end the run
     std::optional<double> optimality = std::nullopt;
     std::optional<double> objective =
-        std::nullopt;  // Objective::Value of the model, if known
+        std::nullopt;  // Objective::Value of the model, if it has been computed
   };
 
   // Starts the clock. *model is the starting point and receives the best point.

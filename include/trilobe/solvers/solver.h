@@ -81,8 +81,8 @@ struct SolverSummary {
   double seconds = 0;                  // of the last record; excludes the diagnosis
   std::vector<IterationRecord> trace;  // trace[0] is the starting point
 
-  SolverOptions given;  // as passed to Solve, without the callbacks
-  SolverOptions used;   // after the solver replaced unsupported or automatic values
+  SolverOptions given;             // as passed to Solve, without the callbacks
+  SolverOptions used;              // after the solver replaced unsupported or automatic values
   std::vector<std::string> notes;  // one sentence for each replacement and each warning
   PhaseSeconds phases;
   std::vector<StartResult> starts;     // of solvers with several starts, best first

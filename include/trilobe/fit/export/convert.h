@@ -10,27 +10,27 @@
 
 namespace trilobe {
 
-// How files for renderers are made.
+// Options of WriteForRenderer.
 struct ConvertOptions {
-  double error = 0;          // of .bsdf: RglExportOptions::max_error, 0 to 1; 0 for its default
-  bool spectral = false;     // of .bsdf: spectra in place of RGB
-  std::string program = {};  // what the file says it was written by, "trilobe 0.1.0"
-  std::string picture = {};  // of standard materials: draws both side by side there, if given
-  AppearanceOptions appearance = {};  // by which the nearest standard material is judged
+  double error = 0;          // for .bsdf: RglExportOptions::max_error, 0 to 1; 0 for its default
+  bool spectral = false;     // for .bsdf: spectra instead of RGB
+  std::string program = {};  // program named in the file, "trilobe 0.1.0"
+  std::string picture = {};  // for standard materials: PNG of both side by side; empty: none
+  AppearanceOptions appearance = {};  // of the spheres that judge standard materials
   int num_threads = 1;
 };
 
-// Whether the path ends as one of these files does: .bsdf (RGL tensor file), .glsl, .mtlx
-// (MaterialX) and .principled.json (Blender's Principled BSDF).
+// Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .glsl, .mtlx
+// (MaterialX) or .principled.json (Blender's Principled BSDF).
 bool IsForRenderer(const std::string& path);
-// Whether it is one of the latter two, which have the nearest material of fixed closures.
+// Whether the extension is .mtlx or .principled.json, which hold the nearest OpenPBR material.
 bool IsStandardMaterial(const std::string& path);
 
-// Writes a model, or a measurement, by the ending of the path. Returns lines that say what was
-// written, and how far off it is. Of a measurement, a model is fitted for that, which takes
-// seconds: a .bsdf file has the values that were measured, and the model's where nothing was; .mtlx
-// and .principled.json have what is nearest to the model. `source` is what messages call the model.
-// Throws Error, also for a measurement to .glsl, and where the file cannot be written.
+// Writes a model or a measurement in the format of the path's extension. Returns lines that say
+// what was written and its error. A measurement is fitted first, which takes seconds: .bsdf files
+// hold the measured values, and the model's where nothing was measured; .mtlx and .principled.json
+// are nearest to the model. `source` names the model in messages. Throws Error, also for a
+// measurement to .glsl and if the file cannot be written.
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options);
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,

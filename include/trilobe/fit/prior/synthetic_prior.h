@@ -16,9 +16,9 @@ namespace trilobe {
 // UTIA's directions are 15 degrees apart; highlights are narrower. The data then determine the
 // product of D, F and G^2 only at the measured directions: factors that differ a hundredfold
 // between neighbouring nodes fit as well as smooth ones, and are wrong in between. The prior is a
-// model with too few parameters for that: one lobe on few nodes, or two if the second lowers E to
-// less than 0.4. It is fitted first. Its samples between the measured ones join the data, and any
-// solver fits both. For isotropic data its weight is small, so that it decides only between fits of
+// model with too few parameters for that: one lobe on few nodes, or two if the second leaves less
+// than 0.4 of E. It is fitted first. Its samples between the measured ones join the data, and any
+// solver fits both. For isotropic data its weight is small: it decides only between fits of about
 // equal E.
 struct SyntheticPriorOptions {
   double weight = 1;  // > 0: weight of a sample of the prior, with one for six measured samples

@@ -10,58 +10,56 @@
 
 namespace trilobe {
 
-// How a source is read, and what of it counts as measured. Noise matters to `synth:` only,
-// `extrapolated` to RGL files, the radiometry to UTIA files; where they are given for others, a
-// note of the measurement says so.
+// How a source is read and which of its samples count as measured. `noise` is for `synth:` only,
+// `extrapolated` for RGL files, `radiometry` for UTIA files; for other sources they only add a note
+// to the measurement.
 struct SourceOptions {
-  double noise = 0.0;        // relative standard deviation of the multiplicative noise, 0 to 1
-  double missing = 0.0;      // share of the bins or samples that is left out at random, 0 up to 1
-  std::string corrupt = {};  // ParseCorruptions: what happens to what was measured, by `seed`
-  double cosine = 0;         // exponent of the cos theta_i that is taken out of what was measured
-  // By which the sample leant towards azimuth 0, which is taken out; none: as its highlight shows.
+  double noise = 0.0;        // relative standard deviation of multiplicative noise, 0 to 1
+  double missing = 0.0;      // fraction of bins or samples removed at random, in [0, 1)
+  std::string corrupt = {};  // corruptions to apply (ParseCorruptions), seeded by `seed`
+  double cosine = 0;         // exponent of a factor cos theta_i to remove, -2 to 2
+  // Tilt of the sample towards azimuth 0, to remove; nullopt: estimated from the highlight.
   std::optional<double> tilt_deg = 0;
   uint64_t seed = 1;
   int num_threads = 1;
-  double max_angle_deg = 90;  // theta_i and theta_o beyond it do not count as measured; above 0
-  // theta_d below it does not; -1: as far as a detector stood in its own light, by scattered
-  // samples.
+  double max_angle_deg = 90;  // larger theta_i and theta_o do not count as measured; above 0
+  // Smaller theta_d do not count as measured; -1: the limit at which scattered samples show the
+  // detector's own shadow.
   double min_theta_d_deg = -1;
-  bool extrapolated = false;        // what the authors of a file made up counts as measured
-  bool outliers = false;            // samples that are far off those around them count as well
-  bool dark_noise = false;          // readings that are lost in it count as they are
+  bool extrapolated = false;        // values that the authors extrapolated count as measured
+  bool outliers = false;            // keeps samples far from their neighbours
+  bool dark_noise = false;          // keeps readings of a table that are lost in dark noise
   std::string radiometry = "brdf";  // of UtiaRadiometries()
 };
 
-// Throws Error, with the option's flag and value, where one is out of its range, whether it matters
-// or not.
+// Throws Error, with the option's flag and value, if one is out of range.
 void CheckSourceOptions(const SourceOptions& options);
 
-// A format of files that hold a measurement. Each is described in the file of its reader and
-// writer, by a function `MeasurementFormat NAMEFormat()`, exactly that, which source.cc declares
-// and lists.
+// A file format of measurements. A function `MeasurementFormat NAMEFormat()` in the file of its
+// reader and writer defines it; source.cc declares and lists these functions by NAME.
 struct MeasurementFormat {
   std::string name;         // "merl"
   std::string description;  // "a MERL .binary file"
-  std::string ending;       // ".binary": of such files' names
+  std::string ending;       // file extension, ".binary"
   bool is_text = false;
-  // Whether bytes are those of such a file, or of its beginning, as far as that tells. What is JSON
-  // or foreign (a picture, an archive) is not asked for.
+  // Whether the bytes look like such a file or its beginning. Not called for JSON and foreign
+  // content (a picture, an archive).
   bool (*recognise)(std::string_view bytes) = nullptr;
-  // Throws Error for bytes that are no such file; `source` is its name.
+  // Parses a file named `source`. Throws Error for invalid bytes.
   Measurement (*read)(std::string_view bytes, const std::string& source,
                       const SourceOptions& options) = nullptr;
 
-  // Of a format that is written, too: what the file then is, "MERL layout", and whether samples at
-  // any directions, not only at bins, have a place in it.
+  // For formats with `write`: what the file is called in messages, "MERL layout", and whether it
+  // holds samples at any directions, not only at bins.
   std::string written_as = {};
   bool holds_anisotropic = false;
-  // Returns what was written, for a message: "12 samples". Throws Error where the format has no
-  // place for the data, and leaves no file then.
+  // Returns what was written, for a message: "12 samples". Throws Error, and leaves no file, if the
+  // format cannot hold the data.
   std::string (*write)(const Measurement& measurement, const std::string& path,
                        int num_threads) = nullptr;
 };
 
-// For `read`: a parser that has no use for options.
+// Adapts a parser without options to `read`.
 template <Measurement (*kParse)(std::string_view, const std::string&)>
 Measurement ReadBy(std::string_view bytes, const std::string& source,
                    const SourceOptions& /*options*/) {

@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// A model file as ParseModel reads it: its text, and the file. Throws Error for parameters that are
-// not finite and >= 0, and if the file cannot be written.
+// The text of a model file as ParseModel reads it, and the file itself. Both throw Error for
+// parameters that are not finite and >= 0, WriteModel also if the file cannot be written.
 std::string FormatModel(const ModelFile& file);
 void WriteModel(const ModelFile& file, const std::string& path);
 

@@ -12,12 +12,12 @@ namespace trilobe {
 // All solvers, the default one first.
 const std::vector<SolverEntry>& Solvers();
 
-// Adds a solver that is not part of the library (docs/adding-a-solver.md). Not thread-safe: call it
-// before any other use of the list. Throws Error if the name is empty or taken, if there is nothing
-// to make it, or if it reads an option that there is not.
+// Adds a solver from outside the library (docs/adding-a-solver.md). Not thread-safe: call it before
+// any other use of the list. Throws Error if the name is empty or taken, `make` is empty, or
+// `options` names an unknown option.
 void RegisterSolver(SolverEntry entry);
 
-// Throws Error that lists the known names.
+// Both throw Error for an unknown name; the message lists the known ones.
 const SolverEntry& FindSolver(std::string_view name);
 std::unique_ptr<Solver> MakeSolver(std::string_view name);
 

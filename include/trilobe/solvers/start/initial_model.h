@@ -15,19 +15,19 @@ namespace trilobe {
 struct InitialModel {
   std::string name;
   std::string description;
-  // A model with the objective's spec, finite and > 0 where a lobe reflects anything. `seed`
-  // matters to the random starts only.
+  // Returns a model with the objective's spec. Its parameters are finite, and > 0 in lobes with
+  // s > 0. Only the random starts use `seed`.
   FactorModel (*make)(const Objective& objective, uint64_t seed) = nullptr;
 };
 
-// All of them, the default one first.
+// All starting points, the default one first.
 const std::vector<InitialModel>& InitialModels();
 
-// Throws Error that lists the known names.
+// Throws Error for an unknown name; the message lists the known ones.
 const InitialModel& FindInitialModel(std::string_view name);
 
-// A starting point for continuation: GGX, a lobe, with roughnesses spread evenly in the logarithm
-// from `narrow` to `wide`, all of which reflect the same part of the mean of what was measured.
+// A starting point for continuation: GGX lobes with roughnesses evenly spaced in the logarithm from
+// `narrow` to `wide`. Each reflects the same fraction of the mean measured reflectance.
 FactorModel SpreadModel(const Objective& objective, double narrow, double wide);
 
 }  // namespace trilobe

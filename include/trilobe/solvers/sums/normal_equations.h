@@ -11,26 +11,25 @@ namespace trilobe {
 
 class ScatteredEquations;
 
-// Accumulates a QuadraticModel without ever storing J, in one pass over the samples
-// (docs/sums.md). Samples on a grid are taken folded, by their cells; others one by one
+// Accumulates a QuadraticModel in one pass over the samples, without storing J (docs/sums.md).
+// Samples on a grid are folded and summed by cells; others are summed one by one
 // (ScatteredEquations).
 class NormalEquations {
  public:
   explicit NormalEquations(const Objective& objective);
   ~NormalEquations();
 
-  // The same bits for any number of threads.
+  // Sets *result. The same bits for any number of threads.
   void Evaluate(const FactorModel& model, Hessian hessian, QuadraticModel* result);
 
  private:
   class Condensed;
   const Objective& objective_;
-  std::unique_ptr<Condensed> condensed_;  // null where samples are not on a grid; then:
-  std::unique_ptr<ScatteredEquations> of_samples_;
+  std::unique_ptr<Condensed> condensed_;            // for samples on a grid, else null
+  std::unique_ptr<ScatteredEquations> of_samples_;  // for other samples, else null
 };
 
-// The same from each sample's own derivatives, in a time that only small data forgive: the
-// reference for tests.
+// The same from the derivatives of each sample: slow, the reference for tests.
 void EvaluateReference(const Objective& objective, const FactorModel& model, Hessian hessian,
                        QuadraticModel* result);
 
