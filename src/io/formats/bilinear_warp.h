@@ -18,12 +18,11 @@ struct NodeInterval {
   double fraction = 0;
 };
 
-// Where x in [0, 1] lies between `nodes` >= 2 nodes from 0 to 1. Others go to the nearer end, NaN
-// to 0.
+// The interval of x in [0, 1] among `nodes` >= 2 equally spaced nodes from 0 to 1. Other x are
+// clamped; NaN becomes 0.
 NodeInterval LocateNode(double x, int nodes);
 
-// Up to four slices of a stack of tables with the weights of their (bi)linear blend, which add up
-// to 1.
+// Weights of a (bi)linear blend of up to four slices of a stack of tables; they add up to 1.
 struct SliceBlend {
   int count = 0;
   std::array<int, 4> slice{};
@@ -35,7 +34,7 @@ struct SliceBlend {
   }
 };
 
-// Functions on the unit square: a stack of tables of node values, bilinear between the nodes.
+// Functions on the unit square: a stack of tables of node values, interpolated bilinearly.
 struct BilinearStack {
   int rows = 0;                // >= 2
   int columns = 0;             // >= 2
@@ -46,10 +45,10 @@ struct BilinearStack {
   double At(int slice, const SquarePoint& point) const;
 };
 
-// A density on the unit square that is a blend of piecewise bilinear ones, as a map to uniform
-// coordinates (Dupuy and Jakob, "An Adaptive Parameterization for Efficient Material Acquisition
-// and Rendering", 2018). Each slice is normalised to integrate to 1, so that any blend does, and
-// blends of the running integrals, which are made once, are the running integrals of the blend.
+// Maps a blend of piecewise bilinear densities on the unit square to uniform coordinates (Dupuy and
+// Jakob, "An Adaptive Parameterization for Efficient Material Acquisition and Rendering", 2018).
+// Each slice is normalised to integrate to 1, and so is any blend. The running integrals of a blend
+// are blends of the slices' running integrals, which are computed once.
 class BilinearWarp {
  public:
   // `density` >= 0. A slice that is zero everywhere has no normalised form; see FirstVanishing.
@@ -58,13 +57,13 @@ class BilinearWarp {
   // The first slice that is zero everywhere, or -1.
   static int FirstVanishing(const BilinearStack& density);
 
-  // The inverse of sampling: where the blend sends a point. With p the density,
+  // The inverse of sampling: maps a point (u, v) to uniform (x, y) in [0, 1]^2. With density p,
   //   y = int_0^v int_0^1 p(s, t) ds dt,   x = int_0^u p(s, v) ds / int_0^1 p(s, v) ds.
-  // On a row where p vanishes x is undefined, and u itself is taken. In [0, 1]^2.
+  // On a row where p is 0, x = u.
   SquarePoint Invert(const SliceBlend& blend, const SquarePoint& point) const;
 
-  // Its inverse for one slice: the point that the slice sends to `uniform` in [0, 1]^2. Where the
-  // density vanishes there are several; one of them.
+  // Sampling with one slice: the point that Invert maps to `uniform` in [0, 1]^2. If there are
+  // several, because the density is 0, returns one of them.
   SquarePoint Sample(int slice, const SquarePoint& uniform) const;
 
  private:

@@ -17,30 +17,29 @@ namespace trilobe {
 // BRDF [1/sr] of two directions above the surface.
 using PairBrdf = std::function<Rgb(const DirectionPair&)>;
 
-// A measurement as a function of all directions, by help of a model m fitted to it: between the
-// places of the data (the centres of a table's bins, the nodes of a grid) it is
-//   (m + e) q - e,  q interpolated from q = (measured + e) / (m + e) at these places,
-// e a hundredth of the mean value. So at the places it is what was measured; between them it bends
-// as the model does, highlights narrower than a bin included; and where nothing was measured, q is
-// 1 and it is the model.
-// Scattered samples that stand at no grid have nothing to interpolate in: it is the model.
+// A measurement as a function of all directions, interpolated with a model m fitted to it:
+//   (m + e) q - e,  q interpolated from q = (measured + e) / (m + e) at the places of the data
+// (the centres of a table's bins, the nodes of a grid); e is a hundredth of the mean value. It
+// equals the measured values at these places and follows the model between them, also in highlights
+// narrower than a bin. Where nothing was measured, q is 1 and it equals the model. For scattered
+// samples on no grid it is the model.
 struct CompletedMeasurement {
   PairBrdf value;
-  bool interpolated = true;  // false: it is the model
+  bool interpolated = true;  // false: `value` is the model
   double offset = 0;         // e [1/sr]
-  // q over the bins of a table, or over the nodes of a grid; one of them, where it is interpolated.
+  // q over the bins of a table or over the nodes of a grid. One of them is set if interpolated.
   std::shared_ptr<const TabulatedBrdf> over_table = nullptr;
   std::shared_ptr<const NodeBrdf> over_nodes = nullptr;
 
-  // Measured places, distributed by the cosines of both directions as far as they go, to judge
-  // whatever is to say the same, with what was measured there, not black.
+  // Places with measured values that are not black, distributed by the cosines of both directions.
+  // For measuring the error of an approximation of `value`.
   struct Place {
     DirectionPair at;
     Rgb measured{};
   };
   std::vector<Place> places;
 };
-// Copies what it needs. Throws Error for an anisotropic model of a table.
+// Does not refer to its arguments afterwards. Throws Error for an anisotropic model of a table.
 CompletedMeasurement Complete(const Measurement& measurement, const FactorModel& model,
                               int num_threads);
 

@@ -11,39 +11,38 @@
 namespace trilobe {
 
 struct RglExportOptions {
-  // What the file may be off by, relative, in the median over pairs of directions that are
-  // distributed by their cosines, of rho cos theta_o. Finer tables are taken until it is met.
-  // 0.005 if it is not given, of anisotropic models 0.02, or where no table is that near, hardly
-  // worse than the nearest; what is given and cannot be met is an Error.
+  // Largest median relative error of rho cos theta_o over pairs of directions distributed by their
+  // cosines. Tables are refined until it is met. Default: 0.005, for anisotropic models 0.02; if no
+  // table meets the default, one hardly worse than the best. A given value that cannot be met is an
+  // Error.
   std::optional<double> max_error = {};
-  // Pairs with a direction further than this from the normal do not count [rad]: beyond what was
-  // measured, a model says little, and may say it with any contrast.
+  // Pairs with a direction farther than this from the normal do not count [rad], because a model is
+  // unreliable beyond the measured directions.
   double max_theta = kPi / 2;
-  // For spectral renderers: `spectra` at some `wavelengths` in place of `rgb` (SmoothSpectra).
+  // Writes `spectra` at some `wavelengths` instead of `rgb` (SmoothSpectra).
   bool spectral = false;
 };
 
-// A material as an RGL tensor file (Dupuy and Jakob 2018), which renderers read: Mitsuba 3
-// (`measured`, in variants with RGB colours) and powitacq_rgb, or, with `spectral`, Mitsuba's
-// spectral variants and pbrt-v4. docs/renderers.md says how the model becomes its tables.
+// A material as an RGL tensor file (Dupuy and Jakob 2018). Readers: Mitsuba 3 (`measured`, RGB
+// variants) and powitacq_rgb; with `spectral`, Mitsuba's spectral variants and pbrt-v4. See
+// docs/renderers.md.
 struct RglExport {
   std::string bytes;
-  int theta_i = 0, phi_i = 1, resolution = 0;  // nodes, and rows and columns of values
-  double median_error = 0, high_error = 0;     // relative; the latter is the 99 % quantile
-  // With `spectral`: by how much colours of the spectra are off those that they stand for, before
-  // anything is interpolated, relative; at most, and the share that is off by more than 0.001.
+  int theta_i = 0, phi_i = 1, resolution = 0;  // nodes; rows and columns of values
+  double median_error = 0, high_error = 0;     // relative; high_error is the 99 % quantile
+  // With `spectral`: relative colour error of the spectra before interpolation: its maximum, and
+  // the fraction of colours with more than 0.001.
   double color_error = 0, colors_off = 0;
 };
 
-// Throws Error if no file of at most 18 MB (by `rgb`; spectra take five times as much) is exact
-// enough, with the error of the last one.
+// Throws Error, with the last error, if no file of at most 18 MB (with `rgb`; spectra take five
+// times as much) is exact enough.
 RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options = {});
 
-// A measurement, by help of a model that was fitted to it: the warp is the model's, the values are
-// those measured (Complete), and so are the places by which the error is judged. Measurements have
-// noise, which finer tables follow late or never: without max_error it is the smallest file that
-// does as the model's would, or else hardly worse than the best of those of usual size, 2.2 MB, of
-// anisotropic ones 12.
+// Exports a measurement with the warp of a model fitted to it. The values, and the places where
+// the error is measured, are those of Complete. Noise limits the accuracy of finer tables, so
+// without max_error this returns the smallest file that meets the model's default error, or else
+// one hardly worse than the best of usual size (2.2 MB; anisotropic 12 MB).
 RglExport ExportRgl(const FactorModel& model, const CompletedMeasurement& measured,
                     const RglExportOptions& options = {});
 

@@ -13,11 +13,11 @@
 
 namespace trilobe {
 
-// A material measured at RGL/EPFL (`*_rgb.bsdf` and `*_spec.bsdf`, Dupuy and Jakob 2018), as a
-// function.
+// The BRDF of a material measured at RGL/EPFL (`*_rgb.bsdf` and `*_spec.bsdf`, Dupuy and Jakob
+// 2018).
 class RglBrdf {
  public:
-  // Throws Error on anything that is not a whole, consistent tensor file of a material.
+  // Throws Error unless the bytes are a complete, consistent tensor file of a material.
   static RglBrdf Parse(std::string_view bytes, const std::string& source);
   RglBrdf(RglBrdf&&) noexcept;
   RglBrdf& operator=(RglBrdf&&) noexcept;
@@ -25,20 +25,18 @@ class RglBrdf {
 
   bool isotropic() const;  // one phi_i in the file
 
-  // An anisotropic material as scattered samples, at the nodes of the file itself: from each
-  // theta_i and phi_i the outgoing directions that the nodes of `rgb` stand for, with what the file
-  // leaves out since a symmetry repeats it. Those that were not measured are left out, unless
-  // `extrapolated`.
+  // An anisotropic material as scattered samples at the nodes of the file: for each theta_i and
+  // phi_i, the outgoing directions of the nodes of `rgb`. Directions that the file omits by
+  // symmetry are included. Nodes that were not measured are omitted unless `extrapolated`.
   Measurement Sample(const std::string& source, bool extrapolated) const;
 
-  // theta_i of the last nodes that were measured, at most 90 degrees [rad]. Beyond it the material
-  // was not measured.
+  // The largest measured theta_i, at most 90 degrees [rad].
   double max_theta() const;
 
   // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
 
-  // The same, and whether all nodes of `rgb` that it takes with weight were measured.
+  // The same, and whether all nodes of `rgb` with nonzero weight were measured.
   MeasuredValue LookUp(const DirectionPair& directions) const;
 
  private:
@@ -47,8 +45,8 @@ class RglBrdf {
   std::unique_ptr<const Tables> tables_;
 };
 
-// The BRDF at the centres of all bins above the surface, others invalid, and which of them were
-// measured (docs/samples.md). Throws Error for an anisotropic material.
+// The BRDF at the centres of all bins above the surface, and which of them were measured
+// (docs/samples.md). Other bins are invalid. Throws Error for an anisotropic material.
 BrdfTable TabulateRgl(const RglBrdf& brdf, const std::string& source, const MerlGrid& grid = {},
                       int num_threads = 1);
 

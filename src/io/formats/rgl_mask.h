@@ -13,24 +13,23 @@ namespace trilobe {
 // (docs/samples.md).
 class RglMask {
  public:
-  // Of a file whose `rgb` has these slices, `rgb_slices` = phi_i x theta_i, rows and columns. A
-  // file without the field `valid` measured all nodes. Throws Error where the field does not fit,
-  // or does not tell which of its two values means measured.
+  // For a file whose `rgb` has `rgb_slices` = phi_i x theta_i slices of these rows and columns.
+  // Without the field `valid` all nodes count as measured. Throws Error if the shape of the field
+  // differs, or if it is ambiguous which of its two values means measured.
   RglMask(const TensorFile& file, const std::vector<double>& theta_i, int rgb_slices, int rows,
           int columns);
 
-  // theta_i of the last nodes that were measured, at most 90 degrees [rad].
+  // The largest measured theta_i, at most 90 degrees [rad].
   double max_theta() const { return max_theta_; }
 
-  // Whether a blend of slices at a point reads, with weight, nothing but measured nodes.
+  // Whether all nodes with nonzero weight in a blend of slices at a point were measured.
   bool Measured(const SliceBlend& blend, const SquarePoint& point) const;
 
  private:
   int rows_, columns_;
   double max_theta_;
-  std::vector<bool> measured_;  // [slices][rows][columns], or empty where all are
-  // The same for the four nodes of a cell, at its first: most lookups need no more. Bytes, for
-  // speed.
+  std::vector<bool> measured_;  // [slices][rows][columns]; empty: all
+  // Whether all four nodes of a cell are measured, at its first node, to speed up most lookups.
   std::vector<uint8_t> cell_measured_;
 };
 

@@ -11,43 +11,41 @@
 
 namespace trilobe {
 
-// What linear sRGB sees of a reflectance spectrum: the CIE 1931 2-degree observer under D65, whose
-// white is that of sRGB, so that a constant spectrum r becomes (r, r, r) without any adaptation.
+// Converts reflectance spectra to linear sRGB: CIE 1931 2-degree observer under D65, the white of
+// sRGB. A constant spectrum r becomes (r, r, r) without adaptation.
 class SpectralColor {
  public:
-  // Ascending wavelengths [nm]. Between them a spectrum is taken as linear, and beyond them as
-  // constant, which adds the weights there to the ends (ASTM E308). Throws Error, which names the
-  // source, where they do not ascend or leave much of the visible out: each gap must be 50 nm or
-  // less, and so must what is missing from 400 to 700 nm at both ends.
+  // Ascending wavelengths [nm]. Spectra are linear between them and constant beyond them (ASTM
+  // E308). Throws Error, which names the source, if they do not ascend, a gap exceeds 50 nm, or
+  // more than 50 nm of 400 to 700 nm is missing at an end.
   SpectralColor(std::span<const double> wavelengths, const std::string& source);
 
-  // [wavelengths]; a channel is below 0 where sRGB cannot show the colour.
+  // spectrum: [wavelengths]. Channels are below 0 for colours outside the gamut of sRGB.
   Rgb operator()(std::span<const double> spectrum) const;
 
  private:
   std::vector<Rgb> weights_;  // [wavelengths]
 };
 
-// Adds a sample by its spectrum [1/sr]. It is valid if all values are finite and >= 0; channels
-// below 0 come from the gamut alone, and become 0.
+// Adds a sample by its spectrum [1/sr]. It is valid if all values are finite and >= 0. Channels
+// below 0 (out of gamut) become 0.
 void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
                  const SpectralColor& color, SampleCollector* collector);
 
-// A smooth spectrum of each colour (Jakob and Hanika, "A Low-Dimensional Function Space for
-// Efficient Spectral Upsampling", 2019): at the wavelength that t stands for, from -1 to 1,
+// Smooth spectra of colours (Jakob and Hanika, "A Low-Dimensional Function Space for Efficient
+// Spectral Upsampling", 2019). With wavelengths mapped to t in [-1, 1],
 //   r(t) = scale S(c0 t^2 + c1 t + c2),  S(x) = 1/2 + x / (2 sqrt(1 + x^2)).
-// A BRDF may exceed 1, so the scale is twice the largest channel, as renderers scale colours that
-// have no bound; then greys are constant spectra, and c depends on the chromaticity alone. c is
-// found for the spectrum as it is stored, linear between the wavelengths, so that few of them do.
+// scale is twice the largest channel, since a BRDF may exceed 1; renderers treat unbounded colours
+// alike. Greys become constant spectra, and c depends only on the chromaticity. c is fitted to the
+// stored spectrum, which is linear between the wavelengths, so that few of them suffice.
 class SmoothSpectra {
  public:
   // Throws Error as SpectralColor does.
   explicit SmoothSpectra(std::span<const double> wavelengths);
 
-  // The spectrum of a colour >= 0 (a channel below 0 counts as 0), at the wavelengths. Its colour,
-  // of which Error is, is the colour asked for, but where that is more saturated than such
-  // spectra can be: then one near it. Begins where the last call ended, which is quick where
-  // colours change little from one to the next; not for several threads.
+  // The spectrum of a colour at the wavelengths; channels below 0 count as 0. A colour that is too
+  // saturated for such spectra is approximated, see error(). Starts from the coefficients of the
+  // last call, which is fast for similar colours. Not thread-safe.
   std::span<const double> operator()(const Rgb& rgb);
 
   // |colour of the last spectrum - colour asked for| / |colour asked for|.

@@ -15,30 +15,29 @@ struct Tensor {
   std::vector<double> values;
 };
 
-// The container of the RGL database: named arrays. All little-endian:
+// The file format of the RGL database: named arrays, little-endian:
 //   char[12] "tensor_file\0", uint8 version[2] = {1, 0}, uint32 field count; for each field
 //   uint16 name length, name, uint16 ndim, uint8 dtype, uint64 offset, uint64 shape[ndim];
-//   then the arrays, where the offsets, counted from the start of the file, say.
-// It views the bytes it was made from, which must outlive it.
+//   then the arrays at their offsets from the start of the file.
+// Refers to the bytes, which must outlive it.
 class TensorFile {
  public:
-  // Checks that every field lies inside the file, in bytes of its own, and has a name of its own.
-  // Throws Error.
+  // Throws Error if a field exceeds the file, fields overlap, or a name occurs twice.
   TensorFile(std::string_view bytes, const std::string& source);
 
-  // A float32 array with `ndim` dimensions. Throws Error if it is missing, of another type or
-  // shape, or has an entry that is not finite.
+  // A float32 array with `ndim` dimensions. Throws Error if it is missing, has another type or
+  // number of dimensions, or has an entry that is not finite.
   Tensor Float32(std::string_view name, int ndim) const;
 
   bool Has(std::string_view name) const;
 
-  // A uint8 array with one dimension, whose bytes are those of the file. Throws Error as above.
+  // A uint8 array with one dimension, as a view into the file. Throws Error likewise.
   std::string_view Bytes(std::string_view name) const;
 
-  // The single byte of a uint8 array of one entry. Throws Error as above.
+  // The only entry of a uint8 array. Throws Error likewise.
   uint8_t Byte(std::string_view name) const;
 
-  // Throws Error: file, field, what is wrong.
+  // Throws Error with file, field and problem.
   [[noreturn]] void Fail(std::string_view field, const std::string& problem) const;
 
  private:
@@ -55,10 +54,10 @@ class TensorFile {
   std::vector<Field> fields_;
 };
 
-// Whether bytes begin as such a file does.
+// Whether bytes begin like a tensor file.
 bool LooksLikeTensorFile(std::string_view bytes);
 
-// Makes such a file: fields in the order in which they are added, each aligned to its items.
+// Builds a tensor file. Fields keep their order and are aligned to their item size.
 class TensorFileWriter {
  public:
   void AddFloat32(const std::string& name, const std::vector<int>& shape,

@@ -15,7 +15,7 @@ namespace trilobe {
 // the outgoing direction with theta = 15 a and phi = 7.5 b degrees.
 inline constexpr HemisphereGrid kUtiaGrid = {.thetas = 6, .phis = 48};
 
-// How stored numbers become a BRDF: public readers disagree.
+// Conversion of stored numbers to a BRDF, on which public readers disagree.
 struct UtiaRadiometry {
   std::string name;         // "brdf"
   std::string description;  // what the numbers are taken for, and by whom
@@ -23,15 +23,15 @@ struct UtiaRadiometry {
 };
 const std::vector<UtiaRadiometry>& UtiaRadiometries();  // the default first
 
-// Scattered samples, with phi as in the file, at theta = 0, too. A note says where the numbers look
-// as if they stood in another order. Throws Error for other sizes and unknown radiometries. Reads
-// the same format on another grid, too, if told so.
+// Parses scattered samples, with phi as in the file also at theta = 0. Adds a note if the numbers
+// seem to be in another order. Throws Error for other sizes and unknown radiometries. Can read the
+// format on another grid.
 Measurement ParseUtia(std::string_view bytes, const std::string& source,
                       std::string_view radiometry = UtiaRadiometries().front().name,
                       const HemisphereGrid& grid = kUtiaGrid);
 
-// Writes samples at these directions as BRDF [1/sr]; -1 where there is none. Throws Error where one
-// is at another direction, or two are at the same.
+// Writes samples at these directions as BRDF [1/sr], and -1 for missing ones. Throws Error if a
+// sample is at another direction or two are at the same.
 void WriteUtia(const Measurement& scattered, const std::string& path);
 
 }  // namespace trilobe

@@ -5,8 +5,8 @@
 
 namespace trilobe {
 
-// As model files, reports and `info` have it: that of all lobes, or a list of those of each. Json:
-// nlohmann::ordered_json, which users of the library need not have.
+// JSON of stretches in model files, reports and `info`: one object for all lobes, or a list with
+// one per lobe. Json is nlohmann::ordered_json, a parameter so that library users do not need it.
 template <typename Json>
 Json StretchesToJson(const ModelSpec& spec) {
   const auto to_json = [](const Stretch& stretch) {

@@ -6,24 +6,22 @@
 
 namespace trilobe {
 
-// The text of web/NAME. Throws Error where there is none of this name.
+// The text of web/NAME. Throws Error for an unknown name.
 std::string_view WebText(std::string_view name);
 
-// web/NAME with the files that it names put into their places, as one file, and JSON for its
-// scripts:
+// web/NAME as one file, with JSON for its scripts, in which these comments are replaced:
 //   <!-- title -->         the title
 //   <!-- style: a.css -->  a style sheet
 //   <!-- body -->          the markup
 //   <!-- data -->          the JSON, as a script element of the id "data"
 //   <!-- shaders -->       all of web/*.glsl, as JSON, of the id "shaders"
-//   <!-- module: a.js -->  a module and, before it, all that it imports, as one script: each name
-//                          that stands outside of functions is there once in all of them
-// Throws Error where a file is missing.
+//   <!-- module: a.js -->  a module after all that it imports, as one script; their top-level names
+//                          must be unique
+// Throws Error if a file is missing.
 std::string FormatDocument(std::string_view name, std::string_view title, std::string_view json,
                            std::string_view body = "");
 
-// RFC 4648, with padding; with a line break after each `line` characters, a multiple of 4, if that
-// is not 0.
+// RFC 4648, with padding, and a line break after each `line` characters (a multiple of 4; 0: none).
 std::string Base64(std::string_view bytes, int line = 0);
 
 }  // namespace trilobe

@@ -13,46 +13,47 @@
 
 namespace trilobe {
 
-// A measurement as a page carries it. A value is q = round(kSteps log2(1 + rho / kFloor)), off by
-// 0.14 % at most. What is kept is how q differs from what the pair before in the row and the one in
-// the row before say, their mean where both were measured: 2 x, or -2 x - 1 of a negative x, in a
-// Rice code (Rice 1979), whose number of low bits each row of a channel says in 4 bits. Before all
-// values come the lengths of runs of pairs that were measured and were not, by turns, with 5 low
-// bits each. Bits are filled from the lowest.
+// A compressed measurement in a page. Values are quantised to q = round(kMeasuredSteps
+// log2(1 + rho / kMeasuredFloor)), with an error of at most 0.14 %. The prediction of q is the mean
+// of the measured ones among the previous pair in the row and the same pair in the previous row.
+// The difference x is stored as 2 x, or -2 x - 1 for x < 0, in a Rice code (Rice 1979). Each row of
+// a channel begins with the number of low bits (4 bits). Before all values come the lengths of
+// alternating runs of measured and unmeasured pairs, with 5 low bits. Bits fill bytes from the
+// lowest.
 inline constexpr double kMeasuredFloor = 1e-3;  // [1/sr]
 inline constexpr int kMeasuredSteps = 256;
 struct MeasuredData {
-  // Of a table: theta_h, theta_d, phi_d. Of nodes: pairs, incidence first.
+  // Table: theta_h, theta_d, phi_d. Nodes: incident, outgoing.
   std::vector<int> shape;
   bool nodes = false;
-  HemisphereGrid grid;   // of nodes
-  double max_theta = 0;  // of nodes [rad]
-  int samples = 0;       // that were measured
+  HemisphereGrid grid;   // for nodes
+  double max_theta = 0;  // for nodes [rad]
+  int samples = 0;       // number measured
   std::string bits;      // the code
 };
 
-// Two bins of phi_d become one where there are more than 90, so that a page stays below 2 MB.
+// Merges pairs of phi_d bins if there are more than 90, so that a page stays below 2 MB.
 MeasuredData EncodeMeasured(const BrdfTable& table);
 
-// On at most kMostNodes nodes; of more, on fewer, between which the measurement is linear.
+// Resamples by linear interpolation if there are more than kMostNodes nodes.
 inline constexpr int kMostNodes = 432;
 MeasuredData EncodeMeasured(const NodeBrdf& brdf);
 
-// What a page shows besides the model.
+// Contents of a page besides the model.
 struct PageContents {
-  std::string name;                      // of the material, its title
-  std::string source;                    // of the measurement, if there is one
-  std::optional<MeasuredData> measured;  // what is drawn beside the model
-  int parameters = 0;                    // that the model stores
-  // What a person would see, of the sphere or of samples; empty where nothing was compared.
+  std::string name;                      // of the material; the title
+  std::string source;                    // of the measurement, if any
+  std::optional<MeasuredData> measured;  // drawn beside the model
+  int parameters = 0;                    // stored
+  // Visible difference of the spheres or samples; empty if nothing was compared.
   std::string verdict, visibility;
   double psnr_db = 0, mean_delta_e = 0, delta_e_95 = 0;
   std::vector<IterationRecord> trace;
-  const Environment* probe = nullptr;  // the light; null: the studio, which the page makes itself
+  const Environment* probe = nullptr;  // the light; null: the studio, which the page computes
 };
 
-// One file of HTML with all that it needs: web/, the model, the measurement. It works from a disk,
-// without a server or a network.
+// A self-contained HTML file with web/, the model and the measurement. It needs no server and no
+// network.
 std::string FormatPage(const ModelFile& model, const PageContents& contents);
 
 }  // namespace trilobe

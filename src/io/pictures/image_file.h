@@ -8,12 +8,12 @@
 
 namespace trilobe {
 
-// A light probe in latitude and longitude, as a Radiance picture (.hdr): rows from the top down,
-// twice as wide as high. Throws Error on anything else, and where no light is in it.
+// A latitude-longitude light probe from a Radiance picture (.hdr): rows from top to bottom, twice
+// as wide as high. Throws Error for anything else and for a probe without light.
 Environment ParseProbe(std::string_view bytes, const std::string& source);
 Environment ReadProbe(const std::string& path);
 
-// An 8-bit RGB picture as PNG, whole or not at all. [height * width * 3], row by row from the top.
+// Atomically writes an 8-bit RGB picture as PNG. pixels: [height * width * 3], rows from the top.
 void WritePng(const std::string& path, int width, int height, const std::string& pixels);
 
 }  // namespace trilobe

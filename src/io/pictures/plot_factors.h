@@ -9,24 +9,24 @@
 
 namespace trilobe {
 
-// A panel of a picture: its title, commands that come before `plot`, and what `plot` draws.
+// A panel of a picture: title, commands before `plot`, and arguments of `plot`.
 struct Panel {
   std::string title;  // enhanced
   std::string setup;
   std::string plot;
 };
 
-// Panels below each other, in rows, each row as wide as the canvas.
+// Rows of panels, each row as wide as the canvas.
 class PanelRows {
  public:
   explicit PanelRows(int width) : width_(width) {}
 
-  // Up to so many panels in a row; empty ones are left out.
+  // Adds panels in rows of up to `columns`. Empty panels are omitted.
   void Add(std::vector<Panel> panels, int columns);
 
   int height() const;
-  // With their first row's upper end `top` pixels below that of a canvas of that height, each with
-  // its legend above it, where no curve can be.
+  // The script. The first row begins `top` pixels below the top of a canvas of height `canvas`.
+  // Legends are above the panels.
   std::string Script(int top, int canvas) const;
 
  private:
@@ -34,13 +34,13 @@ class PanelRows {
   std::vector<std::vector<Panel>> rows_;
 };
 
-// Commands that put what is plotted next at pixel (x, y) of the canvas, from its top left.
+// Commands that place the next plot at pixel (x, y) from the top left of the canvas.
 std::string PanelMargins(int x, int y, int width, int height, int canvas_width, int canvas_height);
 
 // Whether the s of a lobe is 0.
 bool ReflectsNothing(const FactorModel& model, int lobe);
 
-// Which lobe, or channel, a table belongs to; 0 where it serves them all.
+// The lobe and channel of a table; 0 if it serves all of them.
 struct TableOwner {
   int lobe = 0, channel = 0;
 };
@@ -49,16 +49,15 @@ TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index);
 // "lobe 1", "lobe 2, red (s = 0)", "all lobes".
 std::string TableName(const FactorModel& model, Factor factor, int index);
 
-// All tables of a factor as curves: in one panel, or in one a lobe where they differ by lobe and by
-// channel. An axis holds the entries that matter, those that data were seen of and that light goes
-// through; others are dotted, and may leave it. Empty where there is no curve.
+// All tables of a factor as curves in one panel, or in one panel per lobe if they differ by lobe
+// and by channel. The axis covers observed entries through which light goes; others are dotted and
+// may leave it. Empty if there is no curve.
 std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Factor factor);
 
-// Bars of the albedos of the diffuse term and of each lobe, by channel, with their values written
-// above.
+// Bars of the albedo of the diffuse term and of each lobe, by channel, labelled with their values.
 Panel AlbedoPanel(const LobeLight& light);
 
-// DrawFactors of an anisotropic model.
+// DrawFactors for an anisotropic model.
 void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::string& path);
 
 }  // namespace trilobe
