@@ -21,33 +21,33 @@ struct AnisotropicForm {
   ModelSpec spec;
 };
 
-// Forms of at most so many parameters, `by_default` or what comes nearest to it first: each with D
-// and G on the finest nodes that keep to the budget. What another lobe or tables by channel cost is
-// saved on nodes. None are finer than those of `by_default` but where the budget is above its size,
-// nor than what data at so many directions tell apart. Throws Error where no nodes are few enough.
+// Forms of at most max_parameters parameters, first `by_default` or the nearest to it. Each has D
+// and G on the finest nodes within the budget, so one more lobe or tables by channel mean fewer
+// nodes. Nodes are not finer than the data resolve and, unless the budget exceeds the size of
+// `by_default`, not finer than its own. Throws Error if no nodes are few enough.
 std::vector<AnisotropicForm> AnisotropicForms(const ModelSpec& by_default,
                                               const HemisphereGrid& data, int max_parameters);
 
-// What another form than the default has to be ahead by [dB]: judges know the material no better
-// than that (docs/decisions/forms-of-anisotropic.md, docs/decisions/forms-of-scattered.md).
+// Lead that another form than the default needs [dB]; smaller leads are within the accuracy of the
+// judges (docs/decisions/forms-of-anisotropic.md, docs/decisions/forms-of-scattered.md).
 inline constexpr double kAhead = 0.5;
 
-// What a solver has made of one form.
+// The fit of one form.
 struct SolvedForm {
-  Objective data, solved;  // of what was measured; what the solver lowered
+  Objective data, solved;  // of the measurement; minimised by the solver
   FactorModel model;
   SolverSummary summary;
 };
 
 struct ChosenForm {
   SolvedForm form;
-  std::vector<ModelCandidate> candidates;  // in the order in which they were tried
-  int chosen = 0;                          // which of them
+  std::vector<ModelCandidate> candidates;  // in the order tried
+  int chosen = 0;                          // index of the chosen one
 };
 
-// Fits the forms after the first by `solve`, and takes the one that looks most like the measurement
-// to `judge` [dB], which is asked of canonical models; the first where none is ahead of it by half
-// a decibel. Once `stop` is true the best of those that are finished.
+// Fits the forms after the first by `solve` and returns the form with the highest score by `judge`
+// [dB], which gets canonical models; the first form if none leads it by kAhead. If stopped, chooses
+// among the finished ones.
 ChosenForm ChooseForm(const std::vector<AnisotropicForm>& forms, SolvedForm first,
                       const std::function<double(const FactorModel&)>& judge,
                       const std::function<SolvedForm(const AnisotropicForm&)>& solve,

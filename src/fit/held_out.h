@@ -12,22 +12,22 @@
 
 namespace trilobe {
 
-// A part of the samples that forms are judged by, and not fitted to: about a fifth of the blocks of
-// 2 degrees of theta_d and as much of theta_h (less near the highlight), each with all its samples.
-// A sample that is left out alone its neighbours would tell, in the dense rows of a file of few wi.
+// The held-out samples that judge forms: about a fifth of the blocks of 2 degrees of theta_d by 2
+// degrees of theta_h (less near the highlight). Whole blocks are held out because in dense rows of
+// samples neighbours predict a single sample.
 class HeldOutPart {
  public:
-  // Of these samples, which were measured; a function of the seed and their angles. Throws Error
-  // where they are too few for two parts.
+  // Splits measured samples; depends only on the seed and their angles. Throws Error for too few
+  // samples.
   HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_threads);
 
   int size() const { return held_.size(); }
 
-  // The objective without them. Its first samples are those measured, and any others a prior's,
-  // which stay.
+  // The objective without the held-out samples. Its first samples must be the measured ones; those
+  // of a prior follow and stay.
   Objective RemoveFrom(const Objective& objective) const;
 
-  // How much a model looks like the samples held out [dB] (CompareSamples).
+  // Score of a model on the held-out samples [dB] (CompareSamples).
   double Score(const FactorModel& model) const;
 
  private:
@@ -36,18 +36,18 @@ class HeldOutPart {
   BrdfSamples held_;
 };
 
-// A fit to all samples, led on by a part of them, so that it forgets the others.
+// Refits a fit of all samples to a part of them.
 FactorModel FitToPart(const Objective& part, FactorModel fitted, const StopCheck& stop);
 
-// Fewer samples than this do not tell which form of at most so many parameters is the best.
+// Least number of samples needed to choose a form of at most max_parameters parameters.
 int LeastToHoldOut(int max_parameters);
 
-// ChooseModel for samples that make no picture: forms are fitted to a part of them, judged by the
-// others, and the one that is chosen is fitted to all. `fitted`, a fit to all in canonical form, is
-// returned as it is unless another form is ahead of it by more than half a decibel, or it has more
-// parameters than there may be. Forms that reach far higher than it beyond the samples, or more
-// than four times the largest measured value between them, are not taken. `solved`: of what was
-// measured, and a prior's samples. E of candidates is of what they were fitted to.
+// ChooseModel for samples without pictures: fits forms to the kept samples, judges them by the
+// held-out ones, and fits the chosen form to all. `fitted` is a fit to all in canonical form. It is
+// returned unchanged unless it exceeds max_parameters or another form leads by more than half a
+// decibel. Forms with far larger values beyond the samples, or above four times the largest
+// measured value between them, are rejected. `solved` has the measured samples and a prior's. E of
+// a candidate is on the samples that it was fitted to.
 ChosenModel ChooseModel(const Objective& solved, const HeldOutPart& held_out,
                         const FactorModel& fitted, int max_parameters, const StopCheck& stop);
 

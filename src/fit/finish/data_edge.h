@@ -10,31 +10,30 @@
 
 namespace trilobe {
 
-// When the refit of what is left ends: once E settles, or after the first step that brings it back,
-// for a model that will be refitted anyway.
+// When the refit ends: when E settles, or at the first step within the limit on E, for a model that
+// will be refitted anyway.
 enum class TieRefit { kUntilSettled, kUntilBack };
 
-// Towards grazing angles, and most of all where a measurement ends before 90 degrees, the last
-// entries of D, F and G are read by few samples of little weight, which leave them free to trade
-// huge values against tiny ones of each other. At the bins these fit; between them, and beyond the
-// data, their products grow without bound: white rings around a sphere. This ties such entries to
-// the last one before them, and refits all parameters by a few joint steps. Tied are, at the end of
-// a table,
-// - before unobserved entries, those with less than a twentieth of the coverage of the third one
+// Ties the last entries of tables that the data hardly determine, and refits the others.
+//
+// At grazing angles, above all if a measurement ends before 90 degrees, few samples of little
+// weight read the last entries of D, F and G. Huge values of one factor can then compensate tiny
+// values of another. They fit at the bins, but between and beyond them their products grow without
+// bound: white rings around a sphere. Tied to the last entry before them are, at the end of a
+// table,
+// - before unobserved entries, those with less than a twentieth of the coverage of the third entry
 //   inwards;
-// - those from the first on, in the last third, that is five times the median of the five before
-// it. True, with the new model, if E came back to within 5 % of what it was (0.01 to 3 % are seen,
-// in samples at the very edge); false, and the model as it was, if not, or if there is nothing to
-// tie. `stop` is asked before each step of the refit: once it says so there are no more, and the
-// model is judged as it is. Throws Error for a model of another spec, or with parameters that none
-// has.
+// - in the last third, all from the first that exceeds five times the median of the five before it.
+// All parameters are refitted by a few joint steps. Returns true, with the new model, if E returns
+// to within 5 % of its old value (typically 0.01 to 3 %). Else, or with nothing to tie, returns
+// false and keeps the model. `stop` ends the refit. Throws Error for a model of another spec or
+// with invalid parameters.
 bool TieEntriesAtDataEdge(const Objective& objective, FactorModel* model,
                           const StopCheck& stop = {}, TieRefit refit = TieRefit::kUntilSettled);
 
-// The entries of a model with this coverage (Objective::coverage) that are not tied: all but those
-// that, at the end of what is observed of a table, equal the one before them, as those of a tail of
-// zeros do, and unobserved ones behind such. What moves these and expands them keeps the others
-// tied.
+// The layout of the entries that are not tied. Tied are entries at the end of the observed part of
+// a table that equal the one before them (also in a tail of zeros), and the unobserved ones behind
+// them. Fits in this layout keep them tied. coverage: Objective::coverage().
 TableLayout UntiedEntries(std::span<const double> coverage, const FactorModel& model);
 
 }  // namespace trilobe

@@ -13,15 +13,14 @@ namespace trilobe {
 struct SmoothedModel {
   FactorModel model;
   double rise = 0;       // of E, as a fraction
-  double stiffness = 0;  // lambda that leads there
+  double stiffness = 0;  // lambda that gives this model
 };
 
-// Of all models whose E is at most (1 + share) times that of `model`, or of the least E that is met
-// on the way, about the smoothest (Roughness, with a small price of a steady fall, which two tables
-// may otherwise exchange) that steps from there lead to: E + lambda E0 R is lowered with a lambda
-// that grows until E rises by as much, and light is held where it is. Along flat valleys of E,
-// where data do not choose, smoothness does. Of the models on that way, in canonical form, the
-// smoothest that is `acceptable`; nothing where none is, and where E is 0.
+// About the smoothest model whose E is at most (1 + share) times that of `model`, or of the least E
+// met on the way. Smoothness decides along flat valleys of E, where the data do not. Steps minimise
+// E + lambda E0 R, R = Roughness with a small slope term, and hold the reflectance; lambda grows
+// until E has risen by the share. Returns the smoothest model of this path, in canonical form, that
+// is `acceptable`; nothing if there is none or E is 0.
 std::optional<SmoothedModel> Smoothest(const Objective& objective, const FactorModel& model,
                                        double share,
                                        const std::function<bool(const FactorModel&)>& acceptable,

@@ -11,20 +11,19 @@
 
 namespace trilobe {
 
-// Damped Gauss-Newton steps of the exponents by which a model's lobes are stretched, with all its
-// parameters following: variable projection (Golub, Pereyra 1973). With J of the parameters x, K of
-// the exponents e and the residuals r, x follows a step of e to where E is lowest, so that the step
-// solves the normal equations of K less what J explains of it,
+// Damped Gauss-Newton steps in the stretch exponents e of a model's lobes by variable projection
+// (Golub, Pereyra 1973): the parameters x follow each step to the minimum of E. With the Jacobians
+// J of x and K of e and the residuals r,
 //   (K'K - K'J (J'J)^-1 J'K + lambda diag K'K) step = -(K'r - K'J (J'J)^-1 J'r),
-// and x moves by -(J'J)^-1 (J'r + J'K step). Parameters that are 0 and would fall stay.
+// and x moves by -(J'J)^-1 (J'r + J'K step). Parameters at 0 that would decrease stay there.
 class StretchStepper {
  public:
-  // Prepares steps from an isotropic model. For few samples: it passes over them one by one.
+  // Prepares steps from an isotropic model. Slow: use it with few samples.
   StretchStepper(const Objective& objective, const FactorModel& model);
 
-  // The model after such a step, exponents in whole hundredths, each at most `max_step` away, and
-  // x moved by the share `follow` of its own step, from 0 to 1. Lobes that share D have one stretch
-  // together. None if no exponent would move.
+  // The model after a step. Exponents are rounded to hundredths and move by at most `max_step`; x
+  // moves by the fraction `follow` (0 to 1) of its step. Lobes that share D share their stretch.
+  // Nothing if no exponent would move.
   std::optional<FactorModel> Step(double lambda, double max_step, double follow = 1) const;
 
  private:
@@ -37,11 +36,10 @@ class StretchStepper {
   std::vector<std::vector<double>> follows_;            // (J'J)^-1 of J'r, J'K_1, J'K_2 ... [free]
 };
 
-// A model whose lobes are stretched, in whole hundredths, as steps of all exponents and parameters
-// (StretchStepper, JointSteps) lead to from `fitted`, an isotropic one, and E there. For few
-// samples, of which an objective is made anew at every step; its own spec does not matter. Lobes
-// that share D have one stretch together. Once `stop` is true the best so far is returned. The same
-// bits for any number of threads, as long as it stays false.
+// Fits stretches (in hundredths) and parameters by StretchStepper and JointSteps from an isotropic
+// model `fitted`. Returns the model and its E. Builds an objective at every step, so use it with
+// few samples; the spec of `objective` is ignored. Lobes that share D share their stretch. If
+// stopped, returns the best model so far; otherwise the same bits for any number of threads.
 SteppedModel FitStretches(const Objective& objective, const FactorModel& fitted,
                           const StopCheck& stop);
 

@@ -13,11 +13,11 @@ struct NearestOpenPbr {
   SphereError error;  // of a sphere that is rendered of both
 };
 
-// Its parameters are moved, by Ceres' trust region under bounds, from some starts (a metal, a
-// dielectric, smooth and rough): first until the BRDF is near, by the cube root of rho cos theta_i
-// over half vectors, then until a small sphere is, by CIELAB; the best of these by the sphere that
-// fits are judged by. `max_theta` [rad]: directions beyond it, which were not measured, do not
-// count. Throws Error for a model that reflects nothing.
+// Finds it by Ceres' trust region under bounds from several starts (metal and dielectric, smooth
+// and rough). Each start first fits the cube root of rho cos theta_i over half vectors, then a
+// small sphere by CIELAB difference. The best one by the sphere that judges fits is returned.
+// Directions beyond `max_theta` [rad], which were not measured, do not count. Throws Error for a
+// model that reflects nothing.
 NearestOpenPbr FindNearestOpenPbr(const FactorModel& model, double max_theta,
                                   const AppearanceOptions& options);
 

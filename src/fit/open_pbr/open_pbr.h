@@ -10,9 +10,8 @@
 
 namespace trilobe {
 
-// An opaque material as renderers with fixed closures have it: parameters of OpenPBR 1.1 (Academy
-// Software Foundation 2024), each by its name there. Those that are not here keep their defaults,
-// but for coat_darkening, which is 0.
+// An opaque material in parameters of OpenPBR 1.1 (Academy Software Foundation 2024), with their
+// names. Other parameters have their defaults, except that coat_darkening is 0.
 struct OpenPbr {
   Rgb base_color = {0.8, 0.8, 0.8};
   double base_diffuse_roughness = 0;
@@ -24,27 +23,27 @@ struct OpenPbr {
   double coat_weight = 0;
   double coat_roughness = 0;
   double coat_ior = 1.6;
-  double turn = 0;  // of geometry_tangent, along which it is rougher, from x towards y [rad]
+  double turn = 0;  // angle of geometry_tangent, the rougher direction, from x towards y [rad]
 };
 
-// specular_roughness as it is seen through the coat, a rough one of which roughens what lies below.
+// specular_roughness seen through the coat; a rough coat increases it.
 double RoughnessThroughCoat(const OpenPbr& parameters);
 
-// Its BRDF as MaterialX's code for shaders has it, layer over layer, each dimmed by what the ones
-// above it reflect of the light towards the eye: coat, a GGX of a dielectric; metal, a GGX with
-// Schlick's F and a tint at 82 degrees (F82), mixed by base_metalness with a GGX of a dielectric
-// over Oren and Nayar's diffuse term that keeps its energy (EON, Portsmouth et al. 2025). GGX are
-// scaled up by what scatters more than once (Turquin 2019).
+// Its BRDF as in MaterialX's shader code. Each layer is dimmed by the albedo of the layers above it
+// in the view direction. The layers are a dielectric GGX coat over a base, which base_metalness
+// mixes from a metal (GGX with Schlick's F and an F82 tint) and a dielectric GGX over the
+// energy-preserving Oren-Nayar term (EON, Portsmouth et al. 2025). GGX terms are scaled up for
+// multiple scattering (Turquin 2019).
 class OpenPbrBrdf {
  public:
   explicit OpenPbrBrdf(const OpenPbr& parameters);
 
-  // [1/sr] of two directions; 0 where either is below the surface. Not reciprocal where there are
-  // layers, as those renderers are not.
+  // BRDF of two directions [1/sr]; 0 if either is below the surface. With layers it is not
+  // reciprocal, as in those renderers.
   Rgb operator()(const DirectionPair& pair) const;
 
  private:
-  // A GGX distribution, and what it reflects of light from some cosines on.
+  // A GGX distribution and tables of its albedo over the cosine.
   struct Ggx {
     double alpha_x = 0.1, alpha_y = 0.1, ior = 1.5;
     std::vector<double> whole, dielectric;  // albedos for F = 1 and for this IOR, [kCosines]
@@ -59,19 +58,18 @@ class OpenPbrBrdf {
   double cos_turn_ = 1, sin_turn_ = 0;
 };
 
-// What a file says about itself: for people, any text.
+// Texts for readers of a file.
 struct MaterialNotes {
-  std::string name;   // of the material; other than letters and digits become _
-  std::string made;   // what it was made of, by which program
-  std::string error;  // how far off it looks
-  std::string lost;   // against the model
+  std::string name;   // of the material; characters other than letters and digits become _
+  std::string made;   // its source and program
+  std::string error;  // its visible error
+  std::string lost;   // what it lacks of the model
 };
 
-// A document of MaterialX 1.39 with an open_pbr_surface.
+// A MaterialX 1.39 document with an open_pbr_surface.
 std::string FormatMaterialX(const OpenPbr& material, const MaterialNotes& notes);
 
-// What Blender's node Principled BSDF (4.0 and later) takes, as JSON: "inputs" by their names
-// there.
+// JSON with the "inputs" of Blender's node Principled BSDF (4.0 and later), by their names there.
 std::string FormatPrincipled(const OpenPbr& material, const MaterialNotes& notes);
 
 }  // namespace trilobe

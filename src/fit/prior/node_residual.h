@@ -9,11 +9,10 @@
 
 namespace trilobe {
 
-// Data less model at the nodes of a grid, where the data stand, and linear between them; of either
-// sign. Nothing where that does not help between the nodes, as with highlights that are narrower
-// than the grid's steps. It helps if the mean of the 16 nodes around a node, at double steps,
-// leaves less of the squares of the residual there, as E weighs them, than 0 does. Throws Error for
-// samples that stand elsewhere.
+// The residual data - model at the nodes of a grid, linear between them. Returns nothing if it does
+// not help between the nodes, as for highlights narrower than the steps of the grid. It helps if
+// the mean of the 16 nodes around a node, at double steps, predicts the residual there better than
+// 0 does, in squares weighted as in E. Throws Error for samples that are not at nodes.
 std::optional<NodeBrdf> InterpolateResidual(const FactorModel& model, const Objective& data,
                                             const HemisphereGrid& grid);
 

@@ -11,32 +11,31 @@
 
 namespace trilobe {
 
-// Starting points with one lobe less: each lobe left out, each pair of lobes merged.
+// Starting points with one lobe fewer: each lobe removed, each pair of lobes merged.
 std::vector<FactorModel> WithOneLobeLess(const FactorModel& canonical);
-// What is stored of each of these, where so much is stored of the model: a lobe of two merged ones
-// has the nodes of both.
+// The layout of each of these for a model with this layout. A merged lobe has the nodes of both.
 std::vector<TableLayout> LayoutsWithOneLobeLess(const ModelSpec& spec, const TableLayout& layout);
 
-// Starting points with one lobe more: each lobe split. None if the model has no lobe, its lobes
-// share D, or there are kMaxLobes.
+// Starting points with one more lobe: each lobe split. Empty if the model has no lobe, its lobes
+// share D, or it has kMaxLobes.
 std::vector<FactorModel> WithOneLobeMore(const FactorModel& canonical);
 
 struct FittedModel {
   FactorModel model;
   double E = 0;
-  int start = 0;  // by its number
+  int start = 0;  // index of its start
 };
 
-// Where E is to come down to, and what a step has to gain of it from there on for more to follow.
+// E to reach, and the least relative gain of a step that lets a fit go on below it.
 struct FitGoal {
   double E = 0;
   double least_gain = 1e-4;
 };
 
-// Fits a model with the objective's spec from the starting points: first on thinned samples, side
-// by side, then the best on all. Ends when E falls by little, or so slowly that it will not come
-// down to its goal, or when `stop` says so. With `layouts`, one for each start, only what is stored
-// is fitted, which is less work.
+// Fits models of the objective's spec from the starting points: all on thinned samples, in
+// parallel, then the best on all samples. Ends when E falls by little or too slowly to reach its
+// goal, or if stopped. With `layouts`, one per start, only stored parameters are fitted, which is
+// faster.
 FittedModel FitFrom(const std::vector<FactorModel>& starts, const Objective& objective,
                     const FitGoal& goal, const StopCheck& stop,
                     std::span<const TableLayout> layouts = {});

@@ -14,39 +14,40 @@
 
 namespace trilobe {
 
-// A form of a model: what it is called, where its fit begins, and what that minimises.
+// A form of a model: its name, the start of its fit, and the weighting that the fit minimises.
 struct ModelForm {
   std::string name;
   FactorModel start;
   Weighting weighting;
 };
 
-// Those with the same values that share less than a form: F by lobe, D by channel.
+// Forms that share less and start from the same values: F by lobe, D by channel.
 std::vector<ModelForm> FormsSharingLess(const ModelForm& base);
 
-// Both at once, or the one that is not so yet; nothing where both are.
+// The form with F by lobe and D by channel. Nothing if the base has both.
 std::optional<ModelForm> FormSharingNeither(const ModelForm& base);
 
-// A lobe more, the strongest one split; nothing where none can be.
+// The form with the strongest lobe split. Nothing if none can be split.
 std::optional<ModelForm> FormWithALobeMore(const ModelForm& base);
 
-// What a solver makes of few samples.
+// Fits few samples by this solver.
 FactorModel FitBySolver(const char* solver, const Objective& few, const FactorModel& start,
                         const StopCheck& stop);
 
-// Where highlights widen towards grazing a fit without stretches may let F and G cancel over many
-// decades (docs/stored-model.md), from which no stretch leads back; so a second way begins at the
-// default start. Nothing if it ends no lower on `few` than `stretched`, the way from the fit.
+// Fits stretches from the default start. If highlights widen towards grazing angles, F and G of a
+// fit without stretches may cancel over many decades (docs/stored-model.md), and stretches fitted
+// from it do not recover. Nothing unless E on `few` is lower than that of `stretched`, the result
+// from the fit.
 std::optional<SteppedModel> FitStretchesAnew(const Objective& few, const FactorModel& fitted,
                                              const FactorModel& stretched, const StopCheck& stop);
 
-// Whether the data rather have a form that shares less: a stretch may look like one. What more
-// parameters fit of few samples by chance is taken off; those of the prior tell nothing.
+// Whether a form that shares less fits better than `stretched`, since a stretch may imitate it. The
+// comparison corrects for overfitting of few samples and ignores those of the prior.
 bool SharesLess(const Objective& few, int num_measured, const FactorModel& fitted,
                 const SteppedModel& stretched, const StopCheck& stop);
 
-// Whether much of what a material reflects has a channel near 0, where a picture shows errors that
-// are small beside the mean of the channels, by which samples are weighed.
+// Whether much of the reflected light has a channel near 0. Pictures then show errors that are
+// small relative to the mean of the channels, which sets the weights of samples.
 bool IsSaturated(const BrdfSamples& samples);
 
 }  // namespace trilobe

@@ -7,21 +7,19 @@
 
 namespace trilobe {
 
-// The smallest model found that keeps within the budget (docs/pruning.md). `full` is a fit of the
-// objective and has its spec. What is returned never exceeds the budget, up to rounding (1e-12 of
-// E, and E of a fit that is exact but for rounding); if the full model does, and more lobes do not
-// help, it is the one that comes closest, and the last decision says so. With a budget of 0 nothing
-// moves, and only what is free is left out; where that is nothing, `full` comes back to the bit.
+// Returns the smallest model found within the budget (docs/pruning.md). `full` is a fit of the
+// objective, with its spec. The result never exceeds the budget, up to rounding (1e-12 of E, or E
+// of a fit that is exact but for rounding). If the full model does and more lobes do not help, the
+// result is the closest model and the last decision says so. With a budget of 0 no parameter moves
+// and only free reductions are made; without any, `full` is returned to the bit.
 //
-// Costs less than a fit by the solver `auto`; the same bits for any number of threads.
-// Where a budget is relative to an E that is practically 0, so that it allows next to nothing, the
-// first decision says so. Throws Error for a budget that is no number, or less than one stored
-// parameter.
+// Takes less time than a fit by the solver `auto`. The same bits for any number of threads. If a
+// budget is relative to an E of practically 0, the first decision says so. Throws Error for a
+// budget that is NaN or below one stored parameter.
 PrunedModel Prune(const Objective& objective, const FactorModel& full, const PruneOptions& options);
 
-// The same for a fit that had a prior: models are fitted to `with_prior`, the samples of `measured`
-// and those of the prior, and held against the budget by `measured` alone, as are all E of the
-// result.
+// The same for a fit with a prior. Models are fitted to `with_prior`, the samples of `measured` and
+// of the prior. The budget and all E of the result are of `measured` alone.
 PrunedModel Prune(const Objective& measured, const Objective& with_prior, const FactorModel& full,
                   const PruneOptions& options);
 

@@ -5,11 +5,11 @@
 
 namespace trilobe {
 
-// Goes on with the shape (what lobes and channels share) that promises the fewest parameters, or
-// the lowest E where the budget is one of parameters, once nodes are given up too.
+// Chooses the shape (what lobes and channels share) with the fewest predicted parameters after
+// thinning, or with the lowest predicted E if the budget is in parameters.
 void ChooseShape(Pruning* pruning);
 
-// Gives up nodes of the tables until the budget is spent.
+// Eliminates nodes of the tables until the budget is spent.
 void ThinTables(Pruning* pruning);
 
 }  // namespace trilobe

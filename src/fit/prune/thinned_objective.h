@@ -5,20 +5,20 @@
 
 namespace trilobe {
 
-// How many samples are left for each parameter, and of how many one at the least.
+// Samples to keep per parameter, and the largest stride.
 struct SampleThinning {
   int samples_per_parameter, max_stride;
 };
 
-// So many that what a model makes of them is nearly what it makes of all.
+// Enough samples for a fit close to that of all samples.
 inline constexpr SampleThinning kSomeSamples{.samples_per_parameter = 100, .max_stride = 24};
 
-// So few that a joint step takes hardly longer than its algebra: they tell which form E wants.
+// Few samples, to compare forms: a joint step takes hardly longer than its linear algebra.
 inline constexpr SampleThinning kFewSamples{.samples_per_parameter = 32, .max_stride = 72};
 
-// The objective of some of the samples, more at angles that few have: an entry that is read by none
-// of those left could be anything, and for all samples the model would be far off. Each counts for
-// its stride, so that E is about that of all.
+// The objective of a part of the samples. At angles with few samples more of them are kept, so that
+// every entry stays determined. Weights are multiplied by the stride, so that E is about that of
+// all samples.
 Objective ThinnedObjective(const Objective& objective, int num_parameters,
                            const SampleThinning& thinning);
 

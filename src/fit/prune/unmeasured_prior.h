@@ -7,18 +7,16 @@
 
 namespace trilobe {
 
-// What a model says where nothing was measured, for fits that go on from it: fitted to few samples,
-// thinned, or moved to another reflectance, these would be free there, and entries that hardly a
-// sample reads may take any value. It counts so little that it decides only what the data leave
-// open.
+// Samples of a model where nothing was measured. They hold fits that continue from the model (to
+// few samples, in fewer parameters, or to another reflectance) where the data do not determine
+// them. Their weight is small, so the data decide elsewhere.
 class UnmeasuredPrior {
  public:
-  // Speaks about the bins above the surface that are not among the objective's samples; where these
-  // are on no grid, about directions farther from the normal than they are. It says the same in
-  // every objective that it joins.
+  // Takes samples at the bins above the surface that the objective lacks; for samples on no grid,
+  // at directions farther from the normal than these.
   UnmeasuredPrior(const Objective& objective, const FactorModel& model);
 
-  // The objective, whose samples are some of the other's, with the prior's samples besides.
+  // Adds the samples to an objective of a part of the samples.
   Objective JoinTo(const Objective& objective) const;
 
  private:

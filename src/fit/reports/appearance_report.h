@@ -8,7 +8,7 @@
 
 namespace trilobe {
 
-// Some lines of a table, each with its newline: all, or what needs no knowledge of the method.
+// Lines of a table, each ending in a newline: all of them, or those for readers new to the method.
 std::string Describe(const AppearanceReport& report);
 std::string DescribeBriefly(const AppearanceReport& report);
 

@@ -9,15 +9,15 @@
 
 namespace trilobe {
 
-// Why bins of a measurement are left out, and how many: all reasons, the same everywhere.
+// Number of bins of a measurement left out for a reason.
 struct LeftOut {
   std::string reason;  // "below the surface"
-  std::string key;     // of the same in JSON
+  std::string key;     // in JSON
   int bins = 0;
 };
 std::vector<LeftOut> ReasonsOf(const BinCounts& counts);
 
-// "361784 below the surface, 12 lost (negative)": those that there are, or "none".
+// "361784 below the surface, 12 lost (negative)", or "none".
 std::string LeftOutText(const BinCounts& counts);
 
 // {"total": ..., "valid": ..., "below_surface": ..., ...}.

@@ -7,7 +7,7 @@
 
 namespace trilobe {
 
-// All there is to say but the verdict and the times, on standard output.
+// Prints the report without verdict and times on standard output.
 void PrintDetails(const FitReport& report);
 
 // report.json (docs/file-formats.md).

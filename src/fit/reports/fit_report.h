@@ -22,26 +22,26 @@
 
 namespace trilobe {
 
-// All that `trilobe fit` has to say about a fit.
+// The report of `trilobe fit`; members that FitResult has, too, are explained there.
 struct FitReport {
-  // Where the time of the program went [s]; summary.phases tells more of `solve`.
+  // Time of each part of the program [s]; summary.phases divides `solve`.
   struct Seconds : FitResult::Seconds {
     double read = 0;
-    double draw = 0;  // and write the other files
+    double draw = 0;  // draws pictures and writes the other files
   };
 
   FitInfo fit;
-  std::string key;                 // what a repetition has in common: FitKey
+  std::string key;                 // FitKey: equal for repetitions of a fit
   std::vector<std::string> files;  // of the run, in its folder
-  bool interrupted = false;        // by a signal: the solver, or what comes after it
+  bool interrupted = false;        // a signal ended the solver or a later step
   ModelSpec spec;
   double noise = 0;                     // of the source
   int64_t seed = 0;                     // of the fit
-  int64_t data_seed = 0;                // of what was done to the measurement
-  std::vector<std::string> data_notes;  // as in Measurement
-  BinCounts bins;                       // of the source: how many were left out, and why
+  int64_t data_seed = 0;                // of changes to the measurement
+  std::vector<std::string> data_notes;  // Measurement::notes
+  BinCounts bins;                       // of the source
   SolverSummary summary;
-  std::optional<NodeChoice> nodes;  // of those of D and G, where it was asked for
+  std::optional<NodeChoice> nodes;
   using Prior = FitResult::Prior;
   std::optional<Prior> prior;
   using Finished = FitResult::Finished;
@@ -50,32 +50,29 @@ struct FitReport {
   double black_objective = 0;  // E of the black model
   int stored_parameters = 0;
   ScoreReport score;
-  std::optional<AppearanceReport> appearance;  // none of samples on no grid, which have no picture
-  std::optional<SeenError> samples_seen;       // of these
-  // Of an isotropic model of anisotropic data: the share of the energy that the mean over all turns
-  // of the sample leaves out (AnisotropyOf).
+  std::optional<AppearanceReport> appearance;
+  std::optional<SeenError> samples_seen;
   std::optional<double> left_out;
-  std::optional<Reach> reach;  // of scattered samples
+  std::optional<Reach> reach;
   LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]
 };
 
-// What a fit has to say of itself, which is all but the source's part and the program's.
+// Fills the members that follow from a FitResult.
 void FillReport(const FitResult& fit, FitReport* report);
 
-// "822 parameters"; of thinned tables not all are stored: the others follow.
+// "822 parameters"; for thinned tables also how many are not stored.
 std::string ParametersText(const FitReport& report);
-// A line that says how large the model is where no sample says so, if that is more than somebody
-// would expect.
+// A line with the largest values of the model where there are no samples, if unexpectedly large.
 std::string ReachText(const Reach& reach);
 
 ReportedVerdict VerdictOn(const FitReport& report);
 
-// The verdict, then a few lines that need no knowledge of the method, on standard output.
+// Prints the verdict and a few lines for readers new to the method on standard output.
 void PrintSummary(const FitReport& report);
 
-// Where the time went, in parts that sum to the total.
+// Prints the times of the parts, which add up to the total.
 void PrintSeconds(const FitReport& report);
 
 }  // namespace trilobe

@@ -11,7 +11,7 @@
 
 namespace trilobe {
 
-// "along 0.5, across -0.2", or that of each lobe where they differ.
+// "along 0.5, across -0.2", or that for each lobe if they differ.
 std::string DescribeStretches(const ModelSpec& spec);
 
 // "lobe 1 62 %, lobe 2 20 %, diffuse 18 %".
@@ -21,7 +21,7 @@ std::string Describe(const LobeLight& light);
 // lobe.
 nlohmann::ordered_json ToJson(const LobeLight& light);
 
-// Directional albedo at every whole degree from 0 to 89, or to the last one that was measured.
+// Directional albedo at each degree from 0 to 89, or to the largest measured one.
 struct AlbedoTable {
   std::vector<double> theta_i;  // [rad]
   std::vector<Rgb> albedo;
@@ -30,10 +30,10 @@ struct AlbedoTable {
 // `max_theta` [rad] is the largest theta_i of interest.
 AlbedoTable TabulateAlbedo(const BrdfFunction& brdf, int num_threads, double max_theta = kPi / 2);
 
-// Some of its rows, and where each channel passes 1, on standard output.
+// Prints some rows, and where each channel passes 1, on standard output.
 void Print(const AlbedoTable& table, const std::string& title = "directional albedo");
 
-// All of it: {"theta_i_deg": [...], "red": [...], ..., "passes_one_deg": {"red": null, ...}}.
+// {"theta_i_deg": [...], "red": [...], ..., "passes_one_deg": {"red": null, ...}}.
 nlohmann::ordered_json ToJson(const AlbedoTable& table);
 
 }  // namespace trilobe

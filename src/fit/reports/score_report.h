@@ -12,15 +12,15 @@
 
 namespace trilobe {
 
-// What was compared, and what came out.
+// A comparison by `trilobe score`.
 struct Scored {
-  std::string model;  // its path
+  std::string model;  // path
   ScoreReport score;
   std::optional<AppearanceReport> appearance = {};
   ReportedVerdict verdict = {};
 };
 
-// What `score --json` prints; `objective` has the samples.
+// JSON of `score --json`; `objective` has the samples.
 nlohmann::ordered_json ToJson(const Scored& scored, const Objective& objective);
 
 }  // namespace trilobe

@@ -13,26 +13,26 @@
 
 namespace trilobe {
 
-// What a report says first.
+// The verdict at the beginning of a report.
 struct ReportedVerdict {
   SeenError seen;
-  bool of_sphere = true;  // or of samples (CompareSamples)
+  bool of_sphere = true;  // false: of samples (CompareSamples)
   Verdict verdict;
   FitFacts facts;
   std::vector<Advice> advice;
 };
 
-// Of the sphere, where there is one, or else of samples; one of the two is there.
+// Judges the sphere, or else the samples; one of the two must be given.
 ReportedVerdict MakeVerdict(const std::optional<AppearanceReport>& appearance,
                             const std::optional<SeenError>& samples, const FitFacts& facts);
 
-// A line for the verdict and one for each advice, each with its newline.
+// A line for the verdict and one for each advice, each ending in a newline.
 std::string Describe(const ReportedVerdict& reported);
 
-// Of E, what exchanged directions differ by in the data; 0 to 1.
+// Fraction of E due to differences between exchanged directions in the data, 0 to 1.
 double IrreducibleShare(const ScoreReport& score);
 
-// "5.6 %", and what it is a mean of.
+// "5.6 %" and what it is the mean of.
 std::string RelativeErrorText(double mean_relative_error);
 
 // "verdict" in report.json and of `score --json` (docs/file-formats.md).
