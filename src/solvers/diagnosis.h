@@ -11,20 +11,19 @@
 namespace trilobe {
 
 // Diagnosis::optimality: in the scale z_i = x_i |J_i|, g_i = (J'r)_i / |J_i|, the largest component
-// of the step z - max(0, z - g) of projected steepest descent, over |r|. It does not depend on the
+// of the projected steepest descent step z - max(0, z - g), over |r|. It does not depend on the
 // gauge, since scaling a parameter scales its column of J inversely.
 double ScaledProjectedGradient(const QuadraticModel& at, std::span<const double> x);
 
-// All of a Diagnosis: one pass over the data and one eigenvalue decomposition of J'J.
+// Computes a Diagnosis by one pass over the data and one eigenvalue decomposition of J'J.
 Diagnosis Diagnose(const Objective& objective, const FactorModel& model);
 
-// A sentence for the user where directions are so weak, within a factor of 10 of rank_tolerance or
-// below it, that normal equations do not determine them (docs/solvers.md); with the reason, where
-// that is too many bins of F.
+// A warning for the user if singular values are below 10 rank_tolerance, so that normal equations
+// do not determine their directions (docs/solvers.md). Names the reason if F has too many bins.
 std::optional<std::string> ConditionWarning(const Objective& objective, const Diagnosis& diagnosis);
 
-// How many directions of the F tables change no value of the data whatever D and G are: of F's bins
-// that scattered samples read, those beyond what the samples' theta_d can tell. 0 on a grid.
+// Number of directions of the F tables that change no value of the data, whatever D and G are,
+// because the theta_d of scattered samples do not resolve the bins of F. 0 on a grid.
 int UndeterminedByThetaD(const Objective& objective);
 
 }  // namespace trilobe

@@ -5,7 +5,7 @@
 
 namespace trilobe {
 
-// The paper's solver from exact sums, for what starts others; the registry lists it, too.
+// The paper's solver with exact sums. Starting points use it; the registry lists it, too.
 SolverEntry AwlsEntry();
 
 }  // namespace trilobe

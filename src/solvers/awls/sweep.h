@@ -19,8 +19,8 @@
 
 namespace trilobe {
 
-// Sweeps of AWLS (paper 2.3) over all parameters of a model, each put where E is lowest with the
-// others held, in the order d, s, D, F, G.
+// Sweeps of AWLS (paper 2.3) over all parameters of a model in the order d, s, D, F, G. Each is set
+// to the minimum of E with the others held.
 class Sweep {
  public:
   using OnElement = std::function<void(const FactorModel&)>;
@@ -30,18 +30,18 @@ class Sweep {
   // Updates every parameter once. `on_element`, if set, sees the model after each.
   virtual void operator()(const OnElement& on_element, FactorModel* model) = 0;
 
-  // Updates d, s, D, F in blocks several times, and every node of G once. The blocks, in each of
-  // which E is quadratic (SolveNonnegativeLeastSquares): d and s of one channel, then an entry of D
-  // of all lobes, then one of F. The first sweeps of a run go element by element all the same: as
-  // long as G is far off, exact blocks settle too early which lobe is what. `last` is the record of
-  // the model as it comes. `on_block`, if set, sees it after each block and node.
+  // Updates d, s, D, F in blocks several times, then every node of G once. E is quadratic in each
+  // block (SolveNonnegativeLeastSquares): d and s of one channel, an entry of D of all lobes, one
+  // of F. The first sweeps of a run go element by element, because exact blocks settle the roles of
+  // lobes too early while G is far off. `last` is the record of the given model. `on_block`, if
+  // set, sees the model after each block and node.
   void SweepInBlocks(const IterationRecord& last, const OnElement& on_block, FactorModel* model);
 
-  // Updates those blocks once, and not G. E: of the model as it comes.
+  // Updates these blocks once, but not G. E: of the given model.
   void Project(double E, FactorModel* model) { UpdateBlocks(E, 1, nullptr, model); }
 
  protected:
-  // `rounds`: how often SweepInBlocks updates the blocks.
+  // `rounds`: number of updates of the blocks in SweepInBlocks.
   explicit Sweep(int rounds) : rounds_(rounds) {}
   virtual void UpdateBlocks(double E, int rounds, const OnElement& on_block,
                             FactorModel* model) = 0;
@@ -51,13 +51,12 @@ class Sweep {
   const int rounds_;
 };
 
-// Sweeps from exact sums, on a grid: the same element updates in the same order as the reference,
-// but with one pass over the samples for d, s, D, F (CellSums) and one for each table of G
-// (ShadowingSums), instead of one for each element's share of them. Several rounds of blocks take
-// no further pass.
+// Sweeps with exact sums for samples on a grid. Makes the updates of the reference in the same
+// order, with one pass over the samples for d, s, D, F (CellSums) and one for each table of G
+// (ShadowingSums). Further rounds of blocks take no further pass.
 class GridSweep : public Sweep {
  public:
-  // The objective, which must outlive the sweep, has its samples on a grid. Times go to *phases.
+  // The objective must outlive the sweep and have samples on a grid. Adds times to *phases.
   GridSweep(const Objective& objective, PhaseSeconds* phases);
 
   void operator()(const OnElement& on_element, FactorModel* model) override;
@@ -70,13 +69,13 @@ class GridSweep : public Sweep {
   const Objective& objective_;
   PhaseSeconds* const phases_;
   CellSums cells_;
-  std::optional<ShadowingSums> shadowing_;  // once G is updated; projections do without
+  std::optional<ShadowingSums> shadowing_;  // made at the first update of G
 };
 
-// Sweeps from the samples themselves, whatever tables they read and where: the same element updates
-// in the same order as the reference. E is quadratic in d and s, in F, and in the tables of D that
-// are read by one stretch, so that one pass over the samples for each gives sums from which all of
-// its elements can be updated (BlockEquations). G goes node by node (ShadowingUpdates).
+// Sweeps for any samples. Makes the updates of the reference in the same order. E is quadratic in d
+// and s, in F, and in the tables of D read by one stretch; one pass over the samples for each of
+// these gives the sums for all of its elements (BlockEquations). G is updated node by node
+// (ShadowingUpdates).
 class SampleSweep : public Sweep {
  public:
   SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, int num_threads,
@@ -85,22 +84,21 @@ class SampleSweep : public Sweep {
   void operator()(const OnElement& on_element, FactorModel* model) override;
 
  private:
-  // Where lobes are read by different stretches, an entry of D of those that share one is a block.
+  // With several stretches, a block of D is an entry of the lobes that share one.
   void UpdateBlocks(double E, int rounds, const OnElement& on_block, FactorModel* model) override;
   void UpdateG(const OnElement& on_element, FactorModel* model) override;
 
-  // Reads and sums around the model, calls `update`, which moves it, and reads what has moved.
+  // Accumulates sums at the model, calls `update`, which moves it, and reads the moved tables.
   void UpdateFrom(BlockEquations* sums, FactorModel* model, const std::function<void()>& update);
 
   PhaseSeconds* const phases_;
   CachedLookups lookups_;
-  // Of amplitudes, of the tables of D that follow each other and are read by one stretch, and of F.
+  // Of amplitudes, of each range of tables of D that one stretch reads, and of F.
   std::vector<BlockEquations> sums_;
   ShadowingUpdates shadowing_;
 };
 
-// From exact sums where samples are on a grid (GridSweep), else from the samples (SampleSweep).
-// Times go to *phases.
+// A GridSweep if the samples are on a grid, else a SampleSweep. Adds times to *phases.
 std::unique_ptr<Sweep> MakeSweep(const Objective& objective, PhaseSeconds* phases);
 
 }  // namespace trilobe

@@ -15,10 +15,9 @@
 
 namespace trilobe {
 
-// A model's parameters x as Ceres sees them. d and s are measured in the power of two next to the
-// weighted root mean square of the data, and residuals in that next to theirs at a black model,
-// since Ceres' scaling of columns and its damping contain absolute constants. x >= 0 is kept by
-// bounds.
+// The scaled parameters of a model for Ceres, whose column scaling and damping contain absolute
+// constants. The unit of d and s is the power of two nearest to the weighted root mean square of
+// the data, that of residuals the power nearest to theirs at a black model. Bounds keep x >= 0.
 class CeresParameters {
  public:
   CeresParameters(const Objective& objective, FactorModel start);
@@ -27,12 +26,12 @@ class CeresParameters {
   double value_unit() const { return value_unit_; }        // of d and s
   double residual_unit() const { return residual_unit_; }  // E becomes E / residual_unit^2
 
-  // The starting point in Ceres' parameters, each in the place of the model's.
+  // The starting point in Ceres' parameters, in the order of the model's.
   FactorModel Start() const;
-  // The model of such parameters. Unobserved bins are the starting point's, to the last bit.
+  // The model of such parameters. Unobserved bins keep the bits of the starting point.
   FactorModel Model(FactorModel p) const;
-  // 0 <= x <= kMaxParameter, or the start if that is above, for a block of the problem that holds
-  // such parameters of the starting point.
+  // Sets 0 <= x <= kMaxParameter (or the start, if larger) for a parameter block, which must hold
+  // parameters of Start().
   void SetBounds(std::span<double> block, ceres::Problem* problem) const;
 
  private:
@@ -43,26 +42,23 @@ class CeresParameters {
   const double value_unit_, residual_unit_;
 };
 
-// What Ceres is told of a run with these options (max_iterations, trust_region, nonmonotonic), but
-// for what depends on the problem. kAuto stands for
-// kSparseNormalCholesky here. Throws Error, with Ceres' reason, where the linear solver and the
-// trust region do not go together.
+// Ceres' options for max_iterations, trust_region, nonmonotonic and a linear solver, without those
+// that depend on the problem. kAuto means kSparseNormalCholesky here. Throws Error, with Ceres'
+// reason, if the linear solver does not support the trust region.
 ceres::Solver::Options CeresOptions(const SolverOptions& options, LinearSolver linear_solver,
                                     int num_threads);
 
-// Where Ceres stands, and E there if it is known.
+// The current point of Ceres, and its E if known.
 struct CeresPoint {
   FactorModel model;
   std::optional<double> objective = std::nullopt;
 };
 
-// Makes the iterations of a run that Run::Start has begun by Ceres' trust-region minimizer from
-// where the problem's parameter blocks stand, on this thread alone where the system gives no more.
-// The problem's cost is to be E up to a constant factor. `current` makes a model of the blocks,
-// which are up to date when it is called; the run records it after each iteration of Ceres, those
-// among them whose step was taken back. The run's stopping test is the only one; where Ceres can go
-// no further before, it is kNoDecrease, with Ceres' reason in a note. Adds Ceres' times to the
-// run's phases.
+// Runs Ceres' trust-region minimizer from the values of the parameter blocks, after Run::Start.
+// Falls back to one thread if the system gives no more. The cost must be E up to a constant factor.
+// `current` returns the model of the blocks; the run records it after each iteration of Ceres, also
+// after rejected steps. Only the run's stopping test applies. If Ceres fails earlier, the reason is
+// kNoDecrease, with Ceres' message in a note. Adds Ceres' times to the run's phases.
 void MinimizeWithCeres(ceres::Solver::Options options, const std::function<CeresPoint()>& current,
                        ceres::Problem* problem, Run* run);
 

@@ -16,27 +16,27 @@
 
 namespace trilobe {
 
-// E / residual_unit^2 as a problem for Ceres: a residual block of three residuals, R, G and B, for
-// each sample; a parameter block for d, s, and each row of D, F and G (ParameterBlocks), under
-// bounds. Unobserved parameters are constant.
+// E / residual_unit^2 as a problem for Ceres: a residual block of three residuals (R, G, B) per
+// sample; a parameter block with bounds for d, s, and each row of D, F and G (ParameterBlocks).
+// Unobserved parameters are constant.
 class PlainProblem {
  public:
   explicit PlainProblem(const CeresParameters& parameters);
 
   ceres::Problem* problem() { return &problem_; }
 
-  // The linear solver that is asked for or, where that is kAuto, one for this problem.
+  // `asked`, or a linear solver for this problem if that is kAuto.
   LinearSolver Choose(LinearSolver asked) const;
 
-  // CeresOptions and what depends on the problem: the first elimination group of a Schur
-  // complement, and inner iterations. `options` names a linear solver (Choose).
+  // CeresOptions with the options that depend on the problem: the first elimination group of a
+  // Schur complement and inner iterations. The linear solver must not be kAuto (Choose).
   ceres::Solver::Options OptionsFor(const SolverOptions& options, int num_threads);
 
-  // Rows of D no two of which are read by one sample, as the first elimination group must be: all
-  // of them on a grid, about every other one where samples lie between two rows.
+  // Rows of D for the first elimination group; no sample reads two of them. All rows on a grid,
+  // about every other one if samples lie between rows.
   std::vector<int> IndependentRows() const;
 
-  // The model that the blocks hold now.
+  // The model with the current values of the blocks.
   FactorModel Model() const;
 
  private:
@@ -46,7 +46,7 @@ class PlainProblem {
   const CeresParameters& parameters_;
   ParameterBlocks blocks_;
   std::vector<int> block_numbers_;          // scratch: of one sample
-  std::set<std::pair<int, int>> together_;  // pairs of rows of D that a sample reads, ascending
+  std::set<std::pair<int, int>> together_;  // pairs of rows of D read by one sample, ascending
   ceres::Problem problem_;
 };
 

@@ -11,21 +11,21 @@
 
 namespace trilobe {
 
-// Damped steps from one point x under the bounds x >= 0: the minimiser of
+// Damped steps from a point x under the bounds x >= 0. A step s minimises
 //   g's + s'H s / 2 + lambda |S s|^2 / 2   over   x + s >= 0,
-// S a diagonal metric, by an active set: solve for the parameters that are free, hold
-// those that would go below 0 at 0, and again; then free those that want to come back
-// (Portugal, Judice, Vicente 1994: block principal pivoting). What is left of a change after the
-// last round is projected. An object keeps its storage from one point to the next.
+// with a diagonal metric S, by an active set: solves for the free parameters, holds those at 0 that
+// would go below, repeats, and releases those with a negative gradient (block principal pivoting:
+// Portugal, Judice, Vicente 1994). Violations after the last round are projected. An object keeps
+// its storage between points.
 class NonnegativeStep {
  public:
-  // `order`: in which parameters are eliminated; as they come if empty. Where those come first that
-  // have products with few others, and next to these, factors are sparse (FactorCholesky).
+  // `order`: elimination order; empty: as stored. Factors are sparse (FactorCholesky) if parameters
+  // with products with few others come first, next to these.
   explicit NonnegativeStep(int num_threads = 1, std::vector<size_t> order = {})
       : num_threads_(num_threads), order_(std::move(order)) {}
 
-  // From now on steps start from x, with this S, which is 0 for parameters that cannot move. `at`
-  // must stay as it is while they are asked for.
+  // Sets the point x and the metric S, which is 0 for fixed parameters. `at` must not change until
+  // the last step from this point.
   void MoveTo(const QuadraticModel& at, std::span<const double> metric, std::span<const double> x);
 
   struct Result {
@@ -33,10 +33,10 @@ class NonnegativeStep {
     double predicted_decrease =
         0;  // of E / 2, by the undamped model; <= 0 if there is no minimiser
   };
-  // lambda > 0. The active set of one call is the start of the next.
+  // Computes a step; lambda > 0. Starts from the active set of the last call.
   Result Solve(double lambda);
 
-  // Binding parameters, to start the next point's first call from.
+  // Binding parameters, from which the first call at the next point can start.
   const std::vector<bool>& binding() const { return binding_; }
   void SetBinding(std::vector<bool> binding) { binding_ = std::move(binding); }
 
@@ -44,7 +44,7 @@ class NonnegativeStep {
   int num_threads_;
   std::vector<size_t> order_;
 
-  // How the active set was, seen from its solution.
+  // Whether the solution confirmed the active set.
   enum class Outcome { kRight, kChanged, kIndefinite };
 
   Outcome SolveFree(double lambda, bool release);

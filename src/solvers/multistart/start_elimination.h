@@ -16,79 +16,75 @@
 
 namespace trilobe {
 
-inline constexpr double kSameE = 0.005;  // E of models that agree differ by this share at most
-
-// How many have the least E, within kSameE. Two that came there from different starts are hardly
-// there by chance.
+inline constexpr double kSameE = 0.005;  // largest relative difference of E of models that agree
+// Number of starts with the least E, within kSameE. Different starts hardly agree by chance.
 int CountAgreeing(const std::vector<StartResult>& starts);
 
-// Several starting points, fitted side by side to a thinned selection of the samples, a thread
-// each: E has many local minima, which one a start leads to cannot be told beforehand, and the
-// samples lie so dense that a fraction of them ranks the minima as all of them do.
+// Fits several starting points to thinned samples in parallel, one thread each, and eliminates the
+// worse ones. E has many local minima, and a fraction of dense samples ranks them as all do.
 class StartElimination {
  public:
-  // Makes a starting point; asked once, from any thread. Nothing if there is none, or no new one.
-  // Times may go to *phases.
+  // Makes a starting point; called once, from any thread. Returns nothing if there is none, or no
+  // new one. May add times to *phases.
   using MakeStart = std::function<std::optional<FactorModel>(PhaseSeconds* phases)>;
 
-  // Samples are left out by a stride (Thinned) of at most `max_stride`, as long as so many folded
-  // ones are left for each number of the model.
+  // The largest stride (Thinned) up to `max_stride` that leaves this many folded samples per
+  // parameter of the model.
   struct Thinning {
     int samples_per_parameter, max_stride;
   };
-  // As many samples a parameter tell the minima apart; with fewer, work that every
-  // (theta_h, theta_d) takes, however few its samples, rules the time.
+  // Enough samples to rank the minima. With fewer, the fixed work per (theta_h, theta_d) dominates.
   static constexpr Thinning kThinned{.samples_per_parameter = 25, .max_stride = 24};
-  // Every how many samples are looked at.
+  // The stride of a thinning.
   static int StrideFor(const Objective& objective, const Thinning& thinning);
 
-  // `stop` may be asked from several threads.
+  // `stop` is called from several threads.
   StartElimination(const Objective& objective, const Thinning& thinning, StopCheck stop);
   ~StartElimination();
 
-  // Goes on with about twice as many samples, if these are not all.
+  // Continues with about twice as many samples, if these are not all.
   void ThinLess();
 
-  // The selection of samples, for one thread.
+  // The thinned objective, with one thread.
   const Objective& thinned() const { return *thinned_; }
 
-  // What a start gets first of all: sweeps of AWLS, which bring its magnitudes in order.
+  // Sweeps of AWLS before the first joint step of a start, which correct its magnitudes.
   struct Sweeps {
     int count = 5;
     bool in_blocks = true;
   };
-  // With a reduction, which must outlive this, a start is one of its points, and so are all steps.
+  // Adds a start. With a reduction, which must outlive this, the start must be B y for some y, and
+  // steps are in y.
   void Enter(std::string name, MakeStart make_start, Sweeps sweeps,
              const Reduction* reduction = nullptr);
   void Enter(std::string name, MakeStart make_start) {
     Enter(std::move(name), std::move(make_start), Sweeps());
   }
 
-  // The start that entered last ranks as if its E were by this share larger.
+  // Ranks the last added start as if its E were larger by this fraction.
   void RankLastBehind(double share);
 
-  // Those that are still in go on until they have made their sweeps and then tried so many joint
-  // steps. One that has converged, or is to stop, makes no more; one that has not begun by then
-  // never does.
+  // Advances the remaining starts to a total of `tries` tried joint steps after their sweeps. A
+  // start stops earlier if it has converged or the run is to stop. A start not begun by then is
+  // never begun.
   void Advance(int tries);
 
-  // All but the best `count` leave the elimination.
+  // Eliminates all but the best `count`.
   void Keep(int count);
 
-  // The best of all that ever entered; null if there is none yet.
+  // The best model of all starts so far; null if there is none.
   const FactorModel* leader() const;
 
-  // All that started, as they rank, with E on the thinned samples as an estimate of that on all.
+  // All begun starts by rank, with E on all samples estimated from the thinned ones.
   std::vector<StartResult> Results() const;
 
-  // Summed over the candidates, which work at the same time.
+  // Times summed over the starts, which run in parallel.
   PhaseSeconds phases() const;
 
  private:
   class Candidate;
-  // Sets thinned_: one in stride_ of the samples, for one thread; on a grid, of every other
-  // (theta_h, theta_d) one in stride_ / 2 of phi_d, since a row of few samples takes as long as one
-  // of eight.
+  // Sets thinned_: one in stride_ of the samples; on a grid, one in stride_ / 2 of phi_d of every
+  // other (theta_h, theta_d), since a row of few samples takes as long as one of eight.
   void Thin();
   std::vector<Candidate*> Ranked() const;
 

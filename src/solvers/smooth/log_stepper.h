@@ -15,39 +15,38 @@
 
 namespace trilobe {
 
-// A term that is minimised beside E.
+// A term minimised in addition to E.
 class AddedTerm {
  public:
   virtual ~AddedTerm() = default;
 
   virtual double operator()(const FactorModel& model) const = 0;
-  // Makes E + this term of E, to second order around a model, in all its parameters.
+  // Adds the term to *at, the quadratic model of E at `model` in all its parameters.
   virtual void AddTo(const FactorModel& model, QuadraticModel* at) const = 0;
 };
 
-// How rough the tables of a model are: the sum of squares of second differences of their
-// logarithms y, so that neither scale nor a steady fall costs anything, or the fall `slope` times
-// the squares of first differences.
-//   R(y) = sum_tables sum_k (y_k-1 - 2 y_k + y_k+1)^2 + slope sum_k (y_k+1 - y_k)^2
-// on the MERL grid. Elsewhere divided differences stand for these, and each k counts by the width
-// around it, so that R is the integral of the squared second derivative whatever the nodes are:
-// over theta in degrees, for D over 90 sqrt(theta / 90 degrees). Of tables over azimuths it is the
-// mean over phi of that, and the mean over theta of the same along phi, periodic. Entries that no
-// data touch (coverage 0) have no part; the differences reach across them.
+// Roughness of the tables of a model: squared second differences of the logarithms y, plus `slope`
+// times squared first differences. On the MERL grid
+//   R(y) = sum_tables sum_k (y_k-1 - 2 y_k + y_k+1)^2 + slope sum_k (y_k+1 - y_k)^2.
+// R does not depend on scale; without slope, a constant decay costs nothing. On other nodes it uses
+// divided differences weighted by the width around k, so that R is the integral of the squared
+// second derivative over theta in degrees, for D over 90 sqrt(theta / 90 degrees). For tables over
+// azimuths it is the mean of this over phi plus the mean over theta of the same along phi,
+// periodic. Differences skip unobserved entries (coverage 0).
 class Roughness {
  public:
   // `coverage`: Objective::coverage().
   Roughness(const ModelSpec& spec, std::span<const double> coverage, double slope = 0);
 
-  // `log_parameters`: in the order of FactorModel::parameters(); of d, s and unobserved entries
-  // any.
+  // `log_parameters`: in the order of FactorModel::parameters(). Those of d, s and unobserved
+  // entries do not matter.
   double operator()(std::span<const double> log_parameters) const;
 
-  // Makes E + factor R of E, to second order, with *at in the logarithms.
+  // Adds factor R to *at, a quadratic model in the logarithms.
   void AddTo(double factor, std::span<const double> log_parameters, QuadraticModel* at) const;
 
-  // The values of these at which R is least, all others held; nothing where that leaves one of them
-  // free.
+  // The values of `parameters` that minimise R with all others held. Nothing if R does not
+  // determine all of them.
   std::optional<std::vector<double>> Interpolated(std::span<const int> parameters,
                                                   std::span<const double> log_parameters) const;
 
@@ -62,7 +61,7 @@ class Roughness {
     }
   };
 
-  // Along a line of parameters at these places; with a period its end meets its beginning.
+  // Adds the differences along a line of parameters at these places; periodic if period > 0.
   void AddLine(std::span<const int> parameters, std::span<const double> places, double period,
                double share);
 
@@ -70,29 +69,29 @@ class Roughness {
   std::vector<Difference> differences_;
 };
 
-// Damped Gauss-Newton steps in the logarithms y of all parameters, which lower
-//   E + lambda E0 R(y) + an added term,  E0 = Objective::MeasuredEnergy(),  R = Roughness,
-// the latter none by default, one trial step at a time. With x = exp(y),
-//   g_y = x g_x,   H_y = diag(x) J'J diag(x) + diag(max(0, x g_x)):
-// the last term, the part of the second derivative that logarithms bring in, is left out where it
-// would make H indefinite. No parameter can become 0, but nothing keeps it from coming near.
+// Damped Gauss-Newton steps in the logarithms y of all parameters, one trial step at a time, that
+// lower
+//   E + lambda E0 R(y) + added term,  E0 = Objective::MeasuredEnergy(),  R = Roughness.
+// With x = exp(y),
+//   g_y = x g_x,   H_y = diag(x) J'J diag(x) + diag(max(0, x g_x)).
+// The last term is the second derivative of the logarithm, omitted where it is negative. Parameters
+// stay positive but can approach 0.
 class LogStepper {
  public:
-  // `slope`: Roughness. Times go to *phases.
+  // `slope`: of Roughness. Adds times to *phases.
   LogStepper(const Objective& objective, PhaseSeconds* phases, double slope = 0);
 
-  // Goes on from another point, whose zeros, which no factor can move, are lifted to what is
-  // smoothest beside their neighbours or, if that is less, as far as does little to E.
+  // Moves to another point. Its zeros are lifted to the smoothest values, or less if that would
+  // change E too much.
   void Restart(const FactorModel& model);
 
   void set_stiffness(double lambda);
-  // From the next Restart on. Outlives the stepper; null: none.
+  // Takes effect at the next Restart. Must outlive the stepper; null: none.
   void set_added_term(const AddedTerm* term) { added_term_ = term; }
 
-  // Tries one step; false if it did not lower what is minimised, so that the point stayed where
-  // it was.
+  // Tries one step. Returns false, and keeps the point, if it does not lower minimised().
   bool Step();
-  // No damping leads lower.
+  // Whether the damping has reached its maximum: no step lowers minimised().
   bool exhausted() const;
 
   const FactorModel& current() const { return current_; }
@@ -116,8 +115,8 @@ class LogStepper {
   double stiffness_ = 0;
   const AddedTerm* added_term_ = nullptr;
   FactorModel current_;
-  std::vector<double> y_;    // of the tables of current_; 0 for what does not move
-  std::vector<bool> moves_;  // observed, and above 0
+  std::vector<double> y_;    // of the tables of current_; 0 for fixed parameters
+  std::vector<bool> moves_;  // observed and above 0
   double E_ = 0, roughness_value_ = 0, added_ = 0;
   bool linearized_ = false;
   QuadraticModel at_;           // of E + penalty at current_, in y

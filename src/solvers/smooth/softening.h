@@ -15,13 +15,12 @@ struct StiffnessSchedule {
   double stiffest = kStiffTables;
   double factor = 3.1622776601683795;  // sqrt(10)
   double softest = 1e-9;
-  double slope = 0;  // the price of a steady fall: Roughness
+  double slope = 0;  // of Roughness
 };
 
-// Continuation: a fit with tables so stiff that E has few minima, which then soften, each lambda
-// from where the one before ended. What is settled while tables are stiff, which lobe is what,
-// stays so. Returns where it leads from `start`, or has led when asked to `stop`. Times go to
-// *phases.
+// Continuation: first fits with tables so stiff that E has few minima, then lowers lambda, each fit
+// from the result of the one before. The roles of lobes settle while tables are stiff. Returns the
+// model reached from `start`, at the end or when stopped. Adds times to *phases.
 FactorModel Soften(const Objective& objective, const FactorModel& start,
                    const StiffnessSchedule& schedule, const StopCheck& stop, PhaseSeconds* phases);
 

@@ -10,25 +10,23 @@
 
 namespace trilobe {
 
-// The normal equations of one block of parameters x in which E is quadratic: of d and s, or of
-// tables of D or F that every sample reads once, by one stencil:
+// The normal equations of a block of parameters x in which E is quadratic: d and s, or tables of D
+// or F that every sample reads once, by one stencil:
 //   E(x + delta) - E(x) = delta'H delta + 2 g'delta,
-//   g = sum over samples and channels of w v r,  H = of w v v',  r = rho - rho*,  v = d rho / d x,
-// which AWLS solves parameter by parameter, and moves with each (ScatteredEquations has the
-// equations of all parameters). Only entries of one cell have a product in H, so it is kept cell by
-// cell. Amplitudes are tables, too: d, then s of each lobe, with an entry for each channel, which
-// is a cell of its own.
+//   g = sum w v r,  H = sum w v v'  over samples and channels,  r = rho - rho*,  v = d rho / d x.
+// AWLS solves them parameter by parameter and updates g after each (ScatteredEquations has the
+// equations of all parameters). H is stored by cells, since only entries of one cell have products.
+// Amplitudes are treated as tables: d, then s of each lobe, with one entry, and cell, per channel.
 class BlockEquations {
  public:
-  // Of the tables [first, last) of a kind, which one lookup reads; of amplitudes of all.
+  // For the tables [first, last) of a kind, which one lookup must read; for amplitudes, all.
   BlockEquations(const CachedLookups& lookups, ParameterKind kind, int first, int last);
 
-  // The sums around a model whose tables are read. The same bits for any number of threads.
+  // Sets the sums for a model whose tables have been read. The same bits for any number of threads.
   void Accumulate(const FactorModel& model);
 
-  // Puts the parameters at an entry of these tables, which ascend, where E is lowest with all
-  // others held, and moves the sums with them. E: of the model as it was read, of which more than
-  // one table needs to know (MoveToMinimum).
+  // Sets an entry of these tables (ascending) to the minimum of E with all others held, and updates
+  // the sums. E: of the model of Accumulate; needed for more than one table (MoveToMinimum).
   void Update(int entry, std::span<const int> tables, double E, FactorModel* model);
 
   ParameterKind kind() const { return kind_; }

@@ -10,17 +10,16 @@
 
 namespace trilobe {
 
-// The lookups D_t, F_t, G_t(theta_i) and G_t(theta_o) of all samples in all tables t of a model,
-// kept from sweep to sweep: a table is looked up again only when it has changed. From these follow,
-// for a batch of samples, residuals rho - rho* and slopes d rho / d lookup of one kind, without
-// reading a table (BatchEvaluator reads all, and keeps none).
+// Caches the lookups D_t, F_t, G_t(theta_i) and G_t(theta_o) of all samples in all tables t of a
+// model; only changed tables are read again. Computes residuals rho - rho* and slopes d rho / d
+// lookup of batches from them. (BatchEvaluator reads all tables and caches nothing.)
 class CachedLookups {
  public:
-  // Samples that are looked at together.
+  // Samples per batch.
   static constexpr int kBatch = 64;
 
-  // How the values of one batch move with what they read from tables of one kind. Beyond `size`,
-  // numbers are finite and mean nothing.
+  // Residuals of a batch and their slopes in the lookups of one kind. Numbers beyond the size of
+  // the batch are finite and meaningless.
   struct Batch {
     Batch(const ModelSpec& spec, ParameterKind kind);
 
@@ -37,18 +36,18 @@ class CachedLookups {
   // The samples must outlive this.
   CachedLookups(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);
 
-  // The end of the tables of D, from this one on, that are read by one stretch.
+  // The end of the range of tables of D from this one on that share a stretch.
   int EndOfStretch(int d_table) const;
 
-  // Reads all tables, or those of a factor [first, last), anew.
+  // Reads all tables, or tables [first, last) of a factor.
   void Read(const FactorModel& model);
   void Read(const FactorModel& model, Factor factor, int first, int last);
 
-  // What a table of G was read as by the first and by the second direction. [samples]
+  // Lookups of a table of G at the first and at the second direction. [samples]
   std::vector<double>& G_i(int table) { return G_i_[table]; }
   std::vector<double>& G_o(int table) { return G_o_[table]; }
 
-  // Samples [begin, end), kBatch at most, of a model with the tables that were read.
+  // Evaluates samples [begin, end), at most kBatch. The tables of the model must have been read.
   void Evaluate(int begin, int end, const FactorModel& model, Batch* batch) const;
 
   const FoldedSamples& samples() const { return samples_; }

@@ -11,10 +11,10 @@
 
 namespace trilobe {
 
-// The normal equations of samples that need not be on a grid, in all parameters x of a model:
-//   g = sum over samples and channels of w v r,  H = of w v v',  r = rho - rho*,  v = d rho / d x,
-// for Hessian::kNewton with w r d2 rho / dx dx' in H. Threads add samples to sums of their own
-// (AddNormalEquations), which are then added and put in the order of the parameters.
+// The normal equations of any samples in all parameters x of a model:
+//   g = sum w v r,  H = sum w v v',  r = rho - rho*,  v = d rho / d x
+// over samples and channels; for Hessian::kNewton H also has w r d2 rho / dx dx'. Each thread sums
+// its samples (AddNormalEquations); the sums are then added and put in the order of the parameters.
 class ScatteredEquations {
  public:
   ScatteredEquations(const FoldedSamples& samples, const ModelSpec& spec, int num_threads);

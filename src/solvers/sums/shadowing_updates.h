@@ -10,27 +10,27 @@
 
 namespace trilobe {
 
-// Updates of G by AWLS from samples on no grid, node by node. With all else held, what a table adds
-// to rho_c is a_c G_i G_o, so that of a sample's channels only two sums count,
-//   A = sum w a^2,  b = sum w a (rho* - rho),
-// and a node that moves by delta, and G_i G_o by p1 delta + p2 delta^2 with it, changes E by
-//   A p^2 - 2 b p,  p = p1 delta + p2 delta^2,  and b by -A p.
+// Updates of G by AWLS, node by node, for samples on no grid. A table contributes a_c G_i G_o to
+// rho_c, so a sample enters by two sums over its channels,
+//   A = sum w a^2,  b = sum w a (rho* - rho).
+// Moving a node by delta changes G_i G_o by p = p1 delta + p2 delta^2, E by A p^2 - 2 b p, and b by
+// -A p.
 class ShadowingUpdates {
  public:
-  // Samples that read a node: as which entry of their cells of theta_i and theta_o, -1 if not.
+  // A range of samples that read a node, and its index in their cells of theta_i and theta_o (-1:
+  // not read).
   struct Readers {
     int begin, end, i, o;
   };
 
   explicit ShadowingUpdates(CachedLookups* lookups);
 
-  // Looks at the samples, whose tables are read by this model. The same bits for any number of
-  // threads.
+  // Prepares updates of this model, whose tables must have been read into the lookups. The same
+  // bits for any number of threads.
   void Read(const FactorModel& model);
 
-  // Puts every node of a table of that model where E is lowest with the others held, and what is
-  // read of it with it; tables may follow each other. `on_element`, if set, sees the model after
-  // each.
+  // Sets every node of a table to the minimum of E with the others held, and updates the lookups.
+  // May be called for several tables in turn. `on_element`, if set, sees the model after each.
   void UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
                    FactorModel* model);
 
@@ -40,9 +40,9 @@ class ShadowingUpdates {
   CachedLookups& lookups_;
   std::vector<std::vector<Readers>> readers_;            // [node]
   std::array<std::vector<double>, kChannels> residual_;  // rho* - rho. [samples]
-  // What a table's G_i G_o is multiplied by in each channel that it serves. [tables][.][samples]
+  // Factor of a table's G_i G_o in each channel that it serves. [tables][.][samples]
   std::vector<std::vector<std::vector<double>>> a_;
-  std::vector<double> A_, b_;  // of the table that is updated. [samples]
+  std::vector<double> A_, b_;  // of the current table. [samples]
 };
 
 }  // namespace trilobe

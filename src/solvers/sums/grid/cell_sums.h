@@ -11,39 +11,38 @@
 
 namespace trilobe {
 
-// Element updates of d, s, D and F from sums over the cells (theta_h, theta_d), exact for fixed G
+// Updates of d, s, D and F from sums over the cells (theta_h, theta_d), exact for fixed G
 // (docs/sums.md).
 //
-// In one cell and channel the model is linear in a few basis functions of the sample,
+// In a cell and channel the model is linear in a few basis functions of the sample,
 //   rho = sum_a x_a phi_a,  phi_0 = 1, phi_m = K_m = G^m(theta_i) G^m(theta_o) / (cos cos),
 //   x_0 = d, x_m = s^m D^m(theta_h) F(theta_d),
-// so that E depends on its samples only through
+// so E depends on its samples only through
 //   b_a = sum w r phi_a  (r = rho* - rho, the current residual)  and  A_ab = sum w phi_a phi_b.
-// An element that moves x by delta v changes E by -2 delta v.b + delta^2 v.A.v, and b by -delta A
-// v. Several elements with directions v_k change it by delta'H delta - 2 g'delta, g_k = v_k.b and
-// H_kl = v_k.A.v_l, summed over the cells. Sums of residuals, not of measured values: they keep
-// their digits when the fit becomes good.
+// Moving x by delta v changes E by -2 delta v.b + delta^2 v.A.v, and b by -delta A v. Several
+// elements with directions v_k change E by delta'H delta - 2 g'delta, g_k = v_k.b and
+// H_kl = v_k.A.v_l, summed over the cells. Sums of residuals instead of measured values keep their
+// accuracy when the fit is good.
 class CellSums {
  public:
   CellSums(const FoldedGrid& folded, const ModelSpec& spec);
 
-  // Passes over the samples once: sets b and A of every cell and channel.
+  // Sets b and A of every cell and channel by one pass over the samples.
   void Accumulate(const FactorModel& model, int num_threads);
 
-  // Puts every element of d, s, D, F, in this order, where E is lowest with the others held, by the
-  // sums of this model. `on_element`, if set, sees the model after each.
+  // Sets every element of d, s, D, F, in this order, to the minimum of E with the others held. The
+  // sums must be of this model. `on_element`, if set, sees the model after each.
   void UpdateAll(const std::function<void(const FactorModel&)>& on_element, FactorModel* model);
 
-  // Puts blocks of elements where E is lowest with the others held (SolveNonnegativeLeastSquares),
-  // by the sums of this model: d and s of one channel, then D of one theta_h bin and all lobes,
-  // then F of one theta_d bin and all lobes; channels that share no table apart. E: of the model
-  // that Accumulate saw, which tells what the sums can resolve. `on_block`, if set, sees the model
-  // after each. The same bits for any number of threads.
+  // Likewise minimises E over blocks (SolveNonnegativeLeastSquares): d and s of one channel, then D
+  // of one theta_h bin and all lobes, then F of one theta_d bin and all lobes; channels that share
+  // no table separately. E: of the model of Accumulate, for the accuracy of the sums. `on_block`,
+  // if set, sees the model after each. The same bits for any number of threads.
   void UpdateBlocks(double E, int num_threads,
                     const std::function<void(const FactorModel&)>& on_block, FactorModel* model);
 
   int basis() const { return basis_; }  // 1 + lobes
-  // Rows of A are this far apart; what pads them is 0.
+  // Stride of the rows of A, which are padded with 0.
   int padded_basis() const { return padded_; }
   const double* b(int h, int d, int c) const {  // [basis]
     return &numbers_[static_cast<size_t>((h * folded_.grid.theta_d + d) * kChannels + c) *

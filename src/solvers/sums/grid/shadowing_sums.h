@@ -13,8 +13,8 @@
 
 namespace trilobe {
 
-// E as a function of the nodes of one G table, all else held: exact quartics for one node at a
-// time, from moments of the samples.
+// E as a function of the nodes of one G table with all else held: an exact quartic in each node,
+// from moments of the samples.
 //
 // In node weights B (B_a belongs to node a) the moments become
 //   S_ab      = sum w y r   [B_a(theta_i) B_b(theta_o) + B_b(theta_i) B_a(theta_o)],
@@ -30,7 +30,7 @@ class NodeQuartics {
  public:
   explicit NodeQuartics(int nodes);
 
-  // What one pair of knot intervals adds to S and Q, in node weights; made from its moments.
+  // Contribution of one pair of knot intervals to S and Q, in node weights, from its moments.
   // Local nodes a = 0..3 stand for interval - 1 + a; local pairs are (a, c), a <= c.
   static constexpr int kPairs = 10;
   struct CellTerms {
@@ -40,11 +40,11 @@ class NodeQuartics {
   void Transform(int interval_i, int interval_o, const SplineMoments& moments,
                  CellTerms* terms) const;
 
-  // Sums over the cells.
+  // Clear the sums over cells, and add a cell.
   void Clear();
   void Add(int interval_i, int interval_o, const CellTerms& terms);
 
-  // Puts node k, in ascending order of k or any other, where E is lowest.
+  // Sets node k to the minimum of E. Nodes may be updated in any order.
   void UpdateNode(int k, std::span<double> G);
 
  private:
@@ -71,7 +71,7 @@ class NodeQuartics {
   std::vector<double> padded_G_;  // [padded + kBand]
 };
 
-// Element updates of G from moments of spline weights, exact for fixed d, s, D, F (docs/sums.md).
+// Updates of G from moments of spline weights, exact for fixed d, s, D, F (docs/sums.md).
 //
 // With y = s D F / (cos cos), summed over the lobes that a table serves, and B_a the spline's
 // weight of node a, a change of the table from G0 to G changes a sample's value by
@@ -80,16 +80,16 @@ class NodeQuartics {
 // only through  sum w y r B_a B_b  (r the residual)  and  sum w y^2 B_a B_b B_c B_d.  The weights
 // are cubics in the place t within an interval, so these follow from 4 x 4 and 7 x 7 moments
 //   sum_C w y r t_i^k t_o^l  and  sum_C w y^2 t_i^k t_o^l,
-// which is all that the pass over the samples adds up (SplineMoments); NodeQuartics does the rest.
+// which the pass over the samples adds up (SplineMoments). NodeQuartics does the rest.
 class ShadowingSums {
  public:
   ShadowingSums(const SplineCells& samples, const ModelSpec& spec);
 
-  // Passes over the samples once: sets the sums of one table of G.
+  // Sets the sums of one table of G by one pass over the samples.
   void Accumulate(const FactorModel& model, int table, int num_threads);
 
-  // Puts every node of that table, in order, where E is lowest with all else held, by the sums of
-  // this model and table. `on_element`, if set, sees the model after each.
+  // Sets every node of that table, in order, to the minimum of E with all else held. The sums must
+  // be of this model and table. `on_element`, if set, sees the model after each.
   void UpdateTable(int table, const std::function<void(const FactorModel&)>& on_element,
                    FactorModel* model);
 
