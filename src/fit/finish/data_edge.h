@@ -19,8 +19,7 @@ enum class TieRefit { kUntilSettled, kUntilBack };
 // At grazing angles, above all if a measurement ends before 90 degrees, few samples of little
 // weight read the last entries of D, F and G. Huge values of one factor can then compensate tiny
 // values of another. They fit at the bins, but between and beyond them their products grow without
-// bound: white rings around a sphere. Tied to the last entry before them are, at the end of a
-// table,
+// bound: white rings around a sphere. At the end of a table, these are tied to the entry before:
 // - before unobserved entries, those with less than a twentieth of the coverage of the third entry
 //   inwards;
 // - in the last third, all from the first that exceeds five times the median of the five before it.

@@ -12,7 +12,7 @@
 
 namespace trilobe {
 
-// A few parameters with a factor each.
+// A linear constraint sum factor z = 0 on up to three parameters.
 struct Term {
   int row;
   double factor;
@@ -25,15 +25,15 @@ struct Constraint {
   const Term* end() const { return terms.data() + size; }
 };
 
-// The minimum of a quadratic over parameters z >= 0 some of which, Z, are held at 0 while the
-// others, F, are free; and how it answers to constraints. With the matrix A of the quadratic and
-// its gradient q / 2 at the minimum, h = (z_F, -q_Z) and
+// The minimum of a quadratic over parameters z >= 0, of which Z are held at 0 and F are free, and
+// its response to constraints. With the matrix A of the quadratic and its gradient q / 2 at the
+// minimum, h = (z_F, -q_Z) and
 //   T_FF = A_FF^-1,  T_FZ = -A_FF^-1 A_FZ,  T_ZZ = -(A_ZZ - A_ZF A_FF^-1 A_FZ),
-// the principal pivot transform of A^-1. The columns of T_FZ are how the free parameters follow one
-// of Z that is let go.
+// the principal pivot transform of A^-1. A column of T_FZ is the response of the free parameters to
+// one of Z that is released.
 class Tableau {
  public:
-  // All free. A: positive definite, column by column; it is taken over. Of no use if it is not.
+  // All parameters are free. A: by columns; not valid() unless positive definite.
   Tableau(std::vector<double> A, std::vector<double> z);
 
   bool valid() const { return valid_; }
@@ -43,23 +43,22 @@ class Tableau {
   double h(int k) const { return h_[k]; }
   void Set(int k, double h) { h_[k] = h; }
 
-  // Holds a free parameter at 0, or lets it go; the change of the minimum.
+  // Holds a free parameter at 0 or releases a held one. Returns the change of the minimum.
   double Pivot(int k);
 
-  // By how much the minimum rises if sum factor z = 0 over the terms, the first of which is let go
-  // if it is held.
+  // Rise of the minimum by a constraint. Its first parameter is released if it is held.
   double Rise(const Constraint& c) const;
 
-  // Imposes it, its first parameter being free.
+  // Imposes a constraint, whose first parameter must be free.
   void ImposeConstraint(const Constraint& c);
 
-  // Forgets a parameter that follows from others. The last one takes its place.
+  // Removes a parameter that follows from others. The last one takes its place.
   void Remove(int k);
 
  private:
-  // Changes of T are of rank one and come one by one, and each would have to go through all of its
-  // memory, while few entries are read in between. So they wait until there are some: it is
-  //   T = T_ + U V',  the columns of U and V being t and factor t of those that wait.
+  // Updates of T have rank one and would each pass over all of its memory, while few entries are
+  // read in between. So they are collected:
+  //   T = T_ + U V',  the columns of U and V being t and factor t of the waiting updates.
   static constexpr int kMaxWaiting = 16;
 
   double At(int i, int j) const {
@@ -81,11 +80,11 @@ class Tableau {
   std::vector<double> t_;
 };
 
-// A node that is given up: its entry becomes linear between those that are left (WeightsAt).
+// An eliminated node: its entry becomes linear between the remaining ones (WeightsAt).
 struct Elimination {
   Factor factor = Factor::kD;
   int table = 0, entry = 0;
-  double rise = 0;  // of E by this one and all before it, predicted, all other parameters refitted
+  double rise = 0;  // of E by this and all earlier ones, predicted with the others refitted
 };
 
 struct EliminationLimits {
@@ -94,15 +93,13 @@ struct EliminationLimits {
   ThinnedFactors may_thin = {true, true, true};
 };
 
-// In which order to give up nodes of a model that was fitted in the parameters of its layout: the
-// next one is always that which makes E rise least. `at` is the problem in all the model's
-// parameters.
+// The order in which to eliminate nodes of a model fitted in the parameters of its layout: next is
+// always the node with the least rise of E. `at` is the quadratic model in all parameters.
 //
-// E is taken for the quadratic of `at`, at whose minimum the model is taken to be. A node that
-// becomes a combination of its neighbours is a linear constraint c'y = 0; with the covariance
-// P = H^-1 of the parameters y it raises the minimum by (c'y)^2 / c'P c, and the minimum and P
-// follow by updates of rank one. Parameters at the bound 0 are held there, by pivots on the same
-// matrix (docs/pruning.md).
+// E is approximated by `at`, with the model at its minimum. A node that becomes a combination of
+// its neighbours is a linear constraint c'y = 0. With the covariance P = H^-1 of the parameters y
+// it raises the minimum by (c'y)^2 / c'P c; rank-one updates give the new minimum and P. Parameters
+// at the bound 0 are held there by pivots on the same matrix (docs/pruning.md).
 std::vector<Elimination> OrderOfElimination(const QuadraticModel& at, const FactorModel& model,
                                             const TableLayout& layout,
                                             const EliminationLimits& limits);

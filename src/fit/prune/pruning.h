@@ -24,15 +24,15 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // "no lobe", "one lobe", "2 lobes".
 std::string LobesText(int lobes);
 
-// A model on the way from the full to the pruned one, with its own objectives.
+// An intermediate model of pruning, with the objectives of its spec.
 struct PruneState {
-  std::shared_ptr<const Objective> objective;  // that its fits lower
-  std::shared_ptr<const Objective> data;       // by which it is judged; the same without a prior
+  std::shared_ptr<const Objective> objective;  // minimised by fits
+  std::shared_ptr<const Objective> data;       // judges models; the same without a prior
   FactorModel model = {};
   TableLayout layout = {};
   double E = 0;  // of the data
 
-  // `fitted`: E of the objective.
+  // E of the data for a model whose E of the objective is `fitted`.
   double Judged(const FactorModel& judged, double fitted) const {
     return data.get() == objective.get() ? fitted : data->Value(judged);
   }
@@ -42,10 +42,10 @@ struct PruneState {
   int num_parameters() const { return layout.num_parameters(spec()); }
 };
 
-// What the parts of Prune share: the budget, where the model has got to, and what was decided.
+// State shared by the parts of Prune: the budget, the current model, and the decisions.
 class Pruning {
  public:
-  // All must outlive it. `objective` has the samples of `data`, or these and a prior's.
+  // The arguments must outlive it. `objective` has the samples of `data`, or these and a prior's.
   Pruning(const Objective& data, const Objective& objective, const FactorModel& full,
           const PruneOptions& options);
 
@@ -53,46 +53,46 @@ class Pruning {
   ThinnedFactors may_thin() const { return {options_.tables, options_.tables, options_.shadowing}; }
 
   const PruneState& state() const { return state_; }
-  // Goes on from another state, without a decision; returns that which was left.
+  // Replaces the state without a decision and returns the old one.
   PruneState GoOnFrom(PruneState state) { return std::exchange(state_, std::move(state)); }
-  // With the objectives for this spec, and no model yet.
+  // A state with the objectives of this spec and no model.
   PruneState StateFor(const ModelSpec& spec) const;
-  // Of a model with all its parameters, brought to canonical form.
+  // A state with a model in canonical form that stores all parameters.
   PruneState MakeState(const ModelSpec& spec, const FactorModel& model) const;
-  // The quadratic of E at the state's model, made once for each model.
+  // The quadratic model of E at the state's model, computed once for each model.
   const QuadraticModel& Linearized();
 
-  // True where the budget is one of parameters, and E is to be low; else E has a limit.
+  // Whether the budget is in parameters and E is minimised; else E has a limit.
   bool by_parameters() const { return by_parameters_; }
   double E_full() const { return E_full_; }
-  // Whether E is 0 but for rounding, so that nothing can be relative to it.
+  // Whether E is 0 up to rounding.
   bool IsExact(double E) const;
   bool may_rise() const;  // by more than rounding
   double limit() const { return limit_; }
-  // Where E is to go, limit() or less: by a limit of the error that is known only roughly.
+  // Target of E in the search, at most limit(): an estimate of the E at which the error reaches its
+  // limit.
   double search_limit() const { return search_limit_; }
   void set_search_limit(double limit) { search_limit_ = limit; }
-  // Where E of fits is to go, of the data and of the prior's samples, for that of the data to be E.
+  // Target of E with the prior's samples that corresponds to this E of the data.
   double GoalOfFits(double E) const { return E + E_of_prior_; }
-  // Besides E: how far off the state's model is in what options() or a PSNR limit, and how far it
-  // may be; 0 where nothing but E counts.
+  // The error besides E (PruneOptions::error, or by PSNR) and its limit; 0 if only E is limited.
   bool limits_error() const { return error_ != nullptr; }
   double ErrorOf(const PruneState& state) const { return error_ ? error_(state) : 0; }
   double full_error() const { return full_error_; }
   double max_error() const { return max_error_; }
-  // The true test, of E and error.
+  // Whether a state's E and error are within the budget.
   bool KeepsToBudget(const PruneState& state) const;
-  // E against the full model's, in words.
+  // Text that compares E with the full model's.
   std::string CompareWithFull(double E, bool within) const;
 
   void Record(std::string what, const PruneState& next, bool taken, std::string why);
-  // Records it, and goes on from there if it is taken; returns whether.
+  // Records a decision and, if `taken`, replaces the state. Returns `taken`.
   bool Decide(std::string what, PruneState next, bool taken, std::string why);
   const std::vector<PruneDecision>& decisions() const { return decisions_; }
-  // The state's model in canonical form, or the full one as it is if nothing was left out; and how
-  // it came about.
+  // The state's model in canonical form, or the full model unchanged if nothing was left out, with
+  // the decisions.
   PrunedModel Result(LobeOrder order) const;
-  // Decisions that led to nothing better.
+  // Marks decisions [begin, end) as not taken, since they led to nothing better.
   void Withdraw(size_t begin, size_t end, const std::string& why);
 
  private:

@@ -12,31 +12,30 @@
 
 namespace trilobe {
 
-// Of which factors entries may be left out: D, F, G.
+// Whether entries of D, F and G may be left out.
 using ThinnedFactors = std::array<bool, 3>;
 
-// What must be stored of a model, of what `stored` has or of all: not the entries that no data
-// touch and, with `drop_equal`, not those within a run of equal values. Of each table one entry is
-// kept at least. coverage: of each number of the model (Objective::coverage).
+// The part of `stored` (or of all entries) that must be stored: without unobserved entries and,
+// with `drop_equal`, without those inside runs of equal values. Keeps at least one entry per table.
+// coverage: Objective::coverage().
 TableLayout NeededLayout(const FactorModel& model, TableLayout stored,
                          std::span<const double> coverage, const ThinnedFactors& may_thin,
                          bool drop_equal);
 TableLayout NeededLayout(const FactorModel& model, std::span<const double> coverage,
                          const ThinnedFactors& may_thin, bool drop_equal);
 
-// What lobes and channels share, whatever nodes the tables have.
+// What lobes and channels share, regardless of the nodes of the tables.
 struct ModelShape {
-  std::string name;  // what is shared that was not; empty for a model's own shape
+  std::string name;  // names the additional sharing; empty for a model's own shape
   ModelSpec spec;
   bool coloured_d = true, coloured_s = true;
   bool constant_G = false;
 };
 
-// The layout with the shape's colour, and its G.
+// The layout with the colour and G of the shape.
 TableLayout LayoutOf(const ModelShape& shape, TableLayout layout);
 
-// The model's own shape, and those that share more of what may be shared; the one with the fewest
-// parameters first.
+// The model's own shape and all permitted shapes that share more, with the fewest parameters first.
 std::vector<ModelShape> ShapesWithin(const ModelSpec& spec, const TableLayout& layout, bool colour,
                                      bool shadowing);
 

@@ -8,19 +8,19 @@
 #include "fit/scene/material_fit.h"
 #include "fit/scene/scene_file.h"
 
-// Fits as entries of the cache: their keys, and what is kept, in JSON.
+// Fits in the cache: their keys, and their content as JSON.
 namespace trilobe {
 
-// All that a fit with nothing left out depends on. `source_hash`: ContentHash of what the source
-// holds. `purpose` keeps fits apart that are to be timed apart.
+// Key of a full fit: everything that it depends on. `source_hash`: ContentHash of the source.
+// `purpose` separates fits that are timed separately.
 std::string FullFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
                        const std::string& source_hash, const std::string& purpose);
-// The same of the fit as it is pruned for the scene.
+// Key of the fit pruned for the scene.
 std::string MaterialFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
                            const std::string& source_hash);
 
-// What is under the key, if it can be decoded. Entries of another version of the program have other
-// keys, so one that cannot is a defect, or somebody's work; it is made again.
+// The cached fit of a key. Nothing if there is none or it cannot be decoded; it is then made again.
+// Another version of the program has other keys.
 std::optional<FullFit> CachedFullFit(const FitCache& cache, const std::string& key);
 std::optional<MaterialFit> CachedMaterialFit(const FitCache& cache, const std::string& key);
 

@@ -12,13 +12,13 @@
 
 namespace trilobe {
 
-// Which directions occur in a scene, in one of four forms. The model does not tell a pair of
-// directions from the same pair exchanged. So ranges and lists that use one of two bins that fold
-// into one (docs/sums.md) use the other, too; a histogram counts each bin by itself.
+// Directions that occur in a scene, in one of four forms. The model is reciprocal, so ranges and
+// lists that use one of two folded bins (docs/sums.md) use the other, too. A histogram counts each
+// bin separately.
 
 struct AllDirections {};
 
-// Polar angles [rad] of the two directions; one of them lies in each range, whichever it is.
+// Ranges of the polar angles [rad] of the two directions, in either order.
 struct DirectionRanges {
   struct Range {
     double min = 0, max = kPi / 2;
@@ -26,14 +26,13 @@ struct DirectionRanges {
   Range theta_i, theta_o;
 };
 
-// Single pairs of directions. Each uses the eight bins between whose centres it lies, out of which
-// its value is interpolated.
+// Pairs of directions. Each uses the eight bins from which its value is interpolated.
 struct DirectionList {
   std::vector<HalfDiffAngles> directions;
 };
 
-// How often each bin of a measurement's grid was read, as a renderer counted. A count weights its
-// bin; bins with 0 are not used.
+// Counts by a renderer of how often each bin of a measurement's grid was read. They weight the
+// bins; bins with 0 are not used.
 struct DirectionHistogram {
   std::string source;  // for messages
   MerlGrid grid;
@@ -43,17 +42,17 @@ struct DirectionHistogram {
 using SceneDirections =
     std::variant<AllDirections, DirectionRanges, DirectionList, DirectionHistogram>;
 
-// Three int32, the numbers of theta_h, theta_d and phi_d bins, and then a float64 for each bin, in
-// the order of a plane of a MERL file, all little-endian. Throws Error that names `source`.
+// Parses three int32 (numbers of theta_h, theta_d and phi_d bins), then a float64 per bin in the
+// order of a plane of a MERL file, little-endian. Throws Error that names `source`.
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source);
 
-// The samples that are used, with their multiplicity: that of the histogram, scaled to a mean of 1,
-// which keeps E comparable with that of an unweighted fit. Throws Error if none is left, or if a
-// histogram is on another grid than the samples.
+// The used samples with their multiplicity. That of a histogram is scaled to a mean of 1, which
+// keeps E comparable with an unweighted fit. Throws Error if none is left, or if a histogram is on
+// another grid than the samples.
 BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions);
 
-// The largest polar angle of either direction that a scene sees of a table [rad]: the bound of
-// ranges, and of lists and histograms that of the farthest bin among `used`, at its edge.
+// The largest polar angle of a direction of a table that a scene uses [rad]: the bound of ranges;
+// for lists and histograms the edge of the farthest bin in `used`.
 double LargestAngle(const SceneDirections& directions, const BrdfSamples& used);
 
 }  // namespace trilobe

@@ -7,32 +7,31 @@
 
 namespace trilobe {
 
-// A folder of results that can be had again at the cost of time: a file each, named by the hash of
-// a key, which is to say everything that the result depends on. Any of the files, or all, may be
-// deleted at any time. Each is written under a temporary name and then renamed, holds its key, and
-// begins with a hash, so several processes can share the folder, and a file that is torn, cut off,
-// edited, or put in the place of another counts as none.
+// A folder of cached results, one file each, named by the hash of a key that contains everything
+// that the result depends on. Files may be deleted at any time and several processes may share the
+// folder: files are written under a temporary name and renamed, and begin with a hash and their
+// key. Truncated, edited or swapped files are ignored.
 class FitCache {
  public:
   // A cache that keeps nothing.
   FitCache() = default;
-  // Makes the folder. Throws Error if that fails.
+  // Creates the folder. Throws Error if that fails.
   explicit FitCache(const std::string& folder);
 
-  // Nothing unless this very content was kept under this key.
+  // The content of a key, or nothing.
   std::optional<std::string> Find(std::string_view key) const;
 
-  // Where this fails, as on a full disk, the content is not kept, and that is all.
+  // Stores the content of a key. Failures, such as a full disk, are ignored.
   void Keep(std::string_view key, std::string_view content) const;
 
-  // The file of a key, whether there is one or not.
+  // The path of a key's file, which need not exist.
   std::string PathOf(std::string_view key) const;
 
  private:
   std::string folder_;
 };
 
-// $XDG_CACHE_HOME/trilobe, or ~/.cache/trilobe; empty where neither is known.
+// $XDG_CACHE_HOME/trilobe, or ~/.cache/trilobe; empty if neither is known.
 std::string DefaultCacheFolder();
 
 }  // namespace trilobe

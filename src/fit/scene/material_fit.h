@@ -16,7 +16,7 @@
 
 namespace trilobe {
 
-// How the materials of a scene are fitted, before anything is left out.
+// Settings of the full fits of a scene's materials.
 struct SceneFitSettings {
   std::string solver;
   SolverOptions options;  // stop is replaced
@@ -30,25 +30,24 @@ struct SceneFitSettings {
   double min_theta_d_deg = -1;
   bool extrapolated = false;
   std::string program;  // "trilobe 0.1.0", for model files
-  std::string build;    // and which build of it: what another one has fitted is not reused
-  // By which budgets of appearance are judged, and verdicts, if there are to be any; threads are
-  // replaced.
+  std::string build;    // build of the program; fits of another build are not reused
+  // For budgets of appearance and verdicts; num_threads is replaced.
   AppearanceOptions appearance;
   bool verdicts = false;
   FitCache cache;
-  // Asked after each iteration, from several threads; true to stop and keep nothing.
+  // Called after each iteration, from several threads. Return true to stop and keep nothing.
   StopCheck stop = {};
 };
 
-// What a fit reaches on the samples that a scene uses.
+// Score of a fit on the samples that a scene uses.
 struct SceneScore {
   double objective = 0;  // E
   double psnr_db = 0;
-  // Of its sphere, as the scene sees it, where the budget is one of look or there is a verdict.
+  // Of the sphere as the scene sees it; given for a budget of appearance or a verdict.
   std::optional<double> mean_delta_e = std::nullopt, sphere_psnr_db = std::nullopt;
 };
 
-// By how much of it E is higher, 0.01 for 1 %; 0 where there is nothing to be relative to.
+// Relative rise of E, 0.01 for 1 %; 0 if E of the full fit is 0.
 inline double RelativeRise(const SceneScore& full, const SceneScore& pruned) {
   return full.objective > 0 ? pruned.objective / full.objective - 1 : 0;
 }
@@ -60,10 +59,10 @@ struct FullFit {
   bool from_cache = false;
 };
 
-// What parameters take in memory [bytes].
+// Memory of parameters [bytes].
 inline int BytesOf(int parameters) { return parameters * static_cast<int>(sizeof(double)); }
 
-// What a material needs.
+// The fit of a material of a scene.
 struct MaterialFit {
   std::string name;
   std::vector<std::string> data_notes;  // as in Measurement
@@ -71,11 +70,10 @@ struct MaterialFit {
   int used_samples = 0;                 // of these, by the fit
   int full_parameters = 0;
   SceneScore full, pruned;
-  // What a person would see of the pruned model, as the scene sees it (Words); empty unless asked
-  // for.
+  // Visible difference of the pruned model in the scene (Words); empty without `verdicts`.
   std::string verdict;
-  ModelFile file;          // the pruned model, and how the full one came about
-  int num_parameters = 0;  // that it stores
+  ModelFile file;          // the pruned model, with the fit information of the full one
+  int num_parameters = 0;  // stored
   std::vector<PruneDecision> decisions;
   double fit_seconds = 0, prune_seconds = 0;  // when they were made
   bool fit_from_cache = false, prune_from_cache = false;

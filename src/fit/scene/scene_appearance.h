@@ -20,35 +20,34 @@ BrdfSamples LuminanceOf(BrdfSamples samples);
 // sum_C y_C s_C F_C, so D and G must be shared by the channels; throws Error if they are not.
 FactorModel LuminanceOf(const FactorModel& model);
 
-// How a model looks beside its measurement, on the sphere of docs/appearance.md, as far as a scene
-// sees that: in its channels and, of a table, from its directions alone.
+// Visible difference of a model and its measurement on the sphere of docs/appearance.md, limited to
+// the channels and, for a table, the directions that a scene uses.
 class SceneAppearance {
  public:
-  // Throws Error where scattered samples stand on no grid, as these make no picture.
+  // Throws Error for scattered samples on no grid, which cannot be rendered.
   SceneAppearance(const SceneMaterial& material, Measurement measured,
                   const AppearanceOptions& options);
   SceneAppearance(const SceneAppearance&) = delete;
   SceneAppearance& operator=(const SceneAppearance&) = delete;
 
-  // Throws Error where no pixel shows a direction that the scene uses: what is left out there would
-  // not be seen.
+  // Throws Error if no pixel shows a direction that the scene uses.
   void CheckShowsSomething() const;
 
-  // As `trilobe fit` tells it.
+  // The error as `trilobe fit` reports it.
   SphereError Compare(const FactorModel& model) const;
-  // On a quarter of the pixels, in a quarter of the time.
+  // The same on a quarter of the pixels, in a quarter of the time.
   SphereError CompareQuickly(const FactorModel& model) const;
 
  private:
   const Measurement seen_;
   const PictureData pictured_;
   const AppearanceOptions options_;
-  std::optional<SphereJudge> judge_;  // of a table
+  std::optional<SphereJudge> judge_;  // for a table
 };
 
-// PruneOptions::error of a budget of appearance: mean Delta E, or 10^(-PSNR/20).
+// PruneOptions::error for a budget of appearance: mean Delta E, or 10^(-PSNR/20).
 double ErrorIn(SceneBudget::Unit unit, const SphereError& error);
-// The same of the budget's amount.
+// PruneOptions::max_error for a budget of appearance, in the same unit.
 double MaxError(const SceneBudget& budget);
 
 }  // namespace trilobe

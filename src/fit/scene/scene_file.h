@@ -11,25 +11,24 @@ namespace trilobe {
 
 enum class SceneChannels { kRgb, kLuminance };
 
-// What may be given up, in one of six units.
+// Error or cost that a pruned model may have, in one of six units.
 struct SceneBudget {
   enum class Unit {
-    kRelativeRise,  // of E, over that of the fit with nothing left out; 0.01 is 1 %, and below 0
-                    // E is to fall, by more lobes
-    kPsnrDrop,      // [dB], below that of the fit with nothing left out; below 0 it is to rise
-    kMeanDeltaE,    // of the sphere beside the measured one, at most (SphereError)
-    kSpherePsnr,    // of the same [dB], at least
-    kBytes,         // that the parameters of the model may take, 8 each
-    kSeconds,       // of fitting and leaving out
+    kRelativeRise,  // of E over the full fit, 0.01 for 1 %; below 0, E must fall, by more lobes
+    kPsnrDrop,      // below the full fit [dB]; below 0, PSNR must rise
+    kMeanDeltaE,    // largest, of the sphere (SphereError)
+    kSpherePsnr,    // least, of the sphere [dB]
+    kBytes,         // of the model's parameters, 8 each
+    kSeconds,       // of fitting and pruning
   };
   Unit unit = Unit::kRelativeRise;
   double amount = 0.01;
 
-  // Of how the model looks beside its measurement.
+  // Whether the unit is one of the sphere.
   bool of_appearance() const { return unit == Unit::kMeanDeltaE || unit == Unit::kSpherePsnr; }
 };
 
-// Which kinds of things may be left out.
+// Permitted reductions.
 struct SceneReductions {
   bool lobes = true;
   bool colour = true;
@@ -40,7 +39,7 @@ struct SceneReductions {
 
 // A material with the scene's defaults filled in.
 struct SceneMaterial {
-  std::string name;  // unique, and fit to be the name of a file
+  std::string name;  // unique and valid as a file name
   std::string
       source;  // a path that exists, of a measurement or of a model, synth: or material:NAME
   SceneDirections directions;
@@ -55,14 +54,13 @@ struct Scene {
   std::vector<SceneMaterial> materials;
 };
 
-// A scene file is JSON; docs/scene.md is its schema. Sources and histograms with a relative path
-// are looked for beside the scene file. Throws Error "FILE: /JSON/POINTER: what is wrong and what
-// to do", also for unknown and repeated keys, for sources that do not exist, and for bad
-// histograms.
+// Parse a scene file: JSON by the schema of docs/scene.md. Relative paths of sources and histograms
+// start at the folder of the scene file. Throw Error "FILE: /JSON/POINTER: what is wrong and what
+// to do", also for unknown and repeated keys, missing sources, and bad histograms.
 Scene ParseScene(std::string_view text, const std::string& path);
 Scene ReadScene(const std::string& path);
 
-// The files that a scene takes its content from: its own, sources and histograms.
+// All input files of a scene: its own, sources and histograms.
 std::vector<std::string> FilesOf(const Scene& scene);
 
 }  // namespace trilobe

@@ -13,32 +13,32 @@
 
 namespace trilobe {
 
-// Fits a material as the scene limits it, and leaves out what its budget allows. Nothing if it was
-// stopped. The same bits for any number of threads, unless seconds are the budget or a limit.
-// Throws Error.
+// Fits a material on the directions and channels of the scene and prunes it to its budget. Returns
+// nothing if stopped. The same bits for any number of threads, unless seconds are the budget or a
+// limit. Throws Error.
 std::optional<MaterialFit> FitMaterial(const SceneMaterial& material,
                                        const SceneFitSettings& settings, int num_threads);
 
-// What became of a material: a fit, or why there is none; neither if it was stopped.
+// Outcome for a material: a fit or an error; neither if stopped.
 struct MaterialResult {
   std::optional<MaterialFit> fit;
   std::string error;
 };
 
-// All materials side by side, a thread each, to which come the threads that have no material left.
-// `on_done` sees each when it is finished, one at a time; an Error that it throws counts as the
-// material's. One that fails does not stop the others.
+// Fits all materials in parallel, one thread each; idle threads join those that remain. `on_done`
+// is called with each finished material, one call at a time; an Error that it throws counts as the
+// material's. A failed material does not stop the others.
 std::vector<MaterialResult> FitScene(const Scene& scene, const SceneFitSettings& settings,
                                      int num_threads,
                                      const std::function<void(const MaterialFit&)>& on_done);
 
-// What one would do without a scene: the material as a whole, in all directions and in RGB, on all
-// threads, with the diagnosis that `trilobe fit` makes. Timed for itself, so a fit of FitScene is
-// not reused. Nothing if it was stopped.
+// Fits a material as without a scene: all directions, RGB, all threads, with the diagnosis of
+// `trilobe fit`. Does not reuse a fit of FitScene, so that its time is its own. Returns nothing if
+// stopped.
 std::optional<FullFit> FitWhole(const SceneMaterial& material, const SceneFitSettings& settings,
                                 int num_threads);
 
-// How well any models do on the samples that the scene uses of the material, which is read once.
+// Scores of models on the samples of the material that the scene uses. Reads the material once.
 std::vector<SceneScore> ScoreOnScene(std::span<const FactorModel> models,
                                      const SceneMaterial& material,
                                      const SceneFitSettings& settings, int num_threads);

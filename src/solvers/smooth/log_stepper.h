@@ -69,8 +69,7 @@ class Roughness {
   std::vector<Difference> differences_;
 };
 
-// Damped Gauss-Newton steps in the logarithms y of all parameters, one trial step at a time, that
-// lower
+// Damped Gauss-Newton steps in the logarithms y of all parameters, one trial step at a time, on
 //   E + lambda E0 R(y) + added term,  E0 = Objective::MeasuredEnergy(),  R = Roughness.
 // With x = exp(y),
 //   g_y = x g_x,   H_y = diag(x) J'J diag(x) + diag(max(0, x g_x)).

@@ -12,10 +12,10 @@
 
 namespace trilobe {
 
-// The products in J'J of the nodes of G with each other, from one pass over the cells (knot
-// interval of theta_i, knot interval of theta_o); see docs/sums.md.
+// The products of nodes of G in J'J, from one pass over the cells (knot interval of theta_i, knot
+// interval of theta_o); see docs/sums.md.
 //
-// With y_t = sum s D F / (cos cos) over the lobes that table t serves, a node k of t moves rho by
+// With y_t = sum s D F / (cos cos) over the lobes that table t serves, d rho / d node k of t is
 //   y_t (B_k(theta_i) G_t(theta_o) + G_t(theta_i) B_k(theta_o)).
 // In a cell B and G are cubics, so the products of two nodes of tables t, u need only the moments
 // of degree 6 of  sum_C w y_t y_u  (SplineMoments::second): one set for each pair of tables. The
@@ -27,7 +27,7 @@ class JointShadowing {
   JointShadowing(const SplineCells& samples, const ModelSpec& spec);
   ~JointShadowing();
 
-  // Sets the upper triangle's rows of G, which were 0, and the squared lengths of their columns.
+  // Sets the rows of G of the upper triangle (0 before) and the squared lengths of their columns.
   // The same bits for any number of threads.
   void Evaluate(const FactorModel& model, Hessian hessian, int num_threads, QuadraticModel* result);
 
