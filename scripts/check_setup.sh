@@ -87,8 +87,9 @@ chmod 755 "$ninja"
   log_dir="$root/a folder/log"
   progress_seconds=1
   slowly four "$ninja" 0 >"$root/told"
-  for made in "1 of 4" "2 of 4" "3 of 40"; do
-    grep -q "$made done; at this pace [0-9]* s to go" "$root/told" || die "$(cat "$root/told")"
+  # A time of builds alone, as the tests that come first take the longest.
+  for told in "1 of 4 done; at this pace [0-9]* s to go" "2 of 4 done; at this pace [0-9]* s to go" "3 of 40 done"; do
+    grep -q "$told\$" "$root/told" || die "$(cat "$root/told")"
   done
   diff - "$log_dir/four.log" <<'END'
 [1/4] Building one.o
