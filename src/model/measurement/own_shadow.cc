@@ -103,8 +103,9 @@ OwnShadow FindOwnShadow(const BrdfSamples& samples) {
     return found;
   };
   int end = kLitDegrees;
-  while (end > kShadowedDegrees && InterpolatedQuantile(1 - kBrightShare, below(end)) > kBright)
+  while (end > kShadowedDegrees && InterpolatedQuantile(1 - kBrightShare, below(end)) > kBright) {
     --end;
+  }
   constexpr double kMost = 1000;  // where nothing is left of it
   return {.theta_d_deg = static_cast<double>(end),
           .darker = std::min(kMost, 1 / std::max(ratio, 1 / kMost))};
