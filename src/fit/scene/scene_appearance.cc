@@ -105,7 +105,8 @@ void SceneAppearance::CheckShowsSomething() const {
   const auto differs_from = [this](double diffuse) {
     FactorModel model(ModelSpec::SharedFactors(0));
     std::ranges::fill(model.d(), diffuse);
-    return Compare(model).mean_delta_e > 0;
+    // What some of the pixels show, all of them do.
+    return CompareQuickly(model).mean_delta_e > 0 || Compare(model).mean_delta_e > 0;
   };
   if (differs_from(0) || differs_from(0.1)) return;
   throw Error(seen_.source +

@@ -5,25 +5,13 @@
 
 #include <string>
 
+#include "tests/core/files/first_bytes.h"
 #include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using Kind = Content::Kind;
-
-// ASCII text in UTF-16, after `mark`.
-std::string Utf16(const std::string& mark, const std::string& text, bool little_endian) {
-  std::string wide = mark;
-  for (const char c : text) {
-    wide.push_back(little_endian ? c : '\0');
-    wide.push_back(little_endian ? '\0' : c);
-  }
-  return wide;
-}
-
-const std::string kJson =
-    "{\"format\": \"trilobe-model\", \"version\": 1, \"kind\": \"isotropic\"}";
 
 void Check(const std::string& bytes, Kind kind, const std::string& name) {
   const Content content = RecogniseContent(bytes);

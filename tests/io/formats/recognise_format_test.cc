@@ -8,6 +8,7 @@
 
 #include "core/files/content.h"
 #include "io/pictures/image_file.h"
+#include "tests/core/files/first_bytes.h"
 #include "tests/test_directory.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
@@ -16,19 +17,6 @@ namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
 using testing::StartsWith;
-
-// ASCII text in UTF-16, after `mark`.
-std::string Utf16(const std::string& mark, const std::string& text, bool little_endian) {
-  std::string wide = mark;
-  for (const char c : text) {
-    wide.push_back(little_endian ? c : '\0');
-    wide.push_back(little_endian ? '\0' : c);
-  }
-  return wide;
-}
-
-const std::string kJson =
-    "{\"format\": \"trilobe-model\", \"version\": 1, \"kind\": \"isotropic\"}";
 
 // By name; "" where no format knows the bytes.
 std::string FormatOf(const std::string& bytes) {

@@ -106,7 +106,7 @@ FactorModel OnBounds(FactorModel model) {
 // It hands out Eigen matrices of the Ceres library, which Eigen cannot free in a program under
 // AddressSanitizer.
 TEST(Lm, PassesTheGradientCheckerOfCeres) {
-  if (kSanitized) GTEST_SKIP();
+  if (kSanitized) GTEST_SKIP() << "Ceres hands out memory that a sanitizer did not see";
   for (const int lobes : {0, 1, 2}) {
     FactorModel start;
     const Objective objective = NoisyObjective(kGrid, lobes, &start);

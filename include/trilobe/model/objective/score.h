@@ -30,8 +30,8 @@ struct ScoreReport {
   // latter is 0 for a black measurement.
   double objective = 0;
   double relative_objective = 0;
-  double irreducible_objective =
-      0;  // Objective::IrreducibleEnergy; 0 where two tables are compared
+  // Objective::IrreducibleEnergy; 0 where two tables are compared.
+  double irreducible_objective = 0;
 
   // Root mean square of rho - rho* [1/sr], over all channels and per channel.
   double rmse = 0;
