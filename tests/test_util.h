@@ -24,9 +24,13 @@ namespace trilobe {
 
 // Whether a sanitizer makes this about ten times slower: tests do less of the same.
 #if defined(__has_feature)  // clang
-inline constexpr bool kSanitized =
-    __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define TRILOBE_SANITIZED 1
+#endif
 #elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TRILOBE_SANITIZED 1
+#endif
+#if defined(TRILOBE_SANITIZED)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

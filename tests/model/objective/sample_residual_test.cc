@@ -18,7 +18,7 @@
 
 // Counts what this thread allocates in this program. The sanitizers have operators of their own.
 static thread_local int allocations = 0;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(TRILOBE_SANITIZED)
 [[gnu::noinline]] void* operator new(size_t size) {
   ++allocations;
   if (void* const memory = std::malloc(size)) return memory;
