@@ -25,7 +25,7 @@ step "Running it"
 run_tests tsan
 
 step "Building a shared library with the address and undefined-behaviour sanitizers"
-configure asan-ubsan
+configure asan-ubsan -DTRILOBE_BUILD_APP=ON
 build asan-ubsan
 step "Running the tests with them, the longest and those of the program included"
 run_tests asan-ubsan-long
