@@ -35,11 +35,13 @@ SceneFitSettings Settings(const FitCache& cache = {}) {
   return settings;
 }
 
-// The directions that a floor seen from above uses; few, for speed.
+constexpr MerlGrid kGrid{.theta_h = 30, .theta_d = 30, .phi_d = 60};
+
+// The directions that a floor seen from above uses; few, and of a small table, for speed.
 SceneMaterial Material(const std::string& synth) {
   SceneMaterial material;
   material.name = synth;
-  material.source = "synth:" + synth;
+  material.source = "synth:" + synth + "@30x30x60";
   material.directions = DirectionRanges{{0, 0.4}, {0, 0.4}};
   return material;
 }
@@ -68,7 +70,7 @@ TEST(FitMaterial, KeepsWithinTheBudgetAndSaysWhatItDid) {
   const auto fit = FitMaterial(Material("felt"), Settings(), 1);
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->name, "felt");
-  EXPECT_EQ(fit->full_parameters, ModelSpec::SharedFactors(1).num_parameters());
+  EXPECT_EQ(fit->full_parameters, ModelSpec::SharedFactors(1, kGrid).num_parameters());
   EXPECT_LT(fit->num_parameters, fit->full_parameters);
   EXPECT_LT(fit->used_samples, fit->valid_samples);
   EXPECT_LE(fit->pruned.objective, 1.01 * fit->full.objective * (1 + 1e-12));
@@ -84,7 +86,7 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   SceneFitSettings settings = Settings();
   settings.lobes = 2;
   settings.appearance = {.lights = 6, .size = 48};
-  SceneMaterial material = Material("plastic@30x30x60");
+  SceneMaterial material = Material("plastic");
   material.directions = AllDirections();
   material.channels = SceneChannels::kLuminance;
   const auto fitted = [&](SceneBudget::Unit unit, double amount) {
@@ -148,7 +150,7 @@ TEST(FitMaterial, JudgesWhatIsWrittenWhereTheSceneSeesIt) {
 TEST(FitMaterial, NeedsAPictureThatShowsWhatTheSceneSees) {
   SceneFitSettings settings = Settings();
   settings.appearance = {.lights = 6, .size = 48};
-  SceneMaterial material = Material("plastic@30x30x60");
+  SceneMaterial material = Material("plastic");
   material.directions = DirectionRanges{{0, 0.1}, {0, 0.1}};
   material.budget = {SceneBudget::Unit::kMeanDeltaE, 1};
   EXPECT_THAT(ErrorOf([&] { FitMaterial(material, settings, 1); }),
@@ -176,7 +178,7 @@ TEST(FitMaterial, SaysThatAFractionOfAnExactFitBuysNothing) {
   settings.noise = 0;
   settings.lobes = 0;
   settings.weighting = "uniform";
-  SceneMaterial material = Material("felt@10x10x20");
+  SceneMaterial material = Material("felt");
   const TestDirectory directory;
   WriteFile(directory.Path("grey.csv"), [](std::ostream& out) {
     out << "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
