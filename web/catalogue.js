@@ -59,7 +59,7 @@ if (figures.length > 0) {
   figures.forEach((figure, k) => {
     const box = make('input', {type: 'checkbox', ariaLabel: `Compare ${fits[k].name}`});
     box.addEventListener('change', compare);
-    figure.append(make('label', {}, box, ' compare'));
+    figure.querySelector('figcaption').append(make('label', {}, box, ' compare'));
   });
   main.before(tools, compared);
   order.addEventListener('change', arrange);

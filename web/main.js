@@ -1,8 +1,8 @@
 // The page of one model: its state, what it draws, and what people do with it.
 
-import {anglesOf, evaluatorOf, formatModel, parseModel} from './model.js';
+import {anglesOf, evaluatorOf, formatModel, isNearlyDiffuse, parseModel} from './model.js';
 import {brightestDirection, halfCells, probeEnvironment, studioEnvironment} from './environment.js';
-import {bytesOf, decodeMeasured, differenceMap, parseCsv, parseMerl} from './measured.js';
+import {HARDLY_SEEN, bytesOf, decodeMeasured, differenceMap, parseCsv, parseMerl} from './measured.js';
 import {History, checkedEdit, editedModel, hexOf, isEdited, linearOf, noEdit} from './edit.js';
 import {CHANNEL_COLORS, LOBE_COLORS, drawDisc, drawHeat, drawLines, drawPolar} from './plots.js';
 import {OBJECTS, Renderer} from './renderer.js';
@@ -41,13 +41,16 @@ function short(x) {
   if (x === 0) return '0';
   return Math.abs(x) >= 1e4 || Math.abs(x) < 1e-3 ? x.toExponential(2) : String(+x.toPrecision(3));
 }
+const shortDeltaE = x => String(+x.toPrecision(2));  // as in the report's verdict
 const grouped = n => n.toLocaleString('en');
 function download(bytes, type, file) {
   const link = element('a', {href: URL.createObjectURL(new Blob([bytes], {type})), download: file});
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
+const pageColor = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const hasMeasured = () => measured !== null;
+const lobeName = m => `lobe ${m + 1}${isNearlyDiffuse(base, m) ? ' (nearly diffuse)' : ''}`;
 const lobeColor = m => LOBE_COLORS[m % LOBE_COLORS.length];
 
 // ---- State in the address ---------------------------------------------------------------------------------------
@@ -132,10 +135,19 @@ function captionOf(mode) {
   if (mode === 'measured') return ['Measured', samples];
   if (mode === 'fitted') return [`Fitted${edited}`, model_];
   if (mode === 'wipe') return [`Measured | Fitted${edited}`, 'move the line below the picture, or drag it'];
-  return ['Where they differ', seen ? `ΔE ${short(seen.mean)} ${seen.partial ? 'with unmeasured light' : seen.mean < 1 ? 'in the mean: not seen' : 'in the mean'}` : 'to the eye'];
+  // As judged, the one ΔE is the report's; what the page finds itself is of other light, another object or model.
+  const mean = asJudged() ? verdict.mean_delta_e : seen?.mean;
+  if (!Number.isFinite(mean)) return ['Where they differ', 'to the eye'];
+  return ['Where they differ', `ΔE ${shortDeltaE(mean)} in the mean${asJudged() ? '' : ', as shown'}${mean < 1 ? ': not seen' : ''}`];
 }
 
-// CIELAB differences of what is shown, in the mean and below which 95 % stay.
+// Whether the picture is that on which the verdict rests.
+function asJudged() {
+  return Number.isFinite(verdict?.mean_delta_e) && verdict.of_sphere && state.object === 'sphere' && state.light === 'environment' &&
+    state.around === 0 && !isEdited(state.edit, base);
+}
+
+// The mean CIELAB difference of what is shown.
 function compareShown(level) {
   if (!hasMeasured() || level.size > 256) return;
   const a = renderer.numbersOf(level, 0), b = renderer.numbersOf(level, 1), found = [];
@@ -146,16 +158,13 @@ function compareShown(level) {
     const z = f((0.0193 * r + 0.1192 * g + 0.9505 * l) / 1.089);
     return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
   };
-  let partial = false;
   for (let k = 0; k < a.length; k += 4) {
-    partial ||= b[k + 3] < 0.99 * a[k + 3];
     if (!(a[k + 3] > 0) || b[k + 3] < 0.5 * a[k + 3]) continue;
     const p = lab(a, k), q = lab(b, k);
     found.push(Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
   }
   if (found.length === 0) return;
-  found.sort((x, y) => x - y);
-  seen = {mean: found.reduce((x, y) => x + y, 0) / found.length, high: found[Math.floor(0.95 * found.length)], partial};
+  seen = {mean: found.reduce((x, y) => x + y, 0) / found.length};
   const index = panels.findIndex(p => p.mode === 'difference');
   if (index >= 0) byId('captions').children[index]?.lastChild?.replaceWith(captionOf('difference')[1]);
 }
@@ -258,11 +267,15 @@ function drawCharts() {
   if (hasMeasured()) {
     heat ??= differenceMap(measured, evaluate, measured.kind === 'table' ? Math.min(45, ...measured.shape.slice(0, 2)) : 20);
     drawHeat(byId('heat'), heat, at ? [at.theta_h * DEGREES, at.theta_d * DEGREES] : null, isDark());
-    byId('typical').textContent = Number.isFinite(heat.typical) ? `Typically ${short(100 * (Math.exp(heat.typical) - 1))} % apart.` : '';
+    const hatched = heat.hardlySeen.includes(1);
+    byId('typical').textContent = Number.isFinite(heat.typical)
+      ? `Typically ${short(100 * (Math.exp(heat.typical) - 1))} % apart${hatched ? ' elsewhere' : ''}.` : '';
+    byId('hardly-seen').hidden = !hatched;
+    byId('hardly-share').textContent = `${100 * HARDLY_SEEN} %`;
   }
   if (contents.trace.length > 1) {
     drawLines(byId('trace'), {
-      series: [{points: contents.trace.map(([k, , e]) => [k, e]), color: lobeColor(0), width: 2}],
+      series: [{points: contents.trace.map(([k, , e]) => [k, e]), color: pageColor('--accent'), width: 2}],
       x: {min: 0, max: contents.trace.at(-1)[0], ticks: traceTicks()}, y: {log: true}});
   }
 }
@@ -284,10 +297,9 @@ function drawPolarChart() {
     const rho = hasMeasured() && degrees % 3 === 0 ? measured.rho(wi, wo) : null;
     if (rho) dots.push([degrees, mean(rho)]);
   }
-  const style = getComputedStyle(document.documentElement), strong = style.getPropertyValue('--text').trim();
   drawPolar(byId('polar'), [
     ...ofLobe.map((values, m) => ({values, color: lobeColor(m), width: 1.2})).filter((_, m) => state.edit.lobes[m].on),
-    {values: fitted, color: strong, width: 2}, {values: dots, color: '#e5674a', dots: true}], state.thetaI);
+    {values: fitted, color: pageColor('--text'), width: 2}, {values: dots, color: '#e5674a', dots: true}], state.thetaI);
   byId('polar-angle').textContent = `${Math.round(state.thetaI)}°`;
 }
 
@@ -405,7 +417,7 @@ function makeEdits() {
     });
     return made.row;
   };
-  const blocks = base.s.map((s, m) => block(`Lobe ${m + 1}`, lobeColor(m), [
+  const blocks = base.s.map((s, m) => block(lobeName(m).replace('lobe', 'Lobe'), lobeColor(m), [
     logSlider(`Lobe ${m + 1}: roughness`, e => e.lobes[m].rough, (e, x) => (e.lobes[m].rough = x), [-2, 2, 0.02]),
     logSlider(`Lobe ${m + 1}: strength`, e => e.lobes[m].gain, (e, x) => (e.lobes[m].gain = x), [-4, 4, 0.02]),
     color(`Lobe ${m + 1}: tint`, () => state.edit.lobes[m].tint ?? hexOf(s.map(x => x / Math.max(...s, 1e-12))),
@@ -421,14 +433,14 @@ function makeEdits() {
     color('Diffuse: diffuse', () => state.edit.diffuse ?? hexOf(base.d.map(x => x * Math.PI)), (e, x) => (e.diffuse = x)),
   ]));
   byId('edits').replaceChildren(...blocks);
-  const chip = (title, tone, get, set) => {
+  const chip = (title, tone, get, set, text = title) => {
     const input = element('input', {type: 'checkbox', checked: get(), ariaLabel: `${title} on`});
     input.addEventListener('change', () => {
       editTo(e => set(e, input.checked));
       settle();
     });
     edits.push(() => (input.checked = get()));
-    const label = element('label', {}, input, Object.assign(element('i'), {style: `background:${tone}`}), title);
+    const label = element('label', {}, input, Object.assign(element('i'), {style: `background:${tone}`}), text);
     return label;
   };
   const alone = (title, only) => {
@@ -444,7 +456,7 @@ function makeEdits() {
     return button;
   };
   const chips = base.s.map((_, m) => {
-    const label = chip(`lobe ${m + 1}`, lobeColor(m), () => state.edit.lobes[m].on, (e, on) => (e.lobes[m].on = on));
+    const label = chip(`lobe ${m + 1}`, lobeColor(m), () => state.edit.lobes[m].on, (e, on) => (e.lobes[m].on = on), lobeName(m));
     label.append(alone(`lobe ${m + 1}`, m));
     return label;
   });
@@ -466,8 +478,8 @@ function showVerdict() {
   const text = byId('verdict'), parts = [];
   if (verdict?.verdict && hasMeasured()) {
     const bold = element('b', {className: verdict.visibility, textContent: verdict.verdict});
-    parts.push('Beside what was measured, the fit: ', bold, `. Colours are ΔE ${short(verdict.mean_delta_e)} apart in the mean, and ` +
-      `95 % of the sphere stay below ${short(verdict.delta_e_95)}; less than 1 is not seen side by side.`);
+    parts.push('Beside what was measured, the fit: ', bold, `. Colours are ΔE ${shortDeltaE(verdict.mean_delta_e)} apart in the mean, and ` +
+      `95 % of ${verdict.of_sphere ? 'the sphere' : 'the samples'} stay below ${shortDeltaE(verdict.delta_e_95)}; less than 1 is not seen side by side.`);
   } else if (hasMeasured()) {
     parts.push(`Measured (${source}) beside the model.`);
   } else if (verdict?.verdict) {
@@ -772,7 +784,7 @@ async function begin() {
 }
 
 // For tests, and for those who look.
-window.trilobe = {state, contents, get renderer() { return renderer; }, get model() { return model; }, openFile};
+window.trilobe = {state, contents, get renderer() { return renderer; }, get model() { return model; }, openFile, isNearlyDiffuse};
 begin().catch(error => {
   tell(error.message);
   console.warn(error);

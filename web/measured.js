@@ -205,32 +205,36 @@ export function parseCsv(text) {
 }
 
 // Mean log ratio of fitted over measured in `size` x `size` bins of (theta_h, theta_d), NaN where nothing was
-// measured: {size, ratio: Float32Array, typical}. theta_h by its root, as in the tables, which have `size` bins or more:
-// else some would be empty.
+// measured: {size, ratio: Float32Array, typical, hardlySeen: Uint8Array}, typical where it is seen. theta_h by its root, as in the tables, which
+// have `size` bins or more: else some would be empty.
 export function differenceMap(measured, evaluate, size = 45) {
   const sums = new Float64Array(size * size), weights = new Float64Array(size * size);
-  let absolute = 0, total = 0;
+  const [light, density, pairs] = [0, 1, 2].map(() => new Float64Array(size * size));
+  const absolute = new Float64Array(size * size);
   const luminance = c => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-  const add = (wi, wo, rho, bin) => {
-    const fitted = luminance(evaluate(wi, wo).rho), seen = luminance(rho);
+  const add = (wi, wo, rho, bin, solidAngle) => {
+    const fitted = luminance(evaluate(wi, wo).rho), seen = luminance(rho), brighter = Math.max(fitted, seen);
+    density[bin] += brighter * wi[2] * wo[2];
+    light[bin] += brighter * wi[2] * wo[2] * solidAngle;
+    ++pairs[bin];
     if (!(fitted > 0 && seen > 0)) return;
     const log = Math.log(fitted / seen);
     sums[bin] += log;
     weights[bin] += 1;
-    absolute += Math.abs(log);
-    ++total;
+    absolute[bin] += Math.abs(log);
   };
   if (measured.kind === 'table') {
-    const {shape: [nh, nd, np], rgb, valid} = measured, step = Math.max(1, Math.round(np / 8));
+    const {shape: [nh, nd, np], rgb, valid} = measured;
     for (let h = 0; h < nh; ++h) {
       const thetaH = ((h + 0.5) / nh) ** 2 * (Math.PI / 2), row = Math.floor(((h + 0.5) / nh) * size) * size;
       for (let d = 0; d < nd; ++d) {
         const thetaD = ((d + 0.5) / nd) * (Math.PI / 2), bin = row + Math.floor(((d + 0.5) / nd) * size);
-        for (let p = (h + d) % step; p < np; p += step) {
-          const k = (h * nd + d) * np + p;
-          if (!valid[k]) continue;
+        const solidAngle = Math.sqrt(thetaH) * Math.sin(thetaH) * Math.sin(thetaD) * Math.cos(thetaD);
+        const known = Array.from({length: np}, (_, p) => p).filter(p => valid[(h * nd + d) * np + p]);
+        for (let n = 0; n < known.length; n += Math.ceil(known.length / 8)) {  // nothing is narrow in phi_d
+          const p = known[n], k = (h * nd + d) * np + p;
           const [wi, wo] = directionsOf(thetaH, thetaD, ((p + 0.5) / np) * Math.PI);
-          if (wi[2] > 0 && wo[2] > 0) add(wi, wo, [rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]], bin);
+          if (wi[2] > 0 && wo[2] > 0) add(wi, wo, [rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]], bin, solidAngle);
         }
       }
     }
@@ -247,11 +251,28 @@ export function differenceMap(measured, evaluate, size = 45) {
       const at = anglesOf(w[i], w[o]);
       const h = Math.min(Math.floor(Math.sqrt(at.theta_h / (Math.PI / 2)) * size), size - 1);
       const d = Math.min(Math.floor((at.theta_d / (Math.PI / 2)) * size), size - 1);
-      add(w[i], w[o], rgb.subarray(3 * k, 3 * k + 3), h * size + d);
+      add(w[i], w[o], rgb.subarray(3 * k, 3 * k + 3), h * size + d, Math.sqrt((1 - w[i][2] ** 2) * (1 - w[o][2] ** 2)));
     }
   }
   const ratio = Float32Array.from(sums, (s, k) => (weights[k] > 0 ? s / weights[k] : NaN));
-  return {size, ratio, typical: total > 0 ? absolute / total : NaN};
+  for (let k = 0; k < pairs.length; ++k) density[k] /= Math.max(pairs[k], 1);
+  const unseen = hardlySeen(light, density, pairs), ofSeen = list => list.reduce((sum, x, k) => sum + (unseen[k] ? 0 : x), 0);
+  return {size, ratio, typical: ofSeen(absolute) / ofSeen(weights), hardlySeen: unseen};
+}
+
+// The bins that an eye hardly sees, as in src/model/appearance/hardly_seen.h: those of the least light for their solid
+// angle that together have at most HARDLY_SEEN of the light of all.
+export const HARDLY_SEEN = 0.003;
+function hardlySeen(light, density, pairs) {
+  const most = HARDLY_SEEN * light.reduce((a, b) => a + b, 0), found = new Uint8Array(light.length);
+  const order = Array.from(light.keys()).filter(k => pairs[k] > 0).sort((a, b) => density[a] - density[b]);
+  let sum = 0;
+  for (const k of order) {
+    sum += light[k];
+    if (sum > most) break;
+    found[k] = 1;
+  }
+  return found;
 }
 
 // Two directions by their half and difference angles.

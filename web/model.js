@@ -46,6 +46,27 @@ export function tableIndex(sharing, lobe, channel) {
   return (sharing.per_lobe ? lobe : 0) * (sharing.per_channel ? CHANNELS : 1) + (sharing.per_channel ? channel : 0);
 }
 
+// The angle at which an entry of a table stands [rad].
+export function thetaOf({size, phis, theta}, factor, entry) {
+  if (phis > 0) return (theta[Math.floor(entry / phis)] * Math.PI) / 180;
+  const part = (entry + 0.5) / size;
+  return (Math.PI / 2) * (factor === 'D' ? part * part : part);
+}
+
+// Whether a lobe reflects about alike in all directions, as in trilobe/model/lobes/lobe_light.h.
+export function isNearlyDiffuse(model, lobe) {
+  const flat = (factor, channel, most) => {
+    const values = [];
+    model.tables[factor][tableIndex(model.sharing[factor], lobe, channel)].forEach((value, entry) => {
+      const theta = thetaOf(model.axes[factor], factor, entry);
+      if (theta <= Math.PI / 3) values.push(factor === 'G' ? value / Math.cos(theta) : value);
+    });
+    const high = Math.max(...values);
+    return high > 0 && high <= most * Math.min(...values);
+  };
+  return [0, 1, 2].every(c => flat('D', c, 2) && flat('G', c, 1.5));
+}
+
 // Throws an Error of one line, which says what is wrong, for what is no model.
 export function parseModel(text) {
   let json;

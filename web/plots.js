@@ -1,7 +1,8 @@
 // Small charts on canvases, in the colours of the page.
 
-export const LOBE_COLORS = ['#3d7fc4', '#e5674a', '#2f9e6b', '#b98a0c', '#7a5cc0', '#c2437f', '#23939c', '#7d7d7d'];
-export const CHANNEL_COLORS = ['#d64545', '#2f9e52', '#3d6fe0'];
+// Those of factors.png (src/io/pictures/gnuplot.h).
+export const LOBE_COLORS = ['#E69F00', '#56B4E9', '#CC79A7', '#8E6BBF', '#8C6D31', '#23939C', '#7D7D7D', '#A8A800'];
+export const CHANNEL_COLORS = ['#D55E00', '#009E73', '#0072B2'];
 
 function styleOf(canvas) {
   const style = getComputedStyle(canvas);
@@ -133,8 +134,8 @@ export function logColor(ratio, dark) {
   return middle.map((m, k) => Math.round(m + t * (end[k] - m)));
 }
 
-// The difference over (theta_h, theta_d), root of theta_h to the right, with a mark.
-export function drawHeat(canvas, {size, ratio}, mark, dark) {
+// The difference over (theta_h, theta_d), root of theta_h to the right, with a mark. What is hardly seen is hatched.
+export function drawHeat(canvas, {size, ratio, hardlySeen}, mark, dark) {
   const made = prepare(canvas);
   if (!made) return;
   const {context, width, height} = made, style = styleOf(canvas), left = 40, right = 8, top = 8, bottom = 20;
@@ -151,6 +152,22 @@ export function drawHeat(canvas, {size, ratio}, mark, dark) {
   const w = width - left - right, h = height - top - bottom;
   context.imageSmoothingEnabled = false;
   context.drawImage(small, left, top, w, h);
+  context.save();
+  context.beginPath();
+  hardlySeen.forEach((hardly, k) => {
+    if (hardly) context.rect(left + (Math.floor(k / size) / size) * w, top + (1 - ((k % size) + 1) / size) * h, w / size, h / size);
+  });
+  context.clip();
+  context.strokeStyle = style.surface;
+  context.lineWidth = 3;
+  context.beginPath();
+  for (let x = left - h; x < left + w; x += 7) {
+    context.moveTo(x, top + h);
+    context.lineTo(x + h, top);
+  }
+  context.stroke();
+  context.restore();
+  context.lineWidth = 1;
   context.strokeStyle = style.line;
   context.strokeRect(left + 0.5, top + 0.5, w - 1, h - 1);
   context.fillStyle = style.text;

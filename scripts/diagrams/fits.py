@@ -117,7 +117,7 @@ def synthetic(folder: Folder) -> Any:
     pictures = []
     for name in names:
         pair = Image.open(folder / "fits" / name / "pair.png").convert("RGB")
-        pictures.append((name, np.asarray(pair.crop((0, 0, pair.height, pair.height)))))
+        pictures.append((name, np.asarray(pair.crop((0, 0, pair.width // 2, pair.width // 2)))))
     return row_of(pictures, 7, 0.98, 7.2)
 
 

@@ -144,7 +144,8 @@ void DescribeModel(const std::string& path) {
     PrintLine("s of lobe " + std::to_string(m + 1) + ", RGB",
               s == Rgb{} ? "0: absent"
                          : Text(s) + "; reflects " + Text(100 * light.Share(m), 3) +
-                               " % of the light, albedo " + Text(light.lobes[m]));
+                               " % of the light, albedo " + Text(light.lobes[m]) +
+                               (light.nearly_diffuse[m] ? "; nearly diffuse" : ""));
   }
   if (!fit.source.empty()) PrintLine("fitted to", fit.source);
   if (!fit.solver.empty()) {

@@ -115,7 +115,7 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
   }
   std::ostringstream body;
   body << "<h1>" << fits.size() << " of " << outcomes.size()
-       << " measurements in pictures</h1>\n<p>Measured (left) and fitted (right) on a sphere.";
+       << " measurements in pictures</h1>\n<p>Measured and fitted, on a sphere.";
   if (!table.empty()) body << " Numbers: <a href=\"" << table << "\">" << table << "</a>.";
   body << "</p>\n";
   for (const FitOutcome& outcome : outcomes) {

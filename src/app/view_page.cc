@@ -36,6 +36,7 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
     contents.source = measured->source;
     PictureData data = PictureDataOf(*measured);
     std::optional<BrdfTable> sampled;
+    contents.of_sphere = !data.empty() || !seen;
     if (data.empty()) {
       sampled = TableOfSamples(*measured);
       if (sampled) data.table = &*sampled;

@@ -47,6 +47,9 @@ def test_two_hundred_fits_are_sorted_filtered_and_compared(folder: Path, browser
     milliseconds = page.evaluate("(() => { const t = performance.now(); catalogue.order.value = 6; catalogue.arrange();"
                                  " document.body.offsetHeight; return performance.now() - t; })()")
     assert milliseconds < 1000
+    # The button to compare covers no sphere.
+    box, image = (page.locator(f"main figure {what}").first.bounding_box() for what in ("label", "img"))
+    assert box["y"] >= image["y"] + image["height"]
     for k in range(4):
         page.locator("main figure input").nth(k).check()
     assert page.locator("#compared figure").count() == 4

@@ -74,14 +74,15 @@ std::string WriteTensorFile(const RglExport& file, const std::string& than, doub
 // The two, side by side.
 void DrawStandard(const FactorModel& model, const std::string& source, double max_angle,
                   const OpenPbrBrdf& brdf, const std::string& path, AppearanceOptions options) {
-  options.size = 160;  // pixels of each sphere
+  options.size = 160;  // half the pixels of each sphere
   Measurement shown = AsMeasurement(model, source, options.num_threads, kUtiaGrid);
   LimitAngles(DegreesToRadians(max_angle), &shown);
   const Material material = {[&](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
                                return brdf(ToDirections(angles));
                              },
                              [&](const SphericalAngles& at) { return brdf(ToDirections(at)); }};
-  WriteSpherePair(PictureDataOf(shown), material, path, options);
+  WriteSpherePair(PictureDataOf(shown), material, path, options,
+                  {.left = Word::kModel, .right = Word::kFile});
 }
 
 // Writes the nearest material of renderers that have no other to a model.

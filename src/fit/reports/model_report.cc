@@ -23,7 +23,8 @@ std::string DescribeStretches(const ModelSpec& spec) {
 std::string Describe(const LobeLight& light) {
   std::string text;
   for (size_t m = 0; m < light.lobes.size(); ++m) {
-    text += "lobe " + std::to_string(m + 1) + " " +
+    text += "lobe " + std::to_string(m + 1) +
+            (light.nearly_diffuse[m] ? " (nearly diffuse) " : " ") +
             Text(100 * light.Share(static_cast<int>(m)), 3) + " %, ";
   }
   return text + "diffuse " + Text(100 * light.DiffuseShare(), 3) + " %";
@@ -32,7 +33,9 @@ std::string Describe(const LobeLight& light) {
 nlohmann::ordered_json ToJson(const LobeLight& light) {
   nlohmann::ordered_json lobes = nlohmann::ordered_json::array();
   for (size_t m = 0; m < light.lobes.size(); ++m) {
-    lobes.push_back({{"albedo", light.lobes[m]}, {"share", light.Share(static_cast<int>(m))}});
+    lobes.push_back({{"albedo", light.lobes[m]},
+                     {"share", light.Share(static_cast<int>(m))},
+                     {"nearly_diffuse", static_cast<bool>(light.nearly_diffuse[m])}});
   }
   return {{"diffuse", {{"albedo", light.diffuse}, {"share", light.DiffuseShare()}}},
           {"lobes", lobes}};

@@ -238,6 +238,7 @@ std::string FormatPage(const ModelFile& model, const PageContents& contents) {
                {"psnr_db", number(contents.psnr_db)},
                {"mean_delta_e", number(contents.mean_delta_e)},
                {"delta_e_95", number(contents.delta_e_95)},
+               {"of_sphere", contents.of_sphere},
                {"trace", ToJson(contents.trace)}};
   if (contents.measured) json["measured"] = ToJson(*contents.measured);
   if (contents.probe != nullptr) json["probe"] = ToJson(*contents.probe);

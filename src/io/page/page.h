@@ -48,6 +48,7 @@ struct PageContents {
   // Visible difference of the spheres or samples; empty if nothing was compared.
   std::string verdict, visibility;
   double psnr_db = 0, mean_delta_e = 0, delta_e_95 = 0;
+  bool of_sphere = true;  // or of samples
   std::vector<IterationRecord> trace;
   const Environment* probe = nullptr;  // the light; null: the studio, which the page computes
 };

@@ -11,10 +11,11 @@ namespace trilobe {
 // Palette for colour-blind readers (Okabe and Ito 2008), as gnuplot colour strings.
 inline constexpr const char* kOkabeIto[] = {"#E69F00", "#56B4E9", "#009E73", "#F0E442",
                                             "#0072B2", "#D55E00", "#CC79A7", "#000000"};
-// Colours of the channels R, G, B and of up to eight lobes, from this palette.
+// Colours of the channels R, G, B and of up to eight lobes, seen on white and on black; those of
+// web/plots.js are the same.
 inline constexpr const char* kChannelColors[] = {"#D55E00", "#009E73", "#0072B2"};
-inline constexpr const char* kLobeColors[] = {"#000000", "#E69F00", "#56B4E9", "#CC79A7",
-                                              "#009E73", "#D55E00", "#0072B2", "#F0E442"};
+inline constexpr const char* kLobeColors[] = {"#E69F00", "#56B4E9", "#CC79A7", "#8E6BBF",
+                                              "#8C6D31", "#23939C", "#7D7D7D", "#A8A800"};
 
 // Text as a gnuplot string literal. Quotes become typographic ones; control characters and invalid
 // UTF-8 are replaced. Use it with `noenhanced` for text of a user.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -64,7 +65,7 @@ std::string PanelRows::Script(int top, int canvas) const {
                 "set label 1 '" +
                 panel.title + "'" + center + Fraction(canvas - top - 34, canvas) +
                 " center font ',19'\nset key" + center + Fraction(canvas - top - 50, canvas) +
-                " center top horizontal maxrows 2 font ',15'\n" + panel.setup + panel.plot +
+                " center top horizontal maxrows 2 width 0 font ',15'\n" + panel.setup + panel.plot +
                 "\nunset label\n";
     }
     top += kAbove + kPanelHeight + kBelow;
@@ -100,7 +101,10 @@ std::string Percent(double share) {
   return (share > 0 && share < 0.0005 ? "<0.1" : std::string(text.data())) + " %%";
 }
 
-std::string LobeName(int lobe) { return "lobe " + std::to_string(lobe + 1); }
+std::string LobeName(const LobeLight& light, int lobe) {
+  return "lobe " + std::to_string(lobe + 1) +
+         (light.nearly_diffuse[lobe] ? " (nearly diffuse)" : "");
+}
 
 // What stands behind the name of a lobe that is dark.
 const char* AbsenceOf(const FactorModel& model, int lobe) {
@@ -138,12 +142,12 @@ TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index) {
   return {sharing.per_lobe ? index / channels : 0, sharing.per_channel ? index % channels : 0};
 }
 
-std::string TableName(const FactorModel& model, Factor factor, int index) {
+std::string TableName(const FactorModel& model, const LobeLight& light, Factor factor, int index) {
   const ModelSpec& spec = model.spec();
   const TableSharing& sharing = spec.sharing(factor);
   const auto [lobe, channel] = OwnerOf(spec, factor, index);
   std::string name;
-  if (sharing.per_lobe && (spec.lobes > 1 || !sharing.per_channel)) name = LobeName(lobe);
+  if (sharing.per_lobe && (spec.lobes > 1 || !sharing.per_channel)) name = LobeName(light, lobe);
   if (sharing.per_channel) name += (name.empty() ? "" : ", ") + std::string(kChannelNames[channel]);
   if (name.empty()) name = "all lobes";
   return sharing.per_lobe ? name + AbsenceOf(model, lobe) : name;
@@ -170,10 +174,12 @@ std::string Curves(const ModelFile& file, const LobeLight& light, Factor factor,
   std::ranges::sort(sorted);
   const double top = sorted.back(), median = sorted[sorted.size() / 2];
   const bool logarithmic = top > 0 && (factor == Factor::kD || top > 10 * median);
-  const AxisRange range = logarithmic ? LogRange(values, factor == Factor::kD ? 6 : 3)
+  const AxisRange range = logarithmic ? LogRange(values, factor == Factor::kD ? 6 : 5)
                                       : AxisRange{0, top > 0 ? 1.08 * top : 1};
+  double beyond = 0;  // the largest above the axis
   std::string data, plot;
   bool any_dotted = false;
+  size_t longest = 0;  // name in the legend
   for (size_t k = 0; k < tables.size(); ++k) {
     const int t = tables[k];
     const std::span<const double> table = file.model.table(factor, t);
@@ -181,8 +187,9 @@ std::string Curves(const ModelFile& file, const LobeLight& light, Factor factor,
     std::vector<std::vector<double>> rows;  // abscissa, value, value where it does not matter
     for (int i = 0; i < size; ++i) {
       const double degrees = RadiansToDegrees(spec.axis(factor).Theta(i));
-      // What is less than the axis shows runs along it.
-      const double value = std::max(table[i], range.low);
+      // What is less than the axis shows runs along it, what is more is left out.
+      if (table[i] > range.high) beyond = std::max(beyond, table[i]);
+      const double value = table[i] > range.high ? kGap : std::max(table[i], range.low);
       const bool dotted =
           !matters[k][i] || (i > 0 && !matters[k][i - 1]) || (i + 1 < size && !matters[k][i + 1]);
       any_dotted = any_dotted || dotted;
@@ -195,17 +202,24 @@ std::string Curves(const ModelFile& file, const LobeLight& light, Factor factor,
     const std::string color =
         spec.sharing(factor).per_channel ? kChannelColors[channel] : kLobeColors[lobe];
     const bool named_by_panel = tables.size() <= kChannels && spec.sharing(factor).per_channel;
+    const std::string name =
+        named_by_panel ? kChannelNames[channel] : TableName(file.model, light, factor, t);
+    longest = std::max(longest, name.size());
     plot += (k == 0 ? "plot $" : ", $") + block +
-            " using 1:2 with lines linewidth 2.5 linecolor '" + color + "' title '" +
-            (named_by_panel ? kChannelNames[channel] : TableName(file.model, factor, t)) +
+            " using 1:2 with lines linewidth 2.5 linecolor '" + color + "' title '" + name +
             "', '' " + "using 1:3 with lines linewidth 2 dashtype (2,3) linecolor '" + color +
             "' notitle";
   }
   if (any_dotted) {
-    plot +=
-        ", NaN with lines linewidth 2 dashtype (2,3) linecolor '#555555' title 'no data or light'";
+    std::array<char, 64> name{};
+    std::snprintf(name.data(), name.size(),
+                  beyond > 0 ? "no data or light, up to %.2g" : "no data or light", beyond);
+    longest = std::max(longest, std::string_view(name.data()).size());
+    plot += std::string(", NaN with lines linewidth 2 dashtype (2,3) linecolor '#555555' title '") +
+            name.data() + "'";
   }
-  return data +
+  // gnuplot takes letters for wider than they are, and would set long names in one column.
+  return data + (longest > 20 ? "set key width -5\n" : "") +
          (logarithmic ? "set logscale y\n" + LogTics(range, 'y')
                       : std::string("unset logscale y\nset format y '%g'\n")) +
          "set yrange [" + GnuplotNumber(range.low) + ":" + GnuplotNumber(range.high) + "]\n" + plot;
@@ -228,7 +242,7 @@ std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Fa
         tables.push_back(t);
       }
     }
-    panels.push_back({title + (by_lobe ? ", " + LobeName(m) : ""),
+    panels.push_back({title + (by_lobe ? ", " + LobeName(light, m) : ""),
                       kPanelSetups[static_cast<int>(factor)], Curves(file, light, factor, tables)});
   }
   return panels;
@@ -244,9 +258,11 @@ Panel AlbedoPanel(const LobeLight& light) {
       data[c] += GnuplotNumber(g + 0.28 * (c - 1)) + " " + GnuplotNumber(values[c]) + "\n";
       top = std::max(top, values[c]);
     }
-    const std::string name = g == 0 ? "diffuse" : LobeName(g - 1);
+    const std::string name = g == 0 ? "diffuse" : "lobe " + std::to_string(g);
     const double share = g == 0 ? light.DiffuseShare() : light.Share(g - 1);
-    tics += (g == 0 ? "\"" : ", \"") + name + "\\n" + Percent(share) + "\" " + std::to_string(g);
+    tics += (g == 0 ? "\"" : ", \"") + name + "\\n" + Percent(share) +
+            (g > 0 && light.nearly_diffuse[g - 1] ? "\\nnearly diffuse" : "") + "\" " +
+            std::to_string(g);
   }
   std::string script, plot;
   const std::string font = groups <= 4 ? ",14" : ",11";
@@ -256,8 +272,9 @@ Panel AlbedoPanel(const LobeLight& light) {
     script += block + " << EOD\n" + data[c] + "EOD\n";
     plot += (c == 0 ? "plot " : ", ") + block + " using 1:2 with boxes linecolor '" +
             kChannelColors[c] + "' title '" + kChannelNames[c] + "', '' using 1:2:" +
-            "(sprintf('%.3g', $2)) with labels rotate by 90 left offset 0,0.4 font '" + font +
-            "' notitle";
+            "($2 >= 0.0005 ? sprintf('%.3g', $2) : $2 > 0 ? '<0.0005' : '0') with labels rotate by "
+            "90 left offset 0,0.4 font '" +
+            font + "' notitle";
   }
   return {.title = "albedo, and share of all that is reflected",
           .setup = script + "unset logscale y\nset format y '%g'\nset yrange [0:" +

@@ -46,12 +46,12 @@ struct TableOwner {
 };
 TableOwner OwnerOf(const ModelSpec& spec, Factor factor, int index);
 
-// "lobe 1", "lobe 2, red (s = 0)", "all lobes".
-std::string TableName(const FactorModel& model, Factor factor, int index);
+// "lobe 1", "lobe 1 (nearly diffuse)", "lobe 2, red (s = 0)", "all lobes".
+std::string TableName(const FactorModel& model, const LobeLight& light, Factor factor, int index);
 
 // All tables of a factor as curves in one panel, or in one panel per lobe if they differ by lobe
-// and by channel. The axis covers observed entries through which light goes; others are dotted and
-// may leave it. Empty if there is no curve.
+// and by channel. The axis covers observed entries through which light goes; others are dotted, and
+// left out above it, where the legend says up to which value. Empty if there is no curve.
 std::vector<Panel> CurvePanels(const ModelFile& file, const LobeLight& light, Factor factor);
 
 // Bars of the albedo of the diffuse term and of each lobe, by channel, labelled with their values.

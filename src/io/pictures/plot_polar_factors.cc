@@ -91,7 +91,8 @@ std::string ColorRange(std::span<const float> disc, bool logarithmic) {
 }
 
 // One table as a disc: theta outwards, to the last node, and phi around.
-std::string Map(const ModelFile& file, Factor factor, int index, int x, int y, int canvas) {
+std::string Map(const ModelFile& file, const LobeLight& light, Factor factor, int index, int x,
+                int y, int canvas) {
   const Axis& axis = file.model.spec().axis(factor);
   const double last = axis.theta.back();
   std::vector<float> disc = DiscOf(file, factor, index);
@@ -106,7 +107,7 @@ std::string Map(const ModelFile& file, Factor factor, int index, int x, int y, i
   script += range + "set xrange [-" + radius + ":" + radius + "]\nset yrange [-" + radius + ":" +
             radius + "]\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\n" +
             "unset key\nset title '" + FactorName(factor) + (is_D ? " [1/sr], " : ", ") +
-            TableName(file.model, factor, index) + "' offset 0,0.5 font ',18'\n" +
+            TableName(file.model, light, factor, index) + "' offset 0,0.5 font ',18'\n" +
             "set object 1 circle at 0,0 size " + radius +
             " fillcolor rgb '#DDDDDD' fillstyle solid noborder behind\n";
   int object = 2, label = 10;
@@ -174,7 +175,7 @@ void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::
   for (const std::vector<int>& maps : shown) {
     const Factor factor = &maps == shown ? Factor::kD : Factor::kG;
     for (int k = 0; k < static_cast<int>(maps.size()); ++k) {
-      script += Map(file, factor, maps[k], 75 + k % kColumns * kCellWidth,
+      script += Map(file, light, factor, maps[k], 75 + k % kColumns * kCellWidth,
                     kTop + (row + k / kColumns) * kCellHeight + 50, canvas);
     }
     row += RowsOf(maps);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
+#include "model/appearance/hardly_seen.h"
 
 namespace trilobe {
 namespace {
@@ -22,32 +24,99 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kThetaD[kCurves] = {5, 25, 45, 65, 80};  // degrees; the bins that begin there
 
+// How a bin is drawn: as all are, as one that is hardly seen, as one without measured value.
+enum Way : uint8_t { kPlain, kPale, kDotted, kWays };
+constexpr int kColumns = 2 * kWays;  // of a theta_d: the measured value in its way, the fitted one
+
+// Of all bins of theta_h at each kThetaD, and the middle of phi_d.
+class TableSlices {
+ public:
+  TableSlices(const BrdfTable& measured, const BrdfTable& fitted)
+      : measured_(measured),
+        fitted_(fitted),
+        valid_(ValidBins(measured)),
+        drawable_(ValidBins(fitted)) {
+    const MerlGrid& grid = measured.grid;
+    const std::vector<bool> hardly_seen = HardlySeen(measured, fitted);
+    ways_.resize(grid.theta_h * kCurves, kDotted);
+    for (int k = 0; k < kCurves; ++k) {
+      // A bin that was left out between others is drawn as these are.
+      int first = 0, end = grid.theta_h;
+      while (first < end && !valid_[BinOf(first, k)]) ++first;
+      while (first < end && !valid_[BinOf(end - 1, k)]) --end;
+      for (int h = first; h < end; ++h) {
+        const bool pale = hardly_seen[BinOf(h, k) / grid.phi_d];
+        ways_[h * kCurves + k] = pale ? kPale : kPlain;
+        any_pale_ = any_pale_ || pale;
+      }
+      for (int h = 0; h < grid.theta_h; ++h) {
+        any_dotted_ = any_dotted_ || (WayOf(h, k) == kDotted && drawable_[BinOf(h, k)]);
+      }
+    }
+  }
+
+  // sqrt(theta_h), then kColumns for each theta_d. Adds to `values` what the axis has to show:
+  // where nothing was measured, the fit may be anything.
+  std::vector<std::vector<double>> Rows(int channel, std::vector<double>* values) const {
+    const MerlGrid& grid = measured_.grid;
+    std::vector<std::vector<double>> rows;
+    for (int h = 0; h < grid.theta_h; ++h) {
+      std::vector<double>& row = rows.emplace_back(1 + kCurves * kColumns, kNone);
+      row[0] = std::sqrt(RadiansToDegrees(grid.ThetaH(h + 0.5)));
+      for (int k = 0; k < kCurves; ++k) {
+        const int bin = BinOf(h, k);
+        const Way way = WayOf(h, k);
+        const double point = valid_[bin] ? measured_.Value(channel, bin) : 0;
+        const double line = drawable_[bin] ? fitted_.Value(channel, bin) : 0;
+        double* const at = &row[1 + k * kColumns];
+        if (point > 0) at[way] = point;
+        // A line goes on to where it is drawn in a fainter way.
+        for (int beside = std::max(h - 1, 0); beside <= std::min(h + 1, grid.theta_h - 1);
+             ++beside) {
+          if (line > 0 && WayOf(beside, k) >= way) at[kWays + WayOf(beside, k)] = line;
+        }
+        if (valid_[bin]) values->insert(values->end(), {point, line});
+      }
+    }
+    return rows;
+  }
+
+  // What stands below the panels.
+  std::string Note() const {
+    std::string note;
+    if (any_pale_) {
+      note = "pale: together less than " + GnuplotNumber(100 * kHardlySeen) +
+             " % of the light of an evenly lit sphere, so what differs there is hardly seen";
+    }
+    if (any_dotted_) note += std::string(any_pale_ ? ";  " : "") + "dotted: not measured";
+    return note;
+  }
+
+ private:
+  int BinOf(int h, int k) const {
+    const MerlGrid& grid = measured_.grid;
+    return grid.Index(h, static_cast<int>(kThetaD[k] / 90 * grid.theta_d), grid.phi_d / 2);
+  }
+  Way WayOf(int h, int k) const { return ways_[h * kCurves + k]; }
+
+  const BrdfTable &measured_, &fitted_;
+  const std::vector<bool> valid_, drawable_;  // whether there is a value, by bin
+  std::vector<Way> ways_;                     // [theta_h * kCurves]
+  bool any_pale_ = false, any_dotted_ = false;
+};
+
+// "#B0D55E00": mostly transparent.
+std::string Faint(const char* color) { return std::string("#B0") + (color + 1); }
+
 }  // namespace
 
 void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::string& path) {
   const MerlGrid& grid = measured.grid;
-  const std::vector<bool> valid = ValidBins(measured), drawable = ValidBins(fitted);
-  const int p = grid.phi_d / 2;
+  const TableSlices slices(measured, fitted);
   std::string data;
   std::vector<double> values;
   for (int c = 0; c < kChannels; ++c) {
-    std::vector<std::vector<double>> rows;  // sqrt(theta_h), then measured, fitted for each theta_d
-    for (int h = 0; h < grid.theta_h; ++h) {
-      std::vector<double> row = {std::sqrt(RadiansToDegrees(grid.ThetaH(h + 0.5)))};
-      for (const double theta_d : kThetaD) {
-        const int d = static_cast<int>(theta_d / 90 * grid.theta_d);
-        const int bin = grid.Index(h, d, p);
-        for (const bool of_fit : {false, true}) {
-          const bool known = of_fit ? drawable[bin] : valid[bin];
-          const double x = known ? (of_fit ? fitted : measured).Value(c, bin) : 0;
-          row.push_back(x > 0 ? x : kNone);
-          // The axis is for what was measured: where nothing was, the fit may be anything.
-          if (valid[bin]) values.push_back(x);
-        }
-      }
-      rows.push_back(row);
-    }
-    data += GnuplotData("channel" + std::to_string(c), rows);
+    data += GnuplotData("channel" + std::to_string(c), slices.Rows(c, &values));
   }
 
   std::string script = data;
@@ -63,7 +132,9 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
             "\nset xtics ('0' 0, '1' 1, '5' sqrt(5), '15' sqrt(15), '30' sqrt(30), "
             "'60' sqrt(60), '90' sqrt(90))\n"
             "set xlabel 'θ_h [°], spaced by its root'\n"
-            "set tmargin at screen 0.865\nset bmargin at screen 0.125\n";
+            "set tmargin at screen 0.865\nset bmargin at screen 0.155\n";
+  script += "set label 1 " + GnuplotQuote(slices.Note()) +
+            " at screen 0.5, screen 0.025 center noenhanced font ',17' textcolor '#444444'\n";
   for (int c = 0; c < kChannels; ++c) {
     const double left = 0.07 + 0.275 * c;
     script += "set lmargin at screen " + GnuplotNumber(left) + "\nset rmargin at screen " +
@@ -73,17 +144,27 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
     script +=
         c == 2 ? "set key at screen 0.995, screen 0.52 right center vertical spacing 1.5 enhanced\n"
                : "unset key\n";
-    script += "plot ";
+    const char* comma = "plot ";
+    const auto draw = [&](int column, const std::string& how) {
+      script += comma + ("$channel" + std::to_string(c)) + " using 1:" + std::to_string(column) +
+                " with " + how;
+      comma = ", ";
+    };
     for (int k = 0; k < kCurves; ++k) {
-      const std::string block = "$channel" + std::to_string(c);
+      const int first = 2 + k * kColumns;
+      const std::string color = kColors[k], faint = Faint(kColors[k]);
       const int d = static_cast<int>(kThetaD[k] / 90 * grid.theta_d);
-      script += (k == 0 ? "" : ", ") + block + " using 1:" + std::to_string(2 + 2 * k) +
-                " with points pointtype 7 pointsize 0.75 linecolor '" + kColors[k] +
-                "' notitle, '' using 1:" + std::to_string(3 + 2 * k) +
-                " with lines linewidth 2.2 linecolor '" + kColors[k] +
-                "' title 'θ_d = " + GnuplotNumber(RadiansToDegrees(grid.ThetaD(d + 0.5))) + "°'";
+      const std::string dots = "points pointtype 7 pointsize 0.75 linecolor '";
+      const std::string line = "lines linewidth 2.2 linecolor '";
+      draw(first + kPale, dots + faint + "' notitle");
+      draw(first + kPlain, dots + color + "' notitle");
+      draw(first + kWays + kPale, line + faint + "' notitle");
+      draw(first + kWays + kDotted, line + color + "' dashtype (2,3) notitle");
+      draw(first + kWays + kPlain,
+           line + color +
+               "' title 'θ_d = " + GnuplotNumber(RadiansToDegrees(grid.ThetaD(d + 0.5))) + "°'");
     }
-    script += '\n';
+    script += "\nunset label\n";
   }
   DrawPng(path, kWidth, 1000, script);
 }
@@ -155,6 +236,7 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
         for (const double theta : thetas) {
           row.push_back(
               positive(fitted(kRows[r].at(theta, 2 * kPi * k / kStepsAround, middling))[c]));
+          values[r].push_back(row.back());
         }
       }
       const std::string name = std::to_string(r) + "_" + std::to_string(c);
@@ -164,7 +246,7 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
   script += "set multiplot title " +
             GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(table.source),
                          kWidth, 22) +
-            "\nset logscale y\nset xrange [0:360]\nset xtics 0,60,360\n";
+            "\nset logscale y\nset xrange [0:360]\nset xtics 0,60,300 add ('' 360)\n";
   for (size_t r = 0; r < std::size(kRows); ++r) {
     const double top = 0.865 - 0.465 * static_cast<double>(r), bottom = top - 0.325;
     script += "set tmargin at screen " + GnuplotNumber(top) + "\nset bmargin at screen " +
@@ -314,7 +396,8 @@ void DrawSlices(const Measurement& scattered, const SphericalBrdf& fitted,
   script += "set multiplot title " +
             GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(scattered.source),
                          kWidth, 22) +
-            "\nset logscale y\nset xrange [-90:90]\nset xtics -90,30,90\nset yrange [" +
+            "\nset logscale y\nset xrange [-90:90]\nset xtics -60,30,60 add ('' -90, '' 90)\nset "
+            "yrange [" +
             GnuplotNumber(range.low) + ":" + GnuplotNumber(range.high) +
             "]\nset xlabel 'θ_o [°] in plane, light at < 0'\n"
             "set tmargin at screen 0.865\nset bmargin at screen 0.125\n";

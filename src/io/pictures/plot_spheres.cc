@@ -2,13 +2,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/image_file.h"
 #include "io/pictures/plots.h"
+#include "io/pictures/words.h"
 #include "model/appearance/color.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/appearance/appearance.h"
@@ -92,8 +95,8 @@ struct Raster {
 // `linear(pixel)` on the object, linear between the middles of its pixels, and `background` off it,
 // so that the object is `size` pixels wide. A sphere gets a margin and a soft edge.
 template <typename Linear>
-Raster Rasterize(const RenderedImage& image, int size, const Rgb& background,
-                 const Linear& linear) {
+Raster Rasterize(const RenderedImage& image, int size, const Rgb& background, const Linear& linear,
+                 int sphere_margin = kMargin) {
   const int pixels = static_cast<int>(image.radiance.size()), rows = pixels / image.size;
   std::vector<Rgb> colors(pixels);
   for (int k = 0; k < pixels; ++k) {
@@ -117,7 +120,7 @@ Raster Rasterize(const RenderedImage& image, int size, const Rgb& background,
     return sum;
   };
   const bool fills = image.coverage.front() >= 0;
-  const int margin = fills ? 0 : kMargin;
+  const int margin = fills ? 0 : sphere_margin;
   const double scale = static_cast<double>(image.size) / size;
   Raster raster{size + 2 * margin, size * rows / image.size + 2 * margin};
   const double radius = size / 2.0;
@@ -149,9 +152,10 @@ Rgb Exposed(const Rgb& radiance, double exposure) {
   return color;
 }
 
-Raster ToneMapped(const RenderedImage& image, int size, double exposure) {
-  return Rasterize(image, size, kDarkBackground,
-                   [&](int pixel) { return Exposed(image.radiance[pixel], exposure); });
+Raster ToneMapped(const RenderedImage& image, int size, double exposure, int margin = kMargin) {
+  return Rasterize(
+      image, size, kDarkBackground,
+      [&](int pixel) { return Exposed(image.radiance[pixel], exposure); }, margin);
 }
 
 // CIELAB differences where most of the light on a pixel is of measured directions, below 0
@@ -259,10 +263,10 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
     std::snprintf(figures.data(), figures.size(), "equal");
   }
   const std::string psnr = figures.data();
-  std::snprintf(figures.data(), figures.size(), "%s, mean ΔE %.2f, of %s", psnr.c_str(),
+  std::snprintf(figures.data(), figures.size(), "%s, mean ΔE %.2g, of %s", psnr.c_str(),
                 picture.error.mean_delta_e, picture.subject.c_str());
   std::array<char, 100> exposed;
-  std::snprintf(exposed.data(), exposed.size(), "; mean luminance %g, sRGB", kMeanLuminance);
+  std::snprintf(exposed.data(), exposed.size(), ", mean luminance %g, sRGB", kMeanLuminance);
   // Texts in lines from the bottom.
   const auto line = [&](int number, const std::string& text, int y) {
     return "set label " + std::to_string(number) + " " + GnuplotQuote(text) +
@@ -274,7 +278,8 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
             " at screen 0.5, screen " + GnuplotNumber(1 - 38.0 / layout.height()) +
             " center textcolor '#111111'\n" + line(2, figures.data(), 71) +
             line(3,
-                 "lit by " + EnvironmentOf(options).name + " from all around" + exposed.data() +
+                 "shown under the whole environment (" + EnvironmentOf(options).name + ")" +
+                     exposed.data() +
                      (all_measured ? "" : "; grey: not measured, shown as what is next to it"),
                  34) +
             RowLabels(picture.rows, layout) + Separators(layout);
@@ -291,12 +296,35 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
   DrawPng(path, layout.width(), layout.height(), script);
 }
 
-// Writes the two alone, without text.
-void WriteImagePair(const ImagePairs& images, const std::string& path) {
+constexpr int kPairMargin = 6, kPairBelow = 24;  // around each sphere, and for its word
+
+// Below a picture, rows of the same width with a word in the middle.
+void AddWord(Word word, Raster* raster) {
+  const std::span<const std::string_view> rows = RowsOf(word);
+  const int left = (raster->width - static_cast<int>(rows.front().size())) / 2;
+  const int top = (kPairBelow - kWordRows) / 2 - 2;
+  for (int y = 0; y < kPairBelow; ++y) {
+    for (int x = 0; x < raster->width; ++x) {
+      const bool within = y >= top && y < top + kWordRows && x >= left &&
+                          x - left < static_cast<int>(rows.front().size());
+      const double ink = within ? InkOf(rows[y - top][x - left]) : 0;
+      for (const double c : kDarkBackground) {
+        raster->bytes += Byte(std::lerp(EncodeSrgb(c), 0.9, ink));
+      }
+    }
+  }
+  raster->height += kPairBelow;
+}
+
+// Writes the two, `size` pixels wide each, over their words.
+void WriteImagePair(const ImagePairs& images, int size, const PairWords& words,
+                    const std::string& path) {
   const auto& [counted, whole] = images;
   const double exposure = ExposureOf(CompareSpheres(counted.measured, counted.fitted));
-  const Raster left = ToneMapped(whole.measured, whole.measured.size, exposure);
-  const Raster right = ToneMapped(whole.fitted, whole.fitted.size, exposure);
+  Raster left = ToneMapped(whole.measured, size, exposure, kPairMargin);
+  Raster right = ToneMapped(whole.fitted, size, exposure, kPairMargin);
+  AddWord(words.left, &left);
+  AddWord(words.right, &right);
   const size_t row = static_cast<size_t>(left.width) * kChannels;
   std::string pixels;
   for (size_t at = 0; at < left.bytes.size(); at += row) {
@@ -323,8 +351,8 @@ AppearanceOptions Enlarge(AppearanceOptions options, double times) {
 // Of the sphere that fits are judged by.
 std::string MeasureOf(const AppearanceOptions& options) {
   const std::string size = std::to_string(options.size);
-  return "a sphere of " + size + " x " + size + " pixels under " + std::to_string(options.lights) +
-         " point lights";
+  return size + " x " + size + " pixels under " + std::to_string(options.lights) +
+         " points of the environment, as in the verdict";
 }
 
 SphereError ErrorOf(const ImagePair& pair) { return CompareSpheres(pair.measured, pair.fitted); }
@@ -373,17 +401,20 @@ void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std:
 }
 
 void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
-                     const AppearanceOptions& options) {
-  WriteImagePair(RenderPicture(measured, fitted, options), path);
+                     const AppearanceOptions& options, const PairWords& words) {
+  const int size = 2 * options.size;
+  WriteImagePair(RenderPicture(measured, fitted, Enlarge(options, 2)), size, words, path);
 }
 
 void WriteSpherePair(const PictureData& measured, const Material& fitted, const std::string& path,
-                     const AppearanceOptions& options) {
+                     const AppearanceOptions& options, const PairWords& words) {
   if (measured.nodes) {
-    WriteImagePair(RenderPicture(*measured.nodes, fitted.spherical, Shape::kSphere, options), path);
+    // Four times as many pixels would take four times as long, in a batch for each material.
+    WriteImagePair(RenderPicture(*measured.nodes, fitted.spherical, Shape::kSphere, options),
+                   2 * options.size, words, path);
   } else {
     CheckIsotropic(measured, fitted);
-    WriteSpherePair(*measured.table, fitted.angular, path, options);
+    WriteSpherePair(*measured.table, fitted.angular, path, options, words);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/pictures/words.h"
 #include "model/appearance/picture_data.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
@@ -56,11 +57,15 @@ void DrawFittedSphere(const Material& fitted, const std::string& path,
 void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std::string& path,
                const AppearanceOptions& options);
 
-// The two spheres side by side, without text.
+// The two spheres side by side, twice as wide as options.size, with a word below each. Needs no
+// gnuplot.
+struct PairWords {
+  Word left = Word::kMeasured, right = Word::kFitted;
+};
 void WriteSpherePair(const BrdfTable& measured, const AngularBrdf& fitted, const std::string& path,
-                     const AppearanceOptions& options);
+                     const AppearanceOptions& options, const PairWords& words = {});
 void WriteSpherePair(const PictureData& measured, const Material& fitted, const std::string& path,
-                     const AppearanceOptions& options);
+                     const AppearanceOptions& options, const PairWords& words = {});
 
 // Coverage: for each degree of theta_i and theta_o the valid share of the bins above the surface.
 // The dashed line is table.max_theta.

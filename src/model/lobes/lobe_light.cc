@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -136,6 +137,7 @@ struct Part {
 LobeLight Darkness(const FactorModel& model) {
   return {.diffuse = {},
           .lobes = std::vector<Rgb>(model.spec().lobes),
+          .nearly_diffuse = {},
           .through = std::vector<double>(model.parameters().size())};
 }
 
@@ -221,6 +223,25 @@ Part PartOf(std::span<const int> lobes, const Stretch& stretch, std::span<const 
   return sum;
 }
 
+bool IsNearlyDiffuse(const FactorModel& model, int lobe) {
+  const auto flat = [&](Factor factor, std::span<const double> table, double most) {
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+    for (size_t i = 0; i < table.size(); ++i) {
+      const double theta = model.spec().axis(factor).Theta(static_cast<int>(i));
+      if (theta > DegreesToRadians(60)) continue;
+      const double value = factor == Factor::kG ? table[i] / std::cos(theta) : table[i];
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    return high > 0 && high <= most * low;
+  };
+  for (int c = 0; c < kChannels; ++c) {
+    if (!flat(Factor::kD, model.D(lobe, c), 2)) return false;
+    if (!flat(Factor::kG, model.G(lobe, c), 1.5)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 double LobeLight::Share(int lobe) const {
@@ -242,6 +263,7 @@ LobeLight ComputeLobeLight(std::span<const double> coverage, const FactorModel& 
   CheckCoverage(coverage, model);
   const ModelSpec& spec = model.spec();
   LobeLight light = Darkness(model);
+  for (int m = 0; m < spec.lobes; ++m) light.nearly_diffuse.push_back(IsNearlyDiffuse(model, m));
   for (size_t k = 0; k < spec.stretches.distinct().size(); ++k) {
     std::vector<int> lobes;
     for (int m = 0; m < spec.lobes; ++m) {

@@ -5,17 +5,21 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <sstream>
 
 #include "core/files/file.h"
 #include "core/system/process.h"
 #include "io/pictures/plots.h"
+#include "io/pictures/words.h"
+#include "tests/paths.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/synth/synth.h"
@@ -111,6 +115,19 @@ TEST(GnuplotLogRangeTest, HoldsPositiveValuesWithinTheDecades) {
   const double values[] = {0, -1, std::nan(""), 1e-9, 1, 100};
   EXPECT_EQ(GnuplotLogRange(values, 4), "[0.0063095734:158.48932]");
   EXPECT_EQ(GnuplotLogRange({}, 4), "[0.8:1.25]");
+}
+
+// factors.png and the page show the same lobes.
+TEST(PaletteTest, IsThatOfThePage) {
+  const auto list = [](std::span<const char* const> colors) {
+    std::string text;
+    for (const char* color : colors)
+      text += (text.empty() ? "['" : ", '") + std::string(color) + "'";
+    return " = " + text + "];";
+  };
+  const std::string page = ReadFile(InRepository("web/plots.js"));
+  EXPECT_THAT(page, testing::HasSubstr("LOBE_COLORS" + list(kLobeColors)));
+  EXPECT_THAT(page, testing::HasSubstr("CHANNEL_COLORS" + list(kChannelColors)));
 }
 
 TEST_F(GnuplotTest, DrawsAPictureOfTheAskedSize) {
@@ -241,6 +258,51 @@ TEST_F(GnuplotTest, DrawsAllPicturesTheSameEachTime) {
   for (size_t i = 0; i < paths.size(); ++i) EXPECT_TRUE(ReadFile(paths[i]) == bytes[i]) << paths[i];
 }
 
+TEST_F(GnuplotTest, FactorsSayWhatALobeIsAndWhatIsLeftOut) {
+  const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
+  ModelFile file;
+  file.model = FactorModel(ModelSpec::SharedFactors(2, grid));
+  FactorModel& model = file.model;
+  std::ranges::fill(model.parameters(), 1.0);
+  for (const Factor factor : {Factor::kD, Factor::kG}) {
+    const Axis& axis = model.spec().axis(factor);
+    for (int i = 0; i < axis.size; ++i) {
+      if (factor == Factor::kG) model.table(factor, 0)[i] = std::cos(axis.Theta(i));
+      if (factor == Factor::kD) model.table(factor, 1)[i] = std::exp(-9 * axis.Theta(i));
+    }
+  }
+  model.d()[0] = 1e-9;  // no bar
+  file.unobserved.assign(model.parameters().size(), false);
+  const size_t last = model.TableOffset(Factor::kF, 0) + grid.theta_d - 1;
+  model.parameters()[last] = 40;
+  file.unobserved[last] = true;
+  const FakeGnuplot fake(folder_, "cat > " + Path("script") + "\nexit 1\n");
+  EXPECT_THROW(DrawFactors(file, Path("factors.png")), Error);
+  const std::string script = ReadFile(Path("script"));
+  EXPECT_THAT(script, testing::HasSubstr("title 'lobe 1 (nearly diffuse)'"));
+  EXPECT_THAT(script, testing::HasSubstr("title 'lobe 2'"));
+  EXPECT_THAT(script, testing::HasSubstr(" %%\\nnearly diffuse\" 1"));
+  EXPECT_THAT(script, testing::HasSubstr("title 'no data or light, up to 40'"));
+  EXPECT_THAT(script, testing::HasSubstr("$2 > 0 ? '<0.0005'"));
+}
+
+// What is dark there does not matter to the eye; what was not measured says nothing.
+TEST_F(GnuplotTest, SlicesSayWhatIsHardlySeenAndWhatWasNotMeasured) {
+  const MerlGrid grid = {.theta_h = 20, .theta_d = 20, .phi_d = 20};
+  BrdfTable measured = Synthesize(FindSynthMaterial("plastic"), 0, 1, grid);
+  const BrdfTable fitted = measured;
+  const FakeGnuplot fake(folder_, "cat > " + Path("script") + "\nexit 1\n");
+  const auto script_of = [&] {
+    EXPECT_THROW(DrawSlices(measured, fitted, Path("slices.png")), Error);
+    return ReadFile(Path("script"));
+  };
+  const std::string whole = script_of();
+  EXPECT_THAT(whole, testing::HasSubstr("'pale: together less than 0.3 % of the light"));
+  EXPECT_THAT(whole, testing::Not(testing::HasSubstr("dotted: not measured")));
+  LimitAngles(1, Unmeasured::kBeyondMaxAngle, &measured);
+  EXPECT_THAT(script_of(), testing::HasSubstr("dotted: not measured'"));
+}
+
 // D and G over azimuths, with entries that have no data, four lobes, one of them absent.
 TEST_F(GnuplotTest, DrawsAnisotropicPicturesTheSameEachTime) {
   const Measurement velvet = LoadMeasurement("synth:velvet@4x12");
@@ -272,8 +334,7 @@ TEST_F(GnuplotTest, DrawsAnisotropicPicturesTheSameEachTime) {
   AppearanceOptions options = Appearance(1);
   options.size = 30;
   WriteSpherePair(measured, MaterialOf(file.model), Path("pair.png"), options);
-  const auto [width, height] = PngSize(Path("pair.png"));
-  EXPECT_EQ(width, 2 * height);
+  EXPECT_EQ(PngSize(Path("pair.png")), std::pair(144, 96));
 
   // No azimuths in a table: told before anything is drawn.
   const BrdfTable table = Synthesize(FindSynthMaterial("plastic"), 0, 1, {20, 20, 20});
@@ -321,9 +382,10 @@ TEST_F(GnuplotTest, WritesTwoSpheresSideBySide) {
   AppearanceOptions options = Appearance(2);
   options.size = 40;
   WriteSpherePair(measured, fitted, Path("pair.png"), options);
-  const auto [width, height] = PngSize(Path("pair.png"));
-  EXPECT_EQ(width, 2 * height);
-  EXPECT_GE(height, 40);
+  EXPECT_EQ(PngSize(Path("pair.png")), std::pair(2 * 92, 92 + 24));
+  // Each says which it is.
+  WriteSpherePair(measured, fitted, Path("other.png"), options, {.left = Word::kFitted});
+  EXPECT_NE(ReadFile(Path("other.png")), ReadFile(Path("pair.png")));
   // A black measurement has no exposure; the fit is seen all the same.
   BrdfTable black = measured;
   for (auto& plane : black.stored) plane.assign(plane.size(), 0);

@@ -161,5 +161,17 @@ TEST(LobeLight, VisibleSolidAnglesFallTowardsGrazing) {
   EXPECT_LT(before, 0.05);
 }
 
+TEST(LobeLightTest, KnowsALobeThatIsNearlyDiffuse) {
+  FactorModel model = SmoothModel();
+  const auto found = [&] { return ComputeLobeLight(AllObserved(model), model).nearly_diffuse; };
+  EXPECT_EQ(found(), std::vector<bool>({false, false}));   // D falls
+  std::ranges::fill(model.table(Factor::kD, 1), 1 / kPi);  // and G is cos theta
+  EXPECT_EQ(found(), std::vector<bool>({false, true}));
+  std::ranges::fill(model.table(Factor::kG, 1), 1.0);  // brighter towards grazing
+  EXPECT_EQ(found(), std::vector<bool>({false, false}));
+  std::ranges::fill(model.table(Factor::kD, 1), 0.0);
+  EXPECT_EQ(found(), std::vector<bool>({false, false}));
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

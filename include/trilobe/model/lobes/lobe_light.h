@@ -17,6 +17,11 @@ struct LobeLight {
   Rgb diffuse{};
   std::vector<Rgb> lobes;
 
+  // Whether a lobe reflects about alike in all directions, as the diffuse term does: for theta_h
+  // and theta up to 60 degrees, D is flat within a factor of 2 and G/cos theta within 1.5, in each
+  // channel. A fit may put the diffuse base of a material there. [lobes]
+  std::vector<bool> nearly_diffuse;
+
   // The reflected light by table entry, in the order of FactorModel::parameters(); spline weights
   // divide it among entries, and d and s have 0. The sum over a table of D or F is the sum of the
   // albedos of its lobes and channels.
