@@ -128,7 +128,7 @@ TEST_F(AnisotropicCommands, IsotropicFitIsGuidedBetweenTheDirections) {
   const auto psnr_from_formula = [&](const char* prior) {
     const ProgramResult fit =
         RunProgram({"fit", "synth:linen@6x12", "--model=isotropic", "--lobes=1", "--solver=varpro",
-                    prior, "--out=" + In("with_prior")});
+                    prior, "--noplots", "--out=" + In("with_prior")});
     EXPECT_EQ(fit.status, 0) << fit.err;
     return Parse(Contents(
         In("with_prior/report.json")))["appearance"]["from_formula"]["fitted"]["psnr_db"]
@@ -185,9 +185,9 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
       "budget": {"psnr_drop_db": 3}, "materials": [
       {"name": "curtain", "source": "synth:velvet@4x8", "directions": {"theta_i": [0, 50]}},
       {"name": "round", "source": "synth:felt@4x8"}]})";
-  const std::string quick = "--lobes=1";
-  const ProgramResult fit = RunProgram(
-      {"fit", "--scene=" + In("scene.json"), quick, "--nocache", "--out=" + In("scene")});
+  const std::string quick = "--lobes=1", cache = "--cache=" + In("cache");
+  const ProgramResult fit =
+      RunProgram({"fit", "--scene=" + In("scene.json"), quick, cache, "--out=" + In("scene")});
   ASSERT_EQ(fit.status, 0) << fit.err;
   EXPECT_THAT(fit.out, HasSubstr("kept:     isotropic instead of anisotropic"));
   EXPECT_THAT(fit.out, HasSubstr("left out: isotropic instead of anisotropic"));
@@ -201,7 +201,7 @@ TEST_F(AnisotropicCommands, ASceneNeedsLess) {
   EXPECT_TRUE(Parse(info.out)["anisotropic"]) << info.err;
   const ProgramResult score = RunProgram({"score", In("scene/curtain.json"), "synth:velvet@4x8"});
   EXPECT_EQ(score.status, 0) << score.err;
-  const ProgramResult compare = RunProgram({"compare", In("scene.json"), quick, "--nocache"});
+  const ProgramResult compare = RunProgram({"compare", In("scene.json"), quick, cache});
   EXPECT_EQ(compare.status, 0) << compare.err;
   EXPECT_THAT(compare.out, HasSubstr("curtain"));
 }
@@ -213,7 +213,7 @@ TEST_F(AnisotropicCommands, FitChoosesNodesByHeldOutDirections) {
       "--verbose"};
   const auto fit_into = [&](const std::string& name, const char* threads) {
     std::vector<std::string> arguments = command;
-    arguments.insert(arguments.end(), {"--out=" + In(name), threads});
+    arguments.insert(arguments.end(), {"--noplots", "--out=" + In(name), threads});
     const ProgramResult fit = RunProgram(arguments);
     EXPECT_EQ(fit.status, 0) << fit.err;
     EXPECT_THAT(fit.out, HasSubstr("nodes        chosen by error on held-out directions: D "));

@@ -57,7 +57,7 @@ TEST(InitialModel, IsFiniteAndNotNegativeForAnyDataAndSpec) {
     for (const NamedSpec& named : specs) {
       const ModelSpec& spec = named.spec;
       for (const Weighting& weighting : Weightings()) {
-        if (!IsOneIn(3, {NumberOf(data, tables), NumberOf(named, specs),
+        if (!IsOneIn(7, {NumberOf(data, tables), NumberOf(named, specs),
                          NumberOf(weighting, Weightings())})) {
           continue;
         }
