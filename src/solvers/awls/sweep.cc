@@ -80,8 +80,9 @@ SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, in
     sums_.emplace_back(lookups_, ParameterKind::kD, t, end);
     t = end;
   }
-  if (spec.lobes > 0)
+  if (spec.lobes > 0) {
     sums_.emplace_back(lookups_, ParameterKind::kF, 0, spec.num_tables(Factor::kF));
+  }
 }
 
 void SampleSweep::UpdateFrom(BlockEquations* sums, FactorModel* model,
