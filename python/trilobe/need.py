@@ -384,7 +384,7 @@ def _report(
     for material, count in zip(materials, counts):
         entry = planned.get(material.name)
         row: dict[str, Any] = {
-            "name": material.name, "source": material.source, "share": float(count.bins.sum()),
+            "name": material.name, "source": os.path.basename(material.source), "share": float(count.bins.sum()),
             "measured_bytes": material.bytes, "parameters": {"full": 0, "pruned": 0},
             "seconds": {"full": material.fit_seconds, "pruned": 0.0},
         }
@@ -397,7 +397,7 @@ def _report(
     seconds = {name: picture.seconds for name, picture in pictures.items()}
     return {
         "totals": totals(rows, seconds),
-        "scene": str(path), "parameters": options.parameters, "moved": options.moved, "spp": options.spp,
+        "scene": path.name, "parameters": options.parameters, "moved": options.moved, "spp": options.spp,
         "materials": rows, "tries": tries,
         "pictures": {name: {"seconds": value} for name, value in seconds.items()},
         "differences": {name: {"flip": d.flip, "delta_e": d.delta_e} for name, d in differences.items()},

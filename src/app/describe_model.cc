@@ -100,6 +100,7 @@ void DescribeModel(const std::string& path) {
     json["stored_parameters"] = file.layout.value_or(TableLayout::Full(spec)).num_parameters(spec);
     json["stretch"] = StretchesToJson<Json>(spec);
     json["fit"] = {{"source", fit.source},
+                   {"source_xxh128", fit.source_xxh128},
                    {"solver", fit.solver},
                    {"init", fit.init},
                    {"weighting", fit.weighting},

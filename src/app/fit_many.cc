@@ -20,6 +20,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
+#include "core/base/file_names.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
 #include "fit/reports/fit_details.h"
@@ -209,6 +210,14 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   }
 }
 
+// Why a fit failed, for the table and the page, which may go to others.
+std::string ErrorToSend(const std::string& error, const FitOutcome& outcome,
+                        const std::string& out) {
+  std::error_code ignored;
+  return WithoutFolders(error, {fs::path(outcome.source).parent_path().string(), out,
+                                fs::current_path(ignored).string()});
+}
+
 }  // namespace
 
 std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
@@ -238,10 +247,10 @@ std::vector<FitOutcome> ReadFitsIn(const std::string& folder) {
       outcome.has_picture = outcome.has_picture && fs::exists(place / outcome.picture);
     } catch (const Error& error) {
       outcome.state = FitOutcome::State::kFailed;
-      outcome.error = error.what();
+      outcome.error = ErrorToSend(error.what(), outcome, folder);
     } catch (const Json::exception&) {
       outcome.state = FitOutcome::State::kFailed;
-      outcome.error = path + ": not a report of this version";
+      outcome.error = name + "/report.json: not a report of this version";
     }
   }
   return outcomes;
@@ -281,6 +290,7 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
     progress.Clear();
     PrintOutcome(outcome, ++done, outcomes.size());
     progress.Done(outcome.name, outcome.state != FitOutcome::State::kKept);
+    outcome.error = ErrorToSend(outcome.error, outcome, out);
   });
 
   std::string written = "a folder each";

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "core/base/text.h"
 #include "fit/reports/print.h"
 #include "io/page/document.h"
@@ -82,7 +83,7 @@ std::string FitsCsv(std::span<const FitOutcome> outcomes) {
          "seconds,error\n"
       << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (const FitOutcome& outcome : outcomes) {
-    csv << CsvField(outcome.name) << ',' << CsvField(outcome.source) << ','
+    csv << CsvField(outcome.name) << ',' << CsvField(FileNameOf(outcome.source)) << ','
         << StateName(outcome.state) << ',' << CsvField(outcome.verdict) << ',';
     if (outcome.has_picture) {
       csv << outcome.psnr_db << ',' << outcome.mean_delta_e << ',' << outcome.mean_color_error

@@ -1,7 +1,6 @@
 #include "app/scene_plan.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +13,7 @@
 #include "app/inputs.h"
 #include "app/interrupt.h"
 #include "app/result_folder.h"
+#include "core/base/file_names.h"
 #include "core/files/json_value.h"
 #include "fit/reports/print.h"
 #include "trilobe/core/base/error.h"
@@ -79,8 +79,8 @@ std::string RiseText(const MaterialFit& fit) {
 void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
   const SceneMaterial& material = MaterialOf(run, fit);
   out << "\n"
-      << Printable(fit.name + ": " + material.source) << "; " << BudgetText(material.budget)
-      << "\n";
+      << Printable(fit.name + ": " + FileNameOf(material.source)) << "; "
+      << BudgetText(material.budget) << "\n";
   out << "  verdict:  " << fit.verdict << "\n";
   if (fit.full.mean_delta_e) {
     const auto line = [&](const char* what, const SceneScore& score) {
@@ -125,7 +125,7 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   }
   Json json = {
       {"name", fit.name},
-      {"source", material.source},
+      {"source", FileNameOf(material.source)},
       {"verdict", fit.verdict},
       {"data_notes", fit.data_notes},
       {"budget", ToJson(material.budget)},
@@ -222,7 +222,7 @@ Json PlanToJson(const SceneRun& run) {
   for (const auto& [name, error] : run.failures) {
     failed.push_back({{"name", name}, {"error", error}});
   }
-  return {{"scene", std::filesystem::absolute(run.scene.path).lexically_normal().string()},
+  return {{"scene", FileNameOf(run.scene.path)},
           {"flags", GivenFlags(SceneModelFlags())},
           {"threads", run.threads},
           {"seconds", run.seconds},

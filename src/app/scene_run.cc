@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "app/flags.h"
@@ -10,6 +11,7 @@
 #include "app/program.h"
 #include "app/progress.h"
 #include "app/solver_flags.h"
+#include "core/base/file_names.h"
 #include "core/system/process.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
@@ -101,10 +103,17 @@ SceneRun RunScene(Scene scene, const SceneFitSettings& settings,
         progress.Done(fit.name, !fit.prune_from_cache);
       });
   run.seconds = stopwatch.Lap();
+  std::vector<std::string> folders;
+  for (const std::string& file : FilesOf(run.scene)) {
+    folders.push_back(std::filesystem::path(file).parent_path().string());
+  }
   double when_made = 0;
   for (size_t k = 0; k < results.size(); ++k) {
     const auto& [fit, error] = results[k];
-    if (!error.empty()) run.failures.push_back({run.scene.materials[k].name, error});
+    if (!error.empty()) {
+      // The plan may go to others.
+      run.failures.push_back({run.scene.materials[k].name, WithoutFolders(error, folders)});
+    }
     if (!fit) continue;
     run.fits.push_back(*fit);
     run.reused += fit->fit_from_cache ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <ostream>
 
+#include "core/base/file_names.h"
 #include "core/files/file.h"
 #include "core/system/process.h"
 #include "fit/open_pbr/nearest_open_pbr.h"
@@ -85,6 +86,15 @@ void DrawStandard(const FactorModel& model, const std::string& source, double ma
                   {.left = Word::kModel, .right = Word::kFile});
 }
 
+// ", fitted to silk.bsdf (XXH128 ...)", for a model that knows it.
+std::string FittedTo(const ModelFile& file, const std::string& source) {
+  const FitInfo& fit = file.fit;
+  const std::string measured = FileNameOf(fit.source);
+  const bool other = !measured.empty() && measured != FileNameOf(source);
+  return (other ? ", fitted to " + measured : "") +
+         (fit.source_xxh128.empty() ? "" : " (XXH128 " + fit.source_xxh128 + ")");
+}
+
 // Writes the nearest material of renderers that have no other to a model.
 std::vector<std::string> WriteStandard(const ModelFile& file, const std::string& source,
                                        const std::string& path, const ConvertOptions& options) {
@@ -95,15 +105,16 @@ std::vector<std::string> WriteStandard(const ModelFile& file, const std::string&
       FindNearestOpenPbr(file.model, DegreesToRadians(max_angle), options.appearance);
   const SphereError& error = nearest.error;
   const std::string name = std::filesystem::path(path).filename().string();
-  const MaterialNotes notes = {
-      .name = name.substr(0, name.size() - (materialx ? 5 : 16)),
-      .made = "the nearest OpenPBR to " + source + ", found by " + options.program,
-      .error = "beside it on a sphere Delta E is " + Text(error.mean_delta_e, 2) +
-               " in the mean, below " + Text(error.delta_e_95, 2) + " for 95 %, PSNR " +
-               Text(error.psnr_db, 3) + " dB",
-      .lost = VerdictOf(error).visibility == Visibility::kNone
-                  ? "lost against the model: nothing to be seen"
-                  : "lost against the model, " + Words(VerdictOf(error))};
+  const MaterialNotes notes = {.name = name.substr(0, name.size() - (materialx ? 5 : 16)),
+                               .made = "the nearest OpenPBR to " + FileNameOf(source) +
+                                       FittedTo(file, source) + ", found by " + options.program,
+                               .error = "beside it on a sphere Delta E is " +
+                                        Text(error.mean_delta_e, 2) + " in the mean, below " +
+                                        Text(error.delta_e_95, 2) + " for 95 %, PSNR " +
+                                        Text(error.psnr_db, 3) + " dB",
+                               .lost = VerdictOf(error).visibility == Visibility::kNone
+                                           ? "lost against the model: nothing to be seen"
+                                           : "lost against the model, " + Words(VerdictOf(error))};
   const std::string text = materialx ? FormatMaterialX(nearest.material, notes)
                                      : FormatPrincipled(nearest.material, notes);
   WriteFile(path, [&](std::ostream& out) { out << text; });

@@ -173,6 +173,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
   const SolverEntry& solver = FindSolver(fit.solver);
   return {{"verdict", ToJson(VerdictOn(report))},
           {"source", fit.source},
+          {"source_xxh128", fit.source_xxh128},
           {"noise", report.noise},
           {"seed", report.seed},
           {"data_seed", report.data_seed},

@@ -135,7 +135,10 @@ class MaterialFitter {
     if (is_model_) {
       // Finer than what is measured, lest nodes of D fall between.
       constexpr HemisphereGrid kNodes = {.thetas = 12, .phis = 48};
-      return AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
+      Measurement measured =
+          AsMeasurement(GivenModel().model, material_.source, num_threads_, kNodes);
+      measured.xxh128 = fingerprint_;
+      return measured;
     }
     return source_.Read({.noise = settings_.noise,
                          .seed = settings_.seed,

@@ -254,6 +254,7 @@ std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHa
 Measurement Source::Parsed(const SourceOptions& options) const {
   const MeasurementFormat& format = FormatOf(bytes_, name_);
   Measurement measurement = format.read(bytes_, name_, options);
+  measurement.xxh128 = ContentHash(bytes_);
   NoteUnread(options, format.name, &measurement);
   return measurement;
 }

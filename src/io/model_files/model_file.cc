@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/file_names.h"
 #include "core/files/file.h"
 #include "io/model_files/stretch_json.h"
 #include "model/evaluate/model_format.h"
@@ -143,7 +144,10 @@ std::string FormatModel(const ModelFile& file) {
     }
   }
   json["fit"] = OrderedJson::object();
-  VisitFitInfo(&file.fit, [&](const char* key, const auto* value) {
+  FitInfo fit = file.fit;
+  fit.source = FileNameOf(fit.source);
+  fit.init = FileNameOf(fit.init);
+  VisitFitInfo(&fit, [&](const char* key, const auto* value) {
     if constexpr (std::is_same_v<decltype(value), const double*>) {
       if (!std::isfinite(*value)) return;  // JSON cannot say it: unknown
     }

@@ -11,6 +11,7 @@
 #include <span>
 #include <sstream>
 
+#include "core/base/file_names.h"
 #include "io/page/document.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
@@ -210,7 +211,7 @@ std::string LittleEndian(const std::vector<float>& numbers) {
 
 GlslFile FormatGlsl(const ModelFile& model, const std::string& name) {
   const ShaderTables tables = MakeShaderTables(model.model, /*sampled=*/true);
-  std::string printable = Printable(name);
+  std::string printable = Printable(FileNameOf(name));
   for (char& c : printable) {
     if (c == '*' || c == '/' || c == '\\') c = c == '/' ? '|' : ' ';  // nothing ends a comment
   }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/file_names.h"
 #include "io/page/document.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/core/geometry/channels.h"
@@ -215,7 +216,10 @@ Json ToJson(const Environment& probe) {
       for (const char byte : ToRgbe(mean)) bytes += byte;
     }
   }
-  return {{"name", probe.name}, {"width", width}, {"height", height}, {"data", Base64(bytes)}};
+  return {{"name", Printable(FileNameOf(probe.name))},
+          {"width", width},
+          {"height", height},
+          {"data", Base64(bytes)}};
 }
 
 Json ToJson(const std::vector<IterationRecord>& trace) {
@@ -231,7 +235,7 @@ Json ToJson(const std::vector<IterationRecord>& trace) {
 std::string FormatPage(const ModelFile& model, const PageContents& contents) {
   const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
   Json json = {{"name", Printable(contents.name)},
-               {"source", Printable(contents.source)},
+               {"source", Printable(FileNameOf(contents.source))},
                {"parameters", contents.parameters},
                {"verdict", contents.verdict},
                {"visibility", contents.visibility},

@@ -168,10 +168,6 @@ std::string GnuplotTitle(std::string_view text, int width, int size) {
          std::to_string(std::clamp(static_cast<int>(room / letters), kSmallest, size)) + "'";
 }
 
-std::string PictureName(const std::string& source) {
-  return std::filesystem::path(source).filename().string();
-}
-
 std::string GnuplotNumber(double x) {
   if (!std::isfinite(x)) return "NaN";
   std::array<char, 32> buffer;

@@ -25,9 +25,6 @@ std::string GnuplotQuote(std::string_view text);
 // fits. A very long title is cut.
 std::string GnuplotTitle(std::string_view text, int width, int size);
 
-// Name of a source in pictures: "synth:copper", or the file name of a path.
-std::string PictureName(const std::string& source);
-
 // A number in gnuplot syntax, independent of the locale. Numbers that are not finite make a gap.
 std::string GnuplotNumber(double x);
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
 #include "model/lobes/gauge.h"
@@ -310,9 +311,8 @@ void DrawFactors(const ModelFile& file, const std::string& path) {
   const int height = kTop + rows.height();
   DrawPng(path, kWidth, height,
           "set multiplot\nset label 99 " +
-              GnuplotTitle("Factors: " + PictureName(name), kWidth, 22) +
-              " at screen 0.5, screen " + GnuplotNumber(1 - 36.0 / height) + " center\n" +
-              rows.Script(kTop, height));
+              GnuplotTitle("Factors: " + FileNameOf(name), kWidth, 22) + " at screen 0.5, screen " +
+              GnuplotNumber(1 - 36.0 / height) + " center\n" + rows.Script(kTop, height));
 }
 
 }  // namespace trilobe

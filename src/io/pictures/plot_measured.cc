@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "io/formats/utia_file.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
@@ -32,7 +32,7 @@ void DrawMeasured(const BrdfTable& table, const std::string& path) {
     std::vector<double>& row = rows.emplace_back();
     for (int i = 0; i < kCells; ++i) row.push_back(shares[i * kCells + o]);
   }
-  const std::string name = std::filesystem::path(table.source).filename().string();
+  const std::string name = FileNameOf(table.source);
   std::string script = GnuplotData("cells", rows);
   script += "set title " + GnuplotQuote("What was measured of " + name) +
             " noenhanced font ',22' offset 0,0.4\n"
@@ -75,7 +75,7 @@ void DrawPairs(const Measurement& scattered, const std::string& path) {
     tics += (a == 0 ? "" : ", ") + std::string("'") + std::to_string(15 * a) + "°' " +
             std::to_string(kUtiaGrid.phis * a);
   }
-  const std::string name = std::filesystem::path(scattered.source).filename().string();
+  const std::string name = FileNameOf(scattered.source);
   std::string script = GnuplotData("pairs", rows);
   script += "set title " + GnuplotQuote("What was measured of " + name) +
             " noenhanced font ',22' offset 0,0.4\n"

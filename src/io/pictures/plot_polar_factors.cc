@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plot_factors.h"
 #include "trilobe/core/math/stencil.h"
@@ -165,7 +166,7 @@ void DrawPolarFactors(const ModelFile& file, const LobeLight& light, const std::
   std::string script =
       "set multiplot\nset label 1 " +
       GnuplotTitle(
-          "Factors: " + PictureName(name) + "  (θ outwards, φ around, grey: no data" + note + ")",
+          "Factors: " + FileNameOf(name) + "  (θ outwards, φ around, grey: no data" + note + ")",
           kWidth, 22) +
       " at screen 0.5, screen " + GnuplotNumber(1 - 36.0 / canvas) +
       " center\n"

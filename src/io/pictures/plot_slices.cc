@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
 #include "model/appearance/hardly_seen.h"
@@ -121,7 +122,7 @@ void DrawSlices(const BrdfTable& measured, const BrdfTable& fitted, const std::s
 
   std::string script = data;
   script += "set multiplot title " +
-            GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(measured.source),
+            GnuplotTitle("Measured (points) and fitted (lines): " + FileNameOf(measured.source),
                          2000, 22) +
             "\n"
             "set logscale y\n"
@@ -244,7 +245,7 @@ void DrawSlices(const NodeBrdf& measured, const SphericalBrdf& fitted, const std
     }
   }
   script += "set multiplot title " +
-            GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(table.source),
+            GnuplotTitle("Measured (points) and fitted (lines): " + FileNameOf(table.source),
                          kWidth, 22) +
             "\nset logscale y\nset xrange [0:360]\nset xtics 0,60,300 add ('' 360)\n";
   for (size_t r = 0; r < std::size(kRows); ++r) {
@@ -394,7 +395,7 @@ void DrawSlices(const Measurement& scattered, const SphericalBrdf& fitted,
   }
   const AxisRange range = LogRange(values, 5);
   script += "set multiplot title " +
-            GnuplotTitle("Measured (points) and fitted (lines): " + PictureName(scattered.source),
+            GnuplotTitle("Measured (points) and fitted (lines): " + FileNameOf(scattered.source),
                          kWidth, 22) +
             "\nset logscale y\nset xrange [-90:90]\nset xtics -60,30,60 add ('' -90, '' 90)\nset "
             "yrange [" +

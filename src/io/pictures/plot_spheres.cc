@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/image_file.h"
 #include "io/pictures/plots.h"
@@ -274,7 +275,7 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
            " center noenhanced font ',17' textcolor '#444444'\n";
   };
   std::string script = "set multiplot\nunset border\nunset tics\nunset grid\nunset key\n";
-  script += "set label 1 " + GnuplotTitle(PictureName(picture.source), layout.width(), 26) +
+  script += "set label 1 " + GnuplotTitle(FileNameOf(picture.source), layout.width(), 26) +
             " at screen 0.5, screen " + GnuplotNumber(1 - 38.0 / layout.height()) +
             " center textcolor '#111111'\n" + line(2, figures.data(), 71) +
             line(3,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/file_names.h"
 #include "io/pictures/gnuplot.h"
 #include "io/pictures/plots.h"
 #include "trilobe/core/base/error.h"
@@ -27,7 +28,7 @@ void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
   std::string script = GnuplotData("trace", rows);
   script +=
       "set multiplot layout 1,2 title " +
-      GnuplotTitle(title.empty() ? "Convergence" : "Convergence: " + PictureName(title), 1600, 22) +
+      GnuplotTitle(title.empty() ? "Convergence" : "Convergence: " + FileNameOf(title), 1600, 22) +
       "\nset lmargin 11\nset rmargin 3\n";
   if (high > 10 * low) {
     script += "set logscale y\nset format y '10^{%T}'\nset yrange " +

@@ -26,6 +26,7 @@ void VisitFitInfo(Info* fit, const Visitor& visit) {
   visit("seconds", &fit->seconds);
   visit("threads", &fit->threads);
   visit("source", &fit->source);
+  visit("source_xxh128", &fit->source_xxh128);
   visit("valid_samples", &fit->valid_samples);
   visit("max_angle", &fit->max_angle);
   visit("program", &fit->program);

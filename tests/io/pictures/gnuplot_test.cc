@@ -95,11 +95,6 @@ TEST(GnuplotTitleTest, FitsTheWidth) {
   EXPECT_LT(cut.size(), 130U);
 }
 
-TEST(PictureNameTest, IsTheFile) {
-  EXPECT_EQ(PictureName("/a/b c/paint.bsdf"), "paint.bsdf");
-  EXPECT_EQ(PictureName("synth:copper@30x30x60"), "synth:copper@30x30x60");
-}
-
 TEST(LogTicsTest, AreAFewForAnyRange) {
   EXPECT_EQ(LogTics({0.2, 3}, 'x'), "set format x '%g'\nset xtics (0.1, 0.2, 0.5, 1, 2, 5)\n");
   EXPECT_EQ(LogTics({0.2, 300}, 'y'), "set format y '10^{%T}'\nset ytics autofreq\n");

@@ -23,7 +23,8 @@ struct FitInfo {
   int iterations = 0;
   double seconds = 0;
   int threads = 0;
-  std::string source;
+  std::string source;              // a path; a model file has the name alone
+  std::string source_xxh128 = {};  // checksum of that file, 32 hexadecimal digits
   int valid_samples = 0;
   double max_angle = 0;  // largest theta_i and theta_o of the data [degrees]
   std::string program;   // "trilobe 0.1.0"

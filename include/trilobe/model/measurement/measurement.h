@@ -30,6 +30,8 @@ struct MeasuredValue {
 struct Measurement {
   std::string source;  // file name or synth:NAME, for messages and reports
   std::string kind;    // "MERL measurement"
+  std::string xxh128 =
+      {};  // checksum of the file, as `xxh128sum` prints it; empty if there is none
   std::optional<BrdfTable> table = {};
   // Interpolates data that allow it, such as an RGL file.
   std::function<MeasuredValue(const DirectionPair&)> look_up = nullptr;
