@@ -32,7 +32,8 @@ def main() -> int:
     width, height = map(int, options.size.split("x"))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=SOFTWARE)
-        page = browser.new_page(viewport={"width": width, "height": height},
+        # Playwright's wait_for_function is an eval, which pages do not allow.
+        page = browser.new_page(viewport={"width": width, "height": height}, bypass_csp=True,
                                 color_scheme="dark" if options.dark else "light")
         page.goto(options.page.resolve().as_uri())
         if page.locator("#canvas").count() == 1:

@@ -40,6 +40,10 @@ details { margin: 1rem 0; }
 .run { border-left: 4px solid #D55E00; padding-left: .8rem; }
 """
 
+# Pictures and styles stand in the page; nothing runs, and nothing comes from a network.
+POLICY = ("default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; "
+          "form-action 'none'")
+
 FORMS = {"full": "full form", "quick": "quick form, whose figures mean nothing",
          "anisotropic": "anisotropic form"}
 
@@ -173,7 +177,8 @@ def write(path, experiments, results_of):
         for e in experiments)
     part = path.with_name(f".{path.name}.part")
     part.write_text(
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"/><title>Experiments with '
+        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"/>'
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}"/><title>Experiments with '
         f"Trilobe</title><style>{STYLE}</style></head><body><header><h1>Experiments with Trilobe"
         f"</h1><ol>{contents}</ol></header>\n{sections}\n</body></html>\n")
     part.rename(path)

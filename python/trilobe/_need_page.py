@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 from html import escape
 from typing import Any
 
@@ -90,7 +92,12 @@ def page(report: dict[str, Any]) -> str:
         what = ", ".join(f"{name} = {value}" for name, value in report["moved"].items())
         parts += [f"<h2>Seen otherwise than it was counted</h2><p>{escape(what)}</p>", _row(report, "moved_")]
     parts += ["<h2>The materials</h2>", _materials(report)]
+    style = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
+    policy = (
+        f"default-src 'none'; style-src 'sha256-{style}'; img-src 'self' file:; base-uri 'none'; form-action 'none'")
     return (
-        '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        '<!DOCTYPE html><html lang="en"><meta charset="utf-8">'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+        '<meta name="viewport" content="width=device-width">'
         f"<title>trilobe-need</title><style>{_STYLE}</style><body>{''.join(parts)}</body></html>\n"
     )

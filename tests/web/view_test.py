@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from conftest import run
+from conftest import run, wait_for
 
 Open = Callable[..., Any]
 
@@ -61,7 +61,7 @@ def open_page(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
 
 
 def finished(page: Any) -> None:
-    page.wait_for_function("window.trilobe?.renderer?.shown && !trilobe.renderer.pending", timeout=60000)
+    wait_for(page, "window.trilobe?.renderer?.shown && !trilobe.renderer.pending")
 
 
 def picture(page: Any, side: int) -> npt.NDArray[np.float64]:
@@ -119,12 +119,12 @@ def test_delta_e_is_that_of_the_report(open_page: Open, fits: Path) -> None:
     # Under other light the page's own is told apart.
     page.locator("#lights input[value=lamp]").check(force=True)
     finished(page)
-    page.wait_for_function(f"{caption}.includes('as shown')")
+    wait_for(page, f"{caption}.includes('as shown')")
 
 
 def test_the_map_says_what_is_hardly_seen(open_page: Open) -> None:
     page = open_page("plastic")
-    page.wait_for_function("!document.getElementById('hardly-seen').hidden")
+    wait_for(page, "!document.getElementById('hardly-seen').hidden")
     assert "0.3 % of the light" in page.inner_text("#difference")
     # Grazing light far from the highlight is hatched, the highlight is not.
     surface = "getComputedStyle(document.documentElement).getPropertyValue('--surface')"
@@ -238,7 +238,7 @@ def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Pa
     assert "822 parameters" in run("info", saved)
     # What is saved is what was seen.
     page.set_input_files("#file", saved)
-    page.wait_for_function("document.querySelector('#message').textContent.startsWith('Opened')")
+    wait_for(page, "document.querySelector('#message').textContent.startsWith('Opened')")
     finished(page)
     again = picture(page, 0) / page.evaluate("trilobe.renderer.exposure")
     assert np.abs(again / max(again.max(), 1e-9) - changed / changed.max()).max() < 1e-4
@@ -261,7 +261,7 @@ def test_a_broken_file_gives_one_line(text: str, words: str, open_page: Open, tm
     page = open_page("alone")
     (tmp_path / "broken").write_text(text)
     page.set_input_files("#file", tmp_path / "broken")
-    page.wait_for_function("document.querySelector('#message').textContent !== ''")
+    wait_for(page, "document.querySelector('#message').textContent !== ''")
     message = page.inner_text("#message")
     assert message.startswith("broken: ") and words in message and "\n" not in message
     finished(page)
@@ -271,7 +271,7 @@ def test_a_measurement_is_opened(open_page: Open, tmp_path: Path) -> None:
     run("synth", "plastic", f"--out={tmp_path}/plastic.binary")
     page = open_page("alone")
     page.set_input_files("#file", tmp_path / "plastic.binary")
-    page.wait_for_function("document.querySelector('#message').textContent.startsWith('Opened')")
+    wait_for(page, "document.querySelector('#message').textContent.startsWith('Opened')")
     finished(page)
     assert page.locator("#captions div").count() == 3
     assert page.evaluate("trilobe.renderer.measured.shape") == [90, 90, 90]
@@ -279,7 +279,7 @@ def test_a_measurement_is_opened(open_page: Open, tmp_path: Path) -> None:
     rows += [f"{i},0,{o},180,0.1,0.2,0.3" for i in range(0, 80, 5) for o in range(0, 80, 5)]
     (tmp_path / "few.csv").write_text("\n".join(rows))
     page.set_input_files("#file", tmp_path / "few.csv")
-    page.wait_for_function("document.querySelector('#message').textContent.startsWith('Opened few')")
+    wait_for(page, "document.querySelector('#message').textContent.startsWith('Opened few')")
     finished(page)
     assert page.evaluate("trilobe.renderer.measured.samples") == 256
 
@@ -291,7 +291,7 @@ def test_a_link_holds_the_state(open_page: Open) -> None:
     assert state == ["difference", "knot", 1.5]
     assert page.evaluate("trilobe.model.s[2]") == [0, 0, 0]
     page.click("#link")
-    page.wait_for_function("document.querySelector('#message').textContent !== ''")
+    wait_for(page, "document.querySelector('#message').textContent !== ''")
     address = page.url
     page.goto("about:blank")
     page.goto(address)
@@ -345,7 +345,7 @@ def test_a_probe_lights_the_page(fits: Path, tmp_path: Path, browser: Any) -> No
     run("view", out / "plastic/model.json", "synth:plastic", f"--probe={tmp_path}/lamp.hdr", f"--out={tmp_path}/x.html")
     page = browser.new_page()
     page.goto(f"file://{tmp_path}/x.html")
-    page.wait_for_function("window.trilobe?.renderer?.shown")
+    wait_for(page, "window.trilobe?.renderer?.shown")
     page.evaluate("trilobe.state.size = 192; trilobe.renderer.rate = trilobe.renderer.patience = 1e9;"
                   " trilobe.renderer.setSize(192)")
     finished(page)

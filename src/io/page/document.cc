@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "io/page/sha256.h"
 #include "io/page/web_files.h"
 #include "trilobe/core/base/error.h"
 
@@ -72,12 +73,32 @@ void AddModule(std::string_view name, std::vector<std::string>* added, std::stri
   *script += own + "\n";
 }
 
-std::string Module(std::string_view name) {
+std::string ModuleText(std::string_view name) {
   std::vector<std::string> added;
-  std::string script;
+  std::string script = "\n";
   AddModule(name, &added, &script);
-  return "<script type=\"module\">\n" + script + "</script>";
+  return script;
 }
+
+// What a page may load and run: nothing of a network, its own scripts and styles by their SHA-256,
+// and these images.
+class Policy {
+ public:
+  // An element whose text this page may run, or be styled by.
+  std::string Element(const std::string& tag, const std::string& attributes,
+                      const std::string& text) {
+    (tag == "style" ? styles_ : scripts_) += " 'sha256-" + Base64(Sha256(text)) + "'";
+    return "<" + tag + attributes + ">" + text + "</" + tag + ">";
+  }
+  std::string MetaElement(std::string_view images) const {
+    return R"(<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src)" +
+           scripts_ + "; style-src" + styles_ + "; img-src " + std::string(images) +
+           R"(; base-uri 'none'; form-action 'none'">)";
+  }
+
+ private:
+  std::string scripts_, styles_;
+};
 
 }  // namespace
 
@@ -85,7 +106,9 @@ std::string FormatDocument(std::string_view name, std::string_view title, std::s
                            std::string_view body) {
   constexpr std::string_view kBegin = "<!-- ", kEnd = " -->";
   std::string_view rest = WebText(name);
-  std::string page;
+  std::string page, images;
+  size_t policy_at = 0;
+  Policy policy;
   while (true) {
     const size_t begin = rest.find(kBegin), end = rest.find(kEnd, begin);
     if (begin == std::string_view::npos || end == std::string_view::npos) break;
@@ -102,15 +125,20 @@ std::string FormatDocument(std::string_view name, std::string_view title, std::s
     } else if (what == "shaders") {
       page += DataElement("shaders", Shaders());
     } else if (what.starts_with("style: ")) {
-      page += "<style>\n" + std::string(WebText(file)) + "</style>";
+      page += policy.Element("style", "", "\n" + std::string(WebText(file)));
     } else if (what.starts_with("module: ")) {
-      page += Module(file);
+      page += policy.Element("script", " type=\"module\"", ModuleText(file));
+    } else if (what.starts_with("policy: ")) {
+      policy_at = page.size();
+      images = file;
     } else {
       throw Error("web/" + std::string(name) + ": nothing is known to stand for " +
                   std::string(what));
     }
   }
-  return page.append(rest);
+  page += rest;
+  if (!images.empty()) page.insert(policy_at, policy.MetaElement(images));
+  return page;
 }
 
 std::string Base64(std::string_view bytes, int line) {

@@ -11,6 +11,8 @@ std::string_view WebText(std::string_view name);
 
 // web/NAME as one file, with JSON for its scripts, in which these comments are replaced:
 //   <!-- title -->         the title
+//   <!-- policy: IMAGES --> a Content-Security-Policy that lets the page load IMAGES (sources of
+//                          img-src) and nothing else, and run what stands in it alone
 //   <!-- style: a.css -->  a style sheet
 //   <!-- body -->          the markup
 //   <!-- data -->          the JSON, as a script element of the id "data"
