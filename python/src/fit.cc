@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "core/algebra/openblas.h"
+#include "core/base/json_text.h"
 #include "core/system/process.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
@@ -253,8 +254,7 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   outcome.model_text = FormatModel(file);
   outcome.trace = fit.summary.trace;
   outcome.trace_text = FormatTrace(fit.summary.trace);
-  outcome.report_text =
-      ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  outcome.report_text = JsonText(ToJson(report), 2) + "\n";
   return outcome;
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/json_text.h"
 #include "fit/reports/score_report.h"
 #include "fit_module.h"
 #include "model/appearance/picture_data.h"
@@ -53,7 +54,7 @@ nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const nb:
     }
     scored.verdict =
         MakeVerdict(scored.appearance, seen, {.irreducible = IrreducibleShare(scored.score)});
-    text = ToJson(scored, objective).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    text = JsonText(ToJson(scored, objective));
   }
   return nb::bytes(text.data(), text.size());
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/file_names.h"
+#include "core/base/json_text.h"
 #include "core/base/text.h"
 #include "fit/reports/print.h"
 #include "io/page/document.h"
@@ -37,8 +38,9 @@ std::string EncodeAddress(const std::string& name) {
   return address.str();
 }
 
-// Quoted where it must be (RFC 4180).
-std::string CsvField(const std::string& text) {
+// In UTF-8, and quoted where it must be (RFC 4180).
+std::string CsvField(const std::string& any_text) {
+  const std::string text = ValidUtf8(any_text);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
@@ -49,10 +51,12 @@ std::string FormatFigure(const FitOutcome& outcome) {
   const std::string folder = EncodeAddress(outcome.name);
   std::ostringstream figure;
   figure << R"(<figure><a href=")" << folder << '/' << outcome.page << R"("><img src=")" << folder
-         << '/' << outcome.picture << R"(" loading="lazy" alt=")" << EscapedMarkup(outcome.name)
-         << ": measured and fitted\"></a>\n<figcaption><b>" << EscapedMarkup(outcome.name) << "</b>"
-         << EscapedMarkup(outcome.verdict) << "<br>PSNR " << Text(outcome.psnr_db, 3)
-         << " dB, CIELAB difference " << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
+         << '/' << outcome.picture << R"(" loading="lazy" alt=")"
+         << EscapedMarkup(Printable(outcome.name))
+         << ": measured and fitted\"></a>\n<figcaption><b>"
+         << EscapedMarkup(Printable(outcome.name)) << "</b>" << EscapedMarkup(outcome.verdict)
+         << "<br>PSNR " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
+         << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
          << Text(100 * outcome.mean_color_error, 2) << " %, " << outcome.num_parameters
          << " parameters</figcaption></figure>\n";
   return figure.str();
@@ -122,15 +126,14 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
   for (const FitOutcome& outcome : outcomes) {
     if (outcome.has_picture) continue;
     body << "<p" << (outcome.has_model() ? "" : " class=\"failed\"") << "><b>"
-         << EscapedMarkup(outcome.name) << "</b> " << StateName(outcome.state)
+         << EscapedMarkup(Printable(outcome.name)) << "</b> " << StateName(outcome.state)
          << (outcome.verdict.empty() ? "" : ", " + EscapedMarkup(outcome.verdict))
          << (outcome.error.empty() ? "" : ": ") << EscapedMarkup(outcome.error) << "</p>\n";
   }
   body << "<main>\n";
   for (const FitOutcome& outcome : fits) body << FormatFigure(outcome);
   body << "</main>";
-  return FormatDocument("catalogue.html", "Fits",
-                        json.dump(-1, ' ', false, Json::error_handler_t::replace), body.str());
+  return FormatDocument("catalogue.html", "Fits", JsonText(json), body.str());
 }
 
 std::string FitNameOf(const std::string& source) {

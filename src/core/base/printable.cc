@@ -24,16 +24,12 @@ bool IsControl(std::string_view character) {
 
 void AppendEscaped(char c, std::string* escaped) {
   constexpr std::string_view kControls = "\n\r\t", kLetters = "nrt";
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  *escaped += '\\';
   if (const size_t k = kControls.find(c); k != std::string_view::npos) {
+    *escaped += '\\';
     *escaped += kLetters[k];
-    return;
+  } else {
+    AppendByte(c, escaped);
   }
-  const auto byte = static_cast<unsigned char>(c);
-  *escaped += 'x';
-  *escaped += kDigits[byte >> 4];
-  *escaped += kDigits[byte & 15];
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "core/base/text.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -33,9 +34,32 @@ size_t Utf8Length(std::string_view text) {
   return first >= 0xF0 && first <= 0xF4 && follows(3, 0x80, 0xBF) ? 4 : 0;
 }
 
+void AppendByte(char byte, std::string* text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  const auto value = static_cast<unsigned char>(byte);
+  *text += "\\x";
+  *text += kDigits[value >> 4];
+  *text += kDigits[value & 15];
+}
+
+std::string ValidUtf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  while (!text.empty()) {
+    const size_t length = Utf8Length(text);
+    if (length > 0) {
+      valid += text.substr(0, length);
+    } else {
+      AppendByte(text[0], &valid);
+    }
+    text.remove_prefix(std::max(length, size_t{1}));
+  }
+  return valid;
+}
+
 std::string EscapedMarkup(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : ValidUtf8(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";

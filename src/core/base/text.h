@@ -16,7 +16,14 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 // Length in bytes of the UTF-8 sequence at the start of `text`; 0 if invalid (RFC 3629).
 size_t Utf8Length(std::string_view text);
 
-// Escapes text for HTML and XML, for use between tags and in attributes.
+// Appends a byte as four characters, "\xe9".
+void AppendByte(char byte, std::string* text);
+
+// The same text, in which bytes that are no UTF-8 are four characters each, "\xe9" as Printable
+// shows it. All text files are written so: a file's name may have any bytes.
+std::string ValidUtf8(std::string_view text);
+
+// Escapes text for HTML and XML, for use between tags and in attributes; it is valid UTF-8 then.
 std::string EscapedMarkup(std::string_view text);
 
 }  // namespace trilobe

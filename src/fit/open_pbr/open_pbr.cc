@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/base/json_text.h"
 #include "core/base/text.h"
 #include "trilobe/core/math/angles.h"
 
@@ -304,7 +305,7 @@ std::string FormatPrincipled(const OpenPbr& material, const MaterialNotes& notes
                     {"Coat Weight", Rounded(material.coat_weight)},
                     {"Coat Roughness", Rounded(material.coat_roughness)},
                     {"Coat IOR", Rounded(material.coat_ior)}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return JsonText(json, 2) + "\n";
 }
 
 }  // namespace trilobe

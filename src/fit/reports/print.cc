@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "trilobe/core/base/printable.h"
 
 namespace trilobe {
@@ -30,8 +31,6 @@ void PrintNotes(const Measurement& measurement) {
   }
 }
 
-void PrintJson(const nlohmann::ordered_json& json) {
-  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
-}
+void PrintJson(const nlohmann::ordered_json& json) { std::cout << JsonText(json, 2) << "\n"; }
 
 }  // namespace trilobe

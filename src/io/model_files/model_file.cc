@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/file_names.h"
+#include "core/base/text.h"
 #include "core/files/file.h"
 #include "io/model_files/stretch_json.h"
 #include "model/evaluate/model_format.h"
@@ -88,8 +89,7 @@ void Print(const OrderedJson& json, const std::string& indent, std::string* text
   const bool nested = json.is_object() ||
                       (json.is_array() && std::ranges::any_of(json, &OrderedJson::is_structured));
   if (!nested || json.empty()) {
-    // A source name need not be UTF-8, but JSON must.
-    *text += json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    *text += json.dump();
     return;
   }
   *text += json.is_object() ? "{" : "[";
@@ -145,8 +145,8 @@ std::string FormatModel(const ModelFile& file) {
   }
   json["fit"] = OrderedJson::object();
   FitInfo fit = file.fit;
-  fit.source = FileNameOf(fit.source);
-  fit.init = FileNameOf(fit.init);
+  fit.source = ValidUtf8(FileNameOf(fit.source));
+  fit.init = ValidUtf8(FileNameOf(fit.init));
   VisitFitInfo(&fit, [&](const char* key, const auto* value) {
     if constexpr (std::is_same_v<decltype(value), const double*>) {
       if (!std::isfinite(*value)) return;  // JSON cannot say it: unknown

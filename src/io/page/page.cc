@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/file_names.h"
+#include "core/base/json_text.h"
 #include "io/page/document.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/core/geometry/channels.h"
@@ -247,8 +248,7 @@ std::string FormatPage(const ModelFile& model, const PageContents& contents) {
   if (contents.measured) json["measured"] = ToJson(*contents.measured);
   if (contents.probe != nullptr) json["probe"] = ToJson(*contents.probe);
   json["model"] = FormatModel(model);
-  return FormatDocument("view.html", Printable(contents.name),
-                        json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return FormatDocument("view.html", Printable(contents.name), JsonText(std::move(json)));
 }
 
 }  // namespace trilobe

@@ -15,5 +15,12 @@ TEST(Text, HasSoManyDigitsAtMost) {
   EXPECT_EQ(Text(-std::numeric_limits<double>::infinity()), "-infinite");
 }
 
+TEST(ValidUtf8, ShowsOtherBytes) {
+  EXPECT_EQ(ValidUtf8("caf\xe9.csv"), "caf\\xe9.csv");
+  EXPECT_EQ(ValidUtf8("\xff_\xc3"), "\\xff_\\xc3");
+  EXPECT_EQ(ValidUtf8("caf\xc3\xa9\n"), "caf\xc3\xa9\n");
+  EXPECT_EQ(EscapedMarkup("\xe9<"), "\\xe9&lt;");
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE
