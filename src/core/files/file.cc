@@ -136,6 +136,10 @@ class TemporaryFile {
   ~TemporaryFile() { Unlink(); }
 
   bool ok() const { return file_.get() >= 0; }
+  // Whether this process could read and write it by its name.
+  bool MayBeOpened() const {
+    return faccessat(AT_FDCWD, path_.c_str(), R_OK | W_OK, AT_EACCESS) == 0;
+  }
   // Nameless from now on.
   void Unlink() {
     if (!path_.empty()) unlink(path_.c_str());
@@ -258,7 +262,11 @@ void CheckWritable(const std::string& path) {
   // The size of a model and its report, so that a full disk is detected.
   const std::string bytes(size_t{1} << 18, ' ');
   TemporaryFile file(target);
+  const bool stays_open = !file.ok() || file.MayBeOpened();
   file.Unlink();  // a signal may end the program at any time
+  if (!stays_open) {
+    FailToWrite(path, "nobody could open the file afterwards, by its permissions; run `umask 022`");
+  }
   if (!file.ok() || !file.Write(bytes)) FailToWrite(path, std::strerror(errno));
 }
 

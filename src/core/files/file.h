@@ -37,7 +37,8 @@ using NamelessFile = std::unique_ptr<std::FILE, CloseFile>;
 // gone when it is closed, however the program ends. Throws Error.
 NamelessFile MakeNamelessFile(const std::string& path);
 
-// Throws the Error that WriteFile would throw for this path, as far as it can be known in advance.
+// Throws the Error that WriteFile would throw for this path, as far as it can be known in advance,
+// or one if the file could not be opened again (umask 0777).
 // It creates and removes a temporary file in the nearest existing parent folder.
 void CheckWritable(const std::string& path);
 

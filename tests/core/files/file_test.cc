@@ -156,6 +156,22 @@ TEST(WriteFile, ReportsAnUnwritableDirectory) {
   EXPECT_THAT(directory.Names(), IsEmpty());
 }
 
+// With `umask 0777` files are made that nobody can open again, and folders into which nobody can
+// write: that is known before the work.
+TEST(CheckWritable, FindsOutThatFilesCouldNotBeOpened) {
+  const TestDirectory directory;
+  ASSERT_EQ(chmod(directory.path().c_str(), 0777), 0);
+  EXPECT_EXIT(ExitWith([&] {
+                if (geteuid() == 0 && setuid(65534) != 0) return false;
+                umask(0777);
+                return ErrorOf([&] {
+                         CheckWritable(directory.Path("file"));
+                       }).find("by its permissions; run `umask 022`") != std::string::npos;
+              }),
+              testing::ExitedWithCode(0), "");
+  EXPECT_THAT(directory.Names(), IsEmpty());
+}
+
 // Makes writes beyond 1 MB fail in this process: by a small file system at `directory` where that
 // is permitted, else by a limit on the length of files. Returns the reason to expect.
 std::string FillTheDisk(const std::string& directory) {
