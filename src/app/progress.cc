@@ -36,6 +36,18 @@ void Progress::Show(const IterationRecord& record) {
   last_ = record;
 }
 
+void Progress::Show(const StartProgress& starts) const {
+  if (!on_terminal_) return;
+  const double seconds = since_.Seconds();
+  const double left =
+      std::min(seconds * (1 / std::max(starts.share, 1e-9) - 1), max_seconds_ - seconds);
+  std::fprintf(stderr,
+               "\r\033[Kstart %d of %d, round %d of %d   %.1f s, at most %.0f s left for starts",
+               starts.ended, starts.starts, starts.round, starts.rounds, seconds,
+               std::ceil(std::max(0.0, left)));
+  std::fflush(stderr);
+}
+
 JobProgress::JobProgress(size_t count, std::string what)
     : on_terminal_(isatty(STDERR_FILENO) != 0), count_(count), what_(std::move(what)) {
   Show();

@@ -10,8 +10,9 @@
 
 namespace trilobe {
 
-// Progress of a fit on one line of a terminal: iteration, E, its relative change, and an upper
-// bound on the time left. Draws nothing if standard error is not a terminal.
+// Progress of a fit on one line of a terminal: iteration, E, its relative change, or while starts
+// are tried how many have been, and an upper bound on the time left. Draws nothing if standard
+// error is not a terminal.
 class Progress {
  public:
   explicit Progress(const SolverOptions& options);
@@ -20,11 +21,14 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void Show(const IterationRecord& record);
+  // How many starts of a round have ended. From any thread, one call at a time.
+  void Show(const StartProgress& starts) const;
 
  private:
   const int max_iterations_;
   const double max_seconds_;
   const bool on_terminal_;
+  const Stopwatch since_;
   IterationRecord last_;
 };
 

@@ -98,6 +98,7 @@ FitOptions CheckOptions(FitOptions options) {
   complete(&FitOptions::solver_options);
   complete(&FitOptions::on_begin);
   complete(&FitOptions::on_progress);
+  complete(&FitOptions::on_start);
   complete(&FitOptions::on_iteration);
   complete(&FitOptions::on_model);
   return options;
@@ -228,6 +229,7 @@ class Fitting {
       if (is_first) options_.on_iteration(record, current);
       return true;
     };
+    solver.on_start = options_.on_start;
     solver.stop = options_.stop;
     SolverSummary summary = MakeSolver(options_.solver)->Solve(solved, solver, &model);
     return {std::move(data), std::move(solved), std::move(model), std::move(summary)};

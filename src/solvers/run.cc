@@ -31,6 +31,7 @@ double RelativeDistance(std::span<const double> a, std::span<const double> b) {
 
 SolverOptions WithoutCallbacks(SolverOptions options) {
   options.on_iteration = nullptr;
+  options.on_start = nullptr;
   options.on_element = nullptr;
   options.stop = nullptr;
   return options;

@@ -67,11 +67,13 @@ struct FitOptions {
   uint64_t seed = 1;
   int num_threads = 1;
 
-  // The fitting thread calls all callbacks but `stop`.
+  // The fitting thread calls all callbacks but `stop` and `on_start`.
   // Called after the input has been checked, before the first step.
   std::function<void()> on_begin = [] {};
   // Called after each iteration of every fit.
   std::function<void(const IterationRecord&)> on_progress = [](const IterationRecord&) {};
+  // SolverOptions::on_start of every fit.
+  std::function<void(const StartProgress&)> on_start = [](const StartProgress&) {};
   // Called after each iteration of the solver; with several forms, for the first form only.
   std::function<void(const IterationRecord&, const FactorModel&)> on_iteration =
       [](const IterationRecord&, const FactorModel&) {};

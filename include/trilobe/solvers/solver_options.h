@@ -41,6 +41,13 @@ enum class LinearSolver {
 };
 const char* LinearSolverName(LinearSolver linear_solver);  // "auto", "dense_qr", ...
 
+// How far a solver is that tries several starts, in rounds.
+struct StartProgress {
+  int ended = 0, starts = 0;  // of this round
+  int round = 1, rounds = 1;
+  double share = 0;  // of all joint steps that the rounds may take; starts that converge take fewer
+};
+
 // Options of a run. All solvers read the options before g_filter_sigma and `stop`. The others are
 // read only by solvers whose SolverEntry::options name them. AllSolverOptions() has flag, help and
 // range of each.
@@ -59,6 +66,10 @@ struct SolverOptions {
 
   // Called with every record and its model, from the solving thread. Return false to stop.
   std::function<bool(const IterationRecord&, const FactorModel&)> on_iteration = nullptr;
+
+  // Called when a start has ended its round, by solvers that try several; one call at a time, from
+  // any thread.
+  std::function<void(const StartProgress&)> on_start = nullptr;
 
   // Called after every record and within long iterations, from several threads. Return true to
   // stop.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -146,6 +147,20 @@ struct Round {
   bool if_undecided = false;
 };
 
+// The joint steps that each round may take.
+std::vector<double> StepsOf(const std::vector<Round>& rounds) {
+  std::vector<double> steps;
+  int entered = 0, active = 0, before = 0;
+  for (const Round& round : rounds) {
+    const int added = std::max(round.starts - entered, 0);
+    steps.push_back(1.0 * active * (round.tries - before) + 1.0 * added * round.tries);
+    entered += added;
+    active = std::min(active + added, round.keep);
+    before = round.tries;
+  }
+  return steps;
+}
+
 // By how much E on all samples may be above the estimate from the thinned ones, as a fraction,
 // beyond what follows from a fit of p parameters to n values: (1 + p / n) / (1 - p / n).
 constexpr double kLargeMismatch = 0.03;
@@ -188,6 +203,8 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
         objective, objective.spec().anisotropic() ? kThinnedMore : StartElimination::kThinned,
         stop);
     Starts starts(objective, coarse, given, run->options().seed, &elimination, stop);
+    const std::vector<double> steps = StepsOf(rounds);
+    const double all_steps = std::accumulate(steps.begin(), steps.end(), 0.0);
     for (const Round& round : rounds) {
       if (round.if_undecided && CountAgreeing(elimination.Results()) >= 2) {
         elimination.Keep(1);
@@ -195,7 +212,16 @@ void RunRounds(const std::vector<Round>& rounds, const Objective& objective,
       }
       starts.EnterUpTo(round.starts);
       stepper->ReleaseScratch();
-      elimination.Advance(round.tries);
+      const size_t number = &round - rounds.data();
+      const double before = std::accumulate(steps.begin(), steps.begin() + number, 0.0);
+      elimination.Advance(round.tries, [&](int ended, int count) {
+        if (!run->options().on_start) return;
+        run->options().on_start({.ended = ended,
+                                 .starts = count,
+                                 .round = static_cast<int>(number) + 1,
+                                 .rounds = static_cast<int>(rounds.size()),
+                                 .share = (before + steps[number] * ended / count) / all_steps});
+      });
       elimination.Keep(round.keep);
       for (const StartResult& start : elimination.Results()) {
         VLOG(1) << "start " << start.name << ": E " << start.objective << " by thinned samples";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "solvers/awls/sweep.h"
@@ -158,13 +159,19 @@ void StartElimination::Enter(std::string name, MakeStart make_start, Sweeps swee
 
 void StartElimination::RankLastBehind(double share) { candidates_.back()->RankBehind(share); }
 
-void StartElimination::Advance(int tries) {
+void StartElimination::Advance(int tries, const std::function<void(int, int)>& on_ended) {
   std::vector<Candidate*> active;
   for (const auto& candidate : candidates_) {
     if (candidate->active()) active.push_back(candidate.get());
   }
-  ParallelJobs(static_cast<int>(active.size()), objective_.num_threads(),
-               [&](int k) { active[k]->Advance(tries, stop_); });
+  const int count = static_cast<int>(active.size());
+  std::mutex mutex;
+  int ended = 0;
+  ParallelJobs(count, objective_.num_threads(), [&](int k) {
+    active[k]->Advance(tries, stop_);
+    const std::lock_guard<std::mutex> lock(mutex);
+    on_ended(++ended, count);
+  });
 }
 
 void StartElimination::Keep(int count) {

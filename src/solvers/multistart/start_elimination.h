@@ -66,8 +66,10 @@ class StartElimination {
 
   // Advances the remaining starts to a total of `tries` tried joint steps after their sweeps. A
   // start stops earlier if it has converged or the run is to stop. A start not begun by then is
-  // never begun.
-  void Advance(int tries);
+  // never begun. `on_ended` is called after each with how many have ended, and of how many; one
+  // call at a time, from any thread.
+  void Advance(
+      int tries, const std::function<void(int ended, int starts)>& on_ended = [](int, int) {});
 
   // Eliminates all but the best `count`.
   void Keep(int count);

@@ -50,6 +50,30 @@ class Multistart : public testing::TestWithParam<const char*> {
   }
 };
 
+// Else a run of a thousand starts says nothing for a minute.
+TEST_P(Multistart, TellsHowFarTheStartsAre) {
+  const Objective objective = NoisyObjective(ModelSpec::SharedFactors(3, kGrid), 2);
+  FactorModel model = FindInitialModel("constant").make(objective, 1);
+  SolverOptions options = Iterations(kWholeRace);
+  options.starts = 10;
+  std::vector<StartProgress> told;
+  options.on_start = [&](const StartProgress& progress) { told.push_back(progress); };
+  const SolverSummary summary = Solve(objective, options, &model);
+  ASSERT_GE(told.size(), summary.starts.size());
+  double before = 0;
+  for (const StartProgress& progress : told) {
+    EXPECT_GE(progress.ended, 1);
+    EXPECT_LE(progress.ended, progress.starts);
+    EXPECT_LE(progress.round, progress.rounds);
+    EXPECT_GT(progress.share, before);
+    before = progress.share;
+  }
+  EXPECT_NEAR(before, 1, 1e-12);
+  EXPECT_EQ(told.back().ended, told.back().starts);
+  EXPECT_EQ(told.back().round, told.back().rounds);
+  EXPECT_EQ(summary.given.on_start, nullptr);
+}
+
 TEST_P(Multistart, NamesTheStartsBestFirst) {
   const Objective objective = NoisyObjective(ModelSpec::SharedFactors(3, kGrid));
   FactorModel model = FindInitialModel("constant").make(objective, 1);
