@@ -1,8 +1,10 @@
 // The program `trilobe`: picks the subcommand, checks its flags, runs it, reports errors.
 
+#include <fcntl.h>
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -48,7 +50,8 @@ struct CommandLine {
   };
   std::vector<std::string> words;
   std::vector<Flag> flags;
-  bool help = false;  // --help, -help or -h
+  bool help = false;     // --help, -help or -h
+  bool version = false;  // --version
 };
 
 // With a value, too, which gflags would take for the list of all flags of all libraries.
@@ -105,6 +108,10 @@ CommandLine ReadCommandLine(int argc, const char* const* argv) {
     }
     if (IsHelp(word)) {
       line.help = true;
+      continue;
+    }
+    if (word == "--version" || word == "-version") {
+      line.version = true;
       continue;
     }
     const size_t begin = word[1] == '-' ? 2 : 1;
@@ -247,6 +254,14 @@ void FlushOutput() {
   if (!written) throw Error("cannot write to standard output");
 }
 
+// A descriptor of a standard stream that is closed would be that of the next file that is opened,
+// and what is printed would go into it. Writing to the stream still fails.
+void OccupyStandardStreams() {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+    if (fcntl(fd, F_GETFD) < 0) open("/dev/null", O_RDONLY);  // takes the lowest that is free
+  }
+}
+
 // `trilobe fit --help` and `trilobe help fit` are the same, and other flags may come with both.
 int Main(int argc, char** argv) {
   DefineSolverFlags();
@@ -256,6 +271,10 @@ int Main(int argc, char** argv) {
   if (!line.words.empty() && line.words[0] == "help") {
     line.words.erase(line.words.begin());
     line.help = true;
+  }
+  if (line.version) {
+    std::cout << "trilobe version " << TRILOBE_VERSION << "\n";
+    return 0;
   }
   if (line.help) return Help(line);
   if (line.words.empty()) throw Error("no command; known: " + KnownCommands());
@@ -275,6 +294,7 @@ int main(int argc, char** argv) {
 #endif
   // A file that has reached `ulimit -f` is an error of writing then, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
+  trilobe::OccupyStandardStreams();
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   gflags::SetVersionString(TRILOBE_VERSION);
