@@ -117,11 +117,16 @@ std::vector<std::string> FitFlags() {
   return flags;
 }
 
-std::string KeyOfFlags() {
+// Flags by which other files are written, but the same model.
+constexpr const char* kFlagsOfNoModel[] = {"reconstruction", "convergence", "plots", "diagnose"};
+
+// `without`: flags that do not count.
+std::string KeyOfFlags(std::span<const char* const> without) {
   std::vector<std::string> flags = FitFlags();
   for (const std::string& flag : ParticularSolverFlags()) flags.push_back(flag);
   std::string key;
   for (const char* const flag : kFlagsOfNoResult) std::erase(flags, flag);
+  for (const char* const flag : without) std::erase(flags, flag);
   for (const auto& [flag, value] : GivenFlags(flags)) key += flag + "=" + value + "\n";
   return key;
 }
@@ -173,14 +178,17 @@ FitSettings SettingsFromFlags() {
   settings.convergence = FLAGS_convergence;
   settings.reconstruction = FLAGS_reconstruction;
   settings.plots = settings.view = FLAGS_plots && !IsDefault("plots");
-  settings.key = KeyOfFlags();
+  settings.key = KeyOfFlags({});
+  settings.model_key = KeyOfFlags(kFlagsOfNoModel);
   if (!FLAGS_probe.empty()) settings.inputs.push_back(FLAGS_probe);
   if (init_is_file) {
     fit.start_model = StartFromFile();
     if (!IsMaterial(FLAGS_init)) settings.inputs.push_back(FLAGS_init);
   }
   for (const std::string& input : settings.inputs) {
-    settings.key += ContentHash(ReadFile(input)) + "\n";
+    const std::string content = ContentHash(ReadFile(input)) + "\n";
+    settings.key += content;
+    settings.model_key += content;
   }
   return settings;
 }
@@ -206,15 +214,18 @@ int RunFitOfOne(const std::string& source) {
   const int threads = ThreadsFromFlags();
   std::optional<InterruptGuard> guard;  // while it reads, Ctrl-C ends it at once
   std::optional<Progress> progress;
-  const auto show = [&](const IterationRecord& record) {
+  const auto show = [&](const auto& what) {
     if (!progress) progress.emplace(settings.fit.solver_options(ModelSpec()));
-    progress->Show(record);
+    progress->Show(what);
   };
   FitRun run = *RunOneFit(
-      source, settings, threads, into, [&] { guard.emplace(); }, show);
+      source, settings, threads, into, [&] { guard.emplace(); }, show, show);
   progress.reset();
   PrintSummary(run.report);
   if (FLAGS_verbose) PrintDetails(run.report);
+  if (!run.earlier.empty()) {
+    PrintLine("kept         the earlier model, of " + run.earlier + ", as " + kPreviousModelName);
+  }
   std::cout << std::flush;  // drawing takes a while
   if (into == nullptr) {
     PrintSeconds(run.report);

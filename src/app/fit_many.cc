@@ -162,8 +162,10 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
     return;
   }
   std::optional<FitRun> run = RunOneFit(
-      outcome->source, settings, 1, folder, [] {}, [](const IterationRecord&) {});
+      outcome->source, settings, 1, folder, [] {}, [](const IterationRecord&) {},
+      [](const StartProgress&) {});
   if (!run) return;
+  outcome->earlier = run->earlier;
   outcome->undrawn = WriteOtherFiles(&*run, settings, folder);
   TakeReport(ToJson(run->report), outcome);
   const std::vector<std::string>& files = run->report.files;
@@ -201,6 +203,10 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
     }
     std::cout << ", E " << Text(outcome.objective, 5) << ", " << outcome.num_parameters
               << " parameters, " << Text(outcome.seconds, 3) << " s";
+  }
+  if (!outcome.earlier.empty()) {
+    std::cout << "; the earlier model, of " << Printable(outcome.earlier) << ", is "
+              << kPreviousModelName;
   }
   if (!outcome.error.empty()) std::cout << ": " << outcome.error;
   std::cout << std::endl;

@@ -13,6 +13,7 @@ struct FitOutcome {
   std::string name, source;
   State state = State::kMissing;
   std::string error = {};    // message, for kFailed
+  std::string earlier = {};  // FitRun::earlier
   std::string undrawn = {};  // why pictures are missing; empty if they are not
   // Visible difference of the model in words, and its grade (NameOf(Visibility)).
   std::string verdict = {}, visibility = {};

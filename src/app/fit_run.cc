@@ -14,6 +14,8 @@
 #include "app/interrupt.h"
 #include "app/program.h"
 #include "app/view_page.h"
+#include "core/base/file_names.h"
+#include "core/base/json_text.h"
 #include "core/files/file.h"
 #include "core/system/content_hash.h"
 #include "core/system/process.h"
@@ -148,9 +150,8 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
   report.files = folder->Files();
   report.files.emplace_back(kReportName);
   report.seconds.draw = stopwatch.Lap();
-  folder->Write(kReportName, [&report](std::ostream& out) {
-    out << ToJson(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
-  });
+  folder->Write(kReportName,
+                [&report](std::ostream& out) { out << JsonText(ToJson(report), 2) << "\n"; });
   return failure;
 }
 
@@ -205,10 +206,30 @@ std::string FitKey(const FitSettings& settings, const Source& source) {
                      source.Fingerprint());
 }
 
+namespace {
+
+// What the model at `path` is of; "" if there is none, or if this fit makes it again.
+std::string WhatEarlierIsOf(const std::string& path, const FitInfo& now) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return "";
+  try {
+    const FitInfo earlier = ReadModel(path).fit;
+    if (earlier.key == now.key) return "";
+    if (FileNameOf(earlier.source) != FileNameOf(now.source)) return FileNameOf(earlier.source);
+    if (earlier.source_xxh128 != now.source_xxh128) return "an earlier state of the measurement";
+    return earlier.program == now.program ? "other flags" : earlier.program;
+  } catch (const Error&) {
+    return "who knows what";  // but not ours to lose
+  }
+}
+
+}  // namespace
+
 std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& settings,
                                 int num_threads, ResultFolder* folder,
                                 const std::function<void()>& on_begin,
-                                const std::function<void(const IterationRecord&)>& on_iteration) {
+                                const std::function<void(const IterationRecord&)>& on_iteration,
+                                const std::function<void(const StartProgress&)>& on_start) {
   FitReport report;
   report.noise = settings.source.noise;
   report.seed = static_cast<int64_t>(settings.fit.seed);
@@ -218,10 +239,12 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   source_options.num_threads = num_threads;
   RefuseMaterial(source);
   Measurement measured;
+  std::string model_key;
   {
     const Source input(source);
     measured = input.Read(source_options);
     report.key = FitKey(settings, input);
+    model_key = ContentHash(ProgramName() + "\n" + settings.model_key + input.Fingerprint());
   }
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
@@ -236,8 +259,19 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     file.fit.program = ProgramName();
     file.fit.date = UtcNow();
     file.fit.run = run;
+    file.fit.key = model_key;
     return file;
   };
+  std::string earlier;
+  if (folder != nullptr) {
+    FitInfo now;
+    now.source = source;
+    now.source_xxh128 = measured.xxh128;
+    now.program = ProgramName();
+    now.key = model_key;
+    earlier = WhatEarlierIsOf(folder->PathOf(kModelName), now);
+    if (!earlier.empty()) folder->KeepEarlier(kModelName);
+  }
   bool begun = false;
   std::optional<UnsavedModel> unsaved;
   ConvergenceCurve convergence;
@@ -251,6 +285,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
     if (folder != nullptr) unsaved.emplace();
   };
   options.on_progress = on_iteration;
+  options.on_start = on_start;
   options.on_iteration = [&](const IterationRecord& record, const FactorModel& model) {
     if (settings.convergence) convergence.Keep(record, model);
   };
@@ -269,7 +304,8 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
                 .objective = std::move(fit.objective),
                 .file = std::move(file),
                 .report = std::move(report),
-                .convergence = std::move(convergence)};
+                .convergence = std::move(convergence),
+                .earlier = std::move(earlier)};
 }
 
 std::string WriteOtherFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {

@@ -46,6 +46,7 @@ struct FitSettings {
   bool view = false;                // view.html, a page
   std::vector<std::string> inputs;  // files that all fits read
   std::string key;                  // encodes these settings, with input files by their content
+  std::string model_key;            // the same of those on which a model depends
 };
 
 // Names of all files that a fit may write into its folder.
@@ -65,7 +66,11 @@ struct FitRun {
   ModelFile file;
   FitReport report;
   ConvergenceCurve convergence;
+  // What the folder's earlier model was of, if it is another one: it is kept (kPreviousModelName).
+  std::string earlier = {};
 };
+
+inline constexpr const char* kPreviousModelName = "model.previous.json";
 
 // Reads and fits a measurement, writes the model into `folder` (unless null), then scores it. A
 // signal ends the fit early with the best model so far; while reading, nothing is returned.
@@ -73,7 +78,8 @@ struct FitRun {
 std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& settings,
                                 int num_threads, ResultFolder* folder,
                                 const std::function<void()>& on_begin,
-                                const std::function<void(const IterationRecord&)>& on_iteration);
+                                const std::function<void(const IterationRecord&)>& on_iteration,
+                                const std::function<void(const StartProgress&)>& on_start);
 
 // Writes the other files. The report is last, so its presence means that all are written except
 // pictures that could not be drawn. Returns why these could not; empty if all are there. Throws

@@ -36,6 +36,11 @@ void Inputs::CheckOutput(const std::string& path) const {
   SweepTemporaryFiles(std::filesystem::absolute(path, ignored).parent_path());
 }
 
+std::string PreviousName(const std::string& name) {
+  const std::filesystem::path path(name);
+  return path.stem().string() + ".previous" + path.extension().string();
+}
+
 ResultFolder::ResultFolder(std::string path, std::vector<std::string> names,
                            const std::vector<std::string>& marks, const Inputs& inputs)
     : path_(std::move(path)), names_(std::move(names)), run_(RandomDigits()) {
@@ -45,6 +50,7 @@ ResultFolder::ResultFolder(std::string path, std::vector<std::string> names,
   }
   for (const std::string& name : names_) {
     inputs.CheckNotRead(PathOf(name));
+    inputs.CheckNotRead(PathOf(PreviousName(name)));
     CheckWritable(PathOf(name));
   }
   const std::vector<std::string> files = Files();
@@ -60,7 +66,13 @@ ResultFolder::ResultFolder(std::string path, std::vector<std::string> names,
 
 void ResultFolder::Open() const {
   MakeDirectories(path_);
+  CheckWritable(PathOf(names_.front()));  // its permissions may be no better than `umask`
   SweepTemporaryFiles(path_);
+}
+
+void ResultFolder::KeepEarlier(const std::string& name) {
+  CheckWritable(PathOf(PreviousName(name)));
+  kept_.push_back(name);
 }
 
 void ResultFolder::WriteAhead(const std::string& name,
@@ -92,6 +104,11 @@ std::vector<std::string> ResultFolder::Files() const {
 void ResultFolder::RemoveEarlierRun() const {
   for (const std::string& name : names_) {
     std::error_code error;
+    if (std::ranges::find(kept_, name) != kept_.end()) {
+      std::filesystem::rename(PathOf(name), PathOf(PreviousName(name)), error);
+      if (!error) continue;
+      throw Error("cannot rename '" + PathOf(name) + "' of an earlier run: " + error.message());
+    }
     if (std::ranges::find(ahead_, name) != ahead_.end()) continue;
     std::filesystem::remove(PathOf(name), error);
     if (error) {

@@ -28,6 +28,9 @@ class Inputs {
   std::map<std::pair<dev_t, ino_t>, std::string> name_of_;
 };
 
+// "model.previous.json" of "model.json".
+std::string PreviousName(const std::string& name);
+
 // A folder with the files of one run. When the first file of a new run is complete, all files of
 // the earlier run are removed, so the files of two runs never mix, however the program ends. Other
 // files are kept. Not thread-safe.
@@ -44,8 +47,13 @@ class ResultFolder {
   std::string PathOf(const std::string& name) const { return path_ + "/" + name; }
   // Unique identifier of this run: 16 hexadecimal digits.
   const std::string& run() const { return run_; }
-  // Creates the folder and removes temporary files of killed runs.
+  // Creates the folder and removes temporary files of killed runs. Throws Error if files cannot be
+  // written into what was made.
   void Open() const;
+
+  // Has the first Write rename this file of the earlier run to its PreviousName instead of removing
+  // or replacing it. Throws Error if that cannot be done.
+  void KeepEarlier(const std::string& name);
 
   // Writes a file of this run without removing the earlier run; the first Write keeps it.
   void WriteAhead(const std::string& name, const std::function<void(std::ostream&)>& write);
@@ -64,6 +72,7 @@ class ResultFolder {
   std::string run_;
   bool begun_ = false;
   std::vector<std::string> ahead_;  // written by WriteAhead
+  std::vector<std::string> kept_;   // of the earlier run
 };
 
 }  // namespace trilobe

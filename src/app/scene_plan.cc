@@ -1,6 +1,7 @@
 #include "app/scene_plan.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,9 +13,13 @@
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/interrupt.h"
+#include "app/program.h"
 #include "app/result_folder.h"
 #include "core/base/file_names.h"
+#include "core/base/json_text.h"
+#include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "core/system/content_hash.h"
 #include "fit/reports/print.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
@@ -147,32 +152,77 @@ Json ToJson(const SceneRun& run, const MaterialFit& fit) {
   return json;
 }
 
-// Names of the files that the scene leaves in its folder, and of those that an earlier one has left
-// there by what its plan says.
-std::vector<std::string> SceneFileNames(const Scene& scene, const std::string& folder) {
-  std::set<std::string> names = {kPlanTextName};
-  for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
-  const std::string plan = folder + "/" + kPlanName;
+// The plan that a scene has left in a folder; null if there is none. Throws Error for other JSON.
+nlohmann::json EarlierPlan(const std::string& folder) {
+  const std::string path = folder + "/" + kPlanName;
+  nlohmann::json plan;
   try {
-    const auto earlier = nlohmann::json::parse(ReadJsonText(plan, plan + ": not a plan"));
-    if (earlier.contains("files")) {
-      for (const std::string file : earlier.at("files")) {
+    plan = nlohmann::json::parse(ReadJsonText(path, path + ": not a plan"));
+  } catch (const Error&) {
+    return plan;  // none
+  } catch (const nlohmann::json::exception&) {
+    plan = false;
+  }
+  if (!plan.is_object() || !(plan.contains("files") || plan.contains("materials"))) {
+    throw Error("'" + path + "' is not a plan of `trilobe fit --scene`; give another --out");
+  }
+  return plan;
+}
+
+// Names of the files that an earlier scene has left, by what its plan says.
+std::set<std::string> FilesOfPlan(const nlohmann::json& plan) {
+  std::set<std::string> names;
+  if (plan.is_null()) return names;
+  try {
+    if (plan.contains("files")) {
+      for (const std::string file : plan.at("files")) {
         if (file.find('/') == std::string::npos) names.insert(file);
       }
     } else {  // of an earlier version
-      for (const auto& material : earlier.at("materials")) {
+      for (const auto& material : plan.at("materials")) {
         names.insert(material.at("name").get<std::string>() + ".json");
       }
     }
-    names.erase(kPlanName);
-  } catch (const Error&) {
-    // There was none.
   } catch (const nlohmann::json::exception&) {
-    throw Error("'" + plan + "' is not a plan of `trilobe fit --scene`; give another --out");
+    throw Error(std::string("a '") + kPlanName +
+                "' there is not a plan of `trilobe fit --scene`; give another --out");
   }
+  names.erase(kPlanName);
+  return names;
+}
+
+// Names of the files that the scene leaves in its folder, and of those that an earlier one has.
+std::vector<std::string> SceneFileNames(const Scene& scene, const std::set<std::string>& earlier) {
+  std::set<std::string> names = earlier;
+  names.insert(kPlanTextName);
+  for (const SceneMaterial& material : scene.materials) names.insert(material.name + ".json");
   std::vector<std::string> in_order = {kPlanName};
   in_order.insert(in_order.end(), names.begin(), names.end());
   return in_order;
+}
+
+// Hash of all that the models depend on: program, flags, and content of the files.
+std::string KeyOf(const Scene& scene) {
+  std::string key = ProgramName() + "\n";
+  for (const auto& [flag, value] : GivenFlags(SceneModelFlags())) key += flag + "=" + value + "\n";
+  for (const std::string& file : FilesOf(scene)) key += ContentHash(ReadFile(file)) + "\n";
+  return ContentHash(key);
+}
+
+// Has the folder keep the models of an earlier scene that this one does not make again. Returns how
+// many.
+int KeepEarlierModels(const nlohmann::json& plan, const std::set<std::string>& files,
+                      const std::string& key, ResultFolder* folder) {
+  if (plan.is_null() || (plan.contains("key") && plan.at("key") == key)) return 0;
+  int kept = 0;
+  for (const std::string& file : files) {
+    std::error_code ignored;
+    if (!file.ends_with(".json") || !std::filesystem::exists(folder->PathOf(file), ignored))
+      continue;
+    folder->KeepEarlier(file);
+    ++kept;
+  }
+  return kept;
 }
 
 }  // namespace
@@ -222,7 +272,7 @@ Json PlanToJson(const SceneRun& run) {
   for (const auto& [name, error] : run.failures) {
     failed.push_back({{"name", name}, {"error", error}});
   }
-  return {{"scene", FileNameOf(run.scene.path)},
+  return {{"scene", std::filesystem::absolute(run.scene.path).lexically_normal().string()},
           {"flags", GivenFlags(SceneModelFlags())},
           {"threads", run.threads},
           {"seconds", run.seconds},
@@ -235,13 +285,18 @@ int RunSceneFit(const std::string& path) {
   const std::string out = RequiredOut("fit --scene", "DIR");
   const SceneFitSettings settings = SceneSettingsFromFlags();
   Scene scene = ReadScene(path);
-  const std::vector<std::string> names = SceneFileNames(scene, out);
+  const nlohmann::json earlier = EarlierPlan(out);
+  const std::set<std::string> earlier_files = FilesOfPlan(earlier);
+  const std::vector<std::string> names = SceneFileNames(scene, earlier_files);
+  const std::string key = KeyOf(scene);
   ResultFolder folder(out, names, {kPlanName}, Inputs(FilesOf(scene)));
+  const int kept = KeepEarlierModels(earlier, earlier_files, key, &folder);
   folder.Open();
   const auto plan_text = [&](nlohmann::ordered_json plan, const std::vector<std::string>& files) {
     plan["run"] = folder.run();
+    plan["key"] = key;
     plan["files"] = files;
-    return plan.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return JsonText(std::move(plan), 2) + "\n";
   };
   bool begun = false;
   const InterruptGuard guard;  // until the plan says what there is
@@ -266,6 +321,11 @@ int RunSceneFit(const std::string& path) {
     folder.Write(kPlanName, [&](std::ostream& out) { out << plan; });
     std::cout << "\nwritten: " << run.fits.size() << " models, " << kPlanName << ", "
               << kPlanTextName << " in " << Printable(out) << "\n";
+    if (kept > 0) {
+      std::cout << "kept: " << kept << (kept == 1 ? " model" : " models")
+                << " of an earlier scene, other flags or other files, as "
+                << PreviousName("NAME.json") << "\n";
+    }
   }
   if (run.interrupted != 0) {
     std::cout << "interrupted"

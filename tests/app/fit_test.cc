@@ -505,6 +505,17 @@ TEST(Fit, CtrlCWhileFinishingKeepsTheModelToo) {
   EXPECT_LE(report["candidates"].size(), 4U);  // it did not go on as if nothing had happened
 }
 
+TEST(Fit, TellsOnATerminalHowFarItsStartsAre) {
+  const TemporaryFolder folder;
+  const TerminalResult result = RunOnTerminal(
+      {"fit", "synth:felt@12x12x24", "--solver=multistart", "--starts=12", "--lobes=1",
+       "--max_iterations=4", "--nodiagnose", "--out=" + (folder / "out")},
+      "", 0);
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.text, HasSubstr("start 1 of 12, round 1 of 3"));
+  EXPECT_THAT(result.text, HasSubstr("s left for starts"));
+}
+
 TEST(Fit, HonoursItsTimeLimit) {
   const TemporaryFolder folder;
   const ProgramResult result = RunProgram(
@@ -625,6 +636,23 @@ TEST(Fit, SaysSoWhenItsReportIsLost) {
   int status = 0;
   waitpid(pid, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+// As `sh` closes one with >&-. The next file that is opened must not take its place.
+TEST(Fit, TakesNoFileForAStandardStream) {
+  const auto run = [](const std::string& command) {
+    return RunProgram({"-c", command, Program()}, {}, "/bin/sh");
+  };
+  for (const char* const command : {"\"$0\" synth >&-", "\"$0\" --version >&-",
+                                    "\"$0\" --version > /dev/full", "\"$0\" help fit >&-"}) {
+    const ProgramResult result = run(command);
+    EXPECT_EQ(result.status, 1) << command;
+    EXPECT_EQ(result.err, "trilobe: error: cannot write to standard output\n") << command;
+  }
+  for (const char* const command : {"\"$0\" info /dev/stdin <&-", "\"$0\" info /dev/stdout >&-"}) {
+    EXPECT_THAT(run(command).err, HasSubstr("it is not a regular file")) << command;
+  }
+  EXPECT_EQ(run("\"$0\" --version").out.substr(0, 16), "trilobe version ");
 }
 
 TEST(Fit, ReportsTheModelThatAStartBroughtAlong) {

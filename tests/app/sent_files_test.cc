@@ -7,8 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/system/content_hash.h"
 #include "tests/app/run_program.h"
 #include "trilobe/io/model_files/model_file.h"
@@ -101,7 +103,10 @@ TEST_F(SentFiles, OfASceneNameNoFolder) {
   Run({"fit", "--scene=" + scene, "--lobes=1", "--solver=awls", "--max_iterations=2", "--nocache",
        "--out=" + out},
       3);
-  const json plan = json::parse(Contents(out + "/plan.json"));
+  json plan = json::parse(Contents(out + "/plan.json"));
+  EXPECT_EQ(plan["scene"], scene);  // which `trilobe compare` reads
+  plan.erase("scene");
+  std::ofstream(out + "/plan.json") << plan;
   EXPECT_EQ(plan["materials"][0]["source"], "felt.csv");
   EXPECT_THAT(plan["failed"][0]["error"].get<std::string>(), ::testing::StartsWith("bad.csv: "));
   EXPECT_THAT(TextIn(out), Not(HasSubstr(kUser)));
@@ -119,6 +124,40 @@ TEST_F(SentFiles, OfOldModelsLoseTheirPaths) {
   Run({"view", old, "--out=" + page});
   EXPECT_THAT(Contents(page), HasSubstr("felt.csv"));
   EXPECT_THAT(Contents(page), Not(HasSubstr(kUser)));
+}
+
+bool IsUtf8(std::string_view text) {
+  while (!text.empty()) {
+    const size_t length = Utf8Length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+// A name may have any bytes. What is written is text all the same, and tells which file was meant.
+TEST_F(SentFiles, AreUtf8WhateverAFileIsCalled) {
+  const std::string name = "f\xfcr,1", shown = R"(f\xfcr,1)", out = folder_ / "fits";
+  for (const std::string& file : {name, std::string("\xff\xfe")}) {
+    std::filesystem::copy(measured_, home_ + "/" + file + ".csv");
+  }
+  std::ofstream(home_ + "/bad\xc3.csv") << "no measurement\n";
+  Run({"fit", home_, "--out=" + out, "--lobes=1", "--prior=0", "--solver=awls",
+       "--max_iterations=2", "--nodiagnose", "--plots"},
+      3);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
+    const std::string path = entry.path().string();
+    if (entry.is_directory() || path.ends_with(".png")) continue;
+    EXPECT_TRUE(IsUtf8(Contents(path))) << path;
+  }
+  const std::string table = Contents(out + "/fits.csv"), page = Contents(out + "/index.html");
+  EXPECT_THAT(table, HasSubstr("\n\"" + shown + "\",\"" + shown + ".csv\",fitted,"));
+  EXPECT_THAT(table, HasSubstr(R"(bad\xc3.csv,failed)"));
+  EXPECT_THAT(page, HasSubstr("<b>" + shown + "</b> fitted"));
+  const std::string folder = out + "/" + name;
+  EXPECT_EQ(json::parse(Contents(folder + "/model.json"))["fit"]["source"], shown + ".csv");
+  const json report = json::parse(Contents(folder + "/report.json"));
+  EXPECT_EQ(report["source"], home_ + "/" + shown + ".csv");
 }
 
 }  // namespace

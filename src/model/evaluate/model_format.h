@@ -32,6 +32,7 @@ void VisitFitInfo(Info* fit, const Visitor& visit) {
   visit("program", &fit->program);
   visit("date", &fit->date);
   visit("run", &fit->run);
+  visit("key", &fit->key);
 }
 
 }  // namespace trilobe

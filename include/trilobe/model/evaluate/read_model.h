@@ -30,6 +30,8 @@ struct FitInfo {
   std::string program;   // "trilobe 0.1.0"
   std::string date;      // ISO 8601, UTC
   std::string run = {};  // as in report.json
+  std::string key =
+      {};  // hash of the measurement, of what flags ask of a model, and of the program
 };
 
 // A stored model (docs/file-formats.md).
