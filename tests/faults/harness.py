@@ -33,6 +33,7 @@ import sys
 import tempfile
 import time
 
+KEPT = ".previous.json"  # a model of the earlier run, which stays beside the new one
 FIT_FILES = {"model.json", "trace.csv", "report.json", "convergence.csv", "reconstruction.binary", "factors.png",
              "slices.png", "spheres.png", "trace.png", "pair.png", "view.html"}
 QUICK = ["--solver=awls", "--max_iterations=2", "--lobes=1", "--max_angle=20"]
@@ -109,7 +110,7 @@ class Command:
         path = os.path.join(self.out, folder)
         if not os.path.isdir(path):
             return None, False
-        names = {name for name in os.listdir(path) if not name.startswith(".")}
+        names = {name for name in os.listdir(path) if not name.startswith(".") and not name.endswith(KEPT)}
         if self.kind == "scene":
             runs = {load(os.path.join(path, name))["fit"]["run"]
                     for name in names if name.endswith(".json") and name != "plan.json"}
@@ -135,7 +136,8 @@ class Command:
         now = snapshot(self.out) if os.path.isdir(self.out) else {}
         for folder in self.folders:
             run, sealed = self.result(folder)
-            mine = [name for name in now if os.path.dirname(name) == ("" if folder == "." else folder)]
+            mine = [name for name in now
+                    if os.path.dirname(name) == ("" if folder == "." else folder) and not name.endswith(KEPT)]
             if run is not None and run == dropped.get(folder):
                 # The earlier result: nothing of the new run may lie beside it.
                 for name in mine:
