@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/robust_line.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/model/axis.h"
 #include "trilobe/model/lobes/lobe_light.h"
@@ -78,6 +79,43 @@ void FillUnobserved(const Axis& axis, std::span<const double> coverage, int look
   }
 }
 
+// The last observed entries that enough samples read to say how the table goes on: up to kLine,
+// without the last few that are covered far less than those kInwards before them.
+std::vector<int> TrustedEntries(std::span<const double> coverage, std::span<const double> table) {
+  constexpr int kLine = 10, kInwards = 3, kMostLeftOut = 4;
+  constexpr double kWellCovered = 0.05;
+  int end = static_cast<int>(coverage.size());
+  while (end > 0 && !(coverage[end - 1] > 0)) --end;
+  for (int k = 0; k < kMostLeftOut && end > kInwards; ++k) {
+    if (coverage[end - 1] >= kWellCovered * coverage[end - 1 - kInwards]) break;
+    --end;
+  }
+  std::vector<int> trusted;
+  for (int k = end - 1; k >= 0 && static_cast<int>(trusted.size()) < kLine; --k) {
+    if (coverage[k] > 0 && table[k] > 0) trusted.push_back(k);
+  }
+  std::ranges::reverse(trusted);
+  return trusted;
+}
+
+// Fills unobserved bins of F or of G / cos theta: linear between observed ones; beyond the last one
+// the logarithm goes on as it does over the last that are well covered, and levels off.
+void ContinueBins(const Axis& axis, std::span<const double> coverage, std::span<double> table) {
+  constexpr int kFewest = 4;
+  FillUnobservedBins(coverage, kLookedAt, table);
+  const std::vector<int> trusted = TrustedEntries(coverage, table);
+  if (static_cast<int>(trusted.size()) < kFewest) return;
+  std::vector<double> x, y;
+  for (const int k : trusted) {
+    x.push_back(axis.Theta(k));
+    y.push_back(std::log(table[k]));
+  }
+  const RobustLine line = FitRobustLine(x, y);
+  for (int k = axis.size - 1; k > trusted.back() && !(coverage[k] > 0); --k) {
+    table[k] = std::exp(LevelledOff(line, x.back(), axis.Theta(k)));
+  }
+}
+
 // Continues q = G / cos theta beyond the last ring with an observed node: 1 / q is linear in
 // cos theta through the last two rings, as it nearly is for GGX, where
 // 2 / q = cos theta + sqrt(cos^2 theta + alpha^2 sin^2 theta) (Walter et al. 2007, eq. 34). At most
@@ -104,8 +142,12 @@ void ContinueRings(const Axis& axis, std::span<const double> coverage, std::span
 void ContinueShadowing(const Axis& axis, std::span<const double> coverage, std::span<double> G) {
   std::vector<double> ratio(G.begin(), G.end());
   for (int k = 0; k < axis.size; ++k) ratio[k] /= std::cos(axis.Theta(k));
-  FillUnobserved(axis, coverage, kLookedAt, ratio);
-  if (axis.polar()) ContinueRings(axis, coverage, ratio);
+  if (axis.polar()) {
+    FillUnobservedNodes(axis, coverage, ratio);
+    ContinueRings(axis, coverage, ratio);
+  } else {
+    ContinueBins(axis, coverage, ratio);
+  }
   for (int k = 0; k < axis.size; ++k) {
     if (!(coverage[k] > 0)) G[k] = ratio[k] * std::cos(axis.Theta(k));
   }
@@ -184,6 +226,8 @@ void ContinueBeyondData(std::span<const double> coverage, int num_threads, Facto
     const Axis& axis = model->spec().axis(factor);
     if (factor == Factor::kG) {
       ContinueShadowing(axis, covered, table);
+    } else if (factor == Factor::kF) {
+      ContinueBins(axis, covered, table);
     } else {
       FillUnobserved(axis, covered, kLookedAt, table);
     }

@@ -15,11 +15,13 @@ namespace trilobe {
 // Linear between observed entries, constant beyond the last; for use inside a fit.
 void FillFromNeighbors(std::span<const double> coverage, FactorModel* model);
 
-// The same for a final model. Beyond the last observed entry it uses the median of the last five.
-// For G it extrapolates G / cos theta, so that the BRDF does not grow towards the horizon; rings
-// beyond the last two observed ones have G / cos theta = 1 / (a + b cos theta) through these. For D
-// over theta_h alone, the light that its lobe reflects per half vector also stays below the median
-// of the last five. The same bits for any number of threads.
+// The same for a final model. Beyond the last observed entry, log F and log(G / cos theta) over
+// theta alone go on as over the last ten that are well covered, and level off (LevelledOff); edge
+// entries that hardly a sample reads have no say. Where F falls as G rises along a highlight, both
+// go on, and so does what they reflect together. D over theta_h alone is the median of the last
+// five, but the light that its lobe reflects per half vector stays below the median of the last
+// five, too. Rings beyond the last two observed ones have G / cos theta = 1 / (a + b cos theta)
+// through these. The same bits for any number of threads.
 void ContinueBeyondData(std::span<const double> coverage, int num_threads, FactorModel* model);
 
 }  // namespace trilobe

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/robust_line.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/lobes/lobe_light.h"
@@ -159,6 +160,39 @@ TEST(ContinueBeyondData, DarkLobesStayDark) {
   ContinueBeyondData(Coverage(model), 1, &model);
   for (const double x : model.table(Factor::kD, 0)) EXPECT_EQ(x, 0);
   for (const double x : model.parameters()) EXPECT_TRUE(std::isfinite(x) && x >= 0);
+}
+
+// F falls and G / cos theta rises exponentially up to the edge of the data, but for the last entry,
+// which hardly a sample reads.
+TEST(ContinueBeyondData, FAndGGoOnAndLevelOff) {
+  const MerlGrid grid{.theta_h = 20, .theta_d = 90, .phi_d = 20};
+  const ModelSpec spec = ModelSpec::SharedFactors(1, grid);
+  constexpr int kEdge = 60;
+  constexpr double kFall = -8, kRise = 5;  // a radian
+  FactorModel model(spec);
+  std::ranges::fill(model.parameters(), 1.0);
+  const auto theta = [&](Factor factor, int k) { return spec.axis(factor).Theta(k); };
+  const auto F = model.table(Factor::kF, 0), G = model.table(Factor::kG, 0);
+  for (int k = 0; k < 90; ++k) {
+    F[k] = std::exp(kFall * theta(Factor::kF, k));
+    G[k] = std::exp(kRise * theta(Factor::kG, k)) * std::cos(theta(Factor::kG, k));
+  }
+  std::vector<double> coverage(model.parameters().size(), 1);
+  for (const Factor factor : {Factor::kF, Factor::kG}) {
+    const int offset = model.TableOffset(factor, 0);
+    model.table(factor, 0)[kEdge - 1] *= 30;
+    coverage[offset + kEdge - 1] = 1e-3;
+    std::fill_n(coverage.begin() + offset + kEdge, spec.table_size(factor) - kEdge, 0.0);
+  }
+  ContinueBeyondData(coverage, 1, &model);
+  for (int k = kEdge; k < 90; ++k) {
+    const auto levelled = [&](double slope, Factor factor) {
+      const double from = theta(factor, kEdge - 2);
+      return std::exp(LevelledOff({.slope = slope, .at_zero = 0}, from, theta(factor, k)));
+    };
+    EXPECT_NEAR(F[k], levelled(kFall, Factor::kF), 1e-9 * F[k]) << k;
+    EXPECT_NEAR(G[k], levelled(kRise, Factor::kG) * std::cos(theta(Factor::kG, k)), 1e-9 * G[k]);
+  }
 }
 
 TEST(ContinueBeyondData, RefusesAnotherCoverage) {
