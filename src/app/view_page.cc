@@ -13,7 +13,7 @@ namespace {
 void Compare(const SeenError& seen, PageContents* contents) {
   const Verdict verdict = VerdictOf(seen);
   contents->verdict = Words(verdict);
-  contents->visibility = NameOf(verdict.visibility);
+  contents->visibility = VisibilityName(verdict);
   contents->psnr_db = seen.psnr_db;
   contents->mean_delta_e = seen.mean_delta_e;
   contents->delta_e_95 = seen.delta_e_95;

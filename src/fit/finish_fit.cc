@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/system/process.h"
+#include "fit/finish/albedo_limit.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
@@ -174,6 +175,22 @@ void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& c
                         .seconds = seconds});
 }
 
+// Unless E would rise by so much that the data themselves ask for the light.
+void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
+  constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3;
+  const Objective data(fit->objective.data(), fit->model.spec());
+  const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
+  FactorModel limited = fit->model;
+  LimitAlbedo(AlbedoLimitsOf(data, fit->model), layout, data.num_threads(), stop, &limited);
+  const double E = data.Value(fit->model);
+  if (data.Value(limited) <= E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy())) {
+    fit->model = std::move(limited);
+    return;
+  }
+  const PeakAlbedo peak = PeakAlbedoOf(fit->model, data.num_threads());
+  if (peak.albedo > 1) fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
+}
+
 // The form that looks best or, without pictures, fits samples best that are held out. Returns the
 // weighting that it was fitted with.
 Weighting TakeBestForm(const Objective& solved, const FinishOptions& options, SphereScores* scores,
@@ -237,6 +254,12 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   // Tables of a form that was chosen are thinned.
   if (options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) && !options.stop()) {
     NoteStep("smoothness", &fit, [&] { SmoothOut(solved, options, scores, &fit); });
+  }
+  if (objective.has_prior() && !fit.layout) {
+    Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model);  // by the data alone
+  }
+  if (options.limit_albedo && !fit.model.spec().anisotropic() && !options.stop()) {
+    NoteStep("energy", &fit, [&] { LimitAlbedoOf(&fit, options.stop); });
   }
   return fit;
 }

@@ -19,6 +19,7 @@
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/measurement/measured_share.h"
 #include "trilobe/solvers/registry/solvers.h"
 
 namespace trilobe {
@@ -297,18 +298,19 @@ class Fitting {
                          .prior = options_.raw ? nullptr : prior,
                          .tie_data_edge = default_solver && !options_.raw,
                          .match_reflectance = options_.match_reflectance && has_ended,
+                         .limit_albedo = !options_.raw,
                          .appearance = Appearance(),
                          .stop = options_.stop};
     FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
     fit->file.model = std::move(finished.model);
     if (solved.has_prior()) {
       fit->objective = Objective(fit->objective, fit->file.model.spec());
-      if (!finished.layout) Canonicalize(fit->objective, &fit->file.model);  // by the data alone
     } else {
       fit->objective = finished.objective;
     }
     fit->finished.steps = std::move(finished.steps);
     fit->finished.matched = finished.matched;
+    fit->finished.glow = finished.glow;
     if (isotropic_budget_ > 0) {
       fit->finished.candidates = std::move(finished.candidates);
       fit->finished.chosen = finished.chosen;
@@ -345,6 +347,7 @@ class Fitting {
     if (!measurement_.table) {
       fit->reach = ReachOf(fit->objective.samples(), fit->model(), options_.num_threads);
     }
+    fit->measured_share = MeasuredShare(fit->objective.samples());
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
   }
 

@@ -114,6 +114,7 @@ struct FitResult {
     int held_out = 0;           // samples that judged the candidates; 0: pictures did
     int too_few_to_choose = 0;  // samples that choose_form needs, if there were fewer; else 0
     std::optional<FinishedFit::Matched> matched = {};
+    std::optional<FinishedFit::Glow> glow = {};  // FinishedFit::glow
   } finished = {};
   int stored_parameters = 0;
   // Of the stored model, on the data alone. summary.final_objective is of the solver's model.
@@ -124,6 +125,7 @@ struct FitResult {
   // rotations of the sample loses (AnisotropyOf).
   std::optional<double> left_out = {};
   std::optional<Reach> reach = {};  // for scattered samples
+  double measured_share = 1;        // of what a renderer reads (MeasuredShare)
   LobeLight light = {};
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;

@@ -93,6 +93,7 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->samples_seen = fit.samples_seen;
   report->left_out = fit.left_out;
   report->reach = fit.reach;
+  report->measured_share = fit.measured_share;
   report->light = fit.light;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
 }
@@ -127,6 +128,10 @@ ReportedVerdict VerdictOn(const FitReport& report) {
   const StopReason reason = report.summary.stop_reason;
   return MakeVerdict(
       report.appearance, report.samples_seen,
+      {.measured_share = report.measured_share,
+       .samples = report.fit.valid_samples,
+       .parameters = report.stored_parameters,
+       .black = !(report.black_objective > 0)},
       {.interrupted = report.interrupted,
        .ended = reason != StopReason::kMaxIterations && reason != StopReason::kMaxSeconds &&
                 reason != StopReason::kInterrupted,
@@ -134,7 +139,9 @@ ReportedVerdict VerdictOn(const FitReport& report) {
        .default_solver = report.summary.solver == Solvers().front().name,
        .irreducible = IrreducibleShare(report.score),
        .left_out = report.left_out,
-       .reach_beyond = report.reach ? report.reach->beyond : 0});
+       .reach_beyond = report.reach ? report.reach->beyond : 0,
+       .glow = report.finished.glow ? report.finished.glow->albedo : 0,
+       .glow_theta_i = report.finished.glow ? report.finished.glow->theta_i : 0});
 }
 
 void PrintSummary(const FitReport& report) {

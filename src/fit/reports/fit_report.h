@@ -54,6 +54,7 @@ struct FitReport {
   std::optional<SeenError> samples_seen;
   std::optional<double> left_out;
   std::optional<Reach> reach;
+  double measured_share = 1;  // MeasuredShare
   LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]

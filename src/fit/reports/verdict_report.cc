@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fit/reports/print.h"
+#include "trilobe/core/math/angles.h"
 
 namespace trilobe {
 namespace {
@@ -33,6 +34,10 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
     case Advice::kKeepWithin:
       return "render it only within the measured directions: beyond, it reaches " +
              Text(facts.reach_beyond, 3) + " times the largest measured value; try --prior=10";
+    case Advice::kGlows:
+      return "it reflects " + Text(facts.glow, 3) + " times the light from " +
+             Text(RadiansToDegrees(facts.glow_theta_i), 3) +
+             " deg, as the samples leave it no other way; a renderer shows a glow there";
   }
   return "";
 }
@@ -40,7 +45,8 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
 }  // namespace
 
 ReportedVerdict MakeVerdict(const std::optional<AppearanceReport>& appearance,
-                            const std::optional<SeenError>& samples, const FitFacts& facts) {
+                            const std::optional<SeenError>& samples, const Basis& basis,
+                            const FitFacts& facts) {
   ReportedVerdict reported;
   reported.of_sphere = appearance.has_value();
   if (appearance) {
@@ -48,7 +54,7 @@ ReportedVerdict MakeVerdict(const std::optional<AppearanceReport>& appearance,
   } else if (samples) {
     reported.seen = *samples;
   }
-  reported.verdict = VerdictOf(reported.seen);
+  reported.verdict = VerdictOf(reported.seen, basis);
   reported.facts = facts;
   reported.advice = AdviceOn(reported.verdict, facts);
   return reported;
@@ -89,7 +95,8 @@ Json ToJson(const ReportedVerdict& reported) {
                              {"color", at.color}};
   }
   return {{"words", Words(verdict)},
-          {"visibility", NameOf(verdict.visibility)},
+          {"visibility", VisibilityName(verdict)},
+          {"measured_share", verdict.basis.measured_share},
           {"place", NameOf(verdict.place)},
           {"fault", NameOf(verdict.fault)},
           {"of", reported.of_sphere ? "sphere" : "samples"},

@@ -24,7 +24,8 @@ struct ReportedVerdict {
 
 // Judges the sphere, or else the samples; one of the two must be given.
 ReportedVerdict MakeVerdict(const std::optional<AppearanceReport>& appearance,
-                            const std::optional<SeenError>& samples, const FitFacts& facts);
+                            const std::optional<SeenError>& samples, const Basis& basis,
+                            const FitFacts& facts);
 
 // A line for the verdict and one for each advice, each ending in a newline.
 std::string Describe(const ReportedVerdict& reported);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace trilobe {
 namespace {
@@ -78,16 +79,10 @@ std::string What(Fault fault) {
   return "";
 }
 
-}  // namespace
+constexpr double kLeastShare = 0.5;
 
-Verdict VerdictOf(const SeenError& error) {
-  const Visibility visibility = VisibilityOf(error);
-  if (visibility == Visibility::kNone) return {};
-  const SeenPlace place = PlaceOf(error);
-  return {visibility, place, FaultAt(error, place)};
-}
-
-std::string Words(const Verdict& verdict) {
+// Of what was compared.
+std::string SeenWords(const Verdict& verdict) {
   const std::string place = Where(verdict.place), what = What(verdict.fault);
   switch (verdict.visibility) {
     case Visibility::kNone:
@@ -101,6 +96,42 @@ std::string Words(const Verdict& verdict) {
       return "plainly visible " + place + what;
   }
   return "";
+}
+
+}  // namespace
+
+bool Verdict::of_the_whole() const {
+  return !basis.black && basis.samples >= basis.parameters && basis.measured_share >= kLeastShare;
+}
+
+Verdict VerdictOf(const SeenError& error, const Basis& basis) {
+  const Visibility visibility = VisibilityOf(error);
+  if (visibility == Visibility::kNone) return {.basis = basis};
+  const SeenPlace place = PlaceOf(error);
+  return {visibility, place, FaultAt(error, place), basis};
+}
+
+std::string Words(const Verdict& verdict) {
+  constexpr double kNearlyAll = 0.95;
+  const Basis& basis = verdict.basis;
+  const std::string percent =
+      std::to_string(static_cast<int>(std::lround(100 * basis.measured_share))) + " %";
+  if (basis.black) return "no verdict: what was measured reflects nothing";
+  if (basis.samples < basis.parameters) {
+    return "no verdict: " + std::to_string(basis.samples) + " samples are fewer than " +
+           std::to_string(basis.parameters) + " parameters; at the samples " + SeenWords(verdict);
+  }
+  if (!verdict.of_the_whole()) {
+    return "no verdict: only " + percent + " of what a renderer reads was measured; there " +
+           SeenWords(verdict);
+  }
+  if (basis.measured_share >= kNearlyAll) return SeenWords(verdict);
+  return SeenWords(verdict) + " where it was measured, at " + percent +
+         " of what a renderer reads; the rest is a guess";
+}
+
+std::string VisibilityName(const Verdict& verdict) {
+  return verdict.of_the_whole() ? NameOf(verdict.visibility) : "unknown";
 }
 
 std::string NameOf(Visibility visibility) {
@@ -136,6 +167,7 @@ std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts) {
   std::vector<Advice> advice;
   if (facts.interrupted) advice.push_back(Advice::kGoOn);
   if (facts.reach_beyond > kMuchReach) advice.push_back(Advice::kKeepWithin);
+  if (facts.glow > 0) advice.push_back(Advice::kGlows);
   if (verdict.visibility == Visibility::kNone) return advice;
   if (!facts.ended) {
     if (!facts.interrupted) advice.push_back(Advice::kIterate);
@@ -165,6 +197,8 @@ std::string NameOf(Advice advice) {
       return "data_differ";
     case Advice::kKeepWithin:
       return "keep_within";
+    case Advice::kGlows:
+      return "glows";
   }
   return "";
 }

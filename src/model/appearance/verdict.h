@@ -26,18 +26,35 @@ enum class Visibility { kNone, kHardly, kVisible, kPlain };
 // What is wrong in the region that differs most: `place`, or kRest if none stands out.
 enum class Fault { kDifferent, kTooDark, kTooBright, kWrongColor };
 
+// What a verdict rests on.
+struct Basis {
+  double measured_share = 1;        // of what a renderer reads (MeasuredShare)
+  int samples = 0, parameters = 0;  // of the fit
+  bool black = false;               // the measurement reflects nothing
+
+  bool operator==(const Basis&) const = default;
+};
+
+// What was compared is what was measured. Nothing follows for the whole material where less than
+// half of what a renderer reads was measured, by fewer samples than the model has parameters, or
+// where all is black.
 struct Verdict {
   Visibility visibility = Visibility::kNone;
   SeenPlace place = SeenPlace::kRest;
   Fault fault = Fault::kDifferent;
+  Basis basis = {};
 
+  bool of_the_whole() const;
   bool operator==(const Verdict&) const = default;
 };
 
-Verdict VerdictOf(const SeenError& error);
+Verdict VerdictOf(const SeenError& error, const Basis& basis = {});
 
-// "cannot be told apart", "visible in highlights, which are too dark", ...
+// "cannot be told apart"; "visible in highlights, which are too dark, where it was measured, at 80
+// % of what a renderer reads"; "no verdict: ..."
 std::string Words(const Verdict& verdict);
+// "none", "hardly", "visible", "plain"; "unknown" unless of_the_whole().
+std::string VisibilityName(const Verdict& verdict);
 std::string NameOf(Visibility visibility);  // "none", "hardly", "visible", "plain"
 std::string NameOf(Fault fault);            // "different", "too_dark", ...
 
@@ -54,6 +71,8 @@ struct FitFacts {
   std::optional<double> left_out = {};
   // The largest value of the model where nothing was measured, over the largest measured one.
   double reach_beyond = 0;
+  // The largest directional albedo, and its theta_i [rad], of a model that makes light.
+  double glow = 0, glow_theta_i = 0;
 };
 
 // What to do or know, most urgent first.
@@ -65,6 +84,7 @@ enum class Advice {
   kChooseForm,    // the form is the limit
   kDataDiffer,    // the remaining error is largely noise or not reciprocal
   kKeepWithin,    // it is unusable beyond the measured directions
+  kGlows,         // it reflects more light than it receives
 };
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts);
 std::string NameOf(Advice advice);  // "go_on", "iterate", ...

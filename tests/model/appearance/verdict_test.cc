@@ -141,5 +141,34 @@ TEST(Advice, TellsWhatNoModelFollows) {
   EXPECT_THAT(AdviceOn(seen, {.left_out = 0.001}), IsEmpty());
 }
 
+// A renderer asks for all directions, and a verdict is of what was measured.
+TEST(Verdict, SaysWhatItRestsOn) {
+  const SeenError same;  // no difference
+  const auto words = [&](const Basis& basis) { return Words(VerdictOf(same, basis)); };
+  const auto visibility = [&](const Basis& basis) {
+    return VisibilityName(VerdictOf(same, basis));
+  };
+  EXPECT_EQ(words({}), "cannot be told apart");
+  EXPECT_EQ(words({.measured_share = 0.97}), "cannot be told apart");
+  EXPECT_EQ(
+      words({.measured_share = 0.8}),
+      "cannot be told apart where it was measured, at 80 % of what a renderer reads; the rest "
+      "is a guess");
+  EXPECT_EQ(visibility({.measured_share = 0.8}), "none");
+  const Basis scans{.measured_share = 0.2};
+  EXPECT_EQ(words(scans),
+            "no verdict: only 20 % of what a renderer reads was measured; there cannot be told "
+            "apart");
+  EXPECT_EQ(visibility(scans), "unknown");
+  const Basis few{.measured_share = 1, .samples = 300, .parameters = 339};
+  EXPECT_EQ(words(few),
+            "no verdict: 300 samples are fewer than 339 parameters; at the samples cannot be told "
+            "apart");
+  EXPECT_EQ(visibility(few), "unknown");
+  const Basis black{.black = true};
+  EXPECT_EQ(words(black), "no verdict: what was measured reflects nothing");
+  EXPECT_EQ(visibility(black), "unknown");
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

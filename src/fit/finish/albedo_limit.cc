@@ -1,0 +1,293 @@
+#include "fit/finish/albedo_limit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/math/robust_line.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/geometry/merl_grid.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/brdf_table.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kTolerance = 1e-3;  // of DirectionalAlbedo
+constexpr int kPasses = 40;
+
+// Where albedos are computed [rad]: denser where they rise steeply.
+std::vector<double> Angles() {
+  std::vector<double> angles;
+  for (int degrees = 0; degrees < 60; degrees += 6) angles.push_back(DegreesToRadians(degrees));
+  for (int degrees = 60; degrees < 90; degrees += 2) angles.push_back(DegreesToRadians(degrees));
+  angles.push_back(DegreesToRadians(89.5));
+  return angles;
+}
+
+std::vector<Rgb> AlbedosOf(const FactorModel& model, std::span<const double> angles,
+                           int num_threads) {
+  const PreparedModel<double> prepared(model);
+  return DirectionalAlbedos(
+      [&prepared](const DirectionPair& pair) { return prepared.Value(pair.wi, pair.wo); }, angles,
+      num_threads);
+}
+
+// Linear between the angles.
+double At(double theta, const std::vector<double>& angles, const std::vector<double>& values) {
+  const auto after = std::ranges::upper_bound(angles, theta);
+  if (after == angles.begin()) return values.front();
+  if (after == angles.end()) return values.back();
+  const size_t k = after - angles.begin();
+  const double t = (theta - angles[k - 1]) / (angles[k] - angles[k - 1]);
+  return (1 - t) * values[k - 1] + t * values[k];
+}
+
+// The directional albedo within the data, by cells of theta_i.
+struct MeasuredAlbedo {
+  static constexpr int kCells = 30;     // wide enough to have bins all around
+  std::array<Rgb, kCells> reflected{};  // of the light from theta_i, into measured directions
+  std::array<double, kCells> share{};   // of those directions, weighted by cos theta_o
+
+  static double Theta(int cell) { return (cell + 0.5) / kCells * (kPi / 2); }
+};
+
+MeasuredAlbedo MeasuredAlbedoOf(const BrdfSamples& samples) {
+  const auto cell = [](double cosine) {
+    const double theta = std::acos(std::clamp(cosine, 0.0, 1.0));
+    return std::min(static_cast<int>(theta / (kPi / 2) * MeasuredAlbedo::kCells),
+                    MeasuredAlbedo::kCells - 1);
+  };
+  MeasuredAlbedo albedo;
+  std::array<double, MeasuredAlbedo::kCells> all{};
+  const MerlGrid& grid = samples.grid;
+  const std::vector<bool> above = BinsAboveSurface(grid);
+  for (int bin = 0; bin < grid.size(); ++bin) {
+    if (!above[bin]) continue;
+    const int row = bin / grid.phi_d;
+    const Cosines cosines = ToCosines(grid.Center(bin));
+    if (!(cosines.i > 0 && cosines.o > 0)) continue;
+    all[cell(cosines.i)] +=
+        grid.SolidAngle(row / grid.theta_d, row % grid.theta_d) * cosines.i * cosines.o;
+  }
+  for (int j = 0; j < samples.size(); ++j) {
+    const Cosines cosines = samples.CosinesOf(j);
+    const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
+    const int k = cell(cosines.i);
+    albedo.share[k] += through;
+    for (int c = 0; c < kChannels; ++c) albedo.reflected[k][c] += through * samples.rho[j][c];
+  }
+  for (int k = 0; k < MeasuredAlbedo::kCells; ++k) {
+    if (!(all[k] > 0)) continue;
+    albedo.share[k] /= all[k];
+    for (double& x : albedo.reflected[k]) x *= kPi / all[k];
+  }
+  return albedo;
+}
+
+// What a model fitted to scattered samples reflects up to the largest angle of these.
+MeasuredAlbedo ModelledAlbedo(const FactorModel& model, double max_theta, int num_threads) {
+  constexpr int kLookedAt = 8;
+  const PreparedModel<double> prepared(model);
+  const double least_cosine = std::cos(max_theta);
+  MeasuredAlbedo albedo;
+  std::vector<double> angles;
+  int end = 0;
+  while (end < MeasuredAlbedo::kCells && MeasuredAlbedo::Theta(end) <= max_theta) ++end;
+  const int begin = std::max(end - kLookedAt, 0);
+  for (int k = begin; k < end; ++k) angles.push_back(MeasuredAlbedo::Theta(k));
+  const std::vector<Rgb> reflected = DirectionalAlbedos(
+      [&](const DirectionPair& pair) {
+        return pair.wo[2] >= least_cosine ? prepared.Value(pair.wi, pair.wo) : Rgb{};
+      },
+      angles, num_threads);
+  for (int k = 0; k < end; ++k) albedo.share[k] = std::pow(std::sin(max_theta), 2);
+  std::ranges::copy(reflected, albedo.reflected.begin() + begin);
+  return albedo;
+}
+
+// How the directional albedo goes on beyond the data: as its logarithm does over the last cells
+// that are measured nearly as well as any, and levels off as tables do (beyond_data.h). A highlight
+// is cut in the last of them.
+class ContinuedAlbedo {
+ public:
+  // `beyond`: the angle from which on it is asked for [rad].
+  ContinuedAlbedo(const MeasuredAlbedo& measured, double beyond) {
+    constexpr double kWellMeasured = 0.8, kFarthest = DegreesToRadians(12);
+    constexpr int kCut = 2, kLine = 4;
+    const double enough = kWellMeasured * std::ranges::max(measured.share);
+    int end = 0;
+    while (end < MeasuredAlbedo::kCells && measured.share[end] >= enough) ++end;
+    end -= kCut;
+    if (end < kLine || end + kCut >= MeasuredAlbedo::kCells - 1) return;
+    from_ = MeasuredAlbedo::Theta(end - 1);
+    if (beyond - from_ > kFarthest) return;  // too far to tell
+    for (int c = 0; c < kChannels; ++c) {
+      std::vector<double> x, y;
+      for (int k = end - kLine; k < end; ++k) {
+        if (!(measured.reflected[k][c] > 0)) continue;
+        x.push_back(MeasuredAlbedo::Theta(k));
+        y.push_back(std::log(measured.reflected[k][c] / measured.share[k]));
+      }
+      if (x.size() == kLine) line_[c] = FitRobustLine(x, y);
+    }
+  }
+
+  // Infinite where the data go on, and for a channel that reflects nothing.
+  double operator()(double theta, int c) const {
+    if (!line_[c] || !(theta > from_)) return std::numeric_limits<double>::infinity();
+    return std::exp(LevelledOff(*line_[c], from_, theta));
+  }
+
+ private:
+  double from_ = 0;
+  std::array<std::optional<RobustLine>, kChannels> line_;
+};
+
+// The angles of incidence that occur, a degree apart at least. [rad]
+std::vector<double> IncidencesOf(const BrdfSamples& samples) {
+  std::vector<bool> occurs(90, false);
+  for (const SphericalAngles& at : samples.directions) {
+    occurs[std::clamp(static_cast<int>(RadiansToDegrees(at.theta_i)), 0, 89)] = true;
+  }
+  std::vector<double> angles;
+  for (int degrees = 0; degrees < 90; ++degrees) {
+    if (occurs[degrees]) angles.push_back(DegreesToRadians(degrees + 0.5));
+  }
+  return angles;
+}
+
+// The median of what the model reflects at the angles of incidence that occur.
+Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& model,
+                             int num_threads) {
+  const std::vector<double> angles = IncidencesOf(samples);
+  Rgb median{};
+  if (angles.empty()) return median;
+  const std::vector<Rgb> albedos = AlbedosOf(model, angles, num_threads);
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> of_channel;
+    for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
+    const auto middle = of_channel.begin() + static_cast<ptrdiff_t>(of_channel.size() / 2);
+    std::ranges::nth_element(of_channel, middle);
+    median[c] = *middle;
+  }
+  return median;
+}
+
+// The last theta [rad] at which a table of G is well covered: not by a fraction of what the third
+// entry inwards is.
+double LastWellCovered(std::span<const double> coverage, const FactorModel& model) {
+  constexpr double kWellCovered = 0.05;
+  constexpr int kInwards = 3;
+  const ModelSpec& spec = model.spec();
+  double last = 0;
+  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+    const auto of_table = coverage.subspan(model.TableOffset(Factor::kG, t), spec.g_axis.size);
+    for (int k = kInwards; k < spec.g_axis.size; ++k) {
+      if (of_table[k] > kWellCovered * of_table[k - kInwards]) {
+        last = std::max(last, spec.g_axis.Theta(k));
+      }
+    }
+  }
+  return last;
+}
+
+}  // namespace
+
+AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
+  constexpr double kSlack = 1.5;  // of what goes on: Fresnel factors rise steeply
+  const BrdfSamples& samples = data.samples();
+  AlbedoLimits limits{.theta_i = Angles(), .beyond = {}};
+  const auto raise = [&](const Rgb& reflected) {
+    for (int c = 0; c < kChannels; ++c) {
+      limits.everywhere[c] = std::max(limits.everywhere[c], reflected[c]);
+    }
+  };
+  MeasuredAlbedo measured;
+  double from = 0;  // the angle beyond which nothing was measured
+  if (samples.on_grid()) {
+    measured = MeasuredAlbedoOf(samples);
+    for (const Rgb& reflected : measured.reflected) raise(reflected);
+    from = LastWellCovered(data.coverage(), model);
+  } else {
+    raise(MedianAlbedoAtIncidences(samples, model, data.num_threads()));
+    for (const SphericalAngles& at : samples.directions) {
+      from = std::max({from, at.theta_i, at.theta_o});
+    }
+    measured = ModelledAlbedo(model, from, data.num_threads());
+  }
+  limits.beyond_theta = from;
+  const ContinuedAlbedo continued(measured, from);
+  for (const double theta_i : limits.theta_i) {
+    Rgb limit = limits.everywhere;
+    for (int c = 0; c < kChannels && theta_i > from; ++c) {
+      limit[c] = std::min(limit[c], kSlack * continued(theta_i, c));
+    }
+    limits.beyond.push_back(limit);
+  }
+  return limits;
+}
+
+PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads) {
+  const std::vector<double> angles = Angles();
+  const std::vector<Rgb> albedos = AlbedosOf(model, angles, num_threads);
+  PeakAlbedo peak;
+  for (size_t k = 0; k < angles.size(); ++k) {
+    const double here = std::ranges::max(albedos[k]);
+    if (here > peak.albedo) peak = {.albedo = here, .theta_i = angles[k]};
+  }
+  return peak;
+}
+
+bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_threads,
+                 const StopCheck& stop, FactorModel* model) {
+  const ModelSpec& spec = model->spec();
+  const size_t n = limits.theta_i.size();
+  const size_t first_beyond =
+      std::ranges::upper_bound(limits.theta_i, limits.beyond_theta) - limits.theta_i.begin();
+  bool changed = false;
+  // First what lies beyond the data: its light may come from angles that are within, too.
+  bool beyond = true;
+  for (int pass = 0; pass < kPasses && !stop(); ++pass) {
+    const size_t first = beyond ? first_beyond : 0;
+    const std::vector<Rgb> albedos =
+        AlbedosOf(*model, std::span(limits.theta_i).subspan(first), num_threads);
+    std::vector<double> factor(n, 1.0);
+    bool exceeds = false;
+    for (size_t k = first; k < n; ++k) {
+      const Rgb& limit = k >= first_beyond ? limits.beyond[k] : limits.everywhere;
+      for (int c = 0; c < kChannels; ++c) {
+        const double diffuse = kPi * model->d()[c], albedo = albedos[k - first][c];
+        if (!(albedo > (1 + kTolerance) * limit[c]) || !(limit[c] > diffuse)) continue;
+        factor[k] = std::min(factor[k], std::sqrt((limit[c] - diffuse) / (albedo - diffuse)));
+        exceeds = true;
+      }
+    }
+    if (!exceeds && !beyond) break;
+    if (!exceeds) {
+      beyond = false;
+      continue;
+    }
+    changed = true;
+    for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+      const std::span<double> G = model->table(Factor::kG, t);
+      for (const int k : layout.of(Factor::kG, t)) {
+        const double theta = spec.g_axis.Theta(k);
+        if (beyond && !(theta > limits.beyond_theta)) continue;
+        G[k] *= At(theta, limits.theta_i, factor);
+      }
+    }
+    ExpandStored(layout, model);
+  }
+  return changed;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,43 @@
+#ifndef TRILOBE_FIT_FINISH_ALBEDO_LIMIT_H_
+#define TRILOBE_FIT_FINISH_ALBEDO_LIMIT_H_
+
+#include <vector>
+
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/model/factor_model.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/model/table_layout.h"
+
+namespace trilobe {
+
+// The largest directional albedo that a model may have, by channel.
+struct AlbedoLimits {
+  std::vector<double> theta_i;  // where it is computed, ascending [rad]
+  Rgb everywhere = {1, 1, 1};
+  std::vector<Rgb> beyond;  // of G beyond the data, at most `everywhere`. [theta_i.size()]
+  double beyond_theta = 0;  // where the data end [rad]
+};
+
+// Limits for an isotropic fit: 1, or what the samples themselves reflect where that is more, as of
+// a measurement in other units. Scattered samples reflect the median of what `model` does at their
+// theta_i. Beyond the last well-covered entry of G, the albedo goes on as it does within the data
+// (LevelledOff), and the limit is half above that.
+AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model);
+
+// Lowers G of all lobes where the directional albedo exceeds the limit, until it does so nowhere:
+// by the root of the excess, since both G(theta_i) and G(theta_o) make a highlight. Stored nodes
+// change, and the others follow (ExpandStored). Returns whether anything changed. The same bits for
+// any number of threads.
+bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_threads,
+                 const StopCheck& stop, FactorModel* model);
+
+// The largest directional albedo of an isotropic model over theta_i and channels.
+struct PeakAlbedo {
+  double albedo = 0, theta_i = 0;  // [rad]
+};
+PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_FINISH_ALBEDO_LIMIT_H_
