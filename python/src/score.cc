@@ -52,8 +52,8 @@ nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const nb:
     } else {
       scored.appearance = CompareAppearance(pictured, MaterialOf(model), {.num_threads = threads});
     }
-    scored.verdict =
-        MakeVerdict(scored.appearance, seen, {.irreducible = IrreducibleShare(scored.score)});
+    scored.verdict = MakeVerdict(scored.appearance, seen, BasisOf(objective.samples(), 0),
+                                 {.irreducible = IrreducibleShare(scored.score)});
     text = JsonText(ToJson(scored, objective));
   }
   return nb::bytes(text.data(), text.size());

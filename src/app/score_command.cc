@@ -16,7 +16,6 @@
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/lobes/reconstruct.h"
-#include "trilobe/model/measurement/measured_share.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
 #include "trilobe/model/objective/score.h"
 
@@ -114,9 +113,7 @@ int RunScore(std::span<const std::string> arguments) {
   } else {
     scored.appearance = CompareAppearance(pictured, fitted, appearance_options);
   }
-  scored.verdict = MakeVerdict(scored.appearance, seen,
-                               {.measured_share = MeasuredShare(objective.samples()),
-                                .black = !(objective.MeasuredEnergy() > 0)},
+  scored.verdict = MakeVerdict(scored.appearance, seen, BasisOf(objective.samples(), 0),
                                {.irreducible = IrreducibleShare(scored.score)});
   if (FLAGS_json) {
     PrintJson(ToJson(scored, objective));

@@ -1,6 +1,7 @@
 #include "app/view_page.h"
 
 #include "app/fit_page.h"
+#include "fit/reports/verdict_report.h"
 #include "io/page/page.h"
 #include "model/appearance/picture_data.h"
 #include "model/appearance/verdict.h"
@@ -10,8 +11,8 @@
 namespace trilobe {
 namespace {
 
-void Compare(const SeenError& seen, PageContents* contents) {
-  const Verdict verdict = VerdictOf(seen);
+void Compare(const SeenError& seen, const Measurement& measured, PageContents* contents) {
+  const Verdict verdict = VerdictOf(seen, BasisOf(SamplesOf(measured), contents->parameters));
   contents->verdict = Words(verdict);
   contents->visibility = VisibilityName(verdict);
   contents->psnr_db = seen.psnr_db;
@@ -46,9 +47,10 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
     const bool drawn = data.nodes || (data.table != nullptr && fitted.angular);
     if (drawn) {
       contents.measured = data.nodes ? EncodeMeasured(*data.nodes) : EncodeMeasured(*data.table);
-      Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, &contents);
+      Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, *measured,
+              &contents);
     } else if (seen) {
-      Compare(*seen, &contents);
+      Compare(*seen, *measured, &contents);
     }
   }
   return {.text = FormatPage(model, contents), .has_measured = contents.measured.has_value()};

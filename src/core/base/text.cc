@@ -8,11 +8,16 @@
 namespace trilobe {
 
 std::string Text(double x, int digits) {
+  constexpr double kWithoutExponent = 1e5;
   if (std::isinf(x)) return x > 0 ? "infinite" : "-infinite";
   std::array<char, 64> buffer;
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x,
                                  std::chars_format::general, digits);
-  return {buffer.data(), end.ptr};
+  std::string text{buffer.data(), end.ptr};
+  // "100 %" is read as it is, "1e+02 %" is not.
+  const bool has_exponent = text.find("e+") != std::string::npos;
+  if (has_exponent && std::abs(x) < kWithoutExponent) return std::to_string(std::llround(x));
+  return text;
 }
 
 size_t Utf8Length(std::string_view text) {

@@ -6,6 +6,7 @@
 
 #include "fit/reports/print.h"
 #include "trilobe/core/math/angles.h"
+#include "trilobe/model/measurement/measured_share.h"
 
 namespace trilobe {
 namespace {
@@ -43,6 +44,14 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
 }
 
 }  // namespace
+
+Basis BasisOf(const BrdfSamples& samples, int parameters) {
+  return {.measured_share = MeasuredShare(samples),
+          .samples = samples.size(),
+          .parameters = parameters,
+          .black = std::ranges::none_of(samples.rho,
+                                        [](const Rgb& rho) { return std::ranges::max(rho) > 0; })};
+}
 
 ReportedVerdict MakeVerdict(const std::optional<AppearanceReport>& appearance,
                             const std::optional<SeenError>& samples, const Basis& basis,

@@ -9,6 +9,7 @@
 #include "model/appearance/verdict.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/seen_error.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/score.h"
 
 namespace trilobe {
@@ -21,6 +22,9 @@ struct ReportedVerdict {
   FitFacts facts;
   std::vector<Advice> advice;
 };
+
+// What a verdict on a model with `parameters` rests on; 0 if it was not fitted to these samples.
+Basis BasisOf(const BrdfSamples& samples, int parameters);
 
 // Judges the sphere, or else the samples; one of the two must be given.
 ReportedVerdict MakeVerdict(const std::optional<AppearanceReport>& appearance,

@@ -10,6 +10,8 @@ namespace {
 TEST(Text, HasSoManyDigitsAtMost) {
   EXPECT_EQ(Text(0.0123456), "0.01235");
   EXPECT_EQ(Text(1234567.0), "1.235e+06");
+  EXPECT_EQ(Text(99.96, 2), "100");
+  EXPECT_EQ(Text(-5512.4, 2), "-5512");
   EXPECT_EQ(Text(0.25, 6), "0.25");
   EXPECT_EQ(Text(1e-7, 6), "1e-07");
   EXPECT_EQ(Text(-std::numeric_limits<double>::infinity()), "-infinite");
