@@ -7,8 +7,8 @@
 
 namespace trilobe {
 
-// Formats a number for people, with at most `digits` significant digits, but all of the integer part
-// below 100,000 ("100", not "1e+02"), and a decimal point in any locale: "0.25", "1e-07",
+// Formats a number for people, with at most `digits` significant digits, but all of the integer
+// part below 100,000 ("100", not "1e+02"), and a decimal point in any locale: "0.25", "1e-07",
 // "infinite".
 std::string Text(double x, int digits = 4);
 
