@@ -35,7 +35,7 @@ def fitted(plastic):
 
 def without_times(text):
     return [line for line in text.splitlines()
-            if not any(f'"{key}"' in line for key in ("seconds", "date", "run"))]
+            if not any(f'"{key}"' in line for key in ("seconds", "date", "run", "key"))]
 
 
 def without_seconds(value):
