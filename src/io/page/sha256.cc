@@ -73,7 +73,7 @@ std::string Sha256(std::string_view bytes) {
   rest.resize(rest.size() + 8 <= kBlock ? kBlock - 8 : 2 * kBlock - 8, '\0');
   rest += BigEndian(bits, 8);
   for (size_t begin = 0; begin < rest.size(); begin += kBlock) {
-    AddBlock(std::string_view(rest).substr(begin, kBlock), &state);
+    AddBlock(std::string_view{rest}.substr(begin, kBlock), &state);
   }
   std::string hash;
   for (const uint32_t word : state) hash += BigEndian(word, 4);
