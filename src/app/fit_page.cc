@@ -40,7 +40,7 @@ std::string EncodeAddress(const std::string& name) {
 
 // In UTF-8, and quoted where it must be (RFC 4180).
 std::string CsvField(const std::string& any_text) {
-  const std::string text = ValidUtf8(any_text);
+  std::string text = ValidUtf8(any_text);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -290,8 +290,9 @@ class MaterialFitter {
     if (is_model_) prune_options.max_lobes = 0;
     const bool by_appearance = material_.budget.of_appearance();
     std::unique_ptr<SceneAppearance> appearance;
-    if (by_appearance)
+    if (by_appearance) {
       appearance = std::make_unique<SceneAppearance>(material_, measured(), Appearance());
+    }
     if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
     PrunedModel pruned =
         by_appearance ? PruneByAppearance(*appearance, Guide(problem, *full), model, prune_options)
