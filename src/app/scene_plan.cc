@@ -217,8 +217,9 @@ int KeepEarlierModels(const nlohmann::json& plan, const std::set<std::string>& f
   int kept = 0;
   for (const std::string& file : files) {
     std::error_code ignored;
-    if (!file.ends_with(".json") || !std::filesystem::exists(folder->PathOf(file), ignored))
+    if (!file.ends_with(".json") || !std::filesystem::exists(folder->PathOf(file), ignored)) {
       continue;
+    }
     folder->KeepEarlier(file);
     ++kept;
   }
