@@ -15,13 +15,20 @@ FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 COLUMNS, GAP, LABEL = 6, 10, 24
 
 
+def spheres(path: pathlib.Path) -> Image.Image:
+    """The two spheres of a thumbnail, without the words below them, at half the size."""
+    pair = Image.open(path).convert("RGB")
+    width = pair.size[0]
+    return pair.crop((0, 0, width, width // 2)).resize((width // 2, width // 4), Image.Resampling.LANCZOS)
+
+
 def main() -> None:
     """Pastes the thumbnails row by row; the legend has the place of one, where they fill no rectangle."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("."), help="a folder")
     options = parser.parse_args()
     listed = [of for of in json.loads((MATERIALS / "materials.json").read_text()) if of["parameters"] <= 822]
-    pairs = [Image.open(MATERIALS / f"{entry['name']}.png").convert("RGB") for entry in listed]
+    pairs = [spheres(MATERIALS / f"{entry['name']}.png") for entry in listed]
     width, height = pairs[0].size
     rows = -(-(len(pairs) + 1) // COLUMNS)
     background = pairs[0].getpixel((0, 0))
