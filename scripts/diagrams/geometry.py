@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from diagrams.look import BLUE, GREEN, GREY, ORANGE, PURPLE, RGB, ROOT, SKY, VERMILION, arrow, bare, plt
 
-MATERIAL = "cc_ibiza_sunset"  # of the library, of the paper's sharing
+MATERIAL = "paper_white"  # of the library, of the paper's sharing
 
 
 def seen(point: Any) -> np.ndarray:
