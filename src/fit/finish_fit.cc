@@ -175,19 +175,15 @@ void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& c
                         .seconds = seconds});
 }
 
-// Unless E rises and the sphere suffers by so much that the data themselves ask for the light.
-void LimitAlbedoOf(SphereScores* scores, FinishedFit* fit, const StopCheck& stop) {
+// Unless E would rise by so much that the data themselves ask for the light.
+void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
   constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3;
-  constexpr double kMayLose = 0.5;  // [dB]
   const Objective data(fit->objective.data(), fit->model.spec());
   const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
   FactorModel limited = fit->model;
   LimitAlbedo(AlbedoLimitsOf(data, fit->model), layout, data.num_threads(), stop, &limited);
   const double E = data.Value(fit->model);
-  const double enough = E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy());
-  if (data.Value(limited) <= enough ||
-      (scores != nullptr &&
-       scores->ScoreMeasured(limited) >= scores->ScoreMeasured(fit->model) - kMayLose)) {
+  if (data.Value(limited) <= E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy())) {
     fit->model = std::move(limited);
     return;
   }
@@ -263,7 +259,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
     Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model);  // by the data alone
   }
   if (options.limit_albedo && !fit.model.spec().anisotropic() && !options.stop()) {
-    NoteStep("energy", &fit, [&] { LimitAlbedoOf(scores, &fit, options.stop); });
+    NoteStep("energy", &fit, [&] { LimitAlbedoOf(&fit, options.stop); });
   }
   return fit;
 }

@@ -60,7 +60,7 @@ struct FinishedFit {
   };
   std::optional<Matched> matched = std::nullopt;
   // The largest directional albedo and its theta_i [rad], where a model had to keep more than its
-  // limit, as E or the sphere would have suffered.
+  // limit: E would have risen by more than 5 %.
   struct Glow {
     double albedo = 0, theta_i = 0;
   };
