@@ -16,6 +16,13 @@ inline double Quantile(std::vector<double>* values, double share) {
   return *at;
 }
 
+// The middle one of some values, of which there must be at least one; of an even number the upper.
+inline double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_CORE_MATH_QUANTILE_H_

@@ -1,24 +1,14 @@
 #include "core/math/robust_line.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
+#include "core/math/quantile.h"
 #include "trilobe/core/math/angles.h"
 
 namespace trilobe {
-namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-}  // namespace
-
 RobustLine FitRobustLine(std::span<const double> x, std::span<const double> y) {
   std::vector<double> slopes, heights;
   for (size_t k = 0; k < x.size(); ++k) {

@@ -7,9 +7,12 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "core/math/quantile.h"
 #include "core/math/robust_line.h"
+#include "model/lobes/beyond_data.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/geometry/merl_grid.h"
 #include "trilobe/core/math/angles.h"
@@ -175,24 +178,19 @@ Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& mode
   for (int c = 0; c < kChannels; ++c) {
     std::vector<double> of_channel;
     for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
-    const auto middle = of_channel.begin() + static_cast<ptrdiff_t>(of_channel.size() / 2);
-    std::ranges::nth_element(of_channel, middle);
-    median[c] = *middle;
+    median[c] = Median(std::move(of_channel));
   }
   return median;
 }
 
-// The last theta [rad] at which a table of G is well covered: not by a fraction of what the third
-// entry inwards is.
+// The last theta [rad] at which a table of G is well covered.
 double LastWellCovered(std::span<const double> coverage, const FactorModel& model) {
-  constexpr double kWellCovered = 0.05;
-  constexpr int kInwards = 3;
   const ModelSpec& spec = model.spec();
   double last = 0;
   for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
     const auto of_table = coverage.subspan(model.TableOffset(Factor::kG, t), spec.g_axis.size);
-    for (int k = kInwards; k < spec.g_axis.size; ++k) {
-      if (of_table[k] > kWellCovered * of_table[k - kInwards]) {
+    for (int k = 0; k < spec.g_axis.size; ++k) {
+      if (of_table[k] > 0 && IsWellCovered(of_table, k)) {
         last = std::max(last, spec.g_axis.Theta(k));
       }
     }

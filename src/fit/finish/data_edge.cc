@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "model/lobes/beyond_data.h"
 #include "solvers/joint/joint_step.h"
 #include "solvers/joint/reduction.h"
 #include "trilobe/core/base/stop_check.h"
@@ -14,8 +15,6 @@
 namespace trilobe {
 namespace {
 
-constexpr double kWellCovered = 0.05;
-constexpr int kInwards = 3;
 constexpr int kMaxTied = 8;
 constexpr double kRunaway = 5;
 constexpr int kLookedAt = 5;
@@ -28,10 +27,7 @@ constexpr double kMaxRise = 0.05;
 int FirstUncovered(std::span<const double> coverage, int end) {
   if (end == static_cast<int>(coverage.size())) return end;
   int first = end;
-  while (end - first < kMaxTied && first - 1 - kInwards >= 0 &&
-         coverage[first - 1] < kWellCovered * coverage[first - 1 - kInwards]) {
-    --first;
-  }
+  while (end - first < kMaxTied && first > 0 && !IsWellCovered(coverage, first - 1)) --first;
   return first;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/quantile.h"
 #include "core/math/robust_line.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/model/axis.h"
@@ -13,11 +14,6 @@ namespace trilobe {
 namespace {
 
 constexpr int kLookedAt = 5;
-
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 // Linear between two observed bins. Beyond the last one, the median of the last `looked_at`: a
 // single bin at the edge of the data is unreliable.
@@ -80,16 +76,12 @@ void FillUnobserved(const Axis& axis, std::span<const double> coverage, int look
 }
 
 // The last observed entries that enough samples read to say how the table goes on: up to kLine,
-// without the last few that are covered far less than those kInwards before them.
+// without the last few that are not well covered.
 std::vector<int> TrustedEntries(std::span<const double> coverage, std::span<const double> table) {
-  constexpr int kLine = 10, kInwards = 3, kMostLeftOut = 4;
-  constexpr double kWellCovered = 0.05;
+  constexpr int kLine = 10, kMostLeftOut = 4;
   int end = static_cast<int>(coverage.size());
   while (end > 0 && !(coverage[end - 1] > 0)) --end;
-  for (int k = 0; k < kMostLeftOut && end > kInwards; ++k) {
-    if (coverage[end - 1] >= kWellCovered * coverage[end - 1 - kInwards]) break;
-    --end;
-  }
+  for (int k = 0; k < kMostLeftOut && end > 0 && !IsWellCovered(coverage, end - 1); ++k) --end;
   std::vector<int> trusted;
   for (int k = end - 1; k >= 0 && static_cast<int>(trusted.size()) < kLine; --k) {
     if (coverage[k] > 0 && table[k] > 0) trusted.push_back(k);

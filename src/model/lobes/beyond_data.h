@@ -12,6 +12,14 @@ namespace trilobe {
 // model->parameters(); both functions throw Error if its size differs. A table without observed
 // entries is unchanged.
 
+// Whether enough samples read an entry of a table over theta alone: a twentieth of what the third
+// entry inwards has. The first three are.
+inline bool IsWellCovered(std::span<const double> coverage, int entry) {
+  constexpr double kShare = 0.05;
+  constexpr int kInwards = 3;
+  return entry < kInwards || coverage[entry] >= kShare * coverage[entry - kInwards];
+}
+
 // Linear between observed entries, constant beyond the last; for use inside a fit.
 void FillFromNeighbors(std::span<const double> coverage, FactorModel* model);
 
