@@ -8,26 +8,25 @@ the folder where it runs:
     ![What was measured](images/measured.png)
 
 "made nightly by" marks one that takes long. Where a picture stands on several pages, one of them
-has the comment. Pictures of the same command are made by running it once. Measured files that a command names are looked for in the folder of --data; without
-them the picture is not checked, and a line says so. What experiments publish is not looked at.
+has the comment. Pictures of the same command are made by running it once. Measured files that a
+command names are looked for in the folder of --data; without them the picture is not checked, and
+a line says so. What experiments publish is not looked at.
 """
 
 import argparse
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 from typing import NamedTuple
 
 import numpy as np
+import page_commands
 from PIL import Image
 
 MADE = re.compile(r"<!-- made (nightly )?by:((?:(?!-->).)*)-->\s*\Z", re.DOTALL)
 PICTURE = re.compile(r"!\[[^]]*\]\(([^)\s]+\.png)\)")
-MEASURED = re.compile(r"(?<!\S)[\w.-]+\.(?:bsdf|mbsdf|brdf|binary|bin)\b")
-WRITTEN = re.compile(r"--out=(\S+)")
 # On another processor commands give the same figures in all the digits that pictures have, so only
 # edges of letters and lines may differ. A pixel does from VISIBLE of 255 on; one of 100,000 may.
 VISIBLE, SHARE = 32, 1e-5
@@ -78,27 +77,19 @@ def difference(one: pathlib.Path, other: pathlib.Path) -> str:
 
 
 def make(how: Made, names: list[str], data: pathlib.Path | None,
-         path: str) -> dict[str, tuple[bytes, str]]:
+         root: pathlib.Path) -> dict[str, tuple[bytes, str]]:
     """The pictures that the command makes, or why there is none."""
-    with tempfile.TemporaryDirectory() as folder:
-        for name in set(MEASURED.findall(how.command)) - set(WRITTEN.findall(how.command)):
-            found = next(iter(sorted(data.rglob(name))), None) if data else None
-            if found is None:
-                return {picture: (b"", f"not checked: {picture} ({name} is not in the folder of "
-                                  "--data)") for picture in names}
-            (pathlib.Path(folder) / name).symlink_to(found.resolve())
-        done = subprocess.run(["bash", "-euo", "pipefail", "-c", how.command], cwd=folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              env={**os.environ, "PATH": path}, check=False)
-        results = {}
+    results = {}
+    with page_commands.run(how.command, root, data) as done:
         for picture in names:
-            result = pathlib.Path(folder) / picture
-            if done.returncode != 0 or not result.is_file():
-                results[picture] = (b"", f"{how.page}: `{how.command}` makes no {picture}:\n"
-                                    f"{done.stdout}")
+            result = done.folder / picture
+            if done.absent:
+                results[picture] = (b"", f"not checked: {picture} ({done.absent} is not in the folder of --data)")
+            elif not done.succeeded or not result.is_file():
+                results[picture] = (b"", f"{how.page}: `{how.command}` makes no {picture}:\n{done.output}")
             else:
                 results[picture] = (result.read_bytes(), "")
-        return results
+    return results
 
 
 def main() -> int:
@@ -112,8 +103,6 @@ def main() -> int:
     parser.add_argument("pictures", nargs="*", help="names of the pictures to look at (all)")
     options = parser.parse_args()
     root = options.root.resolve()
-    commands = ["build/release/bin", "experiments/renderer", "python/examples", "scripts"]
-    path = ":".join([*(str(root / folder) for folder in commands), os.environ["PATH"]])
 
     made, wrong = pictures(root)
     looked_at = {picture: how for picture, how in sorted(made.items())
@@ -123,7 +112,7 @@ def main() -> int:
     for picture, how in looked_at.items():
         if how.command not in results:
             names = [one.name for one, by in looked_at.items() if by.command == how.command]
-            results[how.command] = make(how, names, options.data, path)
+            results[how.command] = make(how, names, options.data, root)
         new, reason = results[how.command][picture.name]
         if not new:
             print(reason, flush=True)

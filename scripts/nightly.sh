@@ -3,7 +3,7 @@
 # the program under the address and undefined-behaviour sanitizers, the thread sanitizer, all tests as other processors
 # and another compiler round, a newcomer's first hour in an inconvenient place, some hundred faults, and long fuzzing.
 #   scripts/nightly.sh [TRIALS [RUNS [DATA]]]      faults to try (400), executions of each fuzzer (10000000), a
-#                                                  folder with the measured files of which docs have pictures
+#                                                  folder with the measured files that pages name
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -65,6 +65,9 @@ scripts/check_pages.sh
 step "Testing the Python package, with some hundred thousand calls by arguments of any kind, and installing it"
 TRILOBE_LONG_TESTS=1 TRILOBE_FUZZ_CALLS=20000 scripts/check_python.sh
 scripts/check_pip.sh
+
+step "Comparing the figures of the pages with their commands and tables"
+scripts/check_figures.py ${3:+--data="$3"}
 
 step "Making the pictures of the pages"
 scripts/check_pictures.py ${3:+--data="$3"}

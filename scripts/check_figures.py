@@ -1,0 +1,288 @@
+#!/usr/bin/python3
+"""Checks that figures of the pages are what commands print and tables hold.
+
+A comment right before a paragraph, list, table or block of code binds figures that stand in it, word for word:
+
+    <!-- figures: trilobe fit synth:copper --out=a; 46.7 dB = PSNR; 0.12 % = a/report.json relative_objective -->
+    <!-- figures nightly: below --prior=0; 9.5 dB = PSNR -->
+    <!-- figures: ../experiments/lobes/results/runs.csv; 0.4 = max(psnr_db) - min(psnr_db) -->
+
+First comes the source, then FIGURE = WHERE. The source is one of
+- a command, or `above` or `below`: the next block of commands of the page, with flags added to its `trilobe fit` if
+  some follow. WHERE is a member of a JSON file that it leaves, or else a regular expression: the last match in what the
+  command prints has the value as its group, or as the first number after it. A last digit may be off by one.
+- a table, relative to the page. WHERE is an expression in Python of its columns, which are numpy arrays, and of the
+  FUNCTIONS below; the figure is its value, rounded.
+A figure in % is a share of 1, but as it is where a command prints it. `seven` is 7.
+
+Pages of tables that were not made by this version of the program say so at their top; --write puts or takes that line.
+"nightly" marks a command that takes long. Measured files that it names are looked for in the folder of --data; without
+them its figures are not checked, and a line says so.
+"""
+
+import argparse
+import csv
+import functools
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from typing import NamedTuple, Optional
+
+import numpy as np
+import page_commands
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "experiments"))
+from lab import stats  # noqa: E402
+from lab.manifest import load  # noqa: E402
+
+COMMENT = re.compile(r"<!-- figures( nightly)?: ((?:(?!-->).)*?)\s*-->\n", re.DOTALL)
+CODE = re.compile(r"^```sh\n(.*?)^```$|(^    (?:trilobe|\./run) [^\n]*\n(?:    [^\n]*\n)*)", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"(?:<!--.*?-->\n)*(```.*?^```$|.*?(?=\n\n|\Z))", re.DOTALL | re.MULTILINE)
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+WORDS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
+         "seventeen eighteen nineteen twenty").split()
+NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
+PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
+# What decides how a fit comes out.
+FITS = ["src/model", "src/solvers", "src/fit"]
+FUNCTIONS: dict[str, Callable[..., object]] = {
+    "median": stats.median, "quantile": stats.quantile, "geometric_mean": stats.geometric_mean, "mean": np.mean,
+    "max": np.nanmax, "min": np.nanmin, "share": np.mean, "count": np.sum, "sum": np.sum, "abs": np.abs,
+    "sort": np.sort, "unique": np.unique,
+    # statistic(values) of each group, in the order of the groups' names
+    "each": lambda group, statistic, values: np.array([statistic(values[group == one]) for one in np.unique(group)]),
+}
+
+
+class Figure(NamedTuple):
+    """A figure of a page, and where it comes from."""
+
+    page: pathlib.Path
+    text: str
+    source: str
+    where: str
+    nightly: bool
+
+
+class Wrong(Exception):
+    """Says what is wrong with a figure."""
+
+
+def number(text: str) -> tuple[float, float]:
+    """The value of a figure and of its last digit."""
+    word = text.split()[0].lower()
+    if word in WORDS:
+        return float(WORDS.index(word)), 1
+    found = NUMBER.search(text.replace("−", "-").replace(",", ""))
+    if not found:
+        raise Wrong("is no number")
+    mantissa, _, exponent = found[0].partition("e")
+    digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    return (float(found[0]) / 100, digit / 100) if "%" in text else (float(found[0]), digit)
+
+
+def commands(source: str, page: str, start: int, end: int) -> str:
+    """The commands of a source; those of a block of the page with the flags that follow `above` or `below`."""
+    place, _, flags = source.partition(" ")
+    if place not in ("above", "below"):
+        return source
+    blocks = [block for block in CODE.finditer(page)
+              if (block.end() <= start if place == "above" else block.start() >= end)]
+    if not blocks:
+        raise Wrong(f"has no block of commands {place}")
+    block = blocks[-1 if place == "above" else 0]
+    lines = (block[1] or block[2]).replace("\\\n", " ").replace("./run ", "trilobe ")
+    return re.sub(r"^( *trilobe fit .*)$", rf"\1 {flags}", lines, flags=re.MULTILINE) if flags else lines
+
+
+def figures(page: pathlib.Path) -> Iterator[Figure]:
+    """Those that a page binds; Wrong if one does not stand below its comment."""
+    text = page.read_text()
+    for comment in COMMENT.finditer(text):
+        block = BLOCK.match(text, comment.end())
+        below = " ".join(block[1].split()) if block else ""
+        source, *bound = (" ".join(part.split()) for part in re.split(r";\s", comment[2]))
+        for binding in bound:
+            figure, equals, where = binding.partition(" = ")
+            if not equals or not re.search(rf"(?<![\w.,]){re.escape(figure)}(?![\w%]|[.,]\d)", below, re.IGNORECASE):
+                raise Wrong(f"`{binding}` stands above no `{figure}`")
+            try:
+                command = commands(source, text, comment.start(), comment.end())
+            except Wrong as wrong:
+                raise Wrong(f"`{binding}` {wrong}") from wrong
+            yield Figure(page, figure, command, where, bool(comment[1]))
+
+
+@functools.cache
+def table(path: pathlib.Path) -> dict[str, np.ndarray]:
+    """The columns of a CSV file, of numbers where all are, nan where nothing stands."""
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    columns: dict[str, np.ndarray] = {}
+    for name in rows[0]:
+        values = [row[name] for row in rows]
+        try:
+            column = np.array([float(value or "nan") for value in values])
+        except ValueError:
+            column = np.array(values)
+        columns[re.sub(r"\W", "_", name)] = column
+    return columns
+
+
+def printed(figure: Figure, done: page_commands.Done) -> float:
+    """The value that a command has printed, or left in a JSON file."""
+    file = re.fullmatch(r"(\S+\.json) (\S+)", figure.where)
+    if file:
+        value = json.loads((done.folder / file[1]).read_text())
+        for member in file[2].split("."):
+            value = value[int(member) if isinstance(value, list) else member]
+        return float(value)
+    matches = list(re.finditer(figure.where, done.output))
+    if not matches:
+        raise Wrong(f"{figure.where} is not printed:\n{done.output}")
+    last = matches[-1]
+    found = NUMBER.search(last[1] if last.groups() else done.output[last.end():])
+    if not found:
+        raise Wrong(f"{figure.where} has no number after it:\n{done.output}")
+    return float(found[0]) / (100 if "%" in figure.text else 1)
+
+
+def differs(figure: Figure, value: float, off: float) -> str:
+    """What is wrong with a figure of which the value may be `off` by so many of its last digits."""
+    given, digit = number(figure.text)
+    if abs(value - given) <= (off + 1e-6) * digit:
+        return ""
+    places = max(0, round(-math.log10(digit)) - (2 if "%" in figure.text else 0))
+    shown = f"{value * 100:.{places}f} %" if "%" in figure.text else f"{value:.{places}f}"
+    return f"{figure.text} is {shown} ({value:.6g}) by `{figure.where}` of `{figure.source}`"
+
+
+def of_table(figure: Figure) -> str:
+    """What is wrong with a figure of a table."""
+    try:
+        columns = table(figure.page.parent / figure.source)
+        value = float(eval(figure.where, {"__builtins__": {}}, {**columns, **FUNCTIONS}))  # noqa: S307
+        return differs(figure, value, 0.5)
+    except (OSError, NameError, TypeError, ValueError, IndexError, SyntaxError, Wrong) as error:
+        return f"{figure.text}: `{figure.where}` of {figure.source}: {error}"
+
+
+def of_command(bound: list[Figure], root: pathlib.Path, data: Optional[pathlib.Path]) -> Iterator[str]:
+    """What is wrong with figures of one command."""
+    command = bound[0].source
+    with page_commands.run(command, root, data) as done:
+        if done.absent:
+            print(f"not checked: {len(bound)} figures of `{command.strip()}` ({done.absent} is not in the folder of "
+                  "--data)", flush=True)
+        elif not done.succeeded:
+            yield f"`{command}` fails:\n{done.output}"
+        else:
+            print(f"{len(bound)} figures of `{command.strip()}`", flush=True)
+            for figure in bound:
+                try:
+                    wrong = differs(figure, printed(figure, done), 1)
+                except (OSError, KeyError, TypeError, ValueError, IndexError, Wrong) as error:
+                    wrong = f"{figure.text} of `{command}`: {error}"
+                if wrong:
+                    yield f"{figure.page.relative_to(root)}: {wrong}"
+
+
+def git(root: pathlib.Path, *arguments: str) -> Optional[str]:
+    """What git prints; None where it fails."""
+    done = subprocess.run(["git", *arguments], cwd=root, capture_output=True, text=True, check=False)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+@functools.cache
+def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
+    """Why results are not those of this version of the program; empty if they are."""
+    made = json.loads((results / "manifest.json").read_text())
+    revisions = sorted({str(revision or "an unknown revision") for revision in
+                        [*(program["revision"] for program in made["programs"]), made["tabulated_at"]]})
+    unknown = [revision for revision in revisions if git(root, "merge-base", "--is-ancestor", revision, "HEAD") is None]
+    reasons = []
+    if unknown:
+        reasons.append(f"by sources that are not in this repository ({', '.join(unknown)})")
+    elif any(git(root, "diff", "--quiet", revision, "--", *FITS) is None for revision in revisions):
+        reasons.append(f"before changes of fits ({', '.join(revisions)})")
+    settings = load(results.parent / "manifest.json", made["form"])
+    if any(made["settings"].get(name) != value for name, value in settings.items()
+           if name != "question" and value is not None):
+        reasons.append("with other settings")
+    return ", ".join(reasons)
+
+
+def note(page: pathlib.Path, bound: list[Figure], root: pathlib.Path) -> str:
+    """The line that a page needs at its top, if any."""
+    tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.source.endswith(".csv")}
+    own = {folder for folder in page.parent.glob("results*") if (folder / "manifest.json").exists()}
+    stale = {folder: why for folder in sorted(tables | own) if (why := staleness(folder, root))}
+    if not stale:
+        return ""
+    if own:
+        reasons = "; ".join(f"`{folder.name}` was made {why}" for folder, why in stale.items() if folder in own)
+    else:
+        reasons = "see the pages of " + ", ".join(sorted({folder.parent.name for folder in stale}))
+    return f"> **Stale:** {reasons}.\n\n"
+
+
+def set_note(page: pathlib.Path, line: str, write: bool) -> str:
+    """What is wrong with the note of a page, which is mended if `write`."""
+    text = page.read_text()
+    bare = NOTE.sub("", text, 1)
+    title, between, rest = bare.partition("\n\n")
+    wanted = f"{title}{between}{line}{rest}"
+    if wanted == text:
+        return ""
+    if write:
+        page.write_text(wanted)
+        return ""
+    return f"its note of stale tables is not up to date: scripts/check_figures.py --write ({line.strip() or 'none'})"
+
+
+def main() -> int:
+    """Looks at all tables, and then at commands."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tables", action="store_true", help="leave out commands")
+    parser.add_argument("--quick", action="store_true", help="leave out commands that are marked nightly")
+    parser.add_argument("--write", action="store_true", help="write the notes of stale tables")
+    parser.add_argument("--data", type=pathlib.Path, help="where measured files lie, at any depth")
+    parser.add_argument("--root", type=pathlib.Path, help="of the repository",
+                        default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("pages", nargs="*", help="pages to look at (all)")
+    options = parser.parse_args()
+    root = options.root.resolve()
+    pages = [pathlib.Path(os.path.abspath(name)) for name in options.pages] or [
+        page for pattern in PAGES for page in sorted(root.glob(pattern))]
+    wrong: list[str] = []
+    by_command: dict[str, list[Figure]] = {}
+    has_history = git(root, "rev-parse", "--is-shallow-repository") == "false"
+    if not has_history:
+        print("not checked: whether tables are stale, since the history is not here")
+    for page in pages:
+        try:
+            bound = list(figures(page))
+        except Wrong as error:
+            wrong.append(f"{page.relative_to(root)}: {error}")
+            continue
+        found = [of_table(figure) for figure in bound if figure.source.endswith(".csv")]
+        if has_history:
+            found.append(set_note(page, note(page, bound, root), options.write))
+        wrong += [f"{page.relative_to(root)}: {what}" for what in found if what]
+        for figure in bound:
+            if not (figure.source.endswith(".csv") or options.tables or options.quick and figure.nightly):
+                by_command.setdefault(figure.source, []).append(figure)
+    for of_one in by_command.values():
+        wrong += of_command(of_one, root, options.data)
+    for line in wrong:
+        print(line, file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""scripts/check_figures.py in a small repository of its own."""
+
+import json
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/check_figures.py"
+DEBIAN = pathlib.Path("/usr/bin/python3")  # the one that has the packages
+HAS_PACKAGES = DEBIAN.exists() and subprocess.run(
+    [DEBIAN, "-c", "import numpy"], capture_output=True, check=False).returncode == 0
+TABLE = """material,fit,psnr_db,seconds%
+a,auto,40.04,2
+b,auto,42,
+a,lm,39.5,4
+b,lm,43.6,5
+"""
+
+
+@unittest.skipUnless(HAS_PACKAGES, "no numpy")
+class CheckFigures(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.results = self.root / "experiments/x/results"
+        self.results.mkdir(parents=True)
+        (self.root / "src/fit").mkdir(parents=True)
+        (self.root / "src/fit/fit.cc").write_text("1\n")
+        (self.root / "experiments/x/manifest.json").write_text('{"flags": {"raw": true}, "quick": {}}')
+        (self.results / "table.csv").write_text(TABLE)
+        self.git("init", "--quiet")
+        self.commit()
+        self.manifest()
+
+    def git(self, *arguments):
+        identity = ["-c", "user.name=a", "-c", "user.email=a@b"]
+        return subprocess.run(["git", *identity, *arguments], cwd=self.root, capture_output=True, text=True,
+                              check=True).stdout.strip()
+
+    def commit(self):
+        self.git("add", ".")
+        self.git("commit", "--quiet", "--message=x")
+
+    def manifest(self, revision="", flags=None):
+        revision = revision or self.git("rev-parse", "--short", "HEAD")
+        (self.results / "manifest.json").write_text(json.dumps(
+            {"form": "full", "settings": {"flags": flags or {"raw": True}}, "tabulated_at": revision,
+             "programs": [{"name": "p", "revision": revision}]}))
+
+    def page(self, comment, text, before="# Title\n\n", after=""):
+        (self.root / "README.md").write_text(f"{before}<!-- figures{comment} -->\n{text}\n\n{after}")
+
+    def check(self, *options):
+        done = subprocess.run([SCRIPT, f"--root={self.root}", *options], capture_output=True, text=True, check=False)
+        self.output = done.stdout + done.stderr
+        return done.returncode == 0
+
+    def holds(self, comment, text, **around):
+        self.page(comment, text, **around)
+        return self.check()
+
+    def of_table(self, figure, where):
+        return self.holds(f": experiments/x/results/table.csv; {figure} = {where}", f"It is {figure}.")
+
+    def test_what_a_command_prints(self):
+        echo = ": echo 'E is 0.0406 %, PSNR 47.1 dB, PSNR 46.6 dB'"
+        self.assertTrue(self.holds(echo + "; 46.6 dB = PSNR; 0.041 % = E is", "46.6\ndB, E is 0.041 %."), self.output)
+        self.assertTrue(self.holds(echo + "; 47 dB = PSNR", "47 dB"), self.output)
+        self.assertTrue(self.holds(echo + "; 47.1 dB = is .*? PSNR (\\S+) dB, ", "47.1 dB"), self.output)
+        self.assertTrue(self.holds(echo + "; 46.7 dB = PSNR", "46.7 dB"), self.output)  # a last digit
+        self.assertFalse(self.holds(echo + "; 46.8 dB = PSNR", "46.8 dB"))
+        self.assertIn("46.8 dB is 46.6", self.output)
+        self.assertFalse(self.holds(echo + "; 46.6 dB = SSIM", "46.6 dB"))
+        self.assertIn("SSIM is not printed", self.output)
+        self.assertFalse(self.holds(": false; 46.6 dB = PSNR", "46.6 dB"))
+        self.assertIn("`false` fails", self.output)
+
+    def test_what_it_leaves_in_a_file(self):
+        command = """: echo '{"a": [{"share": 0.0123}]}' > b.json"""
+        self.assertTrue(self.holds(command + "; 1.2 % = b.json a.0.share", "1.2 %"), self.output)
+        self.assertFalse(self.holds(command + "; 1.5 % = b.json a.0.share", "1.5 %"))
+        self.assertFalse(self.holds(command + "; 1.2 % = b.json a.1.share", "1.2 %"))
+
+    def test_the_block_above_or_below(self):
+        program = self.root / "build/release/bin/trilobe"
+        program.parent.mkdir(parents=True)
+        program.write_text("#!/bin/sh\necho \"$# arguments\"\n")
+        program.chmod(0o755)
+        below = "```sh\ntrilobe fit a\n```\n"
+        self.assertTrue(self.holds(": below; 2 = ^", "2", after=below), self.output)
+        self.assertTrue(self.holds(": below --b --c; 4 = ^", "four is 4", after=below), self.output)
+        self.assertTrue(self.holds(": above; three = ^", "Three", before="# T\n\n    trilobe fit a \\\n        b\n\n"),
+                        self.output)
+        self.assertFalse(self.holds(": above; 2 = ^", "2", after=below))
+        self.assertIn("no block of commands above", self.output)
+
+    def test_nightly_and_measured_files(self):
+        self.page(" nightly: false; 1 = a", "1")
+        self.assertTrue(self.check("--quick"), self.output)
+        self.assertTrue(self.check("--tables"), self.output)
+        self.assertFalse(self.check())
+        self.page(": cat steel.binary; 1 = a", "1")
+        self.assertTrue(self.check())
+        self.assertIn("not checked: 1 figures of `cat steel.binary` (steel.binary", self.output)
+        (self.root / "data/merl").mkdir(parents=True)
+        (self.root / "data/merl/steel.binary").write_text("a 2")
+        self.assertTrue(self.check(f"--data={self.root / 'data'}"), self.output)  # 1 off the last digit
+        self.page(": cat steel.binary; 4 = a", "4")
+        self.assertFalse(self.check(f"--data={self.root / 'data'}"))
+
+    def test_a_figure_stands_below_its_comment(self):
+        self.assertFalse(self.holds(": echo a 6; 6 dB = a", "46.6 dB"))
+        self.assertIn("stands above no `6 dB`", self.output)
+        self.assertFalse(self.holds(": echo a 46; 46 = a", "46.6 dB, or 146"))
+        self.assertFalse(self.holds(": echo a 6; 6 dB = a", "A\n\n6 dB"))
+        self.assertTrue(self.holds(": echo a 6; 6 dB = a", "<!-- made by: x -->\n```text\n\n6 dB\n```"), self.output)
+
+    def test_statistics_of_a_table(self):
+        for figure, where in [("40.0 dB", 'psnr_db[(material == "a") & (fit == "auto")][0]'),
+                              ("four", "count(psnr_db > 1)"), ("25 %", "share(psnr_db > 43)"), ("5", "max(seconds_)"),
+                              ("−1", 'min(each(material, max, psnr_db)) - 41.04'), ("1.01", "43.6 / 43.2"),
+                              ("2", 'count(each(material, min, psnr_db) > 39)'), ("39.5", "quantile(psnr_db, 0.25)")]:
+            self.assertTrue(self.of_table(figure, where), self.output)
+        self.assertFalse(self.of_table("40.1 dB", 'psnr_db[0]'))  # it is rounded: no other last digit
+        self.assertIn("40.1 dB is 40.0", self.output)
+        self.assertFalse(self.of_table("40.0 dB", "ssim[0]"))
+        self.assertFalse(self.of_table("40.0 dB", "open"))
+
+    def test_a_page_of_stale_tables_says_so(self):
+        page = self.root / "experiments/x/README.md"
+        page.write_text("# X\n\nText\n")
+        self.assertTrue(self.check(), self.output)
+        for revision, flags, why in [("0123abc-dirty", None, "not in this repository (0123abc-dirty)"),
+                                     ("", {"raw": False}, "other settings")]:
+            self.manifest(revision, flags)
+            self.assertFalse(self.check())
+            self.assertIn("--write", self.output)
+            self.assertTrue(self.check("--write"), self.output)
+            self.assertIn(why, page.read_text().split("\n\n")[1])
+            self.assertTrue(self.check(), self.output)
+        self.manifest()
+        self.assertFalse(self.check())
+        self.assertTrue(self.check("--write"), self.output)
+        self.assertEqual(page.read_text(), "# X\n\nText\n")
+        (self.root / "src/fit/fit.cc").write_text("2\n")
+        self.assertFalse(self.check())
+        self.assertIn("before changes of fits", self.output)
+
+    def test_another_page_names_the_stale_experiments(self):
+        self.manifest("0123abc")
+        page = self.root / "README.md"
+        self.assertFalse(self.of_table("43.6", "max(psnr_db)"))
+        self.assertTrue(self.check("--write"), self.output)
+        self.assertIn("> **Stale:** see the pages of x.", page.read_text())
+        self.assertTrue(self.check(), self.output)
+
+
+if __name__ == "__main__":
+    unittest.main()
