@@ -11,8 +11,8 @@ First comes the source, then FIGURE = WHERE. The source is one of
 - a command, or `above` or `below`: the next block of commands of the page, with flags added to its `trilobe fit` if
   some follow. WHERE is a member of a JSON file that it leaves, or else a regular expression: the last match in what the
   command prints has the value as its group, or as the first number after it. A last digit may be off by one.
-- a table, relative to the page. WHERE is an expression in Python of its columns, which are numpy arrays, and of the
-  FUNCTIONS below; the figure is its value, rounded.
+- a table, CSV or Markdown, relative to the page. WHERE is an expression in Python of its columns, which are numpy
+  arrays, and of the FUNCTIONS below; the figure is its value, rounded.
 A figure in % is a share of 1, but as it is where a command prints it. `seven` is 7.
 
 Pages of tables that were not made by this version of the program say so at their top; --write puts or takes that line.
@@ -46,6 +46,7 @@ BLOCK = re.compile(r"(?:<!--.*?-->\n)*(```.*?^```$|.*?(?=\n\n|\Z))", re.DOTALL |
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 WORDS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
          "seventeen eighteen nineteen twenty").split()
+TABLES = (".csv", ".md")
 NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
 # What decides how a fit comes out.
@@ -118,20 +119,30 @@ def figures(page: pathlib.Path) -> Iterator[Figure]:
             yield Figure(page, figure, command, where, bool(comment[1]))
 
 
+def rows(path: pathlib.Path) -> list[list[str]]:
+    """The lines of a table in CSV or Markdown; the first has the names."""
+    if path.suffix == ".csv":
+        with path.open() as file:
+            return list(csv.reader(file))
+    lines = [line for line in path.read_text().split("\n") if line.startswith("|") and not line.startswith("| ---")]
+    return [[cell.strip(" *") for cell in line.strip("|").split(" | ")] for line in lines]
+
+
+def column(name: str, cells: list[str]) -> np.ndarray:
+    """Numbers, nan where nothing stands, percents as shares, the median of "2 [1, 3]"; or else text."""
+    percent = "%" in name or any(cell.endswith("%") for cell in cells)
+    cells = ["nan" if cell in ("", "–") else cell.replace("−", "-") for cell in cells]
+    found = [re.fullmatch(rf"(nan|-?inf|{NUMBER.pattern})( ?%)?( \[.*\])?", cell) for cell in cells]
+    if not all(found):
+        return np.array(cells)
+    return np.array([float(one[1]) for one in found if one]) / (100 if percent else 1)
+
+
 @functools.cache
 def table(path: pathlib.Path) -> dict[str, np.ndarray]:
-    """The columns of a CSV file, of numbers where all are, nan where nothing stands."""
-    with path.open() as file:
-        rows = list(csv.DictReader(file))
-    columns: dict[str, np.ndarray] = {}
-    for name in rows[0]:
-        values = [row[name] for row in rows]
-        try:
-            column = np.array([float(value or "nan") for value in values])
-        except ValueError:
-            column = np.array(values)
-        columns[re.sub(r"\W", "_", name)] = column
-    return columns
+    """The columns of a table, by names of which only letters, digits and _ are left."""
+    names, *lines = rows(path)
+    return {re.sub(r"\W+", "_", name).strip("_"): column(name, list(cells)) for name, cells in zip(names, zip(*lines))}
 
 
 def printed(figure: Figure, done: page_commands.Done) -> float:
@@ -219,7 +230,7 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
 
 def note(page: pathlib.Path, bound: list[Figure], root: pathlib.Path) -> str:
     """The line that a page needs at its top, if any."""
-    tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.source.endswith(".csv")}
+    tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.source.endswith(TABLES)}
     own = {folder for folder in page.parent.glob("results*") if (folder / "manifest.json").exists()}
     stale = {folder: why for folder in sorted(tables | own) if (why := staleness(folder, root))}
     if not stale:
@@ -270,12 +281,12 @@ def main() -> int:
         except Wrong as error:
             wrong.append(f"{page.relative_to(root)}: {error}")
             continue
-        found = [of_table(figure) for figure in bound if figure.source.endswith(".csv")]
+        found = [of_table(figure) for figure in bound if figure.source.endswith(TABLES)]
         if has_history:
             found.append(set_note(page, note(page, bound, root), options.write))
         wrong += [f"{page.relative_to(root)}: {what}" for what in found if what]
         for figure in bound:
-            if not (figure.source.endswith(".csv") or options.tables or options.quick and figure.nightly):
+            if not (figure.source.endswith(TABLES) or options.tables or options.quick and figure.nightly):
                 by_command.setdefault(figure.source, []).append(figure)
     for of_one in by_command.values():
         wrong += of_command(of_one, root, options.data)

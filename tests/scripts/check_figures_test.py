@@ -11,7 +11,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/check_figures.py
 DEBIAN = pathlib.Path("/usr/bin/python3")  # the one that has the packages
 HAS_PACKAGES = DEBIAN.exists() and subprocess.run(
     [DEBIAN, "-c", "import numpy"], capture_output=True, check=False).returncode == 0
-TABLE = """material,fit,psnr_db,seconds%
+TABLE = """material,fit,psnr_db,seconds
 a,auto,40.04,2
 b,auto,42,
 a,lm,39.5,4
@@ -120,7 +120,7 @@ class CheckFigures(unittest.TestCase):
 
     def test_statistics_of_a_table(self):
         for figure, where in [("40.0 dB", 'psnr_db[(material == "a") & (fit == "auto")][0]'),
-                              ("four", "count(psnr_db > 1)"), ("25 %", "share(psnr_db > 43)"), ("5", "max(seconds_)"),
+                              ("four", "count(psnr_db > 1)"), ("25 %", "share(psnr_db > 43)"), ("5", "max(seconds)"),
                               ("−1", 'min(each(material, max, psnr_db)) - 41.04'), ("1.01", "43.6 / 43.2"),
                               ("2", 'count(each(material, min, psnr_db) > 39)'), ("39.5", "quantile(psnr_db, 0.25)")]:
             self.assertTrue(self.of_table(figure, where), self.output)
@@ -128,6 +128,13 @@ class CheckFigures(unittest.TestCase):
         self.assertIn("40.1 dB is 40.0", self.output)
         self.assertFalse(self.of_table("40.0 dB", "ssim[0]"))
         self.assertFalse(self.of_table("40.0 dB", "open"))
+
+    def test_a_table_in_markdown(self):
+        (self.results / "table.md").write_text(
+            "| of | E above, % | PSNR, dB |\n| --- | --- |\n| 1 a | **1.53** [0, 2] | 40 |\n| 2 b | – | – |\n")
+        for figure, where in [("1.5 %", 'E_above[of == "1 a"][0]'), ("40", "max(PSNR_dB)")]:
+            self.assertTrue(self.holds(f": experiments/x/results/table.md; {figure} = {where}", figure), self.output)
+        self.assertFalse(self.holds(": experiments/x/results/table.md; 1.6 % = max(E_above)", "1.6 %"))
 
     def test_a_page_of_stale_tables_says_so(self):
         page = self.root / "experiments/x/README.md"
