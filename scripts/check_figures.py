@@ -125,7 +125,7 @@ def rows(path: pathlib.Path) -> list[list[str]]:
         with path.open() as file:
             return list(csv.reader(file))
     lines = [line for line in path.read_text().split("\n") if line.startswith("|") and not line.startswith("| ---")]
-    return [[cell.strip(" *") for cell in line.strip("|").split(" | ")] for line in lines]
+    return [[cell.replace("**", "").strip() for cell in line.strip("|").split(" | ")] for line in lines]
 
 
 def column(name: str, cells: list[str]) -> np.ndarray:
