@@ -13,7 +13,7 @@ First comes the source, then FIGURE = WHERE. The source is one of
   command prints has the value as its group, or as the first number after it. A last digit may be off by one.
 - a table, CSV or Markdown, relative to the page. WHERE is an expression in Python of its columns, which are numpy
   arrays, and of the FUNCTIONS below; the figure is its value, rounded.
-A figure in % is a share of 1, but as it is where a command prints it. `seven` is 7.
+A figure in % is a share of 1, but as it is where a command prints it. `seven` is 7, `none` 0.
 
 Pages of tables that were not made by this version of the program say so at their top; --write puts or takes that line.
 "nightly" marks a command that takes long. Measured files that it names are looked for in the folder of --data; without
@@ -52,9 +52,9 @@ PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", 
 # What decides how a fit comes out.
 FITS = ["src/model", "src/solvers", "src/fit"]
 FUNCTIONS: dict[str, Callable[..., object]] = {
-    "median": stats.median, "quantile": stats.quantile, "geometric_mean": stats.geometric_mean, "mean": np.mean,
+    "median": stats.median, "quantile": stats.quantile, "geometric_mean": lambda values: np.exp(np.mean(np.log(values))), "mean": np.mean,
     "max": np.nanmax, "min": np.nanmin, "share": np.mean, "count": np.sum, "sum": np.sum, "abs": np.abs,
-    "sort": np.sort, "unique": np.unique,
+    "sort": np.sort, "isin": np.isin, "unique": np.unique,
     # statistic(values) of each group, in the order of the groups' names
     "each": lambda group, statistic, values: np.array([statistic(values[group == one]) for one in np.unique(group)]),
 }
@@ -76,7 +76,7 @@ class Wrong(Exception):
 
 def number(text: str) -> tuple[float, float]:
     """The value of a figure and of its last digit."""
-    word = text.split()[0].lower()
+    word = text.split()[0].lower().replace("none", "zero")
     if word in WORDS:
         return float(WORDS.index(word)), 1
     found = NUMBER.search(text.replace("−", "-").replace(",", ""))
@@ -119,18 +119,19 @@ def figures(page: pathlib.Path) -> Iterator[Figure]:
             yield Figure(page, figure, command, where, bool(comment[1]))
 
 
-def rows(path: pathlib.Path) -> list[list[str]]:
-    """The lines of a table in CSV or Markdown; the first has the names."""
+def rows(path: pathlib.Path) -> Iterator[list[list[str]]]:
+    """The lines of each table of a file in CSV or Markdown; the first of them has the names."""
     if path.suffix == ".csv":
         with path.open() as file:
-            return list(csv.reader(file))
-    lines = [line for line in path.read_text().split("\n") if line.startswith("|") and not line.startswith("| ---")]
-    return [[cell.replace("**", "").strip() for cell in line.strip("|").split(" | ")] for line in lines]
+            yield list(csv.reader(file))
+    for lines in re.findall(r"(?:^\|.*\n)+", path.read_text(), re.MULTILINE) if path.suffix == ".md" else []:
+        yield [[cell.replace("**", "").strip() for cell in line.strip("|").split(" | ")]
+               for line in lines.split("\n") if line and not line.startswith("| ---")]
 
 
 def column(name: str, cells: list[str]) -> np.ndarray:
     """Numbers, nan where nothing stands, percents as shares, the median of "2 [1, 3]"; or else text."""
-    percent = "%" in name or any(cell.endswith("%") for cell in cells)
+    percent = ", %" in name or any(cell.endswith("%") for cell in cells)
     cells = ["nan" if cell in ("", "–") else cell.replace("−", "-") for cell in cells]
     found = [re.fullmatch(rf"(nan|-?inf|{NUMBER.pattern})( ?%)?( \[.*\])?", cell) for cell in cells]
     if not all(found):
@@ -140,9 +141,12 @@ def column(name: str, cells: list[str]) -> np.ndarray:
 
 @functools.cache
 def table(path: pathlib.Path) -> dict[str, np.ndarray]:
-    """The columns of a table, by names of which only letters, digits and _ are left."""
-    names, *lines = rows(path)
-    return {re.sub(r"\W+", "_", name).strip("_"): column(name, list(cells)) for name, cells in zip(names, zip(*lines))}
+    """The columns of a file's tables, the first of a name, of which letters, digits and _ are left."""
+    columns: dict[str, np.ndarray] = {}
+    for names, *lines in rows(path):
+        for name, *cells in zip(names, *lines):
+            columns.setdefault(re.sub(r"\W+", "_", name).strip("_"), column(name, cells))
+    return columns
 
 
 def printed(figure: Figure, done: page_commands.Done) -> float:
