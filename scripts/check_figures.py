@@ -52,9 +52,9 @@ PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", 
 # What decides how a fit comes out.
 FITS = ["src/model", "src/solvers", "src/fit"]
 FUNCTIONS: dict[str, Callable[..., object]] = {
-    "median": stats.median, "quantile": stats.quantile, "geometric_mean": lambda values: np.exp(np.mean(np.log(values))), "mean": np.mean,
-    "max": np.nanmax, "min": np.nanmin, "share": np.mean, "count": np.sum, "sum": np.sum, "abs": np.abs,
-    "sort": np.sort, "isin": np.isin, "unique": np.unique,
+    "median": stats.median, "quantile": stats.quantile, "mean": np.mean, "max": np.nanmax, "min": np.nanmin,
+    "geometric_mean": lambda values: np.exp(np.mean(np.log(values))), "share": np.mean, "count": np.sum, "sum": np.sum,
+    "abs": np.abs, "sort": np.sort, "isin": np.isin,
     # statistic(values) of each group, in the order of the groups' names
     "each": lambda group, statistic, values: np.array([statistic(values[group == one]) for one in np.unique(group)]),
 }
