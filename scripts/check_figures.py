@@ -46,7 +46,6 @@ BLOCK = re.compile(r"(?:<!--.*?-->\n)*(```.*?^```$|.*?(?=\n\n|\Z))", re.DOTALL |
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 WORDS = ("zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
          "seventeen eighteen nineteen twenty").split()
-TABLES = (".csv", ".md")
 NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
 # What decides how a fit comes out.
@@ -68,6 +67,11 @@ class Figure(NamedTuple):
     source: str
     where: str
     nightly: bool
+
+    @property
+    def is_of_table(self) -> bool:
+        """Whether the source is a table and no command."""
+        return self.source.endswith((".csv", ".md")) and " " not in self.source
 
 
 class Wrong(Exception):
@@ -108,6 +112,8 @@ def figures(page: pathlib.Path) -> Iterator[Figure]:
         block = BLOCK.match(text, comment.end())
         below = " ".join(block[1].split()) if block else ""
         source, *bound = (" ".join(part.split()) for part in re.split(r";\s", comment[2]))
+        if not bound:
+            raise Wrong(f"`{source}` binds no figure")
         for binding in bound:
             figure, equals, where = binding.partition(" = ")
             if not equals or not re.search(rf"(?<![\w.,]){re.escape(figure)}(?![\w%]|[.,]\d)", below, re.IGNORECASE):
@@ -216,6 +222,8 @@ def git(root: pathlib.Path, *arguments: str) -> Optional[str]:
 @functools.cache
 def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     """Why results are not those of this version of the program; empty if they are."""
+    if not (results / "manifest.json").exists():
+        return "without a manifest"
     made = json.loads((results / "manifest.json").read_text())
     revisions = sorted({str(revision or "an unknown revision") for revision in
                         [*(program["revision"] for program in made["programs"]), made["tabulated_at"]]})
@@ -234,7 +242,7 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
 
 def note(page: pathlib.Path, bound: list[Figure], root: pathlib.Path) -> str:
     """The line that a page needs at its top, if any."""
-    tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.source.endswith(TABLES)}
+    tables = {(page.parent / figure.source).resolve().parent for figure in bound if figure.is_of_table}
     own = {folder for folder in page.parent.glob("results*") if (folder / "manifest.json").exists()}
     stale = {folder: why for folder in sorted(tables | own) if (why := staleness(folder, root))}
     if not stale:
@@ -274,23 +282,23 @@ def main() -> int:
     root = options.root.resolve()
     pages = [pathlib.Path(os.path.abspath(name)) for name in options.pages] or [
         page for pattern in PAGES for page in sorted(root.glob(pattern))]
-    wrong: list[str] = []
-    by_command: dict[str, list[Figure]] = {}
     has_history = git(root, "rev-parse", "--is-shallow-repository") == "false"
     if not has_history:
         print("not checked: whether tables are stale, since the history is not here")
+    wrong: list[str] = []
+    by_command: dict[str, list[Figure]] = {}
     for page in pages:
         try:
             bound = list(figures(page))
         except Wrong as error:
             wrong.append(f"{page.relative_to(root)}: {error}")
             continue
-        found = [of_table(figure) for figure in bound if figure.source.endswith(TABLES)]
+        found = [of_table(figure) for figure in bound if figure.is_of_table]
         if has_history:
             found.append(set_note(page, note(page, bound, root), options.write))
         wrong += [f"{page.relative_to(root)}: {what}" for what in found if what]
         for figure in bound:
-            if not (figure.source.endswith(TABLES) or options.tables or options.quick and figure.nightly):
+            if not (figure.is_of_table or options.tables or options.quick and figure.nightly):
                 by_command.setdefault(figure.source, []).append(figure)
     for of_one in by_command.values():
         wrong += of_command(of_one, root, options.data)

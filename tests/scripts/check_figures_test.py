@@ -114,6 +114,8 @@ class CheckFigures(unittest.TestCase):
     def test_a_figure_stands_below_its_comment(self):
         self.assertFalse(self.holds(": echo a 6; 6 dB = a", "46.6 dB"))
         self.assertIn("stands above no `6 dB`", self.output)
+        self.assertFalse(self.holds(": echo a 6, 6 = a", "6"))
+        self.assertIn("binds no figure", self.output)
         self.assertFalse(self.holds(": echo a 46; 46 = a", "46.6 dB, or 146"))
         self.assertFalse(self.holds(": echo a 6; 6 dB = a", "A\n\n6 dB"))
         self.assertTrue(self.holds(": echo a 6; 6 dB = a", "<!-- made by: x -->\n```text\n\n6 dB\n```"), self.output)
