@@ -38,6 +38,7 @@ Command PlanCommand();
 Command PlotCommand();
 Command ScoreCommand();
 Command SolversCommand();
+Command StudyCommand();
 Command SynthCommand();
 Command ViewCommand();
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/fit_jobs.h"
 #include "app/fit_page.h"
 #include "app/flags.h"
 #include "app/inputs.h"
@@ -31,149 +32,13 @@
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/io/model_files/model_file.h"
 
-DEFINE_string(shard, "",
-              "i/n: of many SOURCEs fit only every n-th, from the i-th on, and leave the page to "
-              "the same command without --shard, when all shards are through");
+DECLARE_string(shard);
 
 namespace trilobe {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-// The measurements in a folder, by name.
-std::vector<std::string> MeasurementsIn(const std::string& folder) {
-  std::vector<std::string> found;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string ending = EndingOf(it->path().string());
-    if (it->path().filename() == kTableName) continue;  // of an earlier run
-    if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
-        MeasurementFormats().end()) {
-      found.push_back(it->path().string());
-    }
-  }
-  if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
-  if (found.empty()) {
-    std::string endings;
-    for (const MeasurementFormat& format : MeasurementFormats()) {
-      const std::string ending = " *" + format.ending;
-      if ((endings + " ").find(ending + " ") == std::string::npos) endings += ending;
-    }
-    throw Error("'" + folder + "' has no measurement, no file of these:" + endings);
-  }
-  std::ranges::sort(found);
-  return found;
-}
-
-// Folders replaced by what is in them. Each becomes a folder of its own, so names must differ.
-std::vector<FitOutcome> ListSources(std::span<const std::string> arguments) {
-  std::vector<std::string> sources;
-  for (const std::string& argument : arguments) {
-    std::error_code ignored;
-    if (fs::is_directory(argument, ignored)) {
-      std::ranges::copy(MeasurementsIn(argument), std::back_inserter(sources));
-    } else {
-      sources.push_back(argument);
-    }
-  }
-  std::map<std::string, std::string> source_of;
-  std::vector<FitOutcome> outcomes;
-  for (const std::string& source : sources) {
-    const std::string name = FitNameOf(source);
-    if (name.empty() || name == "." || name == ".." || name == kTableName || name == kPageName) {
-      throw Error("'" + source + "' gives no name for a folder; rename it");
-    }
-    const auto [other, is_new] = source_of.emplace(name, source);
-    if (!is_new) {
-      throw Error("'" + other->second + "' and '" + source + "' would both be fitted into '" +
-                  name + "'; rename one, or fit it by a command of its own");
-    }
-    outcomes.push_back({.name = name, .source = source});
-  }
-  return outcomes;
-}
-
-// Those that --shard leaves.
-std::vector<FitOutcome> SelectShard(const std::vector<FitOutcome>& outcomes) {
-  if (FLAGS_shard.empty()) return outcomes;
-  int first = 0, count = 0;
-  char slash = 0;
-  std::istringstream text(FLAGS_shard);
-  text >> first >> slash >> count;
-  if (!text || slash != '/' || text.peek() != EOF || first < 1 || first > count) {
-    throw Error("--shard=" + FLAGS_shard + " is no i/n with i from 1 to n, as 2/8 is");
-  }
-  std::vector<FitOutcome> shard;
-  for (size_t k = first - 1; k < outcomes.size(); k += count) shard.push_back(outcomes[k]);
-  return shard;
-}
-
-void TakeReport(const Json& report, FitOutcome* outcome) {
-  const Json& sphere = report.at("appearance");
-  outcome->has_picture = !sphere.is_null() && !report.at("interrupted").get<bool>();
-  if (outcome->has_picture) {
-    outcome->psnr_db = sphere.at("psnr_db").is_null() ? std::numeric_limits<double>::infinity()
-                                                      : sphere.at("psnr_db").get<double>();
-    outcome->mean_delta_e = sphere.at("mean_delta_e");
-    outcome->mean_color_error = sphere.at("mean_color_error");
-  }
-  outcome->verdict = report.at("verdict").at("words");
-  outcome->visibility = report.at("verdict").at("visibility");
-  outcome->objective = report.at("objective");
-  outcome->num_parameters = report.contains("stored_parameters") ? report.at("stored_parameters")
-                                                                 : report.at("stored_numbers");
-  outcome->anisotropic = report.at("model") == "anisotropic";
-  const Json& files = report.at("files");
-  if (std::ranges::find(files, Json("view.html")) != files.end()) outcome->page = "view.html";
-  outcome->seconds = 0;
-  for (const auto& [phase, seconds] : report.at("seconds").items()) {
-    outcome->seconds += seconds.get<double>();
-  }
-}
-
-// Whether the folder has what this fit leaves, whole and of one run. The measurement, of which the
-// key is made, is read only where all else holds.
-bool IsFinished(const FitSettings& settings, const ResultFolder& folder, FitOutcome* outcome) {
-  try {
-    const std::string path = folder.PathOf("report.json");
-    const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
-    if (report.at("interrupted") ||
-        report.at("run") != ReadModel(folder.PathOf("model.json")).fit.run) {
-      return false;
-    }
-    const std::vector<std::string> files = folder.Files();
-    for (const std::string name : report.at("files")) {
-      if (std::ranges::find(files, name) == files.end()) return false;
-    }
-    if (report.at("key") != FitKey(settings, Source(outcome->source))) return false;
-    TakeReport(report, outcome);
-    return true;
-  } catch (const Error&) {
-    return false;  // nothing there, or not to be read
-  } catch (const Json::exception&) {
-    return false;  // of another version
-  }
-}
-
-void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* outcome) {
-  if (IsFinished(settings, *folder, outcome)) {
-    outcome->state = FitOutcome::State::kKept;
-    return;
-  }
-  std::optional<FitRun> run = RunOneFit(
-      outcome->source, settings, 1, folder, [] {}, [](const IterationRecord&) {},
-      [](const StartProgress&) {});
-  if (!run) return;
-  outcome->earlier = run->earlier;
-  outcome->undrawn = WriteOtherFiles(&*run, settings, folder);
-  TakeReport(ToJson(run->report), outcome);
-  const std::vector<std::string>& files = run->report.files;
-  outcome->has_picture =
-      outcome->has_picture && std::ranges::find(files, outcome->picture) != files.end();
-  outcome->state =
-      run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
-}
+using Json = nlohmann::ordered_json;
 
 // "7 of 9 cannot be told apart; sphere 45.2 dB in the median, at least 33 (brass)", of those that
 // have a model.
@@ -214,14 +79,6 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
     std::cerr << "trilobe: pictures of " << Printable(outcome.name)
               << " are missing: " << Printable(outcome.undrawn) << "\n";
   }
-}
-
-// Why a fit failed, for the table and the page, which may go to others.
-std::string ErrorToSend(const std::string& error, const FitOutcome& outcome,
-                        const std::string& out) {
-  std::error_code ignored;
-  return WithoutFolders(error, {fs::path(outcome.source).parent_path().string(), out,
-                                fs::current_path(ignored).string()});
 }
 
 }  // namespace
@@ -271,7 +128,8 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   std::vector<std::string> read = settings.inputs;
   for (const FitOutcome& outcome : all) read.push_back(outcome.source);
   const Inputs inputs(read);
-  std::vector<FitOutcome> outcomes = SelectShard(all);
+  std::vector<FitOutcome> outcomes;
+  for (const size_t k : JobsOfShard(all.size())) outcomes.push_back(all[k]);
   std::vector<ResultFolder> folders;
   for (const FitOutcome& outcome : outcomes) {
     folders.emplace_back(out + "/" + outcome.name, FitFileNames(), FitFolderMarks(), inputs);

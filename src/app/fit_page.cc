@@ -22,31 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A name as part of an address: what is not a letter, a digit or one of -._~ as %XX (RFC 3986).
-std::string EncodeAddress(const std::string& name) {
-  std::ostringstream address;
-  address << std::hex << std::uppercase << std::setfill('0');
-  for (const unsigned char c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       std::string_view("-._~").find(static_cast<char>(c)) != std::string::npos;
-    if (plain) {
-      address << static_cast<char>(c);
-    } else {
-      address << '%' << std::setw(2) << static_cast<int>(c);
-    }
-  }
-  return address.str();
-}
-
-// In UTF-8, and quoted where it must be (RFC 4180).
-std::string CsvField(const std::string& any_text) {
-  std::string text = ValidUtf8(any_text);
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string FormatFigure(const FitOutcome& outcome) {
   const std::string folder = EncodeAddress(outcome.name);
   std::ostringstream figure;

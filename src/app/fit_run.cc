@@ -249,7 +249,7 @@ std::optional<FitRun> RunOneFit(const std::string& source, const FitSettings& se
   if (InterruptGuard::signal() != 0) return std::nullopt;
   report.seconds.read = stopwatch.Lap();
   NoteSymptoms(num_threads, &measured);
-  PrintNotes(measured);
+  if (settings.tell_notes) PrintNotes(measured);
   report.data_notes = measured.notes;
   report.bins = CountsOf(measured);
   const std::string run = folder == nullptr ? "" : folder->run();

@@ -44,6 +44,7 @@ struct FitSettings {
   bool convergence = false, reconstruction = false, plots = false;
   bool pair = false;                // pair.png, a thumbnail
   bool view = false;                // view.html, a page
+  bool tell_notes = true;           // print what was noticed of the measurement
   std::vector<std::string> inputs;  // files that all fits read
   std::string key;                  // encodes these settings, with input files by their content
   std::string model_key;            // the same of those on which a model depends

@@ -28,10 +28,10 @@
 namespace trilobe {
 
 const std::vector<Command>& Commands() {
-  static const std::vector<Command> commands = {FitCommand(),     SolversCommand(),  PlanCommand(),
-                                                CompareCommand(), ScoreCommand(),    PlotCommand(),
-                                                InfoCommand(),    ConvertCommand(),  SynthCommand(),
-                                                ViewCommand(),    MaterialsCommand()};
+  static const std::vector<Command> commands = {
+      FitCommand(),     StudyCommand(), SolversCommand(), PlanCommand(),
+      CompareCommand(), ScoreCommand(), PlotCommand(),    InfoCommand(),
+      ConvertCommand(), SynthCommand(), ViewCommand(),    MaterialsCommand()};
   return commands;
 }
 

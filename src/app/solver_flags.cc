@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <variant>
 
 #include "app/flags.h"
@@ -48,9 +49,9 @@ void CheckThatSolverTakesFlags(const SolverEntry& solver) {
   }
 }
 
-void SetFromFlag(const SolverOption& option, const ModelSpec& spec, SolverOptions* options) {
+void SetOption(const SolverOption& option, OptionValue value, const ModelSpec& spec,
+               SolverOptions* options) {
   const std::string flag = "--" + option.flag;
-  OptionValue value = Storage().at(option.flag).value;
   if (option.unit) {
     CheckInRange(flag, value, option.unit->range);
     if (option.unit->to_member) value = option.unit->to_member(std::get<double>(value), spec);
@@ -93,14 +94,27 @@ std::vector<std::string> ParticularSolverFlags() {
   return flags;
 }
 
-SolverOptions SolverOptionsFromFlags(const SolverEntry& solver, const ModelSpec& spec) {
+std::function<SolverOptions(const ModelSpec&)> SolverOptionsByFlags(const SolverEntry& solver) {
   CheckThatSolverTakesFlags(solver);
-  SolverOptions options;
+  std::vector<std::pair<const SolverOption*, OptionValue>> values;
   for (const SolverOption& option : AllSolverOptions()) {
-    if (!IsShared(option)) SetFromFlag(option, spec, &options);
+    if (!IsShared(option)) values.emplace_back(&option, Storage().at(option.flag).value);
   }
-  options.seed = static_cast<uint64_t>(FLAGS_seed);
-  return options;
+  return [values, seed = static_cast<uint64_t>(FLAGS_seed)](const ModelSpec& spec) {
+    SolverOptions options;
+    for (const auto& [option, value] : values) SetOption(*option, value, spec, &options);
+    options.seed = seed;
+    return options;
+  };
+}
+
+SolverOptions SolverOptionsFromFlags(const SolverEntry& solver, const ModelSpec& spec) {
+  return SolverOptionsByFlags(solver)(spec);
+}
+
+bool TakesFlag(const SolverEntry& solver, const std::string& flag) {
+  const std::vector<std::string> taken = FlagsOf(solver);
+  return std::ranges::find(taken, flag) != taken.end();
 }
 
 std::string DescribeSolver(const SolverEntry& solver) {

@@ -41,7 +41,7 @@ int SolverSummary::RejectedSteps() const {
   return static_cast<int>(std::ranges::count(trace, false, &IterationRecord::accepted));
 }
 
-SolverSummary::Raises SolverSummary::FindRaises() const {
+SolverSummary::Raises SolverSummary::FindRaises(std::span<const IterationRecord> trace) {
   constexpr double kRounding = 1e-12;
   Raises raises;
   for (size_t k = 1; k < trace.size(); ++k) {

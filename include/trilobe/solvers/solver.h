@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -96,7 +97,8 @@ struct SolverSummary {
     std::vector<int> iterations;
     double largest = 0;  // relative to the value before
   };
-  Raises FindRaises() const;
+  Raises FindRaises() const { return FindRaises(trace); }
+  static Raises FindRaises(std::span<const IterationRecord> trace);
   bool has_prior() const {
     return !trace.empty() && trace.front().objective_with_prior.has_value();
   }

@@ -27,6 +27,12 @@ std::string ValidUtf8(std::string_view text);
 // Escapes text for HTML and XML, for use between tags and in attributes; it is valid UTF-8 then.
 std::string EscapedMarkup(std::string_view text);
 
+// A path as part of an address: what is not a letter, a digit or one of -._~/ as %XX (RFC 3986).
+std::string EncodeAddress(std::string_view path);
+
+// Text as a field of a CSV file: in UTF-8, and quoted where it must be (RFC 4180).
+std::string CsvField(std::string_view text);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_CORE_BASE_TEXT_H_

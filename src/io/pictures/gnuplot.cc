@@ -19,6 +19,7 @@
 #include <optional>
 #include <ostream>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 #include "core/base/text.h"
@@ -67,9 +68,36 @@ std::optional<int> WaitFor(pid_t pid, double max_seconds) {
   return std::nullopt;
 }
 
+// A format of pictures: gnuplot's terminal for a size in pixels, and how a whole file begins and
+// ends.
+struct PictureFormat {
+  std::string_view ending;
+  std::string terminal;
+  std::string_view begins, ends;
+};
+
+PictureFormat FormatOf(std::string_view ending, int width, int height) {
+  using std::string_view_literals::operator""sv;
+  const std::string size = std::to_string(width) + "," + std::to_string(height);
+  // An inch of print has 100 of these pixels.
+  const std::string inches = GnuplotNumber(width / 100.0) + "," + GnuplotNumber(height / 100.0);
+  if (ending == ".svg") {
+    return {".svg", "svg enhanced size " + size + " font 'DejaVu Sans,15'", "<?xml"sv,
+            "</svg>\n\n"sv};
+  }
+  if (ending == ".pdf") {
+    return {".pdf", "pdfcairo enhanced size " + inches + " font 'DejaVu Sans,13'", "%PDF-"sv,
+            "%%EOF\n"sv};
+  }
+  // The chunk that ends every PNG picture: no data, its name, and the checksum of that.
+  return {".png", "pngcairo enhanced size " + size + " font 'DejaVu Sans,18'",
+          "\x89PNG\r\n\x1A\n"sv, "\0\0\0\0IEND\xAE\x42\x60\x82"sv};
+}
+
 // gnuplot's standard output for a script on its standard input. Both go through files where the
 // picture will be: unlike pipes, these cannot block one side on the other.
-std::string RunGnuplot(const std::string& path, const std::string& script, double max_seconds) {
+std::string RunGnuplot(const std::string& path, const PictureFormat& format,
+                       const std::string& script, double max_seconds) {
   const NamelessFile in = MakeNamelessFile(path), out = MakeNamelessFile(path),
                      err = MakeNamelessFile(path);
   if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
@@ -107,22 +135,21 @@ std::string RunGnuplot(const std::string& path, const std::string& script, doubl
   if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0) {
     throw Error("gnuplot failed: " + ErrorLine(ReadAll(err.get())));
   }
-  std::string png = ReadAll(out.get());
-  if (!png.starts_with("\x89PNG\r\n\x1A\n")) {
+  std::string picture = ReadAll(out.get());
+  if (!picture.starts_with(format.begins)) {
     throw Error("gnuplot drew no picture: " + ErrorLine(ReadAll(err.get())));
   }
-  // The chunk that ends every PNG picture: no data, its name, and the checksum of that.
-  if (!png.ends_with(std::string_view("\0\0\0\0IEND\xAE\x42\x60\x82", 12))) {
+  if (!picture.ends_with(format.ends)) {
     throw Error("gnuplot drew a part of the picture alone: " + ErrorLine(ReadAll(err.get())));
   }
-  return png;
+  return picture;
 }
 
-std::string CommonStyle(int width, int height) {
+std::string CommonStyle(const PictureFormat& format) {
   return "set encoding utf8\n"
-         "set terminal pngcairo enhanced size " +
-         std::to_string(width) + "," + std::to_string(height) +
-         " background '#FFFFFF' font 'DejaVu Sans,18' linewidth 1\n"
+         "set terminal " +
+         format.terminal +
+         " background '#FFFFFF' linewidth 1\n"
          "set border 3 linecolor '#555555' linewidth 1.5\n"
          "set tics nomirror out textcolor '#333333'\n"
          "set grid xtics ytics linecolor '#E4E4E4' linetype 1 linewidth 1\n"
@@ -229,12 +256,30 @@ void RequireGnuplot() {
   if (!HaveGnuplot()) throw Error(kNoGnuplot);
 }
 
+namespace {
+
+void Draw(const std::string& path, const PictureFormat& format, const std::string& script,
+          double max_seconds) {
+  const std::string picture = RunGnuplot(path, format, CommonStyle(format) + script, max_seconds);
+  WriteFile(path, [&](std::ostream& out) {
+    out.write(picture.data(), static_cast<std::streamsize>(picture.size()));
+  });
+}
+
+}  // namespace
+
 void DrawPng(const std::string& path, int width, int height, const std::string& script,
              double max_seconds) {
-  const std::string png = RunGnuplot(path, CommonStyle(width, height) + script, max_seconds);
-  WriteFile(path, [&](std::ostream& out) {
-    out.write(png.data(), static_cast<std::streamsize>(png.size()));
-  });
+  Draw(path, FormatOf(".png", width, height), script, max_seconds);
+}
+
+void DrawVectors(const std::string& path, int width, int height, const std::string& script,
+                 double max_seconds) {
+  const std::string ending = EndingOf(path);
+  if (ending != ".svg" && ending != ".pdf") {
+    throw Error("'" + path + "': a picture of vectors is .svg or .pdf");
+  }
+  Draw(path, FormatOf(ending, width, height), script, max_seconds);
 }
 
 }  // namespace trilobe

@@ -56,6 +56,11 @@ void RequireGnuplot();
 void DrawPng(const std::string& path, int width, int height, const std::string& script,
              double max_seconds = 120);
 
+// The same as vectors, for print: SVG or PDF by the extension of `path`, which must be one of
+// these.
+void DrawVectors(const std::string& path, int width, int height, const std::string& script,
+                 double max_seconds = 120);
+
 }  // namespace trilobe
 
 #endif  // TRILOBE_IO_PICTURES_GNUPLOT_H_

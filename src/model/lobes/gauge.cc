@@ -72,17 +72,6 @@ void MoveZeroToS(std::span<const double> coverage, Factor factor, int index, Fac
   ForEachServed(model->spec(), factor, index, [&](int m, int c) { model->s(m)[c] = 0; });
 }
 
-// Projected solid angle of each entry of D. [axis.size]
-std::vector<double> ProjectedAngles(const Axis& axis) {
-  // The integral of cos sin dtheta dphi is phi width (sin^2 upper - sin^2 lower) / 2.
-  std::vector<double> angles(axis.size);
-  for (int i = 0; i < axis.size; ++i) {
-    const auto [a, b, width] = axis.CellOf(i);
-    angles[i] = width / 2 * std::sin(b - a) * std::sin(b + a);  // without cancellation
-  }
-  return angles;
-}
-
 double WeightedSum(std::span<const double> weights, std::span<const double> values) {
   return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0);
 }
@@ -255,6 +244,16 @@ void ScaleByLight(std::span<const double> coverage, const LobeLight& light, Fact
 }
 
 }  // namespace
+
+std::vector<double> ProjectedAngles(const Axis& axis) {
+  // The integral of cos sin dtheta dphi is phi width (sin^2 upper - sin^2 lower) / 2.
+  std::vector<double> angles(axis.size);
+  for (int i = 0; i < axis.size; ++i) {
+    const auto [a, b, width] = axis.CellOf(i);
+    angles[i] = width / 2 * std::sin(b - a) * std::sin(b + a);  // without cancellation
+  }
+  return angles;
+}
 
 double ProjectedIntegral(const Axis& axis, std::span<const double> D) {
   const std::vector<double> angles = ProjectedAngles(axis);

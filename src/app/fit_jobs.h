@@ -1,0 +1,38 @@
+#ifndef TRILOBE_APP_FIT_JOBS_H_
+#define TRILOBE_APP_FIT_JOBS_H_
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/fit_page.h"
+#include "app/fit_run.h"
+#include "app/result_folder.h"
+
+// Fits that one command runs side by side, each on a thread of its own, into a folder each.
+
+namespace trilobe {
+
+// The measurements of a command, folders replaced by what is in them. Each becomes a folder of its
+// own, so names must differ. Throws Error.
+std::vector<FitOutcome> ListSources(std::span<const std::string> arguments);
+
+// Of so many jobs, those that --shard leaves. Throws Error for a bad value.
+std::vector<size_t> JobsOfShard(size_t count_of_jobs);
+
+// Fills an outcome from a report.json. Throws Json::exception for one of another version.
+void TakeReport(const nlohmann::ordered_json& report, FitOutcome* outcome);
+
+// Fits outcome->source on one thread into a folder, unless its whole result is there. Fills the
+// outcome. Throws Error if the fit fails.
+void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* outcome);
+
+// Why a fit failed, for tables and pages, which may go to others: without names of folders.
+std::string ErrorToSend(const std::string& error, const FitOutcome& outcome,
+                        const std::string& out);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_APP_FIT_JOBS_H_

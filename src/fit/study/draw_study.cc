@@ -1,0 +1,258 @@
+#include "fit/study/draw_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "core/base/text.h"
+#include "io/pictures/gnuplot.h"
+
+namespace trilobe {
+namespace {
+
+using Drawing = StudyFigure::Drawing;
+
+constexpr int kWidth = 760, kHeight = 460;
+constexpr double kFloor = 1e-5;  // smaller excesses are drawn here: the lowest E
+
+std::string ColorOf(size_t method) {
+  constexpr std::string_view kColors[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                          "#E69F00", "#56B4E9", "#7D7D7D", "#8C6D31"};
+  return "'" + std::string(kColors[method % std::size(kColors)]) + "'";
+}
+
+double Drawn(double excess) { return std::max(excess, kFloor); }
+
+// An axis of excesses over the lowest E, in percent, up to the largest one.
+std::string ExcessAxis(std::span<const StudyRun> runs, double largest) {
+  const bool any = std::ranges::any_of(runs, [](const StudyRun& run) { return !run.failed(); });
+  if (!any) return "";
+  const double top = std::pow(10, std::ceil(std::log10(std::max(largest, 0.1)) + 0.1));
+  return "set logscale y\nset yrange [" + GnuplotNumber(kFloor / 1.6) + ":" + GnuplotNumber(top) +
+         "]\nset ytics ('lowest' 1e-5, '0.01 %%' 1e-4, '0.1 %%' 1e-3, '1 %%' 1e-2, '10 %%' 0.1, "
+         "'100 %%' 1, '10 times' 10, '100 times' 100, '1000 times' 1000)\n"
+         "set ylabel 'E above the lowest'\n";
+}
+
+// Blocks of data, and the plot that shows them.
+struct Curves {
+  std::string data, plot;
+
+  // `style`: what follows `using 1:2`.
+  void Add(const std::vector<std::vector<double>>& rows, const std::string& style,
+           const std::string& title) {
+    const std::string name = "curve" + std::to_string(count_++);
+    data += GnuplotData(name, rows);
+    plot += (plot.empty() ? "plot " : ", ") + ("$" + name) + " using 1:2 " + style + " " +
+            (title.empty() ? "notitle" : "title " + GnuplotQuote(title) + " noenhanced");
+  }
+
+ private:
+  int count_ = 0;
+};
+
+// A curve for each run, in the colour of its method, which the first one names.
+template <typename Rows>
+Curves CurvesOf(std::span<const StudyRun> runs, const std::string& style, const Rows& rows_of) {
+  Curves curves;
+  const std::vector<std::string> methods = MethodsOf(runs);
+  for (size_t k = 0; k < methods.size(); ++k) {
+    std::string title = methods[k];
+    for (const StudyRun& run : runs) {
+      if (run.method != methods[k] || run.failed()) continue;
+      curves.Add(rows_of(run), style + " linecolor " + ColorOf(k), title);
+      title.clear();
+    }
+  }
+  return curves;
+}
+
+double LargestExcess(std::span<const StudyRun> runs) {
+  double largest = 0;
+  for (const StudyRun& run : runs) {
+    for (const IterationRecord& record : run.trace) {
+      largest = std::max(largest, run.ExcessOf(record.minimised()));
+    }
+  }
+  return largest;
+}
+
+constexpr const char* kKey = "set key outside center top horizontal\n";
+
+// The lowest E so far, over seconds.
+Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
+  std::vector<double> seconds;
+  const Curves curves = CurvesOf(runs, "with steps linewidth 2", [&](const StudyRun& run) {
+    std::vector<std::vector<double>> rows;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const IterationRecord& record : run.trace) {
+      lowest = std::min(lowest, run.ExcessOf(record.minimised()));
+      if (record.seconds > 0) rows.push_back({record.seconds, Drawn(lowest)});
+    }
+    if (rows.empty()) rows.push_back({1e-3, Drawn(lowest)});
+    for (const std::vector<double>& row : rows) seconds.push_back(row[0]);
+    return rows;
+  });
+  if (curves.plot.empty()) return {};
+  return {kWidth, kHeight,
+          curves.data + kKey + ExcessAxis(runs, LargestExcess(runs)) +
+              "set logscale x\nset xrange " + GnuplotLogRange(seconds, 3.5) + "\n" +
+              LogTics(LogRange(seconds, 3.5), 'x') + "set xlabel 'seconds'\n" + curves.plot + "\n"};
+}
+
+// E of each iteration.
+Drawing Convergence(std::span<const StudyRun> runs) {
+  int most = 1;
+  const Curves curves = CurvesOf(runs, "with lines linewidth 2", [&](const StudyRun& run) {
+    std::vector<std::vector<double>> rows;
+    for (const IterationRecord& record : run.trace) {
+      rows.push_back(
+          {static_cast<double>(record.iteration), Drawn(run.ExcessOf(record.minimised()))});
+      most = std::max(most, record.iteration);
+    }
+    return rows;
+  });
+  if (curves.plot.empty()) return {};
+  return {kWidth, kHeight,
+          curves.data + kKey + ExcessAxis(runs, LargestExcess(runs)) +
+              "set xrange [0:" + std::to_string(most) +
+              "]\nset xlabel 'iteration (for AWLS, sweep)'\n" + curves.plot + "\n"};
+}
+
+// Text as gnuplot's label of a tic, which is a format.
+std::string AsFormat(const std::string& text) {
+  std::string format;
+  for (const char c : text) format += c == '%' ? "%%" : std::string(1, c);
+  return format;
+}
+
+// A point for each run, side by side within its method.
+Drawing FinalErrors(std::span<const StudyRun> runs) {
+  const std::vector<std::string> methods = MethodsOf(runs);
+  Curves curves;
+  std::string tics;
+  double largest = 0;
+  int starts = 1;
+  for (const StudyRun& run : runs) starts = std::max(starts, run.start);
+  for (size_t k = 0; k < methods.size(); ++k) {
+    std::vector<std::vector<double>> rows;
+    for (const StudyRun& run : runs) {
+      if (run.method != methods[k] || run.failed()) continue;
+      const double place = (run.start - (starts + 1) / 2.0) / starts;
+      rows.push_back({static_cast<double>(k) + 0.7 * place, Drawn(run.excess())});
+      largest = std::max(largest, run.excess());
+    }
+    tics += (k > 0 ? ", " : "") + GnuplotQuote(AsFormat(methods[k])) + " " + std::to_string(k);
+    if (rows.empty()) continue;
+    curves.Add(rows, "with points pointtype 7 pointsize 0.9 linecolor " + ColorOf(k), "");
+  }
+  if (curves.plot.empty()) return {};
+  return {kWidth, kHeight,
+          curves.data + ExcessAxis(runs, largest) +
+              "set xrange [-0.5:" + GnuplotNumber(static_cast<double>(methods.size()) - 0.5) +
+              "]\nset grid noxtics\nset xtics noenhanced " +
+              (methods.size() > 4 ? "rotate by -20 " : "") + "(" + tics + ")\n" + curves.plot +
+              "\n"};
+}
+
+// D of a lobe over the root of theta_h in degrees, of an anisotropic one the mean over phi_h.
+std::vector<std::vector<double>> DistributionOf(const ModelFile& file, int lobe) {
+  const Axis& axis = file.model.spec().d_axis;
+  const std::span<const double> D = file.model.D(lobe, 0);
+  std::vector<std::vector<double>> rows;
+  for (int k = 0; k < axis.size; k += axis.phi_nodes) {
+    double sum = 0;
+    for (int b = 0; b < axis.phi_nodes; ++b) sum += D[k + b];
+    const double degrees = axis.Theta(k) * 180 / std::numbers::pi;
+    if (sum > 0) rows.push_back({std::sqrt(degrees), sum / axis.phi_nodes});
+  }
+  return rows;
+}
+
+// The panel of a method and a lobe: its runs in colour, the lowest of all in black.
+std::string LobePanel(const StudyRun& lowest, const std::vector<const StudyRun*>& runs, int lobe,
+                      const std::string& color, const std::string& title) {
+  Curves curves;
+  for (const StudyRun* run : runs) {
+    const std::vector<std::vector<double>> rows = DistributionOf(run->file, run->lobes->lobe[lobe]);
+    if (!rows.empty()) curves.Add(rows, "with lines linewidth 2 linecolor " + color, "");
+  }
+  const std::vector<std::vector<double>> of_lowest = DistributionOf(lowest.file, lobe);
+  if (!of_lowest.empty()) {
+    curves.Add(of_lowest, "with lines linewidth 1.5 dashtype 2 linecolor '#000000'", "");
+  }
+  if (curves.plot.empty() || of_lowest.empty()) return "set multiplot next\n";
+  std::vector<double> values;
+  for (const std::vector<double>& row : of_lowest) values.push_back(row[1]);
+  return "set title " + title + " noenhanced\nset yrange " + GnuplotLogRange(values, 6) + "\n" +
+         curves.data + curves.plot + "\n";
+}
+
+// "lm", and below "lobe 2, match 0.97", the median over the runs; for gnuplot.
+std::string PanelTitle(const std::string& method, const std::vector<const StudyRun*>& runs,
+                       int lobe) {
+  std::vector<double> matches;
+  for (const StudyRun* run : runs) matches.push_back(run->lobes->match[lobe]);
+  std::ranges::sort(matches);
+  return GnuplotQuote(method) + ".\"\\n\"." +
+         GnuplotQuote("lobe " + std::to_string(lobe + 1) + ", match " +
+                      Text(matches[(matches.size() - 1) / 2], 2));
+}
+
+// A row of panels for each method, a column for each lobe of the lowest run.
+Drawing Lobes(std::span<const StudyRun> runs) {
+  if (runs.empty()) return {};
+  const StudyRun* const lowest = LowestRun(runs, runs.front().problem);
+  if (lowest == nullptr || lowest->file.model.spec().lobes == 0) return {};
+  const int lobes = lowest->file.model.spec().lobes;
+  const std::vector<std::string> methods = MethodsOf(runs);
+  std::string panels;
+  int rows = 0;
+  for (size_t k = 0; k < methods.size(); ++k) {
+    std::vector<const StudyRun*> own;
+    for (const StudyRun& run : runs) {
+      if (run.method == methods[k] && run.lobes) own.push_back(&run);
+    }
+    if (own.empty()) continue;
+    ++rows;
+    for (int lobe = 0; lobe < lobes; ++lobe) {
+      panels += LobePanel(*lowest, own, lobe, ColorOf(k), PanelTitle(methods[k], own, lobe));
+    }
+  }
+  return {300 * lobes, 260 * rows,
+          "set multiplot layout " + std::to_string(rows) + "," + std::to_string(lobes) +
+              "\nset nokey\nset logscale y\nset format y '10^{%T}'\nset xrange [0:sqrt(90)]\n"
+              "set xtics ('0°' 0, '5°' sqrt(5), '15°' sqrt(15), '45°' sqrt(45), '90°' sqrt(90))\n"
+              "set title offset 0,-0.7\nset lmargin 6\nset rmargin 1\nset tmargin 2.8\n"
+              "set bmargin 2\n" +
+              panels + "unset multiplot\n"};
+}
+
+constexpr StudyFigure kFigures[] = {
+    {"error_against_time", "The lowest E so far, over the seconds since the start of each run.",
+     ErrorAgainstTime},
+    {"convergence", "E after each iteration: one line a run.", Convergence},
+    {"final_error", "E at the end of each run, by starting point from left to right.", FinalErrors},
+    {"lobes",
+     "D over θh of each lobe: all runs of a method laid over each other; dashed, the lowest run.",
+     Lobes}};
+
+}  // namespace
+
+std::span<const StudyFigure> StudyFigures() { return kFigures; }
+
+bool DrawStudyFigure(const StudyFigure& figure, std::span<const StudyRun> runs,
+                     const std::string& folder) {
+  const Drawing drawing = figure.draw(runs);
+  if (drawing.script.empty()) return false;
+  for (const char* const ending : {".svg", ".pdf"}) {
+    DrawVectors(folder + "/" + figure.name + ending, drawing.width, drawing.height, drawing.script);
+  }
+  return true;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,32 @@
+#ifndef TRILOBE_FIT_STUDY_DRAW_STUDY_H_
+#define TRILOBE_FIT_STUDY_DRAW_STUDY_H_
+
+#include <span>
+#include <string>
+
+#include "fit/study/study.h"
+
+namespace trilobe {
+
+// A figure of the runs of one problem. The same runs give the same SVG.
+struct StudyFigure {
+  const char* name;     // of its files, without extension
+  const char* caption;  // what it shows
+  struct Drawing {
+    int width = 0, height = 0;  // in pixels
+    std::string script;         // for gnuplot; "" if there is nothing to draw
+  };
+  Drawing (*draw)(std::span<const StudyRun> runs);
+};
+
+// Error against time; convergence; final errors; lobes.
+std::span<const StudyFigure> StudyFigures();
+
+// Draws a figure as NAME.svg and NAME.pdf into an existing folder. Returns whether there was
+// something to draw. Throws Error as DrawVectors does.
+bool DrawStudyFigure(const StudyFigure& figure, std::span<const StudyRun> runs,
+                     const std::string& folder);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_STUDY_DRAW_STUDY_H_

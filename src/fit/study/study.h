@@ -1,0 +1,111 @@
+#ifndef TRILOBE_FIT_STUDY_STUDY_H_
+#define TRILOBE_FIT_STUDY_STUDY_H_
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/lobes/lobe_match.h"
+#include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/objective/iteration_record.h"
+
+// A study solves the same problems by several methods from the same starting points, to compare the
+// methods. A problem is an objective: a measurement with its weighting. A method is a solver with
+// its options. E is what the methods minimise, with the prior where there is one.
+
+namespace trilobe {
+
+// One fit.
+struct StudyRun {
+  std::string problem, method;
+  int start = 1;           // 1: the given one; k > 1: random, of seed k
+  std::string folder;      // of its files, within that of the study
+  std::string error = {};  // why there is no result; then nothing below is set
+
+  std::string stop_reason = {};
+  double seconds = 0;  // from preparing the objective to the end of the solver
+  std::optional<double> psnr_db = {}, mean_delta_e = {};  // of the sphere, if the data have one
+  std::vector<IterationRecord> trace = {};
+  ModelFile file = {};
+
+  // Set by CompareRuns: the lowest E of the problem's runs, and what an excess over it is relative
+  // to.
+  double lowest = 0, unit = 1;
+  // With the lobes of the problem's lowest run and of the method's own, if these are of the same
+  // spec.
+  std::optional<LobeOrderMatch> lobes = {}, own_lobes = {};
+
+  bool failed() const { return !error.empty(); }
+  double objective() const;  // the lowest E of its trace; infinite if it failed
+  double ExcessOf(double E) const { return (E - lowest) / unit; }
+  double excess() const { return ExcessOf(objective()); }
+  int iterations() const;
+  // Seconds until E has at most this excess; infinite if it never has.
+  double SecondsTo(double most_excess) const;
+};
+
+// Below this excess a run has found the lowest E for all purposes, and below the other to the
+// digits that are printed.
+inline constexpr double kAsGood = 0.01, kTheSame = 0.001;
+// Lobes are the same where the least match is at least this.
+inline constexpr double kSameLobes = 0.9;
+
+// Compares each run with the lowest of its problem. An excess is relative to the lowest E. Where
+// that is below 1e-12 of the highest initial E, as of data without noise, it is relative to this.
+void CompareRuns(std::vector<StudyRun>* runs);
+
+// The run of the lowest E of a problem; null if all have failed.
+const StudyRun* LowestRun(std::span<const StudyRun> runs, const std::string& problem);
+
+// A share of n runs, with the 95 % interval of the binomial (Wilson 1927).
+struct Share {
+  int count = 0, of = 0;
+  double value() const { return of > 0 ? static_cast<double>(count) / of : 0; }
+  double low() const;
+  double high() const;
+};
+
+// What the runs of one method on one problem have in common. Medians are lower ones, and count
+// failed runs as infinite.
+struct MethodSummary {
+  std::string problem, method;
+  int runs = 0, failed = 0;
+  double lowest = 0, median = 0, highest = 0;  // excess
+  Share as_good = {}, the_same = {};           // excess at most kAsGood, kTheSame
+  double seconds = 0;                          // median of a whole run
+  double seconds_to_as_good = 0;               // median
+  // Seconds until restarts have found E within kAsGood of the lowest, in expectation: the mean time
+  // of a run divided by the share of those that do. Infinite if none does.
+  double expected_seconds = 0;
+  double iterations = 0;  // median
+  // Iterations of all runs, and those that raised E (SolverSummary::FindRaises).
+  int all_iterations = 0, raised = 0;
+  double largest_rise = 0;
+  std::optional<double> psnr_db = {}, mean_delta_e = {};  // medians
+  // Runs whose lobes are those of the problem's lowest run, and of the method's own.
+  Share same_lobes = {}, same_again = {};
+  std::optional<double> least_match =
+      {};  // median of the least match with the problem's lowest run
+};
+
+// One for each problem and method, in the order of their first runs.
+std::vector<MethodSummary> SummariesOf(std::span<const StudyRun> runs);
+
+// The names of problems and methods, in the order of their first runs.
+std::vector<std::string> ProblemsOf(std::span<const StudyRun> runs);
+std::vector<std::string> MethodsOf(std::span<const StudyRun> runs);
+
+// What the runs say, in sentences: who found the lowest E, how often, how soon; who raised E;
+// whether the lobes are the same, and the spheres.
+std::vector<std::string> VerdictOn(std::span<const StudyRun> runs);
+
+// Tables as CSV, with a header line (docs/study.md). Infinite values are "inf".
+std::string RunsCsv(std::span<const StudyRun> runs);
+std::string MethodsCsv(std::span<const MethodSummary> summaries);
+std::string TracesCsv(std::span<const StudyRun> runs);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_STUDY_STUDY_H_

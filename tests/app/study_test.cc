@@ -1,0 +1,134 @@
+// `trilobe study`: solvers compared by one command.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_program.h"
+#include "tests/paths.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kSource = "synth:copper@12x12x24";
+
+class Study : public ::testing::Test {
+ protected:
+  ProgramResult RunStudy(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {
+        "study", kSource, "--noise=0.02", "--max_iterations=4", "--nodiagnose", "--out=" + out_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram(arguments);
+  }
+
+  const TemporaryFolder folder_;
+  const std::string out_ = folder_ / "out";
+};
+
+TEST_F(Study, ComparesSolversGoesOnAndKeeps) {
+  const std::vector<std::string> flags = {"--solvers=awls,lm", "--runs=2"};
+  const ProgramResult first = RunStudy(flags);
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("[4/4] "));
+  EXPECT_THAT(first.out, HasSubstr("E never rose in 16 iterations of all methods."));
+  for (const char* const name : {"index.html", "runs.csv", "methods.csv", "traces.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(out_ + "/" + name)) << name;
+  }
+  const std::string page = Contents(out_ + "/index.html");
+  EXPECT_THAT(page, HasSubstr("trilobe study synth:copper@12x12x24 --"));
+  EXPECT_THAT(page, HasSubstr("copper/awls/start-2/report.json"));
+  EXPECT_THAT(page, HasSubstr("Content-Security-Policy"));
+
+  // What a solver found is what is compared: the report's E is that of the last row of the trace.
+  const auto report = nlohmann::json::parse(Contents(out_ + "/copper/awls/start-1/report.json"));
+  EXPECT_TRUE(report.at("raw"));
+  EXPECT_DOUBLE_EQ(report.at("objective"), report.at("solver_objective"));
+  const std::string runs = Contents(out_ + "/runs.csv");
+  EXPECT_EQ(std::ranges::count(runs, '\n'), 5);
+
+  const ProgramResult again = RunStudy(flags);
+  EXPECT_THAT(again.out, HasSubstr("copper, lm, start 2: kept"));
+  EXPECT_EQ(Contents(out_ + "/runs.csv"), runs);
+  std::filesystem::remove_all(out_ + "/copper/lm/start-2");
+  const ProgramResult third = RunStudy(flags);
+  EXPECT_THAT(third.out, HasSubstr("copper, lm, start 2: fitted"));
+  EXPECT_THAT(third.out, HasSubstr("copper, lm, start 1: kept"));
+}
+
+TEST_F(Study, StartsDifferOnTheSameData) {
+  ASSERT_EQ(RunStudy({"--solvers=awls", "--runs=3"}).status, 0);
+  const auto report = [&](int start) {
+    return nlohmann::json::parse(
+        Contents(out_ + "/copper/awls/start-" + std::to_string(start) + "/report.json"));
+  };
+  EXPECT_EQ(report(1).at("init"), "analytic");
+  EXPECT_EQ(report(3).at("init"), "random");
+  EXPECT_EQ(report(3).at("seed"), 3);
+  EXPECT_EQ(report(3).at("data_seed"), 1);
+  EXPECT_NE(report(2).at("initial_objective"), report(3).at("initial_objective"));
+  EXPECT_EQ(report(2).at("valid_samples"), report(3).at("valid_samples"));
+}
+
+TEST_F(Study, SweepsFlagsOfTheProblemAndOfSomeSolvers) {
+  const ProgramResult result =
+      RunStudy({"--solvers=awls,lm", "--runs=1",
+                "--set=trust_region=levenberg_marquardt,dogleg;weighting=log,"
+                "cosine;lobes=1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  // Each weighting is a problem with an E of its own; awls knows no trust region.
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/copper,log/awls,lobes=1/start-1/model.json"));
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/copper,cosine/lm,dogleg,lobes=1/start-1"));
+  const std::string runs = Contents(out_ + "/runs.csv");
+  EXPECT_EQ(std::ranges::count(runs, '\n'), 1 + 2 * 3);
+  EXPECT_THAT(runs, HasSubstr("\ncopper log,lm dogleg lobes=1,1,"));
+}
+
+TEST_F(Study, OneFailureDoesNotStopTheOthers) {
+  const std::string bad = folder_ / "bad.binary";
+  std::ofstream(bad) << "no measurement";
+  const ProgramResult result = RunStudy({bad, "--solvers=awls", "--runs=1"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.out, HasSubstr("copper, awls, start 1: fitted"));
+  EXPECT_THAT(result.out, HasSubstr("bad, awls, start 1: failed: "));
+  EXPECT_THAT(Contents(out_ + "/runs.csv"), HasSubstr("\nbad,awls,1,inf,inf,"));
+  EXPECT_THAT(Contents(out_ + "/runs.csv"), Not(HasSubstr(folder_ / "")));
+}
+
+TEST_F(Study, ShardsMakeTheirRunsAlone) {
+  const ProgramResult part = RunStudy({"--solvers=awls", "--runs=3", "--shard=2/3"});
+  ASSERT_EQ(part.status, 0) << part.err;
+  EXPECT_FALSE(std::filesystem::exists(out_ + "/index.html"));
+  EXPECT_FALSE(std::filesystem::exists(out_ + "/copper/awls/start-1"));
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/copper/awls/start-2/report.json"));
+  EXPECT_THAT(RunStudy({"--solvers=awls", "--runs=3"}).out, HasSubstr("start 2: kept"));
+}
+
+TEST_F(Study, SaysWhatIsWrongBeforeItBegins) {
+  const auto error = [&](const std::vector<std::string>& flags) {
+    const ProgramResult result = RunStudy(flags);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_FALSE(std::filesystem::exists(out_));
+    return result.err;
+  };
+  EXPECT_THAT(error({"--solvers=awls,no"}), HasSubstr("'no'"));
+  EXPECT_THAT(error({"--solvers="}), HasSubstr("--solvers is empty"));
+  EXPECT_THAT(error({"--solvers=awls,awls"}), HasSubstr("asked for twice"));
+  EXPECT_THAT(error({"--runs=0"}), HasSubstr("--runs must be"));
+  EXPECT_THAT(error({"--set=lobes"}), HasSubstr("give values"));
+  EXPECT_THAT(error({"--set=seed=1,2"}), HasSubstr("'seed' is no flag"));
+  EXPECT_THAT(error({"--set=lobes=1,two"}), HasSubstr("--lobes=two"));
+  EXPECT_THAT(error({"--set=lobes=1,2", "--lobes=3"}), HasSubstr("give one of them"));
+  EXPECT_THAT(error({"--set=weighting=none"}), HasSubstr("none"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
