@@ -14,26 +14,18 @@
 #include "app/fit_run.h"
 #include "app/fit_settings.h"
 #include "app/flags.h"
-#include "app/inputs.h"
 #include "app/interrupt.h"
-#include "app/model_flags.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
 #include "app/scene_plan.h"
 #include "app/solver_flags.h"
 #include "core/algebra/openblas.h"
-#include "core/files/file.h"
-#include "core/system/content_hash.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
 #include "fit/reports/print.h"
-#include "fit/scene/fit_cache.h"
 #include "io/pictures/gnuplot.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/fit/fit.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/materials/load_model.h"
 #include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
 #include "trilobe/solvers/start/initial_model.h"
@@ -42,6 +34,7 @@ DECLARE_bool(plots);
 DECLARE_bool(reconstruction);
 DECLARE_bool(convergence);
 DEFINE_string(scene, "", "scene file (docs/scene.md): fit its materials, instead of a SOURCE");
+
 namespace trilobe {
 namespace {
 

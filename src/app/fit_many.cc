@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
-#include <utility>
 #include <vector>
 
 #include "app/command.h"
@@ -21,16 +18,13 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/result_folder.h"
-#include "core/base/file_names.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
-#include "fit/reports/fit_details.h"
 #include "fit/reports/print.h"
 #include "model/appearance/verdict.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/core/system/parallel.h"
-#include "trilobe/io/model_files/model_file.h"
 
 DECLARE_string(shard);
 

@@ -8,7 +8,6 @@
 #include <iostream>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -16,7 +15,6 @@
 
 #include "app/command.h"
 #include "app/fit_jobs.h"
-#include "app/fit_page.h"
 #include "app/fit_settings.h"
 #include "app/flags.h"
 #include "app/inputs.h"
@@ -29,7 +27,6 @@
 #include "core/base/text.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
-#include "core/files/text_lines.h"
 #include "fit/study/draw_study.h"
 #include "fit/study/study.h"
 #include "io/pictures/gnuplot.h"
