@@ -198,7 +198,7 @@ std::string PanelTitle(const std::string& method, const std::vector<const StudyR
   std::vector<double> matches;
   for (const StudyRun* run : runs) matches.push_back(run->lobes->match[lobe]);
   std::ranges::sort(matches);
-  return GnuplotQuote(method) + ".\"\\n\"." +
+  return GnuplotQuote(method) + R"(."\n".)" +
          GnuplotQuote("lobe " + std::to_string(lobe + 1) + ", match " +
                       Text(matches[(matches.size() - 1) / 2], 2));
 }

@@ -164,9 +164,9 @@ class Csv {
 }  // namespace
 
 double StudyRun::objective() const {
-  double lowest = kInfinity;
-  for (const IterationRecord& record : trace) lowest = std::min(lowest, record.minimised());
-  return lowest;
+  double least = kInfinity;
+  for (const IterationRecord& record : trace) least = std::min(least, record.minimised());
+  return least;
 }
 
 int StudyRun::iterations() const { return std::max(0, static_cast<int>(trace.size()) - 1); }
