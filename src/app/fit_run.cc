@@ -91,9 +91,9 @@ std::string WhereModelIs(const ModelFile& file, const ResultFolder& folder) {
 
 void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* folder) {
   const FitReport& report = run.report;
-  std::optional<SeenError> seen = report.samples_seen;
-  if (report.appearance) seen = report.appearance->sphere;
-  const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, seen,
+  Compared compared = {.seen = report.samples_seen, .whole = report.whole};
+  if (report.appearance) compared.seen = report.appearance->sphere;
+  const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, compared,
                                    report.summary.trace, settings.fit.appearance);
   folder->Write(kViewName, [&](std::ostream& out) { out << page.text; });
 }

@@ -74,8 +74,8 @@ int RunView(std::span<const std::string> arguments) {
     PrintNotes(*measured);
   }
   const AppearanceOptions appearance = AppearanceOptionsFromFlags();
-  const ViewedPage page = ViewPage(model, arguments[0], measured ? &*measured : nullptr,
-                                   std::nullopt, trace, appearance);
+  const ViewedPage page =
+      ViewPage(model, arguments[0], measured ? &*measured : nullptr, Compared(), trace, appearance);
   const bool missing = measured && !page.has_measured;
   Write(path, page.text, missing ? "a page of the model alone" : "a page");
   if (missing) {

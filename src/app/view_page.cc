@@ -11,8 +11,11 @@
 namespace trilobe {
 namespace {
 
-void Compare(const SeenError& seen, const Measurement& measured, PageContents* contents) {
-  const Verdict verdict = VerdictOf(seen, BasisOf(SamplesOf(measured), contents->parameters));
+void Compare(const SeenError& seen, const Measurement& measured,
+             const std::optional<WholeSphere>& whole, PageContents* contents) {
+  Basis basis = BasisOf(SamplesOf(measured), contents->parameters);
+  basis.whole = whole;
+  const Verdict verdict = VerdictOf(seen, basis);
   contents->verdict = Words(verdict);
   contents->visibility = VisibilityName(verdict);
   contents->psnr_db = seen.psnr_db;
@@ -23,8 +26,9 @@ void Compare(const SeenError& seen, const Measurement& measured, PageContents* c
 }  // namespace
 
 ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
-                    const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
+                    const Compared& compared, std::span<const IterationRecord> trace,
                     const AppearanceOptions& appearance) {
+  const std::optional<SeenError>& seen = compared.seen;
   const ModelSpec& spec = model.model.spec();
   PageContents contents;
   const std::string& source = measured != nullptr ? measured->source : model.fit.source;
@@ -48,9 +52,9 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
     if (drawn) {
       contents.measured = data.nodes ? EncodeMeasured(*data.nodes) : EncodeMeasured(*data.table);
       Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, *measured,
-              &contents);
+              compared.whole, &contents);
     } else if (seen) {
-      Compare(*seen, *measured, &contents);
+      Compare(*seen, *measured, compared.whole, &contents);
     }
   }
   return {.text = FormatPage(model, contents), .has_measured = contents.measured.has_value()};

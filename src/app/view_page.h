@@ -18,11 +18,16 @@ struct ViewedPage {
   bool has_measured = false;  // the page also shows the measurement
 };
 
-// The page of a model (io/page/page.h), compared with `measured` unless that is null. `seen` is
-// their difference on the sphere; computed if not given. `path` names the material if the model
-// does not name its source.
+// What is known of a model beside its measurement.
+struct Compared {
+  std::optional<SeenError> seen = {};     // their difference; else it is computed, on the sphere
+  std::optional<WholeSphere> whole = {};  // Basis::whole
+};
+
+// The page of a model (io/page/page.h), compared with `measured` unless that is null. `path` names
+// the material if the model does not name its source.
 ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measurement* measured,
-                    const std::optional<SeenError>& seen, std::span<const IterationRecord> trace,
+                    const Compared& compared, std::span<const IterationRecord> trace,
                     const AppearanceOptions& appearance);
 
 }  // namespace trilobe

@@ -8,6 +8,7 @@
 
 #include "core/system/process.h"
 #include "fit/choose_form.h"
+#include "fit/guess_error.h"
 #include "fit/held_out.h"
 #include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
@@ -348,6 +349,10 @@ class Fitting {
       fit->reach = ReachOf(fit->objective.samples(), fit->model(), options_.num_threads);
     }
     fit->measured_share = MeasuredShare(fit->objective.samples());
+    if (measurement_.table && fit->appearance) {
+      fit->whole = EstimateWholeSphere(fit->objective.coverage(), fit->model(), fit->measured_share,
+                                       fit->appearance->sphere, Appearance());
+    }
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
   }
 

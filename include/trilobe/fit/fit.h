@@ -126,6 +126,9 @@ struct FitResult {
   std::optional<double> left_out = {};
   std::optional<Reach> reach = {};  // for scattered samples
   double measured_share = 1;        // of what a renderer reads (MeasuredShare)
+  // For an isotropic fit to a table that was not measured everywhere: what is expected of all
+  // directions (EstimateWholeSphere).
+  std::optional<WholeSphere> whole = {};
   LobeLight light = {};
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;

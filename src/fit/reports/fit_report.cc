@@ -94,6 +94,7 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->left_out = fit.left_out;
   report->reach = fit.reach;
   report->measured_share = fit.measured_share;
+  report->whole = fit.whole;
   report->light = fit.light;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
 }
@@ -131,7 +132,8 @@ ReportedVerdict VerdictOn(const FitReport& report) {
       {.measured_share = report.measured_share,
        .samples = report.fit.valid_samples,
        .parameters = report.stored_parameters,
-       .black = !(report.black_objective > 0)},
+       .black = !(report.black_objective > 0),
+       .whole = report.whole},
       {.interrupted = report.interrupted,
        .ended = reason != StopReason::kMaxIterations && reason != StopReason::kMaxSeconds &&
                 reason != StopReason::kInterrupted,

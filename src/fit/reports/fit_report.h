@@ -55,6 +55,7 @@ struct FitReport {
   std::optional<double> left_out;
   std::optional<Reach> reach;
   double measured_share = 1;  // MeasuredShare
+  std::optional<WholeSphere> whole;
   LobeLight light;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]

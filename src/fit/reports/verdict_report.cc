@@ -103,9 +103,15 @@ Json ToJson(const ReportedVerdict& reported) {
                              {"lightness", at.lightness},
                              {"color", at.color}};
   }
+  Json whole;
+  if (verdict.basis.whole) {
+    whole = {{"mean_delta_e", verdict.basis.whole->mean_delta_e},
+             {"psnr_db", verdict.basis.whole->psnr_db}};
+  }
   return {{"words", Words(verdict)},
           {"visibility", VisibilityName(verdict)},
           {"measured_share", verdict.basis.measured_share},
+          {"whole", whole},
           {"place", NameOf(verdict.place)},
           {"fault", NameOf(verdict.fault)},
           {"of", reported.of_sphere ? "sphere" : "samples"},

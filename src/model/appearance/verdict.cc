@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace trilobe {
 namespace {
 
-Visibility VisibilityOf(const SeenError& error) {
-  const auto within = [&error](double mean, double at_95) {
-    return error.mean_delta_e <= mean && error.delta_e_95 <= at_95;
+Visibility VisibilityOf(double mean_delta_e, double delta_e_95) {
+  const auto within = [&](double mean, double at_95) {
+    return mean_delta_e <= mean && delta_e_95 <= at_95;
   };
   if (within(1, 2.3)) return Visibility::kNone;
   if (within(2.3, 5)) return Visibility::kHardly;
@@ -81,21 +82,37 @@ std::string What(Fault fault) {
 
 constexpr double kLeastShare = 0.5;
 
-// Of what was compared.
-std::string SeenWords(const Verdict& verdict) {
-  const std::string place = Where(verdict.place), what = What(verdict.fault);
-  switch (verdict.visibility) {
+std::string HowVisible(Visibility visibility) {
+  switch (visibility) {
     case Visibility::kNone:
       return "cannot be told apart";
     case Visibility::kHardly:
-      return "hardly visible side by side" +
-             (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);
+      return "hardly visible side by side";
     case Visibility::kVisible:
-      return "visible " + place + what;
+      return "visible";
     case Visibility::kPlain:
-      return "plainly visible " + place + what;
+      return "plainly visible";
   }
   return "";
+}
+
+// Of what was compared.
+std::string SeenWords(const Verdict& verdict) {
+  const std::string place = Where(verdict.place), what = What(verdict.fault);
+  const std::string words = HowVisible(verdict.visibility);
+  if (verdict.visibility == Visibility::kNone) return words;
+  if (verdict.visibility != Visibility::kHardly) return words + " " + place + what;
+  return words + (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);
+}
+
+// Of what was not measured.
+std::string GuessWords(const std::optional<WholeSphere>& whole) {
+  if (!whole) return "; the rest is a guess";
+  char text[80];
+  std::snprintf(text, sizeof(text),
+                "; the rest is a guess, and the whole off by about Delta E %.2g, %.0f dB",
+                whole->mean_delta_e, whole->psnr_db);
+  return text;
 }
 
 }  // namespace
@@ -104,8 +121,14 @@ bool Verdict::of_the_whole() const {
   return !basis.black && basis.samples >= basis.parameters && basis.measured_share >= kLeastShare;
 }
 
+Visibility Verdict::visibility_of_whole() const {
+  constexpr double kWithin = 2;
+  if (!basis.whole) return visibility;
+  return std::max(visibility, VisibilityOf(basis.whole->mean_delta_e / kWithin, 0));
+}
+
 Verdict VerdictOf(const SeenError& error, const Basis& basis) {
-  const Visibility visibility = VisibilityOf(error);
+  const Visibility visibility = VisibilityOf(error.mean_delta_e, error.delta_e_95);
   if (visibility == Visibility::kNone) return {.basis = basis};
   const SeenPlace place = PlaceOf(error);
   return {visibility, place, FaultAt(error, place), basis};
@@ -125,13 +148,16 @@ std::string Words(const Verdict& verdict) {
     return "no verdict: only " + percent + " of what a renderer reads was measured; there " +
            SeenWords(verdict);
   }
-  if (basis.measured_share >= kNearlyAll) return SeenWords(verdict);
-  return SeenWords(verdict) + " where it was measured, at " + percent +
-         " of what a renderer reads; the rest is a guess";
+  const Visibility of_whole = verdict.visibility_of_whole();
+  const bool bounded = of_whole != verdict.visibility;
+  if (basis.measured_share >= kNearlyAll && !bounded) return SeenWords(verdict);
+  return (bounded ? HowVisible(of_whole) + " as a whole: " : "") + SeenWords(verdict) +
+         " where it was measured, at " + percent + " of what a renderer reads" +
+         GuessWords(basis.whole);
 }
 
 std::string VisibilityName(const Verdict& verdict) {
-  return verdict.of_the_whole() ? NameOf(verdict.visibility) : "unknown";
+  return verdict.of_the_whole() ? NameOf(verdict.visibility_of_whole()) : "unknown";
 }
 
 std::string NameOf(Visibility visibility) {

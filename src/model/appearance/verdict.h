@@ -31,6 +31,8 @@ struct Basis {
   double measured_share = 1;        // of what a renderer reads (MeasuredShare)
   int samples = 0, parameters = 0;  // of the fit
   bool black = false;               // the measurement reflects nothing
+  // What is expected of all directions, also those that were not measured; nothing if unknown.
+  std::optional<WholeSphere> whole = {};
 
   bool operator==(const Basis&) const = default;
 };
@@ -45,15 +47,18 @@ struct Verdict {
   Basis basis = {};
 
   bool of_the_whole() const;
+  // At least kHardly, kVisible, kPlain where the whole is expected to differ by more than twice the
+  // mean that the one before allows, 2, 4.6, 10; such estimates are right within a factor of two.
+  Visibility visibility_of_whole() const;
   bool operator==(const Verdict&) const = default;
 };
 
 Verdict VerdictOf(const SeenError& error, const Basis& basis = {});
 
-// "cannot be told apart"; "visible in highlights, which are too dark, where it was measured, at 80
-// % of what a renderer reads"; "no verdict: ..."
+// "cannot be told apart"; "visible in highlights: too dark where it was measured, at 80 % of what a
+// renderer reads; the rest is a guess, ..."; "no verdict: ..."
 std::string Words(const Verdict& verdict);
-// "none", "hardly", "visible", "plain"; "unknown" unless of_the_whole().
+// Of visibility_of_whole(); "unknown" unless of_the_whole().
 std::string VisibilityName(const Verdict& verdict);
 std::string NameOf(Visibility visibility);  // "none", "hardly", "visible", "plain"
 std::string NameOf(Fault fault);            // "different", "too_dark", ...

@@ -170,5 +170,30 @@ TEST(Verdict, SaysWhatItRestsOn) {
   EXPECT_EQ(visibility(black), "unknown");
 }
 
+// The guess is probably as wrong as estimated, within a factor of two.
+TEST(Verdict, IsBoundedByWhatTheGuessIsWorth) {
+  const SeenError same;
+  const auto verdict = [&](double mean_delta_e, double share) {
+    return VerdictOf(same, {.measured_share = share, .whole = WholeSphere{mean_delta_e, 31.4}});
+  };
+  EXPECT_EQ(Words(verdict(0.84, 0.8)),
+            "cannot be told apart where it was measured, at 80 % of what a renderer reads; the "
+            "rest is a guess, and the whole off by about Delta E 0.84, 31 dB");
+  EXPECT_EQ(VisibilityName(verdict(1.9, 0.8)), "none");
+  EXPECT_EQ(Words(verdict(1.9, 0.97)), "cannot be told apart");
+  EXPECT_EQ(Words(verdict(2.1, 0.97)),
+            "hardly visible side by side as a whole: cannot be told apart where it was measured, "
+            "at 97 % of what a renderer reads; the rest is a guess, and the whole off by about "
+            "Delta E 2.1, 31 dB");
+  EXPECT_EQ(VisibilityName(verdict(2.1, 0.97)), "hardly");
+  EXPECT_EQ(VisibilityName(verdict(6, 0.8)), "visible");
+  EXPECT_EQ(VisibilityName(verdict(12, 0.8)), "plain");
+  EXPECT_EQ(VisibilityName(verdict(12, 0.4)), "unknown");
+  // It makes nothing better, and advice is on what was measured.
+  const Verdict seen{Visibility::kPlain, {}, {}, {.whole = WholeSphere{0.5, 50}}};
+  EXPECT_EQ(VisibilityName(seen), "plain");
+  EXPECT_THAT(AdviceOn(verdict(12, 0.8), {.irreducible = 0.5}), IsEmpty());
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

@@ -40,6 +40,13 @@ struct SeenError {
   const PlaceError& at(SeenPlace place) const { return places[static_cast<size_t>(place)]; }
 };
 
+// An estimate for a sphere that is a guess in part.
+struct WholeSphere {
+  double mean_delta_e = 0, psnr_db = 0;  // as of SeenError
+
+  bool operator==(const WholeSphere&) const = default;
+};
+
 // Accumulates SeenError pixel by pixel.
 class SeenErrorSum {
  public:

@@ -1,0 +1,63 @@
+#include "fit/guess_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "tests/test_util.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/fit/fit.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/appearance/material.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+const AppearanceOptions kSmall = {.lights = 100, .size = 48};
+
+FitResult FitUpTo(double degrees, const Measurement& whole) {
+  Measurement measured = whole;
+  LimitAngles(DegreesToRadians(degrees), &measured);
+  return Fit(measured, {.appearance = kSmall});
+}
+
+// Of materials whose truth beyond is known.
+TEST(GuessError, OfTheWholeIsWithinAFactorOfTheTruth) {
+  for (const char* const name : {"synth:plastic@30x30x60", "synth:copper@30x30x60"}) {
+    for (const double degrees : {60.0, 72.0}) {
+      const Measurement whole = LoadMeasurement(name);
+      const FitResult fit = FitUpTo(degrees, whole);
+      ASSERT_TRUE(fit.whole.has_value());
+      const SphereError truth =
+          SphereJudge::OfAllDirections(*whole.table, kSmall)(MaterialOf(fit.model()).angular);
+      EXPECT_NEAR(std::log2(fit.whole->mean_delta_e / truth.mean_delta_e), 0, 1.3)
+          << name << " up to " << degrees << ": " << fit.whole->mean_delta_e << " for "
+          << truth.mean_delta_e;
+      EXPECT_NEAR(fit.whole->psnr_db, truth.psnr_db, 9) << name << " up to " << degrees;
+    }
+  }
+}
+
+TEST(GuessError, IsOfWhatWasNotMeasured) {
+  const Measurement whole = LoadMeasurement("synth:plastic@20x20x40");
+  EXPECT_FALSE(Fit(whole, {.appearance = kSmall}).whole.has_value());
+  const FitResult fit = FitUpTo(65, whole);
+  const auto estimate = [&](double share, int threads) {
+    AppearanceOptions options = kSmall;
+    options.num_threads = threads;
+    return EstimateWholeSphere(fit.objective.coverage(), fit.model(), share, fit.appearance->sphere,
+                               options);
+  };
+  EXPECT_EQ(estimate(fit.measured_share, 1), fit.whole);
+  EXPECT_EQ(estimate(fit.measured_share, 3), fit.whole);
+  EXPECT_EQ(estimate(0.99, 1), std::nullopt);
+  // A guess of more is worth less, and what was seen of the rest counts in full.
+  EXPECT_GT(estimate(0.2, 1)->mean_delta_e, fit.whole->mean_delta_e);
+  EXPECT_GT(fit.whole->mean_delta_e, fit.appearance->sphere.mean_delta_e);
+  EXPECT_LT(fit.whole->psnr_db, fit.appearance->sphere.psnr_db);
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
