@@ -19,6 +19,7 @@
 #include "owned_array.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/evaluate/read_model.h"
 #include "trilobe/model/lobes/reconstruct.h"
@@ -48,7 +49,9 @@ nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const nb:
     const PictureData pictured = PictureDataOf(*data);
     if (pictured.empty()) {
       const BrdfSamples& samples = objective.samples();
-      seen = CompareSamples(samples, EvaluateSamples(model, samples, threads));
+      seen = CompareSampledSphere(samples, EvaluateSamples(model, samples, threads),
+                                  MaterialOf(model).spherical, data->anisotropic,
+                                  {.num_threads = threads});
     } else {
       scored.appearance = CompareAppearance(pictured, MaterialOf(model), {.num_threads = threads});
     }

@@ -14,6 +14,7 @@
 #include "io/pictures/plots.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/appearance/seen_error.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
@@ -108,8 +109,10 @@ int RunScore(std::span<const std::string> arguments) {
   std::optional<SeenError> seen;
   if (pictured.empty()) {
     const BrdfSamples& compared = objective.samples();
-    seen = CompareSamples(compared, other ? ValuesAt(fitted.angular, compared)
-                                          : EvaluateSamples(model, compared, threads));
+    seen = CompareSampledSphere(
+        compared,
+        other ? ValuesAt(fitted.angular, compared) : EvaluateSamples(model, compared, threads),
+        fitted.spherical, measured.anisotropic, appearance_options);
   } else {
     scored.appearance = CompareAppearance(pictured, fitted, appearance_options);
   }

@@ -18,7 +18,7 @@
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/appearance/material.h"
-#include "trilobe/model/appearance/seen_error.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/measured_share.h"
 #include "trilobe/solvers/registry/solvers.h"
@@ -339,8 +339,9 @@ class Fitting {
       fit->appearance = CompareAppearance(pictured, MaterialOf(fit->model()), Appearance());
     } else {
       const BrdfSamples& samples = fit->objective.samples();
-      fit->samples_seen =
-          CompareSamples(samples, EvaluateSamples(fit->model(), samples, options_.num_threads));
+      fit->samples_seen = CompareSampledSphere(
+          samples, EvaluateSamples(fit->model(), samples, options_.num_threads),
+          MaterialOf(fit->model()).spherical, measurement_.anisotropic, Appearance());
     }
     if (measurement_.anisotropic && !fit->model().spec().anisotropic()) {
       fit->left_out = AnisotropyOf(measurement_).share;
