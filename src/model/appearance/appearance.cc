@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "model/appearance/color.h"
 #include "model/appearance/render_environment.h"
@@ -20,33 +21,51 @@
 namespace trilobe {
 namespace {
 
+// Marks also the bins around each marked one, 26 or fewer; phi_d is cyclic.
+std::vector<bool> WithNeighbours(const MerlGrid& grid, std::vector<bool> marked) {
+  const auto widen = [&](int size, int stride, bool cyclic) {
+    const std::vector<bool> from = marked;
+    const int around = (size - 1) * stride;
+    for (int bin = 0; bin < grid.size(); ++bin) {
+      const int place = bin / stride % size;
+      const int before = place > 0 ? bin - stride : bin + (cyclic ? around : 0);
+      const int after = place + 1 < size ? bin + stride : bin - (cyclic ? around : 0);
+      marked[bin] = from[before] || from[bin] || from[after];
+    }
+  };
+  widen(grid.phi_d, 1, true);
+  widen(grid.theta_d, grid.phi_d, false);
+  widen(grid.theta_h, grid.theta_d * grid.phi_d, false);
+  return marked;
+}
+
 // The measured directions. A bin whose centre is below the surface has no sample; its part above
-// the surface belongs to its neighbours.
+// the surface is measured if a bin around it is.
 class MeasuredDirections {
  public:
   explicit MeasuredDirections(const BrdfTable& table)
-      : grid_(table.grid), max_theta_(table.max_theta), min_cosine_(std::cos(table.max_theta)) {
+      : grid_(table.grid), min_cosine_(std::cos(table.max_theta)) {
     const std::vector<bool> above = BinsAboveSurface(grid_), valid = ValidBins(table);
-    left_out_.resize(grid_.size());
-    for (int bin = 0; bin < grid_.size(); ++bin) {
-      left_out_[bin] = above[bin] && !valid[bin] ? 1 : 0;
-      num_left_out_ += left_out_[bin];
+    if (valid != above) {
+      measured_ = WithNeighbours(grid_, valid);
+      for (int bin = 0; bin < grid_.size(); ++bin) {
+        if (above[bin]) measured_[bin] = valid[bin];
+      }
     }
+    everything_ = measured_.empty() && table.max_theta >= kPi / 2;
   }
 
-  bool everything() const { return num_left_out_ == 0 && max_theta_ >= kPi / 2; }
-  bool LeftOut(int bin) const { return left_out_[bin] != 0; }
-
   bool operator()(const HalfDiffAngles& angles, const Cosines& cosines) const {
-    if (everything()) return true;
-    return cosines.i >= min_cosine_ && cosines.o >= min_cosine_ && !LeftOut(grid_.Bin(angles));
+    if (everything_) return true;
+    return cosines.i >= min_cosine_ && cosines.o >= min_cosine_ &&
+           (measured_.empty() || measured_[grid_.Bin(angles)]);
   }
 
  private:
   MerlGrid grid_;
-  double max_theta_, min_cosine_;
-  std::vector<uint8_t> left_out_;  // [grid.size()]
-  int num_left_out_ = 0;
+  double min_cosine_;
+  std::vector<bool> measured_;  // [grid.size()], or empty if all are
+  bool everything_ = false;
 };
 
 // Clamped at 0, as a renderer does.

@@ -281,6 +281,23 @@ TEST(CompareAppearance, LeavesOutWhatWasNotMeasured) {
   EXPECT_LT(CompareAppearance(table, fitted, Quick()).sphere.psnr_db, 20);
 }
 
+// Bins whose centre is below the surface have no sample to tell by, but those around them.
+TEST(CompareAppearance, LeavesOutTheHorizonWhereNothingAroundItWasMeasured) {
+  BrdfTable table = Plastic();
+  const auto steep = [](const HalfDiffAngles& angles) {
+    const Cosines cosines = ToCosines(angles);
+    return std::min(cosines.i, cosines.o) < std::cos(DegreesToRadians(60));
+  };
+  for (int bin = 0; bin < kGrid.size(); ++bin) {
+    if (steep(kGrid.Center(bin))) table.SetValue(0, bin, -1);
+  }
+  const TabulatedBrdf brdf(table);
+  const AngularBrdf fitted = [&](const HalfDiffAngles& angles, const Cosines& /*cosines*/) {
+    return steep(kGrid.Center(kGrid.Bin(angles))) ? Rgb{50, 50, 50} : brdf.Interpolate(angles);
+  };
+  EXPECT_EQ(CompareAppearance(table, fitted, Quick()).sphere.psnr_db, kInfinity);
+}
+
 TEST(CompareAppearance, LeavesOutAnglesBeyondTheLargestMeasured) {
   BrdfTable table = Plastic();
   table.max_theta = DegreesToRadians(70);
