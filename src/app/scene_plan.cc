@@ -81,6 +81,11 @@ std::string RiseText(const MaterialFit& fit) {
   return rise > kMost ? "from 0" : Text(100 * rise, 3) + " %";
 }
 
+const char* HeadOf(const PruneDecision& decision) {
+  if (decision.adds) return decision.taken ? "  added:    " : "  not added: ";
+  return decision.taken ? "  left out: " : "  kept:     ";
+}
+
 void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& out) {
   const SceneMaterial& material = MaterialOf(run, fit);
   out << "\n"
@@ -103,14 +108,13 @@ void PrintDecisions(const SceneRun& run, const MaterialFit& fit, std::ostream& o
   }
   if (material.channels == SceneChannels::kLuminance) out << "  left out: colour, by the scene\n";
   for (const PruneDecision& decision : fit.decisions) {
-    out << (!decision.taken ? "  kept:     "
-            : decision.adds ? "  added:    "
-                            : "  left out: ")
-        << decision.what << ": " << decision.parameters_before << " -> "
-        << decision.parameters_after << " parameters, E " << Text(decision.E_before, 6) << " -> "
-        << Text(decision.E_after, 6);
+    out << HeadOf(decision) << decision.what;
+    if (decision.parameters_after != decision.parameters_before ||
+        decision.E_after != decision.E_before) {
+      out << ": " << decision.parameters_before << " -> " << decision.parameters_after
+          << " parameters, E " << Text(decision.E_before, 6) << " -> " << Text(decision.E_after, 6);
+    }
     if (!decision.why.empty()) out << "; " << decision.why;
-    if (decision.taken && decision.adds) out << "; the budget asks for less error";
     out << "\n";
   }
 }

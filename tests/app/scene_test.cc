@@ -133,6 +133,57 @@ TEST(Scene, KeepsToItsBudgetOnScatteredSamples) {
   }
 }
 
+// A table, an anisotropic material and scattered samples, each within angles of its own.
+TEST(Scene, IsScoredAsItWasPlanned) {
+  const TemporaryFolder folder;
+  const std::string few = FewSamples(folder, "rubber@30x30x60");
+  const std::string scene = MakeScene(folder, R"({
+    "format": "trilobe-scene", "version": 1, "budget": {"relative_rise": 0.05},
+    "materials": [
+      {"name": "table", "source": "synth:plastic@20x20x40", "budget": {"mean_delta_e": 2},
+       "directions": {"theta_i": [0, 60], "theta_o": [0, 60]}},
+      {"name": "cloth", "source": "synth:velvet@4x8",
+       "directions": {"theta_i": [0, 45], "theta_o": [0, 45]}},
+      {"name": "few", "source": "few.csv",
+       "directions": {"theta_i": [0, 50], "theta_o": [0, 50]}}]})");
+  const ProgramResult fit =
+      RunQuickly(folder, {"fit", "--scene=" + scene, "--out=" + (folder / "out")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  const std::string sources[] = {"synth:plastic@20x20x40", "synth:velvet@4x8", few};
+  const std::string angles[] = {"60", "45", "50"};
+  for (int k = 0; k < 3; ++k) {
+    const nlohmann::json planned = Json(folder / "out/plan.json")["materials"][k];
+    const std::string model = folder / ("out/" + planned["name"].get<std::string>() + ".json");
+    const nlohmann::json scored = nlohmann::json::parse(
+        RunProgram({"score", model, sources[k], "--json", "--max_angle=" + angles[k]}).out);
+    EXPECT_EQ(planned["samples"]["used"], scored["valid_samples"]) << model;
+    EXPECT_EQ(planned["objective"]["pruned"], scored["objective"]) << model;
+    EXPECT_EQ(planned["psnr_db"]["pruned"], scored["psnr_db"]) << model;
+    const nlohmann::json& verdict = scored["verdict"];
+    EXPECT_THAT(verdict["words"], HasSubstr(planned["verdict"].get<std::string>())) << model;
+    EXPECT_EQ(planned.contains("mean_delta_e"), verdict["of"] == "sphere");
+    if (!planned.contains("mean_delta_e")) continue;
+    EXPECT_EQ(planned["mean_delta_e"]["pruned"], verdict["mean_delta_e"]) << model;
+    EXPECT_EQ(planned["sphere_psnr_db"]["pruned"], verdict["psnr_db"]) << model;
+  }
+}
+
+TEST(Scene, SaysThatItAddsAndWhy) {
+  const TemporaryFolder folder;
+  const std::string scene = MakeScene(folder, R"({
+    "format": "trilobe-scene", "version": 1,
+    "materials": [
+      {"name": "better", "source": "synth:plastic@20x20x40", "budget": {"relative_rise": -0.2}},
+      {"name": "roomy", "source": "synth:plastic@20x20x40", "budget": {"bytes": 1500}}]})");
+  const ProgramResult plan = RunQuickly(folder, {"plan", scene});
+  ASSERT_EQ(plan.status, 0) << plan.err;
+  const std::string added = "\n  added:    2 lobes instead of one lobe: ";
+  EXPECT_THAT(plan.out, HasSubstr(added));
+  EXPECT_THAT(plan.out, HasSubstr("; with one lobe the budget is missed; E is "));
+  EXPECT_THAT(plan.out, HasSubstr("; the budget has room for more parameters; E is "));
+  EXPECT_THAT(plan.out, testing::Not(HasSubstr("left out: 2 lobes instead of one")));
+}
+
 // Both PSNRs are infinite.
 TEST(Scene, AnExactFitLosesNothing) {
   const TemporaryFolder folder;

@@ -133,6 +133,17 @@ PruneState FitLobes(std::vector<LobeStart> starts, double wanted, const Pruning&
   return best;
 }
 
+// What a lobe more is tried for, and what comes of it.
+std::string WhyAdded(const Pruning& pruning, double E, bool within) {
+  const int lobes = pruning.state().lobes();
+  const std::string reason = pruning.by_parameters()
+                                 ? "the budget has room for more parameters"
+                                 : "with " + LobesText(lobes) + " the budget is missed";
+  const std::string comes_of_it =
+      E < pruning.state().E ? pruning.CompareWithFull(E, within) : "E does not fall";
+  return reason + "; " + comes_of_it;
+}
+
 // Tries the next number of lobes; true if it was taken.
 bool TryLobes(std::vector<LobeStart> starts, double wanted, Pruning* pruning) {
   const PruneState& state = pruning->state();
@@ -145,9 +156,11 @@ bool TryLobes(std::vector<LobeStart> starts, double wanted, Pruning* pruning) {
   next.E = next.data->Value(next.model);
   if (pruning->options().stop()) return false;
   const bool within = next.E <= wanted && pruning->KeepsToBudget(next);
-  const bool taken = lobes > state.lobes() ? next.E < state.E : within;
+  const bool adds = lobes > state.lobes();
+  const bool taken = adds ? next.E < state.E : within;
   const std::string what = LobesText(lobes) + " instead of " + LobesText(state.lobes());
-  const std::string why = pruning->CompareWithFull(next.E, within);
+  const std::string why =
+      adds ? WhyAdded(*pruning, next.E, within) : pruning->CompareWithFull(next.E, within);
   return pruning->Decide(what, std::move(next), taken, why);
 }
 
@@ -217,8 +230,7 @@ void AddLobes(Pruning* pruning) {
     if (starts.empty() || !TryLobes(std::move(starts), pruning->search_limit(), pruning)) break;
   }
   if (!pruning->KeepsToBudget(state)) {
-    pruning->Record("nothing else left out", state, false,
-                    "the budget asks for a better fit than was found");
+    pruning->Record("all else", state, false, "the budget asks for a better fit than was found");
   } else {
     ChooseShape(pruning);
     ThinTables(pruning);
@@ -236,6 +248,7 @@ void MeetParameters(Pruning* pruning) {
   }
   if (state.num_parameters() <= pruning->options().max_parameters) return;
   PruneState lobes_kept = state;
+  size_t thinned = pruning->decisions().size();  // where it is decided what these lobes store
   ChooseShape(pruning);
   ThinTables(pruning);
   while (pruning->options().lobes && lobes_kept.lobes() > 0) {
@@ -251,6 +264,7 @@ void MeetParameters(Pruning* pruning) {
       break;
     }
     lobes_kept = state;
+    const size_t fewer = pruning->decisions().size();
     ChooseShape(pruning);
     ThinTables(pruning);
     const bool meets = state.num_parameters() <= pruning->options().max_parameters;
@@ -258,10 +272,13 @@ void MeetParameters(Pruning* pruning) {
       back_to_best();
       break;
     }
+    pruning->Withdraw(
+        thinned, decided,
+        "with fewer lobes it ends " + std::string(met ? "lower" : "with fewer parameters"));
+    thinned = fewer;
   }
   if (state.num_parameters() > pruning->options().max_parameters) {
-    pruning->Record("nothing else left out", state, false,
-                    "what may be left out does not reach the budget");
+    pruning->Record("all else", state, false, "what may be left out does not reach the budget");
   }
 }
 

@@ -197,8 +197,7 @@ class AnisotropicPruning {
       pruning_.Decide("fitted again", std::move(next), lower && !stopped(), "");
       return;
     }
-    pruning_.Record("nothing else left out", state(), false,
-                    "what may be left out does not reach the budget");
+    pruning_.Record("all else", state(), false, "what may be left out does not reach the budget");
   }
 
  private:
@@ -251,8 +250,10 @@ PrunedModel PruneAnisotropic(const Objective& measured, const Objective& with_pr
   AnisotropicPruning search(measured, with_prior, full, options);
   Pruning& pruning = search.pruning();
   if (!pruning.KeepsToBudget(pruning.state())) {
-    pruning.Record("nothing left out", pruning.state(), false,
-                   "the budget asks for a better fit than was found");
+    pruning.Record(
+        "all", pruning.state(), false,
+        "the budget asks for a better fit than was found, and an anisotropic one gets no "
+        "lobe more");
     return pruning.Result(LobeOrder::kByLight);
   }
   if (pruning.by_parameters()) {

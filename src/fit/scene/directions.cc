@@ -41,8 +41,9 @@ Selection Select(const BrdfSamples& samples, const AllDirections& /*all*/) {
 }
 
 Selection Select(const BrdfSamples& samples, const DirectionRanges& ranges) {
+  constexpr double kRounding = 1e-9;  // 60 degrees are not beyond 60
   const auto in = [](const DirectionRanges::Range& range, double theta) {
-    return range.min <= theta && theta <= range.max;
+    return range.min - kRounding <= theta && theta <= range.max + kRounding;
   };
   return Where(samples, [&](int j) {
     const Cosines cosines = samples.CosinesOf(j);
@@ -87,20 +88,6 @@ Selection Select(const BrdfSamples& samples, const DirectionHistogram& histogram
 }
 
 }  // namespace
-
-double LargestAngle(const SceneDirections& directions, const BrdfSamples& used) {
-  if (std::holds_alternative<AllDirections>(directions)) return kPi / 2;
-  if (const auto* const ranges = std::get_if<DirectionRanges>(&directions)) {
-    return std::max(ranges->theta_i.max, ranges->theta_o.max);
-  }
-  double least = 1;  // cosine
-  for (int j = 0; j < used.size(); ++j) {
-    const Cosines cosines = used.CosinesOf(j);
-    least = std::min({least, cosines.i, cosines.o});
-  }
-  const double half_a_bin = kPi / 4 / used.grid.theta_d;
-  return std::min(std::acos(least) + half_a_bin, kPi / 2);
-}
 
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source) {
   constexpr size_t kHeader = 3 * sizeof(int32_t);

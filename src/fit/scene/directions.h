@@ -51,10 +51,6 @@ DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& sou
 // another grid than the samples.
 BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions);
 
-// The largest polar angle of a direction of a table that a scene uses [rad]: the bound of ranges;
-// for lists and histograms the edge of the farthest bin in `used`.
-double LargestAngle(const SceneDirections& directions, const BrdfSamples& used);
-
 }  // namespace trilobe
 
 #endif  // TRILOBE_FIT_SCENE_DIRECTIONS_H_

@@ -17,13 +17,13 @@ double ErrorByPsnr(double psnr_db) { return std::pow(10, -psnr_db / 20); }
 
 // What the scene sees of a measurement.
 Measurement LimitToScene(const SceneMaterial& material, Measurement measured) {
-  BrdfSamples samples = SamplesOf(measured);
-  if (measured.table && material.reductions.samples) {
-    samples = UsedSamples(samples, material.directions);
-    // Beyond, the model has entries without data, and what is seen there is not the scene's.
-    measured.table->max_theta =
-        std::min(measured.table->max_theta, LargestAngle(material.directions, samples));
+  if (material.reductions.samples) {
+    // Bins reach beyond the bound of ranges, where the model has entries without data.
+    const auto* const ranges = std::get_if<DirectionRanges>(&material.directions);
+    if (ranges) LimitAngles(std::max(ranges->theta_i.max, ranges->theta_o.max), &measured);
   }
+  BrdfSamples samples = SamplesOf(measured);
+  if (material.reductions.samples) samples = UsedSamples(samples, material.directions);
   if (material.channels == SceneChannels::kLuminance) {
     samples = LuminanceOf(std::move(samples));
     measured.formula = nullptr;
@@ -87,20 +87,19 @@ FactorModel LuminanceOf(const FactorModel& model) {
 
 SceneAppearance::SceneAppearance(const SceneMaterial& material, Measurement measured,
                                  const AppearanceOptions& options)
-    : seen_(LimitToScene(material, std::move(measured))),
-      pictured_(PictureDataOf(seen_)),
+    : grid_(GridOf(measured)),
+      seen_(LimitToScene(material, std::move(measured))),
+      pictured_(PictureDataOf(seen_, grid_)),
       options_(options) {
   if (pictured_.empty()) {
     throw Error(seen_.source +
                 ": samples on no grid make no picture to compare with; give a budget in "
                 "relative_rise, psnr_drop_db, bytes or seconds");
   }
-  if (pictured_.table == nullptr) return;
-  judge_.emplace(*pictured_.table, options_);
+  if (pictured_.table != nullptr) judge_.emplace(*pictured_.table, options_);
 }
 
 void SceneAppearance::CheckShowsSomething() const {
-  if (!judge_) return;
   // One of black and grey differs from anything that is seen.
   const auto differs_from = [this](double diffuse) {
     FactorModel model(ModelSpec::SharedFactors(0));

@@ -21,7 +21,8 @@ BrdfSamples LuminanceOf(BrdfSamples samples);
 FactorModel LuminanceOf(const FactorModel& model);
 
 // Visible difference of a model and its measurement on the sphere of docs/appearance.md, limited to
-// the channels and, for a table, the directions that a scene uses.
+// the channels and the directions that a scene uses: where those are a range from 0, as `trilobe
+// score --max_angle` tells it.
 class SceneAppearance {
  public:
   // Throws Error for scattered samples on no grid, which cannot be rendered.
@@ -39,6 +40,7 @@ class SceneAppearance {
   SphereError CompareQuickly(const FactorModel& model) const;
 
  private:
+  const std::optional<HemisphereGrid> grid_;  // of the whole measurement
   const Measurement seen_;
   const PictureData pictured_;
   const AppearanceOptions options_;

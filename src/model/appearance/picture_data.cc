@@ -92,8 +92,12 @@ std::optional<HemisphereGrid> GridOf(const Measurement& scattered) {
 }
 
 PictureData PictureDataOf(const Measurement& measurement) {
+  return PictureDataOf(measurement, GridOf(measurement));
+}
+
+PictureData PictureDataOf(const Measurement& measurement,
+                          const std::optional<HemisphereGrid>& grid) {
   if (measurement.table) return {.table = &*measurement.table};
-  const std::optional<HemisphereGrid> grid = GridOf(measurement);
   if (!grid) return {.scattered = &measurement};
   return {.nodes = NodeBrdf(ValuesAtNodes(measurement, *grid)), .formula = measurement.formula};
 }

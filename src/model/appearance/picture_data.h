@@ -31,8 +31,10 @@ struct PictureData {
 
   bool empty() const { return table == nullptr && !nodes; }
 };
-// Keeps a reference to the measurement.
-PictureData PictureDataOf(const Measurement& measurement);
+// Keeps a reference to the measurement. `grid`: of scattered samples.
+PictureData PictureDataOf(const Measurement& measurement,
+                          const std::optional<HemisphereGrid>& grid);
+PictureData PictureDataOf(const Measurement& measurement);  // on GridOf(measurement)
 
 // Throws Error unless there is a table and `fitted` is isotropic.
 void CheckIsotropic(const PictureData& measured, const Material& fitted);

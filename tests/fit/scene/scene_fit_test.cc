@@ -11,11 +11,6 @@
 
 #include "core/files/file.h"
 #include "tests/test_directory.h"
-#include "trilobe/core/math/angles.h"
-#include "trilobe/io/formats/source.h"
-#include "trilobe/io/model_files/model_file.h"
-#include "trilobe/model/appearance/material.h"
-#include "trilobe/model/evaluate/read_model.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -116,34 +111,6 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   material.source = directory.Path("few.csv");
   EXPECT_THAT(ErrorOf([&] { FitMaterial(material, settings, 1); }),
               testing::HasSubstr("samples on no grid make no picture"));
-}
-
-// What is judged is what is written, where the scene sees it, as `trilobe score --max_angle` does.
-TEST(FitMaterial, JudgesWhatIsWrittenWhereTheSceneSeesIt) {
-  SceneFitSettings settings = Settings();
-  settings.lobes = 2;
-  settings.appearance = {.lights = 6, .size = 48};
-  const std::string source = "synth:plastic@30x30x60";
-  std::vector<int> kept;
-  for (const double degrees : {45.0, 60.0, 75.0, 90.0}) {
-    SceneMaterial material = Material("");
-    material.source = source;
-    material.directions =
-        DirectionRanges{{0, DegreesToRadians(degrees)}, {0, DegreesToRadians(degrees)}};
-    material.budget = {SceneBudget::Unit::kMeanDeltaE, 2};
-    const auto fit = FitMaterial(material, settings, 1);
-    ASSERT_TRUE(fit);
-    const ModelFile written = ParseModel(FormatModel(fit->file), "written");
-    const Measurement measured =
-        LoadMeasurement(source, {.noise = settings.noise, .max_angle_deg = degrees});
-    const AppearanceReport scored =
-        CompareAppearance(*measured.table, MaterialOf(written.model).angular, settings.appearance);
-    EXPECT_NEAR(scored.sphere.mean_delta_e, *fit->pruned.mean_delta_e, 1e-9) << degrees;
-    EXPECT_NEAR(scored.sphere.psnr_db, *fit->pruned.sphere_psnr_db, 1e-9) << degrees;
-    kept.push_back(fit->num_parameters);
-  }
-  EXPECT_TRUE(std::ranges::is_sorted(kept)) << testing::PrintToString(kept);  // no more for less
-  EXPECT_LT(kept.front(), 100) << testing::PrintToString(kept);
 }
 
 // A sphere of few lights shows no pixel whose directions are all near the normal.
