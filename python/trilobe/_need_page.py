@@ -29,7 +29,7 @@ def totals(rows: list[dict[str, Any]], render_seconds: dict[str, float]) -> dict
         "bytes": {kind: 8 * parameters[kind] for kind in kinds},
         "samples": {kind: sum(counts[kind] for counts in samples) for kind in ("valid", "used")},
         "fit_seconds": {kind: sum(row["seconds"][kind] for row in rows) for kind in kinds},
-        "render_seconds": {kind: render_seconds[kind] for kind in kinds},
+        "render_seconds": {kind: render_seconds.get(kind, 0.0) for kind in kinds},
     }
 
 
@@ -49,14 +49,15 @@ def _figure(image: str, caption: str) -> str:
 
 
 def _row(report: dict[str, Any], prefix: str) -> str:
+    """The pictures that there are."""
     figures = []
     for kind, title in _TITLES.items():
-        seconds = report["pictures"][prefix + kind]["seconds"]
-        figures.append(_figure(f"{prefix}{kind}.png", f"{title}, rendered in {seconds:.1f} s"))
+        if picture := report["pictures"].get(prefix + kind):
+            figures.append(_figure(f"{prefix}{kind}.png", f"{title}, rendered in {picture['seconds']:.1f} s"))
     for kind in ("full", "pruned"):
-        apart = report["differences"][prefix + kind]
-        caption = f"FLIP of {_TITLES[kind]}: mean {apart['flip']:.4f}; ΔE {apart['delta_e']:.2f}"
-        figures.append(_figure(f"{prefix}{kind}_flip.png", caption))
+        if apart := report["differences"].get(prefix + kind):
+            caption = f"FLIP of {_TITLES[kind]}: mean {apart['flip']:.4f}; ΔE {apart['delta_e']:.2f}"
+            figures.append(_figure(f"{prefix}{kind}_flip.png", caption))
     return f'<div class="row">{"".join(figures)}</div>'
 
 
@@ -64,7 +65,8 @@ def _materials(report: dict[str, Any]) -> str:
     rows = []
     for row in report["materials"]:
         samples = row.get("samples")
-        used = "never read" if samples is None else f"{100 * samples['used'] / max(samples['valid'], 1):.1f} %"
+        unread = "" if report["doing"] else "never read"
+        used = unread if samples is None else f"{100 * samples['used'] / max(samples['valid'], 1):.1f} %"
         size = row["measured_bytes"]
         cells = [
             escape(row["name"]), f"{100 * row['share']:.1f} %", used, "" if size is None else f"{size / 1e6:.1f} MB",
@@ -78,26 +80,29 @@ def _materials(report: dict[str, Any]) -> str:
 
 
 def page(report: dict[str, Any]) -> str:
-    """The text of index.html."""
+    """The text of index.html. "doing" says what goes on until all is there, "ended" whether that was cut off."""
+    doing, ended = report["doing"], report["ended"]
     tried = ", ".join(
         f"{entry['mean_delta_e']:g}: {entry['parameters']} parameters, FLIP {entry['flip']:.4f}"
         for entry in report["tries"])
+    head = f"Ended early, while {doing}" if ended else f"Not finished yet: {doing}"
+    sentences = [f"{head if doing else left_text(report['totals'])}."]
+    if tried:
+        sentences.append(f"Budgets tried, the mean ΔE of a sphere of each material as the scene sees it: {tried}.")
     parts = [
-        f"<h1>What {escape(report['scene'])} needs</h1>",
-        f"<p>{escape(left_text(report['totals']))}. Budgets tried, the mean ΔE of a sphere of each "
-        f"material as the scene sees it: {escape(tried)}.</p>",
-        _row(report, ""),
-    ]
-    if "moved_pruned" in report["pictures"]:
+        f"<h1>What {escape(report['scene'])} needs</h1>", f"<p>{escape(' '.join(sentences))}</p>", _row(report, "")]
+    if "moved_measured" in report["pictures"]:
         what = ", ".join(f"{name} = {value}" for name, value in report["moved"].items())
-        parts += [f"<h2>Seen otherwise than it was counted</h2><p>{escape(what)}</p>", _row(report, "moved_")]
+        parts += [
+            f"<h2>Seen otherwise than it was counted</h2><p>{escape(what)}</p>", _row(report, "moved_")]
     parts += ["<h2>The materials</h2>", _materials(report)]
     style = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
     policy = (
         f"default-src 'none'; style-src 'sha256-{style}'; img-src 'self' file:; base-uri 'none'; form-action 'none'")
+    again = '<meta http-equiv="refresh" content="5">' if doing and not ended else ""
     return (
         '<!DOCTYPE html><html lang="en"><meta charset="utf-8">'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">{again}'
         '<meta name="viewport" content="width=device-width">'
         f"<title>trilobe-need</title><style>{_STYLE}</style><body>{''.join(parts)}</body></html>\n"
     )

@@ -11,7 +11,6 @@ import argparse
 import json
 import os
 import re
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -25,7 +24,9 @@ from trilobe._brdf import Brdf, load, write_text
 from trilobe._core import Error
 from trilobe._fitting import fit
 from trilobe._measurement import Measurement, is_model, read
-from trilobe._need_page import left_text, page, totals
+from trilobe._need_page import left_text
+from trilobe._need_plan import Tell, plan_of
+from trilobe._need_result import Picture, Result
 
 _MERL = (90, 90, 180)
 _COVERAGE = 0.999  # of what is read; the directions of the rest are not used
@@ -217,7 +218,10 @@ def _smoothed(bins: NDArray[np.float64]) -> NDArray[np.float64]:
     return bins
 
 
-def _write_scene(materials: list[Material], counts: list[Any], budget: float, folder: Path) -> Path:
+def _write_scene(
+    materials: list[Material], counts: list[Any], budget: float, folder: Path
+) -> tuple[Path, list[str]]:
+    """The scene file, and the names of the materials that it has: those that are read."""
     entries = [
         {"name": material.name, "source": material.source, "directions": _directions(material, count, folder)}
         for material, count in zip(materials, counts)
@@ -226,27 +230,10 @@ def _write_scene(materials: list[Material], counts: list[Any], budget: float, fo
     text = {"format": "trilobe-scene", "version": 1, "budget": {"mean_delta_e": budget}, "materials": entries}
     path = folder / "scene.json"
     write_text(path, json.dumps(text, indent=1) + "\n")
-    return path
+    return path, [entry["name"] for entry in entries]
 
 
-def _fit_scene(scene: Path, out: Path, options: Options) -> dict[str, Any]:
-    command = [find_program(options.program), "fit", f"--scene={scene}", f"--out={out}", *options.flags]
-    done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    if done.returncode != 0:
-        lines = [line for line in done.stderr.splitlines() if line.strip()]
-        raise Error(lines[-1].removeprefix("trilobe: ") if lines else f"trilobe ended with {done.returncode}")
-    plan: dict[str, Any] = json.loads((out / "plan.json").read_text())
-    return plan
-
-
-# Pictures.
-
-
-class Picture(NamedTuple):
-    """A rendered scene."""
-
-    linear: NDArray[np.float64]
-    seconds: float
+# The whole.
 
 
 def _render(scene: Any, spp: int) -> Picture:
@@ -259,109 +246,93 @@ def _render(scene: Any, spp: int) -> Picture:
     return Picture(image, time.perf_counter() - begin)
 
 
-def shown(linear: NDArray[np.float64], white: float) -> NDArray[np.float32]:
-    """sRGB, 0 to 1, of linear light."""
-    x = np.clip(np.nan_to_num(linear) / white, 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055).astype(np.float32)
-
-
-def _lab(linear: NDArray[np.float64], white: float) -> NDArray[np.float64]:
-    """CIELAB under D65 (CIE 15:2004)."""
-    x = np.clip(np.nan_to_num(linear) / white, 0, 1)
-    xyz = x @ np.array([[0.4124, 0.2126, 0.0193], [0.3576, 0.7152, 0.1192], [0.1805, 0.0722, 0.9505]])
-    t = xyz / [0.95047, 1, 1.08883]
-    f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t / (3 * (6 / 29) ** 2) + 4 / 29)
-    lab: NDArray[np.float64] = np.stack(
-        [116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)
-    return lab
-
-
-class Difference(NamedTuple):
-    """How far two pictures are apart."""
-
-    flip: float
-    delta_e: float
-    map: NDArray[np.float32]
-
-
-def difference(reference: NDArray[np.float64], test: NDArray[np.float64], white: float) -> Difference:
-    """Mean FLIP (Andersson et al. 2020) with its map, and the mean CIELAB difference."""
-    import flip_evaluator
-
-    heat, mean, _ = flip_evaluator.evaluate(shown(reference, white), shown(test, white), "LDR")
-    delta_e = np.linalg.norm(_lab(reference, white) - _lab(test, white), axis=-1)
-    return Difference(float(mean), float(delta_e.mean()), np.asarray(heat, np.float32))
-
-
-def _write_png(path: Path, srgb: NDArray[np.float32]) -> None:
-    import mitsuba as mi
-
-    bytes_of = (np.clip(srgb, 0, 1) * 255 + 0.5).astype(np.uint8)
-    mi.Bitmap(np.ascontiguousarray(bytes_of)).write(str(path))
-
-
-# The whole.
-
-
-def need(path: Path, out: Path, options: Options, tell: Any = print) -> dict[str, Any]:
+def need(path: Path, out: Path, options: Options, tell: Tell = print) -> dict[str, Any]:
     """Does it all, and returns what `need.json` has."""
-    from trilobe._need_count import Counter
-
     for folder in (out, out / "full", out / "pruned"):
         folder.mkdir(parents=True, exist_ok=True)
     file = SceneFile(path, options.parameters)
     moved = SceneFile(path, {**options.parameters, **options.moved}) if options.moved else None
-    for material in file.materials:
-        material.prepare(out / "full")
-        tell(f"{material.name}: {material.source}, fitted in {material.fit_seconds:.1f} s")
+    settings = {"parameters": options.parameters, "moved": options.moved, "spp": options.spp}
+    with Result(out, path.name, settings, [_row(material) for material in file.materials]) as result:
 
-    def materials_of(kind: str) -> dict[str, dict[str, str]]:
-        return {material.name: _bsdf(material, kind, out) for material in file.materials}
+        def add(scene: SceneFile, kind: str, prefix: str = "") -> None:
+            materials = {material.name: _bsdf(material, kind, out) for material in file.materials}
+            result.add(f"{prefix}{kind}", _render(scene.load(materials), options.spp),
+                       "" if kind == "measured" else f"{prefix}measured")
 
-    measured_scene = file.load(materials_of("measured"))
-    measured = _render(measured_scene, options.spp)
-    white = max(float(np.quantile(measured.linear @ [0.2126, 0.7152, 0.0722], 0.98)), 1e-12)
-    counter = Counter(
-        measured_scene, file.sides(measured_scene), [material.grid for material in file.materials], options.depth)
-    begin = time.perf_counter()
-    counts = counter.count(measured.linear, options.count_spp, seed=2)
-    tell(f"counted in {time.perf_counter() - begin:.1f} s")
-
-    full = _render(file.load(materials_of("full")), options.spp)
-    of_full = difference(measured.linear, full.linear, white)
-    tell(f"full models: FLIP {of_full.flip:.4f}, Delta E {of_full.delta_e:.3f}")
-    tries = []
-    for budget in options.budgets:
-        scene_file = _write_scene(file.materials, counts, budget, out)
-        plan = _fit_scene(scene_file, out / "pruned", options)
-        pruned = _render(file.load(materials_of("pruned")), options.spp)
-        of_pruned = difference(measured.linear, pruned.linear, white)
-        parameters = sum(entry["parameters"]["pruned"] for entry in plan["materials"])
-        tries.append({"mean_delta_e": budget, "parameters": parameters, "flip": of_pruned.flip})
-        tell(f"pruned to {parameters} parameters, a sphere's Delta E at most {budget}: FLIP {of_pruned.flip:.4f}, "
-             f"Delta E {of_pruned.delta_e:.3f}")
-        if of_pruned.flip <= options.flip:
-            break
-    pictures = {"measured": measured, "full": full, "pruned": pruned}
-    differences = {"full": of_full, "pruned": of_pruned}
-    if moved is not None:
-        away = {kind: _render(moved.load(materials_of(kind)), options.spp) for kind in pictures}
-        pictures.update({f"moved_{kind}": picture for kind, picture in away.items()})
-        for kind in ("full", "pruned"):
-            differences[f"moved_{kind}"] = difference(away["measured"].linear, away[kind].linear, white)
-            tell(f"moved, {kind}: FLIP {differences[f'moved_{kind}'].flip:.4f}")
-    images = {name: shown(picture.linear, white) for name, picture in pictures.items()}
-    images.update({f"{name}_flip": apart.map for name, apart in differences.items()})
-    rows = [[images[prefix + name] for name in ("measured", "pruned", "pruned_flip")]
-            for prefix in ("", "moved_") if prefix + "measured" in images]
-    images["overview"] = np.concatenate([np.concatenate(row, axis=1) for row in rows])
-    for name, image in images.items():
-        _write_png(out / f"{name}.png", image)
-    report = _report(path, options, file.materials, counts, plan, tries, pictures, differences)
-    write_text(out / "need.json", json.dumps(report, indent=1) + "\n")
-    write_text(out / "index.html", page(report))
+        for material, row in zip(file.materials, result.rows):
+            result.tell(f"fitting {material.name}")
+            material.prepare(out / "full")
+            row["seconds"]["full"] = material.fit_seconds
+            tell(f"{material.name}: {material.source}, fitted in {material.fit_seconds:.1f} s")
+        result.tell("rendering")
+        add(file, "measured")
+        counts = _count(file, out, options, result, tell)
+        add(file, "full")
+        tell(f"full models: {_apart(result, 'full')}")
+        for budget in options.budgets:
+            _prune(file.materials, counts, budget, out, options, result, tell)
+            add(file, "pruned")
+            parameters = sum(row["parameters"]["pruned"] for row in result.rows)
+            flip = result.differences["pruned"].flip
+            result.tries.append({"mean_delta_e": budget, "parameters": parameters, "flip": flip})
+            tell(f"pruned to {parameters} parameters, {_within(budget)}: {_apart(result, 'pruned')}")
+            if flip <= options.flip:
+                break
+        if moved is not None:
+            result.tell("rendering otherwise than it was counted")
+            for kind in ("measured", "full", "pruned"):
+                add(moved, kind, "moved_")
+            for kind in ("full", "pruned"):
+                tell(f"moved, {kind}: {_apart(result, f'moved_{kind}')}")
+        report = result.finish()
     tell(left_text(report["totals"]))
     return report
+
+
+def _count(file: SceneFile, out: Path, options: Options, result: Result, tell: Tell) -> list[Any]:
+    """What each material is read for."""
+    from trilobe._need_count import Counter
+
+    result.tell("counting which directions are read")
+    scene = file.load({material.name: _bsdf(material, "measured", out) for material in file.materials})
+    counter = Counter(scene, file.sides(scene), [material.grid for material in file.materials], options.depth)
+    begin = time.perf_counter()
+    counts = counter.count(result.pictures["measured"].linear, options.count_spp, seed=2)
+    for row, count in zip(result.rows, counts):
+        row["share"] = float(count.bins.sum())
+    tell(f"counted in {time.perf_counter() - begin:.1f} s")
+    return counts
+
+
+def _prune(
+    materials: list[Material], counts: list[Any], budget: float, out: Path, options: Options, result: Result, tell: Tell
+) -> None:
+    """Has the program prune the materials, and tells meanwhile how far it is."""
+
+    def told(line: str) -> None:
+        tell(f"pruning, {_within(budget)}: {line}")
+        result.tell(f"pruning, {_within(budget)}: {line}")
+
+    result.tell(f"pruning, {_within(budget)}")
+    scene, names = _write_scene(materials, counts, budget, out)
+    command = [find_program(options.program), "fit", f"--scene={scene}", f"--out={out / 'pruned'}", *options.flags]
+    plan = plan_of(command, out / "pruned", names, told)
+    planned = {entry["name"]: entry for entry in plan["materials"]}
+    for row in result.rows:
+        entry = planned.get(row["name"])
+        if entry is not None:
+            row["seconds"]["pruned"] = entry["seconds"]["fit"] + entry["seconds"]["prune"]
+            row.update({key: entry[key] for key in ("parameters", "samples", "verdict")})
+
+
+def _within(budget: float) -> str:
+    return f"a sphere's Delta E at most {budget:g}"
+
+
+def _apart(result: Result, name: str) -> str:
+    apart = result.differences[name]
+    return f"FLIP {apart.flip:.4f}, Delta E {apart.delta_e:.3f}"
 
 
 def _bsdf(material: Material, kind: str, out: Path) -> dict[str, str]:
@@ -375,32 +346,12 @@ def _bsdf(material: Material, kind: str, out: Path) -> dict[str, str]:
     return {"type": "trilobe", "filename": whole}
 
 
-def _report(
-    path: Path, options: Options, materials: list[Material], counts: list[Any], plan: dict[str, Any],
-    tries: list[dict[str, Any]], pictures: dict[str, Picture], differences: dict[str, Difference],
-) -> dict[str, Any]:
-    planned = {entry["name"]: entry for entry in plan["materials"]}
-    rows = []
-    for material, count in zip(materials, counts):
-        entry = planned.get(material.name)
-        row: dict[str, Any] = {
-            "name": material.name, "source": os.path.basename(material.source), "share": float(count.bins.sum()),
-            "measured_bytes": material.bytes, "parameters": {"full": 0, "pruned": 0},
-            "seconds": {"full": material.fit_seconds, "pruned": 0.0},
-        }
-        if entry is not None:
-            row["parameters"] = entry["parameters"]
-            row["seconds"]["pruned"] = entry["seconds"]["fit"] + entry["seconds"]["prune"]
-            row["samples"] = entry["samples"]
-            row["verdict"] = entry["verdict"]
-        rows.append(row)
-    seconds = {name: picture.seconds for name, picture in pictures.items()}
+def _row(material: Material) -> dict[str, Any]:
+    """What is said of a material, before anything is known of what the scene needs."""
     return {
-        "totals": totals(rows, seconds),
-        "scene": path.name, "parameters": options.parameters, "moved": options.moved, "spp": options.spp,
-        "materials": rows, "tries": tries,
-        "pictures": {name: {"seconds": value} for name, value in seconds.items()},
-        "differences": {name: {"flip": d.flip, "delta_e": d.delta_e} for name, d in differences.items()},
+        "name": material.name, "source": os.path.basename(material.source), "share": 0.0,
+        "measured_bytes": material.bytes, "parameters": {"full": 0, "pruned": 0},
+        "seconds": {"full": 0.0, "pruned": 0.0},
     }
 
 

@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,8 @@ pytest.importorskip("flip_evaluator")
 import drjit as dr  # noqa: E402
 
 from trilobe import need  # noqa: E402
+from trilobe._need_page import page, totals  # noqa: E402
+from trilobe._need_plan import plan_of  # noqa: E402
 
 NO_LLVM = "no LLVM; install libllvm19, set DRJIT_LIBLLVM_PATH"
 # Without a path Dr.Jit takes any LLVM, and Debian's 14 to 16 end the process.
@@ -115,8 +118,46 @@ def test_goes_from_a_scene_to_a_page(scene, tmp_path, capsys):
     assert f"{left} of {plate['parameters']['full']} parameters are left, {8 * left} bytes" in capsys.readouterr().out
     assert report["differences"]["pruned"]["flip"] < 0.05
     text = (out / "index.html").read_text()
+    assert "parameters are left" in text and "Not finished" not in text
     for name in ("measured", "full", "pruned_flip", "moved_pruned"):
         assert f'src="{name}.png"' in text and (out / f"{name}.png").stat().st_size > 100
+
+
+# Stands for `trilobe fit --scene`: one material is finished after a moment, the other with the plan.
+PROGRAM = """
+import pathlib, sys, time
+out = pathlib.Path(sys.argv[1])
+(out / "a.json").write_text("{}")
+time.sleep(1.5)
+(out / "b.json").write_text("{}")
+(out / "plan.json").write_text('{"materials": []}')
+"""
+
+
+def test_tells_what_is_finished_while_the_program_runs(tmp_path):
+    (tmp_path / "b.json").write_text("of an earlier run")
+    told = []
+    plan = plan_of([sys.executable, "-c", PROGRAM, str(tmp_path)], tmp_path, ["a", "b"], told.append)
+    assert plan == {"materials": []}
+    assert len(told) == 1 and told[0].startswith("1 of 2 materials, about ") and told[0].endswith(" s left")
+    failing = [sys.executable, "-c", "import sys; sys.exit('trilobe: error: no such scene')"]
+    with pytest.raises(trilobe.Error, match="^error: no such scene$"):
+        plan_of(failing, tmp_path, [], told.append)
+
+
+def test_has_a_page_before_all_is_there():
+    row = {"name": "wall", "share": 0.0, "measured_bytes": None, "parameters": {"full": 0, "pruned": 0},
+           "seconds": {"full": 1.0, "pruned": 0.0}}
+    report = {"scene": "room.xml", "doing": "pruning <2 of 3>", "ended": False, "materials": [row], "tries": [],
+              "totals": totals([row], {"measured": 2.0}), "pictures": {"measured": {"seconds": 2.0}},
+              "differences": {}, "moved": {}}
+    text = page(report)
+    assert "<p>Not finished yet: pruning &lt;2 of 3&gt;.</p>" in text and 'http-equiv="refresh"' in text
+    assert 'src="measured.png"' in text and "full.png" not in text and "never read" not in text
+    ended = page({**report, "ended": True})
+    assert "<p>Ended early, while pruning" in ended and "refresh" not in ended
+    done = page({**report, "doing": ""})
+    assert "0 of 0 parameters are left" in done and "never read" in done and "refresh" not in done
 
 
 def test_says_in_a_line_what_is_wrong(scene, tmp_path, capsys):
