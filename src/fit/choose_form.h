@@ -29,7 +29,7 @@ std::vector<AnisotropicForm> AnisotropicForms(const ModelSpec& by_default,
                                               const HemisphereGrid& data, int max_parameters);
 
 // Lead that another form than the default needs [dB]; smaller leads are within the accuracy of the
-// judges (docs/decisions/forms-of-anisotropic.md, docs/decisions/forms-of-scattered.md).
+// judges (docs/decisions/forms.md).
 inline constexpr double kAhead = 0.5;
 
 // The fit of one form.

@@ -15,7 +15,7 @@ namespace trilobe {
 namespace {
 
 // Of what it says of a bin, where a measured one counts 1; of directions beyond samples on no grid,
-// where 0.01 costs 1.5 dB where data are (docs/decisions/forms-of-scattered.md).
+// where 0.01 costs 1.5 dB where data are (docs/decisions/forms.md).
 constexpr double kWeight = 0.01, kWeightOfScattered = 0.001;
 // Said for so many bins, but by so many samples at least of each theta_h, theta_d, theta_i and
 // theta_o.
