@@ -197,7 +197,7 @@ std::string FullFitKey(const SceneMaterial& material, const SceneFitSettings& se
 std::string MaterialFitKey(const SceneMaterial& material, const SceneFitSettings& settings,
                            const std::string& source_hash) {
   Key key = KeyOfFullFit(material, settings, source_hash, "scene");
-  key.Add("then", "prune 8");
+  key.Add("then", "prune 9");
   key.Add("unit", static_cast<int>(material.budget.unit));
   key.Add("amount", material.budget.amount);
   if (material.budget.of_appearance()) {

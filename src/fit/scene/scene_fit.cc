@@ -22,7 +22,8 @@
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
-#include "trilobe/model/appearance/seen_error.h"
+#include "trilobe/model/appearance/material.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/materials/load_model.h"
 
@@ -265,15 +266,16 @@ class MaterialFitter {
     return std::make_unique<SceneAppearance>(material_, measured(), Appearance());
   }
 
-  // On the sphere, or of samples that make none, or of which no pixel sees one.
+  // On the sphere; or as samples on no grid are compared, where no pixel sees a bin, too.
   SeenError CompareSeen(const SceneAppearance* appearance, const BrdfSamples& samples,
-                        const FactorModel& model) const {
+                        const FactorModel& model) {
     if (appearance != nullptr) {
       const SphereError error = appearance->Compare(model);
       const auto sees = [](const PlaceError& place) { return place.share > 0; };
       if (std::ranges::any_of(error.places, sees)) return error;
     }
-    return CompareSamples(samples, EvaluateSamples(model, samples, num_threads_));
+    return CompareSampledSphere(samples, EvaluateSamples(model, samples, num_threads_),
+                                MaterialOf(model).spherical, measured().anisotropic, Appearance());
   }
 
   std::optional<MaterialFit> PruneAnew() {

@@ -17,6 +17,7 @@
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/material.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
 #include "trilobe/model/evaluate/read_model.h"
 #include "trilobe/model/lobes/reconstruct.h"
 
@@ -107,7 +108,10 @@ void ExpectAsWritten(const MaterialFit& fit, const Measurement& seen, double rou
   const PictureData pictured = PictureDataOf(seen);
   SeenError error;
   if (pictured.empty()) {
-    error = CompareSamples(objective.samples(), EvaluateSamples(model, objective.samples(), 1));
+    const BrdfSamples& samples = objective.samples();
+    error =
+        CompareSampledSphere(samples, EvaluateSamples(model, samples, 1),
+                             MaterialOf(model).spherical, seen.anisotropic, Settings().appearance);
     EXPECT_FALSE(fit.pruned.mean_delta_e);
   } else {
     error = CompareAppearance(pictured, MaterialOf(model), Settings().appearance).sphere;
