@@ -8,6 +8,7 @@
 
 #include "core/system/process.h"
 #include "fit/finish/albedo_limit.h"
+#include "fit/finish/anisotropic_albedo.h"
 #include "fit/finish/data_edge.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
@@ -175,20 +176,33 @@ void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& c
                         .seconds = seconds});
 }
 
-// Unless E would rise by so much that the data themselves ask for the light.
+// Unless E would rise by so much that the data themselves ask for the light. Notes what is left.
 void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
-  constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3;
+  constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3, kNotable = 1.05;
   const Objective data(fit->objective.data(), fit->model.spec());
   const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
+  const int threads = data.num_threads();
+  const bool anisotropic = data.spec().anisotropic();
   FactorModel limited = fit->model;
-  LimitAlbedo(AlbedoLimitsOf(data, fit->model), layout, data.num_threads(), stop, &limited);
+  Rgb limit;
+  if (anisotropic) {
+    limit = AnisotropicAlbedoLimit(data, fit->model);
+    if (!LimitAnisotropicAlbedo(limit, layout, threads, stop, &limited)) return;
+  } else {
+    const AlbedoLimits limits = AlbedoLimitsOf(data, fit->model);
+    limit = limits.everywhere;
+    if (!LimitAlbedo(limits, layout, threads, stop, &limited)) return;
+  }
   const double E = data.Value(fit->model);
   if (data.Value(limited) <= E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy())) {
     fit->model = std::move(limited);
-    return;
+    if (anisotropic) return;  // nothing is left
   }
-  const PeakAlbedo peak = PeakAlbedoOf(fit->model, data.num_threads());
-  if (peak.albedo > 1) fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
+  const PeakAlbedo peak =
+      anisotropic ? PeakAnisotropicAlbedo(fit->model, threads) : PeakAlbedoOf(fit->model, threads);
+  if (peak.albedo > kNotable * std::ranges::max(limit)) {
+    fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
+  }
 }
 
 // The form that looks best or, without pictures, fits samples best that are held out. Returns the
@@ -258,7 +272,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   if (objective.has_prior() && !fit.layout) {
     Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model);  // by the data alone
   }
-  if (options.limit_albedo && !fit.model.spec().anisotropic() && !options.stop()) {
+  if (options.limit_albedo && !options.stop()) {
     NoteStep("energy", &fit, [&] { LimitAlbedoOf(&fit, options.stop); });
   }
   return fit;

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/math/quantile.h"
 #include "core/math/robust_line.h"
+#include "fit/prior/dim_highlights.h"
 #include "model/lobes/beyond_data.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/geometry/merl_grid.h"
@@ -25,7 +25,7 @@ namespace trilobe {
 namespace {
 
 constexpr double kTolerance = 1e-3;  // of DirectionalAlbedo
-constexpr int kPasses = 40;
+constexpr int kPasses = 40, kPassesBeyond = 10;
 
 // Where albedos are computed [rad]: denser where they rise steeply.
 std::vector<double> Angles() {
@@ -155,34 +155,6 @@ class ContinuedAlbedo {
   std::array<std::optional<RobustLine>, kChannels> line_;
 };
 
-// The angles of incidence that occur, a degree apart at least. [rad]
-std::vector<double> IncidencesOf(const BrdfSamples& samples) {
-  std::vector<bool> occurs(90, false);
-  for (const SphericalAngles& at : samples.directions) {
-    occurs[std::clamp(static_cast<int>(RadiansToDegrees(at.theta_i)), 0, 89)] = true;
-  }
-  std::vector<double> angles;
-  for (int degrees = 0; degrees < 90; ++degrees) {
-    if (occurs[degrees]) angles.push_back(DegreesToRadians(degrees + 0.5));
-  }
-  return angles;
-}
-
-// The median of what the model reflects at the angles of incidence that occur.
-Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& model,
-                             int num_threads) {
-  const std::vector<double> angles = IncidencesOf(samples);
-  Rgb median{};
-  if (angles.empty()) return median;
-  const std::vector<Rgb> albedos = AlbedosOf(model, angles, num_threads);
-  for (int c = 0; c < kChannels; ++c) {
-    std::vector<double> of_channel;
-    for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
-    median[c] = Median(std::move(of_channel));
-  }
-  return median;
-}
-
 // The last theta [rad] at which a table of G is well covered.
 double LastWellCovered(std::span<const double> coverage, const FactorModel& model) {
   const ModelSpec& spec = model.spec();
@@ -252,9 +224,11 @@ bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_
   const size_t first_beyond =
       std::ranges::upper_bound(limits.theta_i, limits.beyond_theta) - limits.theta_i.begin();
   bool changed = false;
-  // First what lies beyond the data: its light may come from angles that are within, too.
+  // First what lies beyond the data: its light may come from angles that are within, too, and then
+  // it does not help.
   bool beyond = true;
   for (int pass = 0; pass < kPasses && !stop(); ++pass) {
+    beyond = beyond && pass < kPassesBeyond;
     const size_t first = beyond ? first_beyond : 0;
     const std::vector<Rgb> albedos =
         AlbedosOf(*model, std::span(limits.theta_i).subspan(first), num_threads);

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "fit/prior/dim_highlights.h"
+#include "fit/prior/join_samples.h"
 #include "fit/prior/node_residual.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/stop_check.h"
@@ -107,19 +109,6 @@ BrdfSamples SamplesOf(const PriorModel& prior, std::vector<SphericalAngles> dire
   return added;
 }
 
-// Both, the latter of this weight each.
-BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, double weight) {
-  samples.multiplicity.resize(samples.rho.size(), 1);
-  samples.multiplicity.resize(samples.rho.size() + added.rho.size(), weight);
-  const auto append = [](const auto& from, auto* target) {
-    target->insert(target->end(), from.begin(), from.end());
-  };
-  append(added.angles, &samples.angles);
-  append(added.directions, &samples.directions);
-  append(added.rho, &samples.rho);
-  return samples;
-}
-
 // Directions between the samples where a fit is above so many times their largest value.
 std::vector<SphericalAngles> FindDirectionsAbove(double times, const Objective& with_prior,
                                                  const FactorModel& fit) {
@@ -181,6 +170,24 @@ void TryTwoLobes(PriorKind* kind, const Objective& data, const StopCheck& stop,
   if (!stop() && E(two) < kWorthALobe * E(*model)) *model = std::move(two);
 }
 
+// Adds samples of the prior where the fit overshoots, with growing weight, and refits.
+void LowerOvershoot(const SyntheticPrior& prior, const StopCheck& stop, Objective* with_prior,
+                    FactorModel* model) {
+  constexpr int kRounds = 4, kSteps = 20;
+  constexpr double kMore = 10;  // of what each of the prior's samples there counts, each round
+  SolverOptions options;
+  options.max_iterations = kSteps;
+  options.diagnose = false;
+  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
+  double times = 1;
+  for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
+    std::optional<Objective> further = prior.AddWhereLarge(*with_prior, *model, times);
+    if (!further) break;
+    MakeSolver("varpro")->Solve(*further, options, model);
+    *with_prior = *std::move(further);
+  }
+}
+
 }  // namespace
 
 SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOptions& options) {
@@ -194,7 +201,12 @@ SyntheticPrior::SyntheticPrior(const Objective& data, const SyntheticPriorOption
   PriorKind kind = KindFor(options, data.spec().lobes);
   weight_ = kind.weight;
   model_ = FitPrior(kind, 0, data, options.stop);
-  if (!options.isotropic && data.spec().lobes >= 2) TryTwoLobes(&kind, data, options.stop, &model_);
+  if (options.isotropic) {
+    Objective objective(data, model_.spec());
+    DimHighlights(options.stop, &objective, &model_);
+  } else if (data.spec().lobes >= 2) {
+    TryTwoLobes(&kind, data, options.stop, &model_);
+  }
   if (options.grid) residual_ = InterpolateResidual(model_, data, *options.grid);
 }
 
@@ -221,21 +233,14 @@ BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& option
 std::optional<CorrectedOvershoot> CorrectOvershoot(const SyntheticPrior& prior,
                                                    const StopCheck& stop, Objective* with_prior,
                                                    FactorModel* model) {
-  constexpr int kRounds = 4, kSteps = 20;
-  constexpr double kMore = 10;  // of what each of the prior's samples there counts, each round
-  if (FindDirectionsAbove(kOvershoot, *with_prior, *model).empty()) return std::nullopt;
   const double before = with_prior->data().Value(*model);
-  SolverOptions options;
-  options.max_iterations = kSteps;
-  options.diagnose = false;
-  options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
-  double times = 1;
-  for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
-    std::optional<Objective> further = prior.AddWhereLarge(*with_prior, *model, times);
-    if (!further) break;
-    MakeSolver("varpro")->Solve(*further, options, model);
-    *with_prior = *std::move(further);
+  bool changed = false;
+  if (!FindDirectionsAbove(kOvershoot, *with_prior, *model).empty()) {
+    LowerOvershoot(prior, stop, with_prior, model);
+    changed = true;
   }
+  if (!model->spec().anisotropic()) changed |= DimHighlights(stop, with_prior, model);
+  if (!changed) return std::nullopt;
   return CorrectedOvershoot{before, with_prior->data().Value(*model)};
 }
 

@@ -99,7 +99,7 @@ std::string HowVisible(Visibility visibility) {
 // Of what was compared.
 std::string SeenWords(const Verdict& verdict) {
   const std::string place = Where(verdict.place), what = What(verdict.fault);
-  const std::string words = HowVisible(verdict.visibility);
+  std::string words = HowVisible(verdict.visibility);
   if (verdict.visibility == Visibility::kNone) return words;
   if (verdict.visibility != Visibility::kHardly) return words + " " + place + what;
   return words + (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);

@@ -80,6 +80,21 @@ TEST(AlbedoLimit, WhatReflectsMoreThanItReceivesReflectsOne) {
   }
 }
 
+// Its light at 89.8 degrees comes from within, and no entry of G is beyond.
+TEST(AlbedoLimit, WhatNoEntryBeyondCanLowerDoesNotKeepTheRest) {
+  FactorModel model = Grey(3, 3);
+  AlbedoLimits limits{.theta_i = {},
+                      .beyond = std::vector<Rgb>(8, Rgb{1, 1, 1}),
+                      .beyond_theta = DegreesToRadians(89.5)};
+  for (const double degrees : {0.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 89.8}) {
+    limits.theta_i.push_back(DegreesToRadians(degrees));
+  }
+  ASSERT_GT(Albedos(model, limits.theta_i).back()[0], 1.1);
+  ASSERT_GT(LargestAlbedo(model), 1.1);
+  EXPECT_TRUE(LimitAlbedo(limits, TableLayout::Full(model.spec()), 1, {}, &model));
+  EXPECT_LE(LargestAlbedo(model), 1 + 2e-3);
+}
+
 TEST(AlbedoLimit, WhatReflectsLessStaysAsItIs) {
   FactorModel model = Grey(0.05, 0);
   ASSERT_LT(LargestAlbedo(model), 0.8);

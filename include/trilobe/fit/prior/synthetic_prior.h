@@ -61,9 +61,10 @@ class SyntheticPrior {
 BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& options);
 
 // Corrects a fit that overshoots: one that exceeds four times the largest measured value between
-// the samples. Up to four rounds add samples to *with_prior (SyntheticPrior::AddWhereLarge) with
-// growing weight, and refit the model by a few steps each. Returns E of the data before and after.
-// Returns nothing, and changes nothing, if the fit does not overshoot.
+// the samples or, isotropic, reflects more light than it receives. Up to four rounds add samples to
+// *with_prior (SyntheticPrior::AddWhereLarge) with growing weight, and refit the model by a few
+// steps each; then up to four do where it is still too bright. Returns E of the data before and
+// after. Returns nothing, and changes nothing, if the fit does not overshoot.
 struct CorrectedOvershoot {
   double E_before = 0, E_after = 0;
 };

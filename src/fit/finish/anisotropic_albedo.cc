@@ -1,0 +1,161 @@
+#include "fit/finish/anisotropic_albedo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/math/quantile.h"
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/core/system/parallel.h"
+#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/model/measurement/albedo.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kAlbedoTolerance = 1e-3;  // of DirectionalAlbedo
+constexpr int kMostPasses = 40, kAzimuths = 12;
+constexpr int kThetas = 9;  // of a G without azimuths
+constexpr double kFarthest = DegreesToRadians(89.5);
+
+double Azimuth(int b) { return 2 * kPi * b / kAzimuths; }
+
+Direction Turned(const Direction& w, double phi) {
+  const double c = std::cos(phi), s = std::sin(phi);
+  return {c * w[0] - s * w[1], s * w[0] + c * w[1], w[2]};
+}
+
+std::vector<Rgb> AlbedosAt(const FactorModel& model, std::span<const PolarAngles> incidences,
+                           int num_threads) {
+  const PreparedModel<double> prepared(model);
+  std::vector<Rgb> albedos(incidences.size());
+  ParallelFor(static_cast<int>(incidences.size()), num_threads, [&](int k) {
+    const double phi = incidences[k].phi;
+    albedos[k] = DirectionalAlbedo(
+        [&](const DirectionPair& pair) {
+          return prepared.Value(Turned(pair.wi, phi), Turned(pair.wo, phi));
+        },
+        incidences[k].theta);
+  });
+  return albedos;
+}
+
+// Where albedos are computed: thetas, ascending, at each azimuth.
+class Incidences {
+ public:
+  explicit Incidences(const Axis& g_axis) {
+    thetas_.push_back(DegreesToRadians(88));
+    const int step = g_axis.polar() ? g_axis.phi_nodes : std::max(g_axis.size / kThetas, 1);
+    for (int k = 0; k < g_axis.size; k += step) {
+      thetas_.push_back(std::min(g_axis.Theta(k), kFarthest));
+    }
+    std::ranges::sort(thetas_);
+    for (int b = 0; b < kAzimuths; ++b) {
+      for (const double theta : thetas_) all_.push_back({theta, Azimuth(b)});
+    }
+  }
+
+  std::span<const PolarAngles> all() const { return all_; }
+
+  // The least value around a node of G, between the rings beside it; linear between azimuths.
+  // values: [all().size()]
+  double LeastAround(const Axis& g_axis, int node, double phi,
+                     std::span<const double> values) const {
+    const int beside = g_axis.phi_nodes, size = g_axis.size;
+    const double from = node >= beside ? g_axis.Theta(node - beside) : -1;
+    const double to = node + beside < size ? g_axis.Theta(node + beside) : kPi;
+    const double turns = phi / (2 * kPi) * kAzimuths, left = std::floor(turns), t = turns - left;
+    const auto value = [&](int b, size_t a) { return values[b % kAzimuths * thetas_.size() + a]; };
+    const int b = static_cast<int>(left);
+    double least = 1;
+    for (size_t a = 0; a < thetas_.size(); ++a) {
+      if (!(thetas_[a] > from && thetas_[a] < to)) continue;
+      least = std::min(least, (1 - t) * value(b, a) + t * value(b + 1, a));
+    }
+    return least;
+  }
+
+ private:
+  std::vector<double> thetas_;
+  std::vector<PolarAngles> all_;
+};
+
+}  // namespace
+
+Rgb AnisotropicAlbedoLimit(const Objective& data, const FactorModel& model) {
+  constexpr int kLookedAt = 24;
+  const BrdfSamples samples = EvenlySpread(data.samples(), kLookedAt);
+  std::vector<PolarAngles> incidences;
+  for (const SphericalAngles& at : samples.directions) {
+    incidences.push_back({std::min(at.theta_i, kFarthest), at.phi_i});
+  }
+  Rgb limit = {1, 1, 1};
+  if (incidences.empty()) return limit;
+  const std::vector<Rgb> albedos = AlbedosAt(model, incidences, data.num_threads());
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> of_channel;
+    for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);
+    limit[c] = std::max(limit[c], Median(std::move(of_channel)));
+  }
+  return limit;
+}
+
+bool LimitAnisotropicAlbedo(const Rgb& limit, const TableLayout& layout, int num_threads,
+                            const StopCheck& stop, FactorModel* model) {
+  const ModelSpec& spec = model->spec();
+  const Axis& axis = spec.g_axis;
+  const Incidences incidences(axis);
+  // A lower G raises no albedo, so that those within the limit stay there.
+  std::vector<size_t> looked_at(incidences.all().size());
+  std::iota(looked_at.begin(), looked_at.end(), 0);
+  bool changed = false;
+  for (int pass = 0; pass < kMostPasses && !stop(); ++pass) {
+    std::vector<PolarAngles> at;
+    for (const size_t k : looked_at) at.push_back(incidences.all()[k]);
+    const std::vector<Rgb> albedos = AlbedosAt(*model, at, num_threads);
+    std::vector<double> factor(incidences.all().size(), 1.0);
+    std::vector<size_t> exceeding;
+    for (size_t j = 0; j < looked_at.size(); ++j) {
+      double& lower = factor[looked_at[j]];
+      for (int c = 0; c < kChannels; ++c) {
+        const double diffuse = kPi * model->d()[c], albedo = albedos[j][c];
+        if (!(albedo > (1 + kAlbedoTolerance) * limit[c]) || !(limit[c] > diffuse)) continue;
+        lower = std::min(lower, std::sqrt((limit[c] - diffuse) / (albedo - diffuse)));
+      }
+      if (lower < 1) exceeding.push_back(looked_at[j]);
+    }
+    if (exceeding.empty()) break;
+    looked_at = std::move(exceeding);
+    changed = true;
+    for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+      for (const int k : layout.of(Factor::kG, t)) {
+        double least = 1;
+        for (int b = 0; b < (axis.polar() ? 1 : kAzimuths); ++b) {
+          const double phi = axis.polar() ? axis.Phi(k) : Azimuth(b);
+          least = std::min(least, incidences.LeastAround(axis, k, phi, factor));
+        }
+        model->table(Factor::kG, t)[k] *= least;
+      }
+    }
+    ExpandStored(layout, model);
+  }
+  return changed;
+}
+
+PeakAlbedo PeakAnisotropicAlbedo(const FactorModel& model, int num_threads) {
+  const Incidences incidences(model.spec().g_axis);
+  const std::vector<Rgb> albedos = AlbedosAt(model, incidences.all(), num_threads);
+  PeakAlbedo peak;
+  for (size_t k = 0; k < albedos.size(); ++k) {
+    const double here = std::ranges::max(albedos[k]);
+    if (here > peak.albedo) peak = {.albedo = here, .theta_i = incidences.all()[k].theta};
+  }
+  return peak;
+}
+
+}  // namespace trilobe

@@ -1,0 +1,23 @@
+#ifndef TRILOBE_FIT_PRIOR_JOIN_SAMPLES_H_
+#define TRILOBE_FIT_PRIOR_JOIN_SAMPLES_H_
+
+#include "trilobe/model/measurement/brdf_samples.h"
+
+namespace trilobe {
+
+// Both, the latter of this weight each.
+inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, double weight) {
+  samples.multiplicity.resize(samples.rho.size(), 1);
+  samples.multiplicity.resize(samples.rho.size() + added.rho.size(), weight);
+  const auto append = [](const auto& from, auto* target) {
+    target->insert(target->end(), from.begin(), from.end());
+  };
+  append(added.angles, &samples.angles);
+  append(added.directions, &samples.directions);
+  append(added.rho, &samples.rho);
+  return samples;
+}
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_PRIOR_JOIN_SAMPLES_H_

@@ -1,0 +1,95 @@
+#include "fit/finish/anisotropic_albedo.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/test_util.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/model/evaluate/prepared_model.h"
+#include "trilobe/model/lobes/reconstruct.h"
+#include "trilobe/model/measurement/albedo.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+// A grey lobe over a diffuse base that glows towards the horizon along x.
+FactorModel Brushed(double strength, double glow) {
+  FactorModel model(ModelSpec::AnisotropicFor(1, 24, DegreesToRadians(75)));
+  std::ranges::fill(model.parameters(), 1.0);
+  std::ranges::fill(model.d(), 0.05);
+  std::ranges::fill(model.s(0), strength);
+  const ModelSpec& spec = model.spec();
+  for (int k = 0; k < spec.d_axis.size; ++k) {
+    model.table(Factor::kD, 0)[k] = std::exp(-30 * std::pow(std::sin(spec.d_axis.Theta(k)), 2));
+  }
+  for (int k = 0; k < spec.g_axis.size; ++k) {
+    const double steep = std::pow(std::sin(spec.g_axis.Theta(k)), 20);
+    const double along = std::pow(std::cos(spec.g_axis.Phi(k)), 8);
+    model.table(Factor::kG, 0)[k] =
+        std::cos(spec.g_axis.Theta(k)) * (1 + (std::exp(glow) - 1) * steep * along);
+  }
+  return model;
+}
+
+double AlbedoAt(const FactorModel& model, double theta, double phi) {
+  const PreparedModel<double> prepared(model);
+  const auto turned = [phi](const Direction& w) {
+    return Direction{std::cos(phi) * w[0] - std::sin(phi) * w[1],
+                     std::sin(phi) * w[0] + std::cos(phi) * w[1], w[2]};
+  };
+  return DirectionalAlbedo(
+      [&](const DirectionPair& pair) { return prepared.Value(turned(pair.wi), turned(pair.wo)); },
+      DegreesToRadians(theta))[0];
+}
+
+TEST(AnisotropicAlbedo, IsLimitedAtEachAzimuthOfItsOwn) {
+  FactorModel model = Brushed(1, 4);
+  ASSERT_GT(AlbedoAt(model, 84, 0), 1.5);
+  ASSERT_LT(AlbedoAt(model, 84, kPi / 2), 0.9);
+  const FactorModel before = model;
+  const TableLayout layout = TableLayout::Full(model.spec());
+  FactorModel threaded = model;
+  EXPECT_GT(PeakAnisotropicAlbedo(model, 1).albedo, 1.5);
+  EXPECT_TRUE(LimitAnisotropicAlbedo({1, 1, 1}, layout, 1, {}, &model));
+  EXPECT_TRUE(LimitAnisotropicAlbedo({1, 1, 1}, layout, 3, {}, &threaded));
+  EXPECT_TRUE(std::ranges::equal(model.parameters(), threaded.parameters()));
+  EXPECT_LE(PeakAnisotropicAlbedo(model, 1).albedo, 1 + 2e-3);
+  EXPECT_LE(AlbedoAt(model, 84, 0), 1 + 2e-3);
+  EXPECT_GT(AlbedoAt(model, 84, 0), 0.6);
+  EXPECT_FALSE(LimitAnisotropicAlbedo({1, 1, 1}, layout, 1, {}, &model));
+  // Nodes across x, and far from the horizon, are as they were.
+  const Axis& axis = model.spec().g_axis;
+  int kept = 0;
+  for (int k = 0; k < axis.size; ++k) {
+    const bool across = std::abs(std::cos(axis.Phi(k))) < 0.1;
+    if (!across && axis.Theta(k) > DegreesToRadians(50)) continue;
+    EXPECT_EQ(model.table(Factor::kG, 0)[k], before.table(Factor::kG, 0)[k]) << k;
+    ++kept;
+  }
+  EXPECT_GT(kept, 10);
+}
+
+TEST(AnisotropicAlbedo, OfAMeasurementInOtherUnitsIsWhatItReflects) {
+  const FactorModel model = Brushed(50, 0);
+  BrdfSamples samples;
+  for (int i = 0; i < 30; ++i) {
+    const SphericalAngles at = {DegreesToRadians(2 * i + 3), 0.7 * i, DegreesToRadians(30),
+                                1.1 * i};
+    samples.directions.push_back(at);
+    samples.angles.push_back(ToHalfDiff(ToDirections(at)));
+  }
+  samples.rho.assign(samples.directions.size(), {});
+  samples.rho = EvaluateSamples(model, samples, 1);
+  const Objective data(samples, model.spec(), FindWeighting("appearance"), 1);
+  const double reflected = AlbedoAt(model, 32, 0);
+  ASSERT_GT(reflected, 5);
+  for (const double limit : AnisotropicAlbedoLimit(data, model)) {
+    EXPECT_NEAR(limit, reflected, 0.5 * reflected);
+  }
+  EXPECT_EQ(AnisotropicAlbedoLimit(data, Brushed(0.1, 0)), (Rgb{1, 1, 1}));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
