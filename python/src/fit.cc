@@ -87,6 +87,8 @@ std::optional<T> MaybeOf(const nb::dict& options, const char* name, const char* 
   return OptionOf<T>(options, name, must_be);
 }
 
+}  // namespace
+
 FormOptions FormOf(const nb::dict& options) {
   using Kind = FormOptions::Kind;
   const auto model = OptionOf<std::string>(options, "model", "a name");
@@ -125,6 +127,8 @@ FormOptions FormOf(const nb::dict& options) {
   CheckForm(form);
   return form;
 }
+
+namespace {
 
 OptionValue ValueOf(const nb::dict& options, const std::string& name, const OptionValue& like) {
   return std::visit(

@@ -68,6 +68,7 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
       nullptr);
   BindMeasurement(&m);
   BindFit(&m);
+  BindObjective(&m);
   BindScore(&m);
 }
 

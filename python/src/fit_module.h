@@ -8,6 +8,7 @@
 #include <string>
 
 #include "trilobe/core/base/error.h"
+#include "trilobe/fit/form.h"
 #include "trilobe/io/formats/measurement_format.h"
 #include "trilobe/model/measurement/measurement.h"
 
@@ -36,8 +37,12 @@ int ThreadsOf(const nanobind::dict& options);
 // How a source is read.
 SourceOptions SourceOptionsOf(const nanobind::dict& options);
 
+// The form of a model, by the names that trilobe.fit has.
+FormOptions FormOf(const nanobind::dict& options);
+
 void BindMeasurement(nanobind::module_* module);
 void BindFit(nanobind::module_* module);
+void BindObjective(nanobind::module_* module);
 void BindScore(nanobind::module_* module);
 
 }  // namespace trilobe::python

@@ -25,12 +25,14 @@ from trilobe._fitting import (
     weightings,
 )
 from trilobe._measurement import Measurement, convert, read
+from trilobe._objective import Objective
 from trilobe._table import Table
 
 __all__ = [
     "Brdf",
     "Error",
     "Measurement",
+    "Objective",
     "Result",
     "Sample",
     "Solver",

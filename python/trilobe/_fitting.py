@@ -27,7 +27,7 @@ class Result:
     Attributes:
         model: the fitted `Brdf`, in canonical form.
         trace: a structured array, a row an iteration, with the columns of trace.csv: iteration, seconds,
-            objective, filtered, accepted, step, optimality, priord_objective (NaN where unknown).
+            objective, filtered, accepted, step, optimality, objective_with_prior (NaN where unknown).
         report: a dict, as report.json is (docs/file-formats.md).
         interrupted: whether Ctrl-C ended it early.
     """
@@ -134,25 +134,11 @@ def fit(
         Error: with the program's line.
         KeyboardInterrupt: when it is interrupted before there is a model.
     """
-    pairs: list[list[float]] = []
-    if stretch is not None:
-        array = as_array(stretch, "stretch").astype(np.float64)
-        if array.ndim not in (1, 2) or array.shape[-1] != 2:
-            raise Error("stretch must be (along, across), once or for each lobe")
-        pairs = array.reshape(-1, 2).tolist()
-    if not isinstance(nodes, str) or nodes not in ("given", "held_out"):
-        raise Error(f"unknown nodes {' '.join(repr(nodes).split())[:60]}; known: given, held_out")
-    if start is not None and (lobes is not None or pairs or not isinstance(model, str) or model != "shared"):
+    form = form_options(model, lobes, stretch, d_nodes, g_nodes, f_bins, nodes)
+    if start is not None and (lobes is not None or form["stretch"] or not isinstance(model, str) or model != "shared"):
         raise Error("start brings its own lobes and tables; leave out model, lobes and stretch")
-    options = {
-        "model": model,
+    options = form | {
         "solver": solver,
-        "lobes": lobes,
-        "stretch": [tuple(pair) for pair in pairs],
-        "d_nodes": _nodes_of("d_nodes", d_nodes),
-        "g_nodes": _nodes_of("g_nodes", g_nodes),
-        "f_bins": f_bins,
-        "nodes_by_held_out": nodes == "held_out",
         "init": init,
         "start": None if start is None else model_of(start).to_json().encode(),
         "weighting": weighting,
@@ -170,6 +156,35 @@ def fit(
     if not outcome.begun:
         raise KeyboardInterrupt
     return Result(outcome)
+
+
+def form_options(
+    model: str,
+    lobes: int | None,
+    stretch: ArrayLike | None,
+    d_nodes: str | None,
+    g_nodes: str | None,
+    f_bins: int | None,
+    nodes: str,
+) -> dict[str, Any]:
+    """The form of a model, as C++ takes it. Raises Error."""
+    pairs: list[list[float]] = []
+    if stretch is not None:
+        array = as_array(stretch, "stretch").astype(np.float64)
+        if array.ndim not in (1, 2) or array.shape[-1] != 2:
+            raise Error("stretch must be (along, across), once or for each lobe")
+        pairs = array.reshape(-1, 2).tolist()
+    if not isinstance(nodes, str) or nodes not in ("given", "held_out"):
+        raise Error(f"unknown nodes {' '.join(repr(nodes).split())[:60]}; known: given, held_out")
+    return {
+        "model": model,
+        "lobes": lobes,
+        "stretch": [tuple(pair) for pair in pairs],
+        "d_nodes": _nodes_of("d_nodes", d_nodes),
+        "g_nodes": _nodes_of("g_nodes", g_nodes),
+        "f_bins": f_bins,
+        "nodes_by_held_out": nodes == "held_out",
+    }
 
 
 def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:

@@ -15,6 +15,7 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "python" / "examples"
 FILES = {
     "fit_arrays": ["model.json", "slices.png"],
     "compare_solvers": ["trace.png"],
+    "other_optimisers": ["optimisers.csv", "synth_copper@12x12x24.png"],
     "stability": ["starts.png"],
     "batch_table": ["table.csv"],
     "edit_material": ["edited.png", "edited.json"],
@@ -40,6 +41,8 @@ def test_runs(name, tmp_path):
             if name == "mitsuba_recover":
                 pytest.skip("no LLVM")
             more = ["--variant=scalar_rgb"]
+    if name == "other_optimisers":
+        pytest.importorskip("scipy")
     if name == "batch_table":
         pytest.importorskip("pandas")
         beside = shutil.which("trilobe", path=pathlib.Path(sys.executable).parent)
