@@ -100,12 +100,14 @@ void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* fol
 
 // As WriteOtherFiles.
 std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* folder) {
-  const Objective& objective = run->objective;
-  const int threads = objective.num_threads();
+  const int threads = run->objective->num_threads();
   FitReport& report = run->report;
   Stopwatch stopwatch;
   WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
-  if (settings.convergence) run->convergence.Write(folder->PathOf(kConvergenceName), objective);
+  if (settings.convergence) {
+    run->convergence.Write(folder->PathOf(kConvergenceName), *run->objective);
+  }
+  run->objective.reset();  // pictures need as much memory
   if (settings.reconstruction) {
     const FactorModel& model = run->file.model;
     const std::string& source = run->file.fit.source;

@@ -63,7 +63,7 @@ std::string FitKey(const FitSettings& settings, const Source& source);
 // A finished fit, whose model has been written if there is a folder.
 struct FitRun {
   Measurement measured;
-  Objective objective;
+  std::optional<Objective> objective;  // none once its figures are in the report
   ModelFile file;
   FitReport report;
   ConvergenceCurve convergence;

@@ -67,20 +67,24 @@ std::vector<Rgb> EvaluateSamples(const FactorModel& model, const BrdfSamples& sa
 
 BrdfTable Reconstruct(const FactorModel& model, const std::string& source, const MerlGrid& grid,
                       int num_threads) {
-  BrdfSamples samples{source, grid, {}, {}, {}};
-  const std::vector<bool> above = BinsAboveSurface(grid);
-  for (int bin = 0; bin < grid.size(); ++bin) {
-    if (above[bin]) samples.bins.push_back(bin);
-  }
-  samples.rho.resize(samples.bins.size());
-  const std::vector<Rgb> rho = EvaluateSamples(model, samples, num_threads);
   BrdfTable table = MakeInvalidTable(source, grid);
-  for (int j = 0; j < samples.size(); ++j) {
-    for (int c = 0; c < kChannels; ++c) {
-      table.SetValue(c, samples.bins[j], rho[j][c]);
-      if (!std::isfinite(table.stored[c][samples.bins[j]])) {
-        throw Error(source + ": the model's value overflows at bin " +
-                    std::to_string(samples.bins[j]) + "; its factors are too large");
+  const std::vector<bool> above = BinsAboveSurface(grid);
+  // A tenth of the bins at a time, as samples take more memory than the table.
+  const int step = std::max(grid.size() / 10, 1);
+  for (int begin = 0; begin < grid.size(); begin += step) {
+    BrdfSamples samples{source, grid, {}, {}, {}};
+    for (int bin = begin; bin < std::min(begin + step, grid.size()); ++bin) {
+      if (above[bin]) samples.bins.push_back(bin);
+    }
+    samples.rho.resize(samples.bins.size());
+    const std::vector<Rgb> rho = EvaluateSamples(model, samples, num_threads);
+    for (int j = 0; j < samples.size(); ++j) {
+      for (int c = 0; c < kChannels; ++c) {
+        table.SetValue(c, samples.bins[j], rho[j][c]);
+        if (!std::isfinite(table.stored[c][samples.bins[j]])) {
+          throw Error(source + ": the model's value overflows at bin " +
+                      std::to_string(samples.bins[j]) + "; its factors are too large");
+        }
       }
     }
   }
