@@ -19,7 +19,7 @@
 #include "trilobe/io/model_files/model_file.h"
 
 DEFINE_string(shard, "",
-              "i/n: of many SOURCEs fit only every n-th, from the i-th on, and leave the page to "
+              "i/n: of many fits make only every n-th, from the i-th on, and leave the page to "
               "the same command without --shard, when all shards are through");
 
 namespace trilobe {

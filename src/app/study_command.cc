@@ -60,10 +60,16 @@ constexpr const char* kTracesName = "traces.csv";
 constexpr const char* kStudyPageName = "index.html";
 constexpr const char* kFilesOfStudy[] = {kStudyPageName, kRunsName, kMethodsName, kTracesName};
 
+// The parts without blanks around them.
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  for (std::string part; std::getline(stream, part, separator);) {
+    const size_t begin = part.find_first_not_of(' ');
+    parts.push_back(begin == std::string::npos
+                        ? ""
+                        : part.substr(begin, part.find_last_not_of(' ') + 1 - begin));
+  }
   return parts;
 }
 
@@ -101,9 +107,27 @@ std::vector<Sweep> SweepsFromFlags() {
     }
     if (values.empty()) throw Error("--set=" + part + ": give values, as in FLAG=a,b,c");
     if (!IsDefault(flag)) throw Error("--" + flag + " and --set=" + part + ": give one of them");
+    if (std::ranges::find(sweeps, flag, &Sweep::flag) != sweeps.end()) {
+      throw Error("--set varies --" + flag + " twice; give all values at once, as in FLAG=a,b,c");
+    }
     sweeps.push_back({flag, Split(values, values.find('|') == std::string::npos ? ',' : '|')});
   }
   return sweeps;
+}
+
+// Throws Error for a flag that none of the solvers reads.
+void CheckThatSomeSolverReads(const std::vector<Sweep>& sweeps,
+                              const std::vector<const SolverEntry*>& solvers) {
+  const std::vector<std::string> particular = ParticularSolverFlags();
+  for (const auto& [flag, values] : sweeps) {
+    if (std::ranges::find(particular, flag) == particular.end()) continue;
+    const auto takes = [&flag = flag](const SolverEntry* solver) {
+      return TakesFlag(*solver, flag);
+    };
+    if (std::ranges::any_of(solvers, takes)) continue;
+    throw Error("--set varies --" + flag +
+                ", which none of --solvers reads; see `trilobe solvers`");
+  }
 }
 
 // Whether E of fits with different values of the flag is of other data or weights.
@@ -157,24 +181,44 @@ void SetFlag(const std::string& flag, const std::string& value) {
 // The settings of `trilobe fit` with these flags.
 FitSettings SettingsOf(const std::string& solver, const Values& values, int start) {
   const gflags::FlagSaver as_given;
-  const auto seed = gflags::GetCommandLineFlagInfoOrDie("seed").current_value;
-  if (IsDefault("data_seed")) SetFlag("data_seed", seed);  // the same data for all starts
+  if (IsDefault("data_seed")) SetFlag("data_seed", std::to_string(FLAGS_seed));  // for all starts
   SetFlag("solver", solver);
   // What a solver found, without what would follow it. As to auto's choice of a form, that is it.
   if (IsDefault("raw") && !ChoosesModel()) SetFlag("raw", "true");
   for (const auto& [flag, value] : values) SetFlag(flag, value);
   if (start > 1) {
     SetFlag("init", "random");
-    SetFlag("seed", std::to_string(start));
+    SetFlag("seed", std::to_string(FLAGS_seed + start - 1));
   }
   return FitSettingsFromFlags();
 }
 
-// Text for the name of a folder.
-std::string AsName(std::string text) {
-  std::ranges::replace(text, '/', '_');
-  std::ranges::replace(text, ' ', ',');
-  return text;
+// What follows the name of a source or a solver, as the end of the name of its folder.
+std::string AsName(std::string labels) {
+  std::ranges::replace(labels, '/', '_');
+  std::ranges::replace(labels, ' ', ',');
+  return labels;
+}
+
+// Throws Error where nothing is to be read.
+void CheckSource(const std::string& source) {
+  std::error_code ignored;
+  if (IsSynthetic(source) || fs::exists(source, ignored)) return;
+  throw Error("cannot read '" + source + "': no such file");
+}
+
+// Throws Error for a folder that is taken.
+void CheckFolder(const Job& job, std::set<std::string>* folders) {
+  for (const char* const taken : kFilesOfStudy) {
+    if (job.folder_of_problem == taken) {
+      throw Error("'" + job.folder_of_problem +
+                  "' is the name of a file of the study; rename the source");
+    }
+  }
+  if (!folders->insert(job.run.folder).second) {
+    throw Error("'" + job.run.problem + "' by '" + job.run.method +
+                "' is asked for twice; name each solver and value once");
+  }
 }
 
 std::vector<Job> JobsFromFlags(std::span<const std::string> arguments) {
@@ -183,34 +227,34 @@ std::vector<Job> JobsFromFlags(std::span<const std::string> arguments) {
   std::vector<const SolverEntry*> solvers;
   for (const std::string& name : Split(FLAGS_solvers, ',')) solvers.push_back(&FindSolver(name));
   if (solvers.empty()) throw Error("--solvers is empty; name some, as auto,awls,lm");
+  CheckThatSomeSolverReads(sweeps, solvers);
+  // Random starts are the same for all values of --init.
+  const bool varies_start = std::ranges::find(sweeps, "init", &Sweep::flag) != sweeps.end();
+  const int runs = varies_start ? 1 : FLAGS_runs;
   std::vector<Job> jobs;
   std::set<std::string> folders, told;
   for (const FitOutcome& source : ListSources(arguments)) {
+    CheckSource(source.source);
     for (const SolverEntry* solver : solvers) {
       for (const Values& values : ChoicesFor(*solver, sweeps)) {
-        std::string problem = source.name, method = solver->name;
+        std::string of_problem, of_method;
         for (const auto& [flag, value] : values) {
-          (ChangesProblem(flag) ? problem : method) += " " + Label(flag, value);
+          (ChangesProblem(flag) ? of_problem : of_method) += " " + Label(flag, value);
         }
-        for (int start = 1; start <= FLAGS_runs; ++start) {
+        for (int start = 1; start <= runs; ++start) {
           Job job;
           job.settings = SettingsOf(solver->name, values, start);
-          job.folder_of_problem = AsName(problem);
-          const std::string folder =
-              AsName(problem) + "/" + AsName(method) + "/start-" + std::to_string(start);
-          for (const char* const taken : kFilesOfStudy) {
-            if (job.folder_of_problem == taken) {
-              throw Error("'" + source.source + "' gives no name for a folder; rename it");
-            }
-          }
-          if (!folders.insert(folder).second) {
-            throw Error("'" + problem + "' by '" + method +
-                        "' is asked for twice; name each solver and value once");
-          }
+          job.run = {.problem = source.name + of_problem,
+                     .method = solver->name + of_method,
+                     .start = start,
+                     .folder = ""};
+          job.folder_of_problem = source.name + AsName(of_problem);
+          job.run.folder = job.folder_of_problem + "/" + solver->name + AsName(of_method) +
+                           "/start-" + std::to_string(start);
+          CheckFolder(job, &folders);
           // Of the runs on the same data, the first tells what was noticed of them.
-          job.settings.tell_notes = told.insert(AsName(problem)).second;
-          job.run = {.problem = problem, .method = method, .start = start, .folder = folder};
-          job.outcome = {.name = folder, .source = source.source};
+          job.settings.tell_notes = told.insert(job.folder_of_problem).second;
+          job.outcome = {.name = job.run.folder, .source = source.source};
           jobs.push_back(std::move(job));
         }
       }
@@ -228,15 +272,36 @@ void ReadRun(const ResultFolder& folder, StudyRun* run) {
   const Json report = Json::parse(ReadJsonText(path, path + ": not a report"));
   run->stop_reason = report.at("stop_reason");
   const Json& seconds = report.at("seconds");
-  for (const char* const phase : {"prepare", "init", "nodes", "solve"}) {
-    run->seconds += seconds.at(phase).get<double>();
+  double before = 0;  // the solver begins
+  for (const char* const phase : {"prepare", "init", "nodes"}) {
+    before += seconds.at(phase).get<double>();
   }
+  run->seconds = before + seconds.at("solve").get<double>();
   if (const Json& sphere = report.at("appearance"); !sphere.is_null()) {
     if (!sphere.at("psnr_db").is_null()) run->psnr_db = sphere.at("psnr_db").get<double>();
     run->mean_delta_e = sphere.at("mean_delta_e").get<double>();
   }
   run->trace = ReadTrace(folder.PathOf("trace.csv"));
+  for (IterationRecord& record : run->trace) record.seconds += before;
   run->file = ReadModel(folder.PathOf("model.json"));
+}
+
+// Fits, or keeps what is there, and reads it. Throws Error if either fails.
+void MakeRun(Job* job, ResultFolder* folder) {
+  FitOrKeep(job->settings, folder, &job->outcome);
+  if (!job->outcome.has_model()) return;
+  const StudyRun planned = job->run;
+  try {
+    ReadRun(*folder, &job->run);
+    return;
+  } catch (const std::exception&) {
+    if (job->outcome.state != FitOutcome::State::kKept) throw;
+  }
+  // A file of it was damaged since.
+  job->run = planned;
+  fs::remove(folder->PathOf("report.json"));
+  FitOrKeep(job->settings, folder, &job->outcome);
+  ReadRun(*folder, &job->run);
 }
 
 // "trilobe study nylon.binary --runs=3", with the sources as they were typed.
@@ -306,23 +371,15 @@ void PrintStudy(const std::vector<StudyRun>& runs) {
 }
 
 // Tables, figures and the page of all runs, and what is printed.
-void Gather(const std::vector<Job>& jobs, std::span<const std::string> arguments,
-            const std::vector<ResultFolder>& folders, const ResultFolder& summary) {
+void Gather(std::vector<Job> jobs, std::span<const std::string> arguments,
+            const ResultFolder& summary) {
   std::vector<StudyRun> runs;
   StudyPageContents contents;
   contents.command = CommandText(arguments);
   contents.tables = {kRunsName, kMethodsName, kTracesName};
-  for (size_t k = 0; k < jobs.size(); ++k) {
-    StudyRun& run = runs.emplace_back(jobs[k].run);
-    contents.folder_of[run.problem] = jobs[k].folder_of_problem;
-    if (run.failed()) continue;
-    try {
-      ReadRun(folders[k], &run);
-    } catch (const Json::exception&) {
-      run.error = "report.json is of another version";
-    } catch (const Error& error) {
-      run.error = ErrorToSend(error.what(), jobs[k].outcome, summary.path());
-    }
+  for (Job& job : jobs) {
+    contents.folder_of[job.run.problem] = job.folder_of_problem;
+    runs.push_back(std::move(job.run));
   }
   CompareRuns(&runs);
   DrawFigures(runs, summary.path(), ThreadsFromFlags(), &contents);
@@ -342,7 +399,7 @@ void PrintRun(const Job& job, size_t done, size_t count) {
             << Printable(job.run.method) << ", start " << job.run.start << ": "
             << StateName(outcome.state);
   if (outcome.has_model()) {
-    std::cout << ", E " << Text(outcome.objective, 6) << ", " << Text(outcome.seconds, 3) << " s";
+    std::cout << ", E " << Text(job.run.objective(), 6) << ", " << Text(job.run.seconds, 3) << " s";
   }
   if (!job.run.error.empty()) std::cout << ": " << Printable(job.run.error);
   std::cout << std::endl;
@@ -375,7 +432,7 @@ int RunStudy(std::span<const std::string> arguments) {
       if (InterruptGuard::signal() != 0) return;
       Job& job = jobs[shard[k]];
       try {
-        FitOrKeep(job.settings, &folders[shard[k]], &job.outcome);
+        MakeRun(&job, &folders[shard[k]]);
       } catch (const std::exception& exception) {
         job.outcome.state = FitOutcome::State::kFailed;
         job.run.error = ErrorToSend(MessageOf(exception), job.outcome, out);
@@ -391,10 +448,10 @@ int RunStudy(std::span<const std::string> arguments) {
     return 128 + InterruptGuard::signal();
   }
   const bool whole = FLAGS_shard.empty();
-  if (whole) Gather(jobs, arguments, folders, summary);
+  const bool failed = std::ranges::any_of(jobs, [](const Job& job) { return job.run.failed(); });
+  if (whole) Gather(std::move(jobs), arguments, summary);
   std::cout << "written      a folder for each run" << (whole ? ", the tables and " : "")
             << (whole ? kStudyPageName : "") << " in " << Printable(out) << "\n";
-  const bool failed = std::ranges::any_of(jobs, [](const Job& job) { return job.run.failed(); });
   return failed ? kSomeFailed : 0;
 }
 

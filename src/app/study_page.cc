@@ -11,12 +11,12 @@
 namespace trilobe {
 namespace {
 
-// "0", "<0.01 %", "3.2 %", "12 times" of an excess over the lowest E.
+// "0", "<0.01 %", "3.2 %" above the lowest E, or "12 times" it.
 std::string ExcessText(double excess) {
   if (!std::isfinite(excess)) return "failed";
   if (excess <= 0) return "0";
   if (excess < 1e-4) return "<0.01 %";
-  if (excess < 10) return Text(100 * excess, 2) + " %";
+  if (excess < 9) return Text(100 * excess, 2) + " %";
   return Text(1 + excess, 2) + " times";
 }
 
@@ -138,8 +138,11 @@ std::string StudyPage(std::span<const StudyRun> runs, const StudyPageContents& c
   const std::vector<std::string> problems = ProblemsOf(runs), methods = MethodsOf(runs);
   std::string names;
   for (const std::string& method : methods) names += (names.empty() ? "" : ", ") + method;
-  std::string body = "<h1>" + EscapedMarkup(Printable(names)) + "</h1>\n<p>" +
-                     std::to_string(runs.size()) + " runs on " +
+  std::string body = "<h1>Study of " +
+                     (problems.size() == 1 ? EscapedMarkup(Printable(problems.front()))
+                                           : std::to_string(problems.size()) + " problems") +
+                     "</h1>\n<p>" + EscapedMarkup(Printable(names)) + ": " +
+                     std::to_string(runs.size()) + (runs.size() == 1 ? " run on " : " runs on ") +
                      (problems.size() == 1 ? EscapedMarkup(Printable(problems.front()))
                                            : std::to_string(problems.size()) + " problems") +
                      ". E is what the solvers minimise; the first start is the given one, the "

@@ -59,7 +59,10 @@ TEST_F(Study, ComparesSolversGoesOnAndKeeps) {
   EXPECT_THAT(again.out, HasSubstr("copper, lm, start 2: kept"));
   EXPECT_EQ(Contents(out_ + "/runs.csv"), runs);
   std::filesystem::remove_all(out_ + "/copper/lm/start-2");
+  // What was damaged since is made again.
+  std::filesystem::resize_file(out_ + "/copper/awls/start-1/trace.csv", 100);
   const ProgramResult third = RunStudy(flags);
+  EXPECT_THAT(third.out, HasSubstr("copper, awls, start 1: fitted"));
   EXPECT_THAT(third.out, HasSubstr("copper, lm, start 2: fitted"));
   EXPECT_THAT(third.out, HasSubstr("copper, lm, start 1: kept"));
 }
@@ -74,6 +77,11 @@ TEST_F(Study, StartsDifferOnTheSameData) {
   EXPECT_EQ(report(3).at("init"), "random");
   EXPECT_EQ(report(3).at("seed"), 3);
   EXPECT_EQ(report(3).at("data_seed"), 1);
+  ASSERT_EQ(RunStudy({"--solvers=awls", "--runs=2", "--init=random", "--seed=5"}).status, 0);
+  EXPECT_EQ(report(1).at("seed"), 5);
+  EXPECT_EQ(report(2).at("seed"), 6);
+  EXPECT_EQ(report(2).at("data_seed"), 5);
+  ASSERT_EQ(RunStudy({"--solvers=awls", "--runs=3"}).status, 0);
   EXPECT_NE(report(2).at("initial_objective"), report(3).at("initial_objective"));
   EXPECT_EQ(report(2).at("valid_samples"), report(3).at("valid_samples"));
 }
@@ -90,6 +98,23 @@ TEST_F(Study, SweepsFlagsOfTheProblemAndOfSomeSolvers) {
   const std::string runs = Contents(out_ + "/runs.csv");
   EXPECT_EQ(std::ranges::count(runs, '\n'), 1 + 2 * 3);
   EXPECT_THAT(runs, HasSubstr("\ncopper log,lm dogleg lobes=1,1,"));
+}
+
+TEST_F(Study, AVariedStartIsRunOnce) {
+  ASSERT_EQ(RunStudy({"--solvers=awls", "--runs=3", "--set=init=analytic, random"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/copper/awls,random/start-1"));
+  EXPECT_FALSE(std::filesystem::exists(out_ + "/copper/awls,random/start-2"));
+}
+
+TEST_F(Study, TimesBeginWhereTheDataArePrepared) {
+  ASSERT_EQ(RunStudy({"--solvers=awls", "--runs=1"}).status, 0);
+  const auto seconds =
+      nlohmann::json::parse(Contents(out_ + "/copper/awls/start-1/report.json")).at("seconds");
+  const std::string traces = Contents(out_ + "/traces.csv");
+  const size_t first = traces.find("\ncopper,awls,1,0,");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_GE(std::stod(traces.substr(first + std::string("\ncopper,awls,1,0,").size())),
+            seconds.at("prepare").get<double>() + seconds.at("init").get<double>());
 }
 
 TEST_F(Study, OneFailureDoesNotStopTheOthers) {
@@ -128,6 +153,10 @@ TEST_F(Study, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(error({"--set=lobes=1,two"}), HasSubstr("--lobes=two"));
   EXPECT_THAT(error({"--set=lobes=1,2", "--lobes=3"}), HasSubstr("give one of them"));
   EXPECT_THAT(error({"--set=weighting=none"}), HasSubstr("none"));
+  EXPECT_THAT(error({"--set=lobes=1;lobes=2"}), HasSubstr("varies --lobes twice"));
+  EXPECT_THAT(error({"--solvers=awls", "--set=trust_region=dogleg"}),
+              HasSubstr("none of --solvers reads"));
+  EXPECT_THAT(error({folder_ / "nosuch.csv"}), HasSubstr("no such file"));
 }
 
 }  // namespace

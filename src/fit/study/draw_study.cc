@@ -27,15 +27,24 @@ std::string ColorOf(size_t method) {
 
 double Drawn(double excess) { return std::max(excess, kFloor); }
 
-// An axis of excesses over the lowest E, in percent, up to the largest one.
-std::string ExcessAxis(std::span<const StudyRun> runs, double largest) {
-  const bool any = std::ranges::any_of(runs, [](const StudyRun& run) { return !run.failed(); });
-  if (!any) return "";
-  const double top = std::pow(10, std::ceil(std::log10(std::max(largest, 0.1)) + 0.1));
-  return "set logscale y\nset yrange [" + GnuplotNumber(kFloor / 1.6) + ":" + GnuplotNumber(top) +
-         "]\nset ytics ('lowest' 1e-5, '0.01 %%' 1e-4, '0.1 %%' 1e-3, '1 %%' 1e-2, '10 %%' 0.1, "
-         "'100 %%' 1, '10 times' 10, '100 times' 100, '1000 times' 1000)\n"
-         "set ylabel 'E above the lowest'\n";
+// Of the curves of a method: more than eight have the same colours, dashed.
+std::string StyleOf(size_t method) {
+  return "linecolor " + ColorOf(method) + " dashtype " + std::to_string(1 + method / 8);
+}
+
+// An axis of excesses over the lowest E, up to the largest one.
+std::string ExcessAxis(double largest) {
+  std::string tics =
+      "'lowest' 1e-5, '0.01 %%' 1e-4, '0.1 %%' 1e-3, '1 %%' 1e-2, '10 %%' 0.1, "
+      "'100 %%' 1";
+  double top = 1;
+  for (double times = 10; top < largest && times < 1e18; times *= 10) {
+    top = times - 1;
+    tics += ", '" + GnuplotNumber(times) + " times' " + GnuplotNumber(top);
+  }
+  return "set logscale y\nset yrange [" + GnuplotNumber(kFloor / 1.6) + ":" +
+         GnuplotNumber(1.6 * top) + "]\nset ytics (" + tics +
+         ")\nset ylabel 'E above the lowest'\n";
 }
 
 // Blocks of data, and the plot that shows them.
@@ -64,7 +73,7 @@ Curves CurvesOf(std::span<const StudyRun> runs, const std::string& style, const 
     std::string title = methods[k];
     for (const StudyRun& run : runs) {
       if (run.method != methods[k] || run.failed()) continue;
-      curves.Add(rows_of(run), style + " linecolor " + ColorOf(k), title);
+      curves.Add(rows_of(run), style + " " + StyleOf(k), title);
       title.clear();
     }
   }
@@ -99,9 +108,9 @@ Drawing ErrorAgainstTime(std::span<const StudyRun> runs) {
   });
   if (curves.plot.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + kKey + ExcessAxis(runs, LargestExcess(runs)) +
-              "set logscale x\nset xrange " + GnuplotLogRange(seconds, 3.5) + "\n" +
-              LogTics(LogRange(seconds, 3.5), 'x') + "set xlabel 'seconds'\n" + curves.plot + "\n"};
+          curves.data + kKey + ExcessAxis(LargestExcess(runs)) + "set logscale x\nset xrange " +
+              GnuplotLogRange(seconds, 3.5) + "\n" + LogTics(LogRange(seconds, 3.5), 'x') +
+              "set xlabel 'seconds'\n" + curves.plot + "\n"};
 }
 
 // E of each iteration.
@@ -118,7 +127,7 @@ Drawing Convergence(std::span<const StudyRun> runs) {
   });
   if (curves.plot.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + kKey + ExcessAxis(runs, LargestExcess(runs)) +
+          curves.data + kKey + ExcessAxis(LargestExcess(runs)) +
               "set xrange [0:" + std::to_string(most) +
               "]\nset xlabel 'iteration (for AWLS, sweep)'\n" + curves.plot + "\n"};
 }
@@ -138,6 +147,10 @@ Drawing FinalErrors(std::span<const StudyRun> runs) {
   double largest = 0;
   int starts = 1;
   for (const StudyRun& run : runs) starts = std::max(starts, run.start);
+  size_t letters = 0;
+  for (const std::string& method : methods) letters = std::max(letters, method.size());
+  constexpr size_t kLettersInARow = 60;
+  const bool long_names = letters * methods.size() > kLettersInARow;
   for (size_t k = 0; k < methods.size(); ++k) {
     std::vector<std::vector<double>> rows;
     for (const StudyRun& run : runs) {
@@ -152,11 +165,10 @@ Drawing FinalErrors(std::span<const StudyRun> runs) {
   }
   if (curves.plot.empty()) return {};
   return {kWidth, kHeight,
-          curves.data + ExcessAxis(runs, largest) +
+          curves.data + ExcessAxis(largest) +
               "set xrange [-0.5:" + GnuplotNumber(static_cast<double>(methods.size()) - 0.5) +
-              "]\nset grid noxtics\nset xtics noenhanced " +
-              (methods.size() > 4 ? "rotate by -20 " : "") + "(" + tics + ")\n" + curves.plot +
-              "\n"};
+              "]\nset grid noxtics\nset xtics noenhanced " + (long_names ? "rotate by -20 " : "") +
+              "(" + tics + ")\n" + curves.plot + "\n"};
 }
 
 // D of a lobe over the root of theta_h in degrees, of an anisotropic one the mean over phi_h.
@@ -175,32 +187,43 @@ std::vector<std::vector<double>> DistributionOf(const ModelFile& file, int lobe)
 
 // The panel of a method and a lobe: its runs in colour, the lowest of all in black.
 std::string LobePanel(const StudyRun& lowest, const std::vector<const StudyRun*>& runs, int lobe,
-                      const std::string& color, const std::string& title) {
+                      size_t method, const std::string& title) {
   Curves curves;
   for (const StudyRun* run : runs) {
-    const std::vector<std::vector<double>> rows = DistributionOf(run->file, run->lobes->lobe[lobe]);
-    if (!rows.empty()) curves.Add(rows, "with lines linewidth 2 linecolor " + color, "");
+    const int own = run == &lowest ? lobe : run->lobes->lobe[lobe];
+    const std::vector<std::vector<double>> rows = DistributionOf(run->file, own);
+    if (!rows.empty()) curves.Add(rows, "with lines linewidth 2 " + StyleOf(method), "");
   }
   const std::vector<std::vector<double>> of_lowest = DistributionOf(lowest.file, lobe);
-  if (!of_lowest.empty()) {
-    curves.Add(of_lowest, "with lines linewidth 1.5 dashtype 2 linecolor '#000000'", "");
-  }
   if (curves.plot.empty() || of_lowest.empty()) return "set multiplot next\n";
+  curves.Add(of_lowest, "with lines linewidth 1.5 dashtype 2 linecolor '#000000'", "");
+  return "set title " + title + " noenhanced\n" + curves.data + curves.plot + "\n";
+}
+
+// The axis of D of a lobe, for all runs.
+std::string DistributionAxis(const StudyRun& lowest, std::span<const StudyRun> runs, int lobe) {
   std::vector<double> values;
-  for (const std::vector<double>& row : of_lowest) values.push_back(row[1]);
-  return "set title " + title + " noenhanced\nset yrange " + GnuplotLogRange(values, 6) + "\n" +
-         curves.data + curves.plot + "\n";
+  for (const StudyRun& run : runs) {
+    if (!run.lobes && &run != &lowest) continue;
+    const int own = run.lobes ? run.lobes->lobe[lobe] : lobe;
+    for (const std::vector<double>& row : DistributionOf(run.file, own)) values.push_back(row[1]);
+  }
+  return "set yrange " + GnuplotLogRange(values, 5) + "\n" + LogTics(LogRange(values, 5), 'y');
 }
 
 // "lm", and below "lobe 2, match 0.97", the median over the runs; for gnuplot.
 std::string PanelTitle(const std::string& method, const std::vector<const StudyRun*>& runs,
                        int lobe) {
   std::vector<double> matches;
-  for (const StudyRun* run : runs) matches.push_back(run->lobes->match[lobe]);
+  for (const StudyRun* run : runs) {
+    if (run->lobes) matches.push_back(run->lobes->match[lobe]);
+  }
   std::ranges::sort(matches);
-  return GnuplotQuote(method) + R"(."\n".)" +
-         GnuplotQuote("lobe " + std::to_string(lobe + 1) + ", match " +
-                      Text(matches[(matches.size() - 1) / 2], 2));
+  constexpr size_t kLetters = 34;
+  const std::string name = method.size() > kLetters ? method.substr(0, kLetters - 1) + "…" : method;
+  std::string text = "lobe " + std::to_string(lobe + 1);
+  if (!matches.empty()) text += ", match " + Text(matches[(matches.size() - 1) / 2], 2);
+  return GnuplotQuote(name) + R"(."\n".)" + GnuplotQuote(text);
 }
 
 // A row of panels for each method, a column for each lobe of the lowest run.
@@ -215,26 +238,28 @@ Drawing Lobes(std::span<const StudyRun> runs) {
   for (size_t k = 0; k < methods.size(); ++k) {
     std::vector<const StudyRun*> own;
     for (const StudyRun& run : runs) {
-      if (run.method == methods[k] && run.lobes) own.push_back(&run);
+      if (run.method == methods[k] && (run.lobes || &run == lowest)) own.push_back(&run);
     }
     if (own.empty()) continue;
     ++rows;
     for (int lobe = 0; lobe < lobes; ++lobe) {
-      panels += LobePanel(*lowest, own, lobe, ColorOf(k), PanelTitle(methods[k], own, lobe));
+      panels += DistributionAxis(*lowest, runs, lobe) +
+                LobePanel(*lowest, own, lobe, k, PanelTitle(methods[k], own, lobe));
     }
   }
-  return {300 * lobes, 260 * rows,
+  return {320 * lobes, 260 * rows + 60,
           "set multiplot layout " + std::to_string(rows) + "," + std::to_string(lobes) +
-              "\nset nokey\nset logscale y\nset format y '10^{%T}'\nset xrange [0:sqrt(90)]\n"
+              " title 'D [1/sr] over θ_h; dashed: the lowest run' font ',13'\n"
+              "set nokey\nset logscale y\nset xrange [0:sqrt(90)]\n"
               "set xtics ('0°' 0, '5°' sqrt(5), '15°' sqrt(15), '45°' sqrt(45), '90°' sqrt(90))\n"
-              "set title offset 0,-0.7\nset lmargin 6\nset rmargin 1\nset tmargin 2.8\n"
+              "set title offset 0,-0.7\nset lmargin 7\nset rmargin 3\nset tmargin 2.8\n"
               "set bmargin 2\n" +
               panels + "unset multiplot\n"};
 }
 
 constexpr StudyFigure kFigures[] = {
-    {"error_against_time", "The lowest E so far, over the seconds since the start of each run.",
-     ErrorAgainstTime},
+    {"error_against_time",
+     "The lowest E so far, over the seconds since each run prepared its data.", ErrorAgainstTime},
     {"convergence", "E after each iteration: one line a run.", Convergence},
     {"final_error", "E at the end of each run, by starting point from left to right.", FinalErrors},
     {"lobes",

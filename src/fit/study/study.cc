@@ -54,7 +54,9 @@ const StudyRun* Lowest(const std::vector<const StudyRun*>& runs) {
 }
 
 std::optional<LobeOrderMatch> Match(const StudyRun* reference, const StudyRun& run) {
-  if (reference == nullptr || run.file.model.spec() != reference->file.model.spec()) return {};
+  if (reference == nullptr || reference == &run) return {};
+  const ModelSpec& spec = run.file.model.spec();
+  if (spec.lobes == 0 || spec != reference->file.model.spec()) return {};
   return MatchLobes(reference->file, run.file);
 }
 
@@ -69,10 +71,10 @@ double Unit(const std::vector<const StudyRun*>& runs, double lowest) {
   return std::max({lowest, kRounding * initial, std::numeric_limits<double>::min()});
 }
 
-// Wilson's interval at 1.96 standard deviations, `side` -1 or 1.
+// Wilson's interval at 1.96 standard deviations, 95 %, `side` -1 or 1.
 double WilsonBound(const Share& share, int side) {
   if (share.of == 0) return side < 0 ? 0 : 1;
-  constexpr double z = 1.96;
+  constexpr double z = 1.959964;
   const double n = share.of, p = share.value();
   const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
   return std::clamp((p + z * z / (2 * n) + side * half) / (1 + z * z / n), 0.0, 1.0);

@@ -27,14 +27,14 @@ struct StudyRun {
   std::string stop_reason = {};
   double seconds = 0;  // from preparing the objective to the end of the solver
   std::optional<double> psnr_db = {}, mean_delta_e = {};  // of the sphere, if the data have one
-  std::vector<IterationRecord> trace = {};
+  std::vector<IterationRecord> trace = {};  // seconds as above, since the objective was prepared
   ModelFile file = {};
 
   // Set by CompareRuns: the lowest E of the problem's runs, and what an excess over it is relative
   // to.
   double lowest = 0, unit = 1;
-  // With the lobes of the problem's lowest run and of the method's own, if these are of the same
-  // spec.
+  // With the lobes of the problem's lowest run and of the method's own, unless these are of another
+  // spec, of no lobes, or this run itself.
   std::optional<LobeOrderMatch> lobes = {}, own_lobes = {};
 
   bool failed() const { return !error.empty(); }
@@ -67,8 +67,9 @@ struct Share {
   double high() const;
 };
 
-// What the runs of one method on one problem have in common. Medians are lower ones, and count
-// failed runs as infinite.
+// What the runs of one method on one problem have in common. Medians are the lower of the two
+// middle values, since between a finite and an infinite one is nothing; failed runs count as
+// infinite.
 struct MethodSummary {
   std::string problem, method;
   int runs = 0, failed = 0;
@@ -77,14 +78,15 @@ struct MethodSummary {
   double seconds = 0;                          // median of a whole run
   double seconds_to_as_good = 0;               // median
   // Seconds until restarts have found E within kAsGood of the lowest, in expectation: the mean time
-  // of a run divided by the share of those that do. Infinite if none does.
+  // of a run divided by the share of those that do. Infinite if none does. What a failed run took
+  // is not known and counts as 0.
   double expected_seconds = 0;
   double iterations = 0;  // median
   // Iterations of all runs, and those that raised E (SolverSummary::FindRaises).
   int all_iterations = 0, raised = 0;
   double largest_rise = 0;
   std::optional<double> psnr_db = {}, mean_delta_e = {};  // medians
-  // Runs whose lobes are those of the problem's lowest run, and of the method's own.
+  // Other runs whose lobes are those of the problem's lowest run, and of the method's own.
   Share same_lobes = {}, same_again = {};
   std::optional<double> least_match =
       {};  // median of the least match with the problem's lowest run

@@ -69,7 +69,6 @@ std::string LowestSentence(std::span<const StudyRun> runs,
                            const std::vector<std::string>& problems) {
   if (problems.size() > 1) return "";
   const StudyRun* const lowest = LowestRun(runs, problems.front());
-  if (lowest == nullptr) return "No run has a result.";
   return "The lowest E, " + Text(lowest->objective(), 5) + ", is of " + lowest->method +
          ", start " + std::to_string(lowest->start) + ".";
 }
@@ -101,6 +100,9 @@ std::string RaisedSentence(const std::vector<MethodSummary>& methods) {
 
 std::vector<std::string> VerdictOn(std::span<const StudyRun> runs) {
   if (runs.empty()) return {};
+  if (std::ranges::all_of(runs, &StudyRun::failed)) {
+    return {"No run has a result: " + runs.front().error};
+  }
   const std::vector<std::string> problems = ProblemsOf(runs);
   const std::vector<MethodSummary> summaries = SummariesOf(runs);
   std::vector<MethodSummary> methods;
@@ -120,11 +122,11 @@ std::vector<std::string> VerdictOn(std::span<const StudyRun> runs) {
     return std::isfinite(seconds) ? "after " + Text(seconds, 2) + " s" : std::string();
   });
   sentences.push_back(RaisedSentence(methods));
-  tell("Runs with the lobes of the lowest run" + each, [](const MethodSummary& of) {
-    return of.same_lobes.of > 0 ? Of(of.same_lobes) : std::string();
-  });
-  tell("Runs with the lobes of their own method's lowest run" + each,
-       [](const MethodSummary& of) { return Of(of.same_again); });
+  const auto of_any = [](const Share& share) { return share.of > 0 ? Of(share) : std::string(); };
+  tell("Other runs with the lobes of the lowest run" + each,
+       [&](const MethodSummary& of) { return of_any(of.same_lobes); });
+  tell("Other runs with the lobes of their own method's lowest run" + each,
+       [&](const MethodSummary& of) { return of_any(of.same_again); });
   if (problems.size() == 1) {
     tell("The sphere beside the measurement, in the median", [&](const MethodSummary& of) {
       const auto own = std::ranges::find(summaries, of.method, &MethodSummary::method);

@@ -109,11 +109,14 @@ TEST(Study, LobesAreComparedWithTheLowestRunAndWithTheMethodsOwn) {
       Compared({RunOf("a", 1, {8, 2}, 1), RunOf("a", 2, {8, 2.5}, 1), RunOf("b", 1, {8, 3}, 2),
                 RunOf("b", 2, {8, 3.5}, 2), FailedRun("b", 3)});
   const std::vector<MethodSummary> summaries = SummariesOf(runs);
-  EXPECT_EQ(summaries[0].same_lobes.count, 2);
-  EXPECT_EQ(summaries[0].same_again.count, 2);
+  // A run is not compared with itself.
+  EXPECT_EQ(summaries[0].same_lobes.count, 1);
+  EXPECT_EQ(summaries[0].same_lobes.of, 1);
+  EXPECT_EQ(summaries[0].same_again.count, 1);
   EXPECT_EQ(summaries[1].same_lobes.count, 0);
-  EXPECT_EQ(summaries[1].same_again.count, 2);
-  EXPECT_EQ(summaries[1].same_again.of, 2);
+  EXPECT_EQ(summaries[1].same_lobes.of, 2);
+  EXPECT_EQ(summaries[1].same_again.count, 1);
+  EXPECT_EQ(summaries[1].same_again.of, 1);
   ASSERT_TRUE(summaries[1].least_match);
   EXPECT_LT(*summaries[1].least_match, kSameLobes);
 }
@@ -127,9 +130,8 @@ TEST(Study, VerdictSaysWhoWonAndWhoRaisedE) {
                           "They get there, in the median: a after 1 s.",
                           "E never rose in 2 iterations of a. b raised E in 1 of 3 iterations, by "
                           "25 % at most.",
-                          "Runs with the lobes of the lowest run: a all 2 and b all 1.",
-                          "Runs with the lobes of their own method's lowest run: a all 2 and b all "
-                          "1.",
+                          "Other runs with the lobes of the lowest run: a all 1 and b all 1.",
+                          "Other runs with the lobes of their own method's lowest run: a all 1.",
                           "Failed, and counted as infinite: b 1 of 2."));
 }
 
@@ -145,8 +147,15 @@ TEST(Study, VerdictOnSeveralProblemsAddsThemUp) {
 
 TEST(Study, VerdictOnNothingButFailuresSaysSo) {
   const std::vector<StudyRun> runs = Compared({FailedRun("a", 1)});
-  EXPECT_THAT(VerdictOn(runs), Contains("No run has a result."));
+  EXPECT_THAT(VerdictOn(runs), ElementsAre("No run has a result: no such file"));
   EXPECT_TRUE(VerdictOn({}).empty());
+}
+
+TEST(Study, LobesOfNoLobesAreNotCompared) {
+  std::vector<StudyRun> runs = {RunOf("a", 1, {8, 2}), RunOf("a", 2, {8, 3})};
+  for (StudyRun& run : runs) run.file.model = FactorModel(ModelSpec::SharedFactors(0, kGrid));
+  CompareRuns(&runs);
+  EXPECT_FALSE(runs[1].lobes);
 }
 
 TEST(Study, TablesHaveARowEachAndQuoteNames) {
