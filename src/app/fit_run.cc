@@ -91,7 +91,7 @@ std::string WhereModelIs(const ModelFile& file, const ResultFolder& folder) {
 
 void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* folder) {
   const FitReport& report = run.report;
-  Compared compared = {.seen = report.samples_seen, .whole = report.whole};
+  Compared compared = {.seen = report.samples_seen, .basis = VerdictOn(report).verdict.basis};
   if (report.appearance) compared.seen = report.appearance->sphere;
   const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, compared,
                                    report.summary.trace, settings.fit.appearance);

@@ -11,10 +11,9 @@
 namespace trilobe {
 namespace {
 
-void Compare(const SeenError& seen, const Measurement& measured,
-             const std::optional<WholeSphere>& whole, PageContents* contents) {
-  Basis basis = BasisOf(SamplesOf(measured), contents->parameters);
-  basis.whole = whole;
+void Compare(const SeenError& seen, const Measurement& measured, const std::optional<Basis>& known,
+             PageContents* contents) {
+  const Basis basis = known ? *known : BasisOf(SamplesOf(measured), contents->parameters);
   const Verdict verdict = VerdictOf(seen, basis);
   contents->verdict = Words(verdict);
   contents->visibility = VisibilityName(verdict);
@@ -52,9 +51,9 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
     if (drawn) {
       contents.measured = data.nodes ? EncodeMeasured(*data.nodes) : EncodeMeasured(*data.table);
       Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, *measured,
-              compared.whole, &contents);
+              compared.basis, &contents);
     } else if (seen) {
-      Compare(*seen, *measured, compared.whole, &contents);
+      Compare(*seen, *measured, compared.basis, &contents);
     }
   }
   return {.text = FormatPage(model, contents), .has_measured = contents.measured.has_value()};

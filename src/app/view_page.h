@@ -20,8 +20,8 @@ struct ViewedPage {
 
 // What is known of a model beside its measurement.
 struct Compared {
-  std::optional<SeenError> seen = {};     // their difference; else it is computed, on the sphere
-  std::optional<WholeSphere> whole = {};  // Basis::whole
+  std::optional<SeenError> seen = {};  // their difference; else it is computed, on the sphere
+  std::optional<Basis> basis = {};     // of a verdict; else of the samples of the measurement
 };
 
 // The page of a model (io/page/page.h), compared with `measured` unless that is null. `path` names
