@@ -291,6 +291,9 @@ int main(int argc, char** argv) {
   constexpr int kAll = 1 << 30;  // bytes
   mallopt(M_MMAP_THRESHOLD, kAll);
   mallopt(M_TRIM_THRESHOLD, kAll);
+  // One heap for all threads: what one of them freed, another takes. With a heap each, a fit with
+  // pictures on two threads takes 390 instead of 275 MB. Small pieces have a cache by thread.
+  mallopt(M_ARENA_MAX, 1);
 #endif
   // A file that has reached `ulimit -f` is an error of writing then, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
