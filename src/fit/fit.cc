@@ -351,7 +351,7 @@ class Fitting {
     }
     fit->measured_share = MeasuredShare(fit->objective.samples());
     if (measurement_.table && fit->appearance) {
-      fit->whole = EstimateWholeSphere(fit->objective.coverage(), fit->model(), fit->measured_share,
+      fit->whole = EstimateWholeSphere(fit->objective, fit->model(), fit->measured_share,
                                        fit->appearance->sphere, Appearance());
     }
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "fit/finish/albedo_limit.h"
 #include "model/lobes/beyond_data.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/render.h"
+#include "trilobe/model/table_layout.h"
 
 namespace trilobe {
 namespace {
@@ -50,16 +53,18 @@ double SumInDecibels(double a, double b) {
 
 }  // namespace
 
-std::optional<WholeSphere> EstimateWholeSphere(std::span<const double> coverage,
-                                               const FactorModel& model, double measured_share,
-                                               const SeenError& seen,
+std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const FactorModel& model,
+                                               double measured_share, const SeenError& seen,
                                                const AppearanceOptions& options) {
   constexpr double kNextToAll = 0.98, kHidden = 1.0 / 3;
   if (!(measured_share < kNextToAll) || model.spec().anisotropic()) return std::nullopt;
   const double end = std::asin(std::pow(measured_share, 0.25));
-  const std::vector<double> hidden = HideEnds(coverage, model, kHidden * (kPi / 2 - end));
+  const double width = kHidden * (kPi / 2 - end);
   FactorModel rehearsed = model;
-  ContinueBeyondData(hidden, options.num_threads, &rehearsed);
+  ContinueBeyondData(HideEnds(data.coverage(), model, width), options.num_threads, &rehearsed);
+  AlbedoLimits limits = AlbedoLimitsOf(data, model);
+  limits.beyond_theta -= width;
+  LimitAlbedo(limits, TableLayout::Full(model.spec()), options.num_threads, {}, &rehearsed);
   const SphereError guess = CompareWhole(model, rehearsed, options);
   return WholeSphere{.mean_delta_e = std::hypot(seen.mean_delta_e, guess.mean_delta_e),
                      .psnr_db = SumInDecibels(seen.psnr_db, guess.psnr_db)};

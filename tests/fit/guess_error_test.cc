@@ -47,8 +47,7 @@ TEST(GuessError, IsOfWhatWasNotMeasured) {
   const auto estimate = [&](double share, int threads) {
     AppearanceOptions options = kSmall;
     options.num_threads = threads;
-    return EstimateWholeSphere(fit.objective.coverage(), fit.model(), share, fit.appearance->sphere,
-                               options);
+    return EstimateWholeSphere(fit.objective, fit.model(), share, fit.appearance->sphere, options);
   };
   EXPECT_EQ(estimate(fit.measured_share, 1), fit.whole);
   EXPECT_EQ(estimate(fit.measured_share, 3), fit.whole);
