@@ -46,7 +46,9 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .extrapolated = OptionOf<bool>(options, "extrapolated", "True or False"),
       .outliers = OptionOf<bool>(options, "outliers", "True or False"),
       .dark_noise = OptionOf<bool>(options, "dark_noise", "True or False"),
-      .radiometry = OptionOf<std::string>(options, "radiometry", "a name")};
+      .radiometry = OptionOf<std::string>(options, "radiometry", "a name"),
+      .columns = OptionOf<std::string>(options, "columns", "a text"),
+      .theta_i_deg = OptionOf<double>(options, "theta_i", "a number of degrees")};
   CheckSourceOptions(source);
   return source;
 }

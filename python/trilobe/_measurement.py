@@ -188,6 +188,8 @@ def read(
     outliers: bool = False,
     dark_noise: bool = False,
     radiometry: str = "brdf",
+    columns: str = "",
+    theta_i: float = -1,
     threads: int = 0,
 ) -> Measurement:
     """Reads a measurement of any format (docs/file-formats.md), or makes a synthetic one, "synth:NAME".
@@ -208,6 +210,8 @@ def read(
         outliers: takes samples that are far off those around them, too.
         dark_noise: takes readings that are lost in dark noise as they are, not medians around them.
         radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
+        columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header.
+        theta_i: of a text table without a column of it, the angle of incidence [degrees]; -1 for none.
         threads: 0 for all cores.
 
     Raises:
@@ -226,6 +230,8 @@ def read(
         outliers=outliers,
         dark_noise=dark_noise,
         radiometry=radiometry,
+        columns=columns,
+        theta_i=theta_i,
         threads=threads,
     )
     return Measurement._of(fits().read(text_of_path(source), options))
@@ -301,6 +307,8 @@ def source_options(**given: Any) -> dict[str, Any]:
         "outliers": False,
         "dark_noise": False,
         "radiometry": "brdf",
+        "columns": "",
+        "theta_i": -1.0,
         "threads": 0,
         **given,
     }

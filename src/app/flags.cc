@@ -62,6 +62,13 @@ DEFINE_bool(dark_noise, false,
 DEFINE_string(radiometry, trilobe::UtiaRadiometries().front().name,
               "what the numbers of a UTIA file are: brdf, cosine, srgb or dj_brdf "
               "(docs/file-formats.md)");
+DEFINE_string(columns, "",
+              "of a text table, the names of its columns, in the place of a header: "
+              "theta_i,phi_i,theta_o,phi_o,r,g,b, or f for one value, 550nm for that at a "
+              "wavelength, and - for a column to leave out (docs/file-formats.md)");
+DEFINE_double(theta_i, -1,
+              "of a text table without a column theta_i, the angle of incidence of all its "
+              "samples, in degrees from 0 to below 90");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
 DEFINE_string(out, "", "where to write: a file or, for fit, study, info and plot, a folder");
@@ -136,15 +143,17 @@ SourceOptions SourceOptionsFromFlags() {
       .extrapolated = FLAGS_extrapolated,
       .outliers = FLAGS_outliers,
       .dark_noise = FLAGS_dark_noise,
-      .radiometry = FLAGS_radiometry};
+      .radiometry = FLAGS_radiometry,
+      .columns = FLAGS_columns,
+      .theta_i_deg = FLAGS_theta_i};
   CheckSourceOptions(options);
   return options;
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",    "missing",    "corrupt",   "tilt",        "cosine",
-          "seed",     "data_seed",  "max_angle", "min_theta_d", "extrapolated",
-          "outliers", "dark_noise", "radiometry"};
+  return {"noise",    "missing",    "corrupt",    "tilt",        "cosine",
+          "seed",     "data_seed",  "max_angle",  "min_theta_d", "extrapolated",
+          "outliers", "dark_noise", "radiometry", "columns",     "theta_i"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -21,6 +21,8 @@ DECLARE_string(tilt);
 DECLARE_double(max_angle);
 DECLARE_double(min_theta_d);
 DECLARE_string(radiometry);
+DECLARE_string(columns);
+DECLARE_double(theta_i);
 DECLARE_bool(extrapolated);
 DECLARE_bool(outliers);
 DECLARE_bool(dark_noise);

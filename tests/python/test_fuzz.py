@@ -157,7 +157,8 @@ def test_measures_anything(wi, wo, rho, anisotropic, others):
 @settings
 @hypothesis.given(st.one_of(numbers, st.sampled_from(["synth:plastic@4x4x8", "synth:felt@3x4", "synth:shot_silk@3x4"])),
                   st.dictionaries(st.sampled_from(["noise", "missing", "seed", "max_angle", "min_theta_d",
-                                                   "extrapolated", "radiometry", "threads"]), anything, max_size=2))
+                                                   "extrapolated", "radiometry", "columns", "theta_i",
+                                                   "threads"]), anything, max_size=2))
 def test_reads_any_source(source, options):
     try:
         measurement = trilobe.read(source, **options)

@@ -42,19 +42,24 @@ std::string_view Trimmed(std::string_view text) {
 TextLines::TextLines(std::string_view text, const std::string& source)
     : rest_(text), source_(source) {
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  if (rest_.find('\n') == std::string_view::npos) end_ = '\r';
 }
 
-bool TextLines::Next() {
+bool TextLines::Next(bool with_comment) {
   while (!rest_.empty()) {
-    const size_t end = std::min(rest_.find('\n'), rest_.size());
-    line_ = rest_.substr(0, end);
+    const size_t end = std::min(rest_.find(end_), rest_.size());
+    whole_line_ = line_ = rest_.substr(0, end);
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
     ++number_;
-    line_ = Trimmed(line_.substr(0, line_.find('#')));
+    line_ = Trimmed(with_comment ? line_ : line_.substr(0, line_.find('#')));
     if (!line_.empty()) return true;
   }
   return false;
 }
+
+bool TextLines::Next() { return Next(/*with_comment=*/false); }
+
+bool TextLines::NextWithComment() { return Next(/*with_comment=*/true); }
 
 void TextLines::Fail(const std::string& problem) const {
   throw Error(source_ + ": line " + std::to_string(number_) + ": " + problem);
@@ -65,10 +70,10 @@ void TextLines::FailAt(size_t column, const std::string& name, const std::string
               std::to_string(column + 1) + " (" + name + "): " + problem);
 }
 
-std::vector<std::string_view> SplitCells(std::string_view line) {
+std::vector<std::string_view> SplitCells(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
   for (size_t begin = 0; begin <= line.size();) {
-    const size_t end = std::min(line.find(',', begin), line.size());
+    const size_t end = std::min(line.find(separator, begin), line.size());
     cells.push_back(Trimmed(line.substr(begin, end - begin)));
     begin = end + 1;
   }
@@ -104,6 +109,12 @@ std::vector<int> IntegersByX(std::string_view text) {
   return numbers;
 }
 
+double ReadNumber(const TextLines& lines, size_t column, const std::string& name,
+                  std::string_view cell) {
+  if (const std::optional<double> number = ToNumber(cell)) return *number;
+  lines.FailAt(column, name, Quoted(cell) + " is no number");
+}
+
 void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& cells,
                  const std::vector<std::string>& names, std::vector<double>* numbers) {
   if (cells.size() != names.size()) {
@@ -113,35 +124,35 @@ void ReadNumbers(const TextLines& lines, const std::vector<std::string_view>& ce
   }
   numbers->resize(cells.size());
   for (size_t k = 0; k < cells.size(); ++k) {
-    const std::optional<double> number = ToNumber(cells[k]);
-    if (!number) lines.FailAt(k, names[k], Quoted(cells[k]) + " is no number");
-    (*numbers)[k] = *number;
+    (*numbers)[k] = ReadNumber(lines, k, names[k], cells[k]);
   }
+}
+
+double ReadAngle(const TextLines& lines, size_t column, const std::string& name, double number,
+                 double unit, const AngleRange& range) {
+  const double angle = number * unit;
+  const double min = DegreesToRadians(range.min_deg), max = DegreesToRadians(range.max_deg);
+  if (angle >= min - kAngleRounding && angle <= max + kAngleRounding) return angle;
+  const bool degrees = unit < 1;
+  std::ostringstream problem;
+  problem << number << " is no such angle; expected "
+          << (degrees ? "degrees from " : "radians from ") << (degrees ? range.min_deg : min)
+          << " to " << (degrees ? range.max_deg : max);
+  lines.FailAt(column, name, problem.str());
 }
 
 SphericalAngles ReadAngles(const TextLines& lines, const std::vector<std::string>& names,
                            const std::vector<double>& numbers, const AngleColumns& columns,
                            double unit) {
-  const bool degrees = unit < 1;
-  const auto read = [&](size_t column, double min_deg, double max_deg) {
-    const double angle = numbers[column] * unit;
-    constexpr double kRounding = 1e-4;  // of angles in files
-    if (angle >= DegreesToRadians(min_deg) - kRounding &&
-        angle <= DegreesToRadians(max_deg) + kRounding) {
-      return angle;
-    }
-    std::ostringstream problem;
-    problem << numbers[column] << " is no such angle; expected "
-            << (degrees ? "degrees from " : "radians from ")
-            << (degrees ? min_deg : DegreesToRadians(min_deg)) << " to "
-            << (degrees ? max_deg : DegreesToRadians(max_deg));
-    lines.FailAt(column, names[column], problem.str());
+  const auto read = [&](size_t column, const AngleRange& range) {
+    return ReadAngle(lines, column, names[column], numbers[column], unit, range);
   };
+  constexpr AngleRange kTheta = {0, 180}, kPhi = {-360, 360};
   SphericalAngles angles;
-  angles.theta_i = std::max(read(columns.theta_i, 0, 180), 0.0);
-  angles.phi_i = read(columns.phi_i, -360, 360);
-  angles.theta_o = std::max(read(columns.theta_o, 0, 180), 0.0);
-  angles.phi_o = read(columns.phi_o, -360, 360);
+  angles.theta_i = std::max(read(columns.theta_i, kTheta), 0.0);
+  angles.phi_i = read(columns.phi_i, kPhi);
+  angles.theta_o = std::max(read(columns.theta_o, kTheta), 0.0);
+  angles.phi_o = read(columns.phi_o, kPhi);
   return angles;
 }
 

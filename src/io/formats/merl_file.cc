@@ -26,6 +26,15 @@ std::string ToString(const Dimensions& n) {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
 }
 
+// A header as a machine of the other byte order writes it.
+std::string BigEndian(const Dimensions& dimensions) {
+  std::string bytes;
+  for (const int32_t n : dimensions) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(n >> shift);
+  }
+  return bytes;
+}
+
 // Why `bytes` is no MERL file, or nothing if it is one.
 std::string Defect(std::string_view bytes, const MerlGrid& grid) {
   const size_t file_size = kHeaderSize + kChannels * PlaneSize(grid);
@@ -38,9 +47,16 @@ std::string Defect(std::string_view bytes, const MerlGrid& grid) {
   if (bytes.size() < kHeaderSize) return "truncated: " + size + "; " + expected;
   Dimensions n;
   std::memcpy(n.data(), bytes.data(), kHeaderSize);
+  if (bytes.starts_with(BigEndian(DimensionsOf(grid)))) {
+    return "its numbers are big-endian; a MERL file has little-endian ones: swap the bytes of its "
+           "three int32 and of all float64 after them";
+  }
   if (n != DimensionsOf(grid)) {
     return "the header says " + ToString(n) + " bins in a file of " + size + "; a MERL file has " +
            ToString(DimensionsOf(grid)) + " bins";
+  }
+  if (bytes.size() == kHeaderSize + kChannels * PlaneSize(grid) / 2) {
+    return "its values are float32; a MERL file has float64: write them so, " + expected;
   }
   if (bytes.size() < file_size) {
     return "truncated: " + size + "; " + expected + "; get it once more";

@@ -174,6 +174,12 @@ RglBrdf::~RglBrdf() = default;
 
 RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   const TensorFile file(bytes, source);
+  if (file.Has("M") && file.Has("theta_h")) {
+    throw Error(
+        source +
+        ": this is a polarised .pbsdf file of Mueller matrices; save their first entry, the "
+        "BRDF of unpolarised light, as CSV");
+  }
   const std::vector<double> phi_i = ReadAngles(file, "phi_i", -2 * kPi, 2 * kPi);
   const std::vector<double> theta_i = ReadAngles(file, "theta_i", 0, kPi / 2);
   const int symmetry = SymmetryOf(file, phi_i);

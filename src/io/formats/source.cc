@@ -10,6 +10,8 @@
 #include "core/files/file.h"
 #include "core/files/text_lines.h"
 #include "core/system/content_hash.h"
+#include "io/formats/foreign_file.h"
+#include "io/formats/text_table.h"
 #include "io/formats/utia_file.h"
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/base/check.h"
@@ -65,11 +67,17 @@ std::string WhatMeasurementsAre() {
   return text + "or synth:NAME";
 }
 
-const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source) {
+// `is_table`: options say that a text is one.
+const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source,
+                                  bool is_table) {
   if (const MeasurementFormat* const format = RecogniseFormat(bytes)) return *format;
+  if (const std::string known = ForeignFile(bytes, source); !known.empty()) {
+    throw Error(source + ": this is " + known);
+  }
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
   const Content content = RecogniseContent(bytes);
   const bool is_text = content.kind == Content::Kind::kText;
+  if (is_text && (is_table || IsTableOfNumbers(bytes))) return FindNamed("format", "csv", formats);
   if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
     auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
@@ -96,6 +104,8 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
   note(options.noise != 0, kSynth, "--noise is of synth: sources");
   note(options.extrapolated, "rgl", "--extrapolated is of RGL files");
   note(options.radiometry != SourceOptions().radiometry, "utia", "--radiometry is of UTIA files");
+  note(!options.columns.empty(), "csv", "--columns is of text tables");
+  note(options.theta_i_deg != -1, "csv", "--theta_i is of text tables");
 }
 
 // The tilt that the highlight shows, 0 if it shows none, with a note that says so.
@@ -147,6 +157,9 @@ void CheckSourceOptions(const SourceOptions& options) {
   CheckNumber("--min_theta_d", theta_d, theta_d == -1 || (theta_d >= 0 && theta_d < 90),
               "in degrees from 0 to below 90, or -1 to go by the data");
   FindNamed("radiometry", options.radiometry, UtiaRadiometries());
+  const double theta_i = options.theta_i_deg;
+  CheckNumber("--theta_i", theta_i, theta_i == -1 || (theta_i >= 0 && theta_i < 90),
+              "in degrees from 0 to below 90, or -1 for none");
   ParseCorruptions(options.corrupt);
   const double tilt = options.tilt_deg.value_or(0);
   CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
@@ -252,7 +265,8 @@ bool Source::synthetic() const { return IsSynthetic(name_); }
 std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHash(bytes_); }
 
 Measurement Source::Parsed(const SourceOptions& options) const {
-  const MeasurementFormat& format = FormatOf(bytes_, name_);
+  const bool is_table = !options.columns.empty() || options.theta_i_deg != -1;
+  const MeasurementFormat& format = FormatOf(bytes_, name_, is_table);
   Measurement measurement = format.read(bytes_, name_, options);
   measurement.xxh128 = ContentHash(bytes_);
   NoteUnread(options, format.name, &measurement);

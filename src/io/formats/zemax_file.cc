@@ -33,6 +33,13 @@ const std::map<std::string_view, std::vector<std::string_view>>& Words() {
   return words;
 }
 
+// What to do about a word that cannot be read.
+std::string AdviceFor(std::string_view word) {
+  if (word == "XYZ" || word == "RGB") return "; export one channel as Monochrome, or all as CSV";
+  if (word == "Asymmetric") return ", and this is a file of LightTools; save it as CSV";
+  return "";
+}
+
 using Header = std::array<std::vector<double>, kLists>;  // [degrees]
 
 std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, const char* what) {
@@ -93,7 +100,8 @@ Header ReadHeader(TextLines* lines) {
       seen[word->first] = true;
       if (std::ranges::find(word->second, words[1]) == word->second.end()) {
         lines->Fail(std::string(words[0]) + " is " + std::string(words[1].substr(0, 40)) +
-                    "; only " + std::string(word->second.front()) + " can be read");
+                    "; only " + std::string(word->second.front()) + " can be read" +
+                    AdviceFor(words[1]));
       }
     } else {
       lines->Fail("'" + std::string(words[0].substr(0, 40)) + "' is no key of this format");

@@ -173,9 +173,9 @@ TEST(CsvFile, ErrorsSayWhereAndWhatIsExpected) {
             "x.csv: line 3, column 4 (phi_o): 'abc' is no number");
   EXPECT_THAT(ParseError(kHeader + "1,2,3,4,5,,7\n"), HasSubstr("column 6 (g): '' is no number"));
   EXPECT_THAT(ParseError(kHeader + "1,2,3,4,5 6,6,7\n"), HasSubstr("'5 6' is no number"));
-  EXPECT_EQ(ParseError(kHeader + "-10,2,3,4,5,6,7\n"),
-            "x.csv: line 2, column 1 (theta_i): -10 is no such angle; expected degrees from 0 to "
-            "180");
+  EXPECT_EQ(ParseError(kHeader + "-190,2,3,4,5,6,7\n"),
+            "x.csv: line 2, column 1 (theta_i): -190 is no such angle; expected degrees from -180 "
+            "to 180");
   EXPECT_THAT(ParseError(kHeader + "10,2,3,400,5,6,7\n"),
               HasSubstr("400 is no such angle; expected degrees from -360 to 360"));
   EXPECT_THAT(ParseError(kHeader + "nan,2,3,4,5,6,7\n"), HasSubstr("(theta_i): nan is no such"));

@@ -11,8 +11,8 @@
 namespace trilobe {
 
 // How a source is read and which of its samples count as measured. `noise` is for `synth:` only,
-// `extrapolated` for RGL files, `radiometry` for UTIA files; for other sources they only add a note
-// to the measurement.
+// `extrapolated` for RGL files, `radiometry` for UTIA files, `columns` and `theta_i_deg` for text
+// tables; for other sources they only add a note to the measurement.
 struct SourceOptions {
   double noise = 0.0;        // relative standard deviation of multiplicative noise, 0 to 1
   double missing = 0.0;      // fraction of bins or samples removed at random, in [0, 1)
@@ -30,6 +30,9 @@ struct SourceOptions {
   bool outliers = false;            // keeps samples far from their neighbours
   bool dark_noise = false;          // keeps readings of a table that are lost in dark noise
   std::string radiometry = "brdf";  // of UtiaRadiometries()
+  // Names of the columns of a text table, "theta_i,theta_o,f", in the place of those of its header.
+  std::string columns = {};
+  double theta_i_deg = -1;  // of a text table without a column theta_i, 0 to below 90; -1: none
 };
 
 // Throws Error, with the option's flag and value, if one is out of range.

@@ -1,0 +1,103 @@
+#include "io/formats/foreign_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "core/base/text.h"
+#include "core/files/file.h"
+#include "io/formats/table_columns.h"
+
+namespace trilobe {
+namespace {
+
+using namespace std::string_view_literals;
+
+// What a file is looked at for a word that tells what it is.
+constexpr size_t kLookedAt = 1 << 16;
+
+struct Foreign {
+  // The first bytes, without white space before them, in lower case or as they are.
+  std::string_view begin;
+  std::string_view holds;   // a word further on; "": none
+  std::string_view ending;  // of the file's name, instead of the word; "": none
+  std::string_view name;
+  std::string_view advice;  // "": to save it as CSV
+};
+
+// The first match counts.
+constexpr std::array kForeign = {
+    Foreign{"<!doctype html"sv, "", "", "a web page", "download the file itself"},
+    Foreign{"<html"sv, "", "", "a web page", "download the file itself"},
+    Foreign{"<?xml"sv, "<html", "", "a web page", "download the file itself"},
+    Foreign{"version https://git-lfs"sv, "", "", "a Git LFS pointer in the place of a file",
+            "get the file itself by `git lfs pull`"},
+    Foreign{"pk\3\4"sv, "[content_types].xml", ".xlsx", "a workbook", ""},
+    Foreign{"pk\3\4"sv, "opendocument.spreadsheet", ".ods", "a workbook", ""},
+    Foreign{"pk\3\4"sv, "iwa", ".numbers", "a workbook", ""},
+    Foreign{"pk\3\4"sv, ".npy", ".npz", "an archive of NumPy arrays",
+            "in Python trilobe.Measurement takes their samples"},
+    Foreign{"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"sv, "", "", "a workbook or a document of Office", ""},
+    Foreign{"\x93numpy"sv, "", "", "a NumPy array",
+            "in Python trilobe.Measurement takes its samples"},
+    Foreign{"\x89hdf\r\n"sv, "com.xrite.materials", ".axf",
+            "an AxF file, whose format is not public",
+            "export the material as samples from the program that wrote it"},
+    Foreign{"matlab "sv, "", "", "a MATLAB file", "write its samples by writematrix or writetable"},
+    Foreign{"\x89hdf\r\n"sv, "", ".mat", "a MATLAB file", "write its samples by writetable"},
+    Foreign{"\x89hdf\r\n"sv, "", "", "an HDF5 file", ""},
+    Foreign{"rar!\x1a\7"sv, "", "", "a RAR archive", "unpack it"},
+    Foreign{"scatfun"sv, "", "", "a SCATFUN .bsdf file of Fourier coefficients",
+            "evaluate it at pairs of directions, as layerlab does"},
+    Foreign{"analytic"sv, "::begin", "",
+            "a BRDF Explorer .brdf script, which is a formula and no measurement",
+            "evaluate it at pairs of directions"},
+    Foreign{"optis"sv, "", "", "an OPTIS/Speos text file, which is not read", ""},
+    Foreign{"type bsdf_data"sv, "", "", "a FRED table, which is not read", ""},
+    Foreign{"#alta"sv, "", "", "an ALTA file, which is not read", ""},
+    Foreign{"<?xml"sv, "<windowelement", "", "a Radiance BSDF .xml file, which is not read", ""},
+    Foreign{"<windowelement"sv, "", "", "a Radiance BSDF .xml file, which is not read", ""},
+    Foreign{"<?xml"sv, "", "", "an XML file, which is not read", ""},
+    Foreign{"mdl 1."sv, "", "", "an MDL module, which describes a material and is no measurement",
+            "give the .mbsdf file that it names"},
+};
+
+std::string Lower(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+// Without white space and comments as of C++ at its beginning.
+std::string_view WithoutComments(std::string_view text) {
+  for (;;) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    const std::string_view end = text.starts_with("//") ? "\n" : text.starts_with("/*") ? "*/" : "";
+    const size_t at = end.empty() ? std::string_view::npos : text.find(end);
+    if (at == std::string_view::npos) return text;
+    text.remove_prefix(at + end.size());
+  }
+}
+
+}  // namespace
+
+std::string ForeignFile(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+  const std::string lower = Lower(WithoutComments(bytes.substr(0, kLookedAt)));
+  const std::string_view looked_at = lower;
+  const std::string ending = EndingOf(name);
+  const auto* const found = std::ranges::find_if(kForeign, [&](const Foreign& foreign) {
+    if (!looked_at.starts_with(foreign.begin)) return false;
+    if (foreign.holds.empty() && foreign.ending.empty()) return true;
+    return (!foreign.ending.empty() && ending == foreign.ending) ||
+           (!foreign.holds.empty() && looked_at.find(foreign.holds) != std::string_view::npos);
+  });
+  if (found == kForeign.end()) return "";
+  std::string text(found->name);
+  text += "; ";
+  if (found->advice.empty()) return text + "save it as CSV, with the header " + kUsualColumns;
+  return text.append(found->advice);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,390 @@
+#include "io/formats/table_columns.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <span>
+#include <utility>
+
+#include "trilobe/core/base/printable.h"
+#include "trilobe/core/geometry/channels.h"
+
+namespace trilobe {
+namespace {
+
+using Role = ColumnRole;
+
+constexpr const char* kUsualNames[] = {"theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b"};
+
+// --- Names ---------------------------------------------------------------------------------------
+
+constexpr std::pair<std::string_view, std::string_view> kLetters[] = {
+    {"θ", "theta"}, {"ϑ", "theta"},  {"Θ", "theta"}, {"φ", "phi"}, {"ϕ", "phi"},  {"Φ", "phi"},
+    {"ρ", "rho"},   {"λ", "lambda"}, {"µ", "u"},     {"μ", "u"},   {"°", "deg"},  {"º", "deg"},
+    {"ᵢ", "i"},     {"ₒ", "o"},      {"ᵣ", "r"},     {"ₛ", "s"},   {"⁻¹", "^-1"}, {"\xB0", "deg"}};
+
+// In lower case, with Greek letters as words.
+std::string Plain(std::string_view name) {
+  std::string plain;
+  while (!name.empty()) {
+    const auto* const letter = std::ranges::find_if(
+        kLetters, [&](const auto& entry) { return name.starts_with(entry.first); });
+    if (letter != std::end(kLetters)) {
+      plain += letter->second;
+      name.remove_prefix(letter->first.size());
+    } else {
+      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
+      name.remove_prefix(1);
+    }
+  }
+  return plain;
+}
+
+// Takes what stands in brackets off the end of a plain name: "deg" of "theta_i [deg]".
+std::string TakeBracket(std::string* plain) {
+  const std::string_view text = *plain;
+  const size_t open = text.find_last_of("[("), close = text.find_last_of("])");
+  if (open == 0 || open == std::string::npos || close == std::string::npos) return {};
+  if (close < open) return {};
+  std::string bracket(Trimmed(text.substr(open + 1, close - open - 1)));
+  plain->resize(open);
+  return bracket;
+}
+
+std::string LettersAndDigits(std::string_view plain) {
+  std::string key;
+  for (const char c : plain) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) key += c;
+  }
+  return key;
+}
+
+bool TakeSuffix(std::string_view suffix, std::string* key) {
+  if (key->size() <= suffix.size() || !key->ends_with(suffix)) return false;
+  key->resize(key->size() - suffix.size());
+  return true;
+}
+
+bool IsOneOf(std::string_view word, std::span<const std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+constexpr std::string_view kAngleUnits[] = {"degrees", "degree", "degs", "deg",
+                                            "radians", "radian", "rad"};
+constexpr std::string_view kOtherUnits[] = {"1/sr",    "sr^-1", "sr-1", "/sr", "sr^{-1}", "%",
+                                            "percent", "db",    "nm",   "um",  "mrad",    "-"};
+constexpr std::string_view kNoBrdf[] = {"%", "percent", "db"};
+
+// For a note, in UTF-8.
+std::string Quoted(std::string_view name) {
+  constexpr size_t kLongest = 40;
+  return "'" + Printable(name.substr(0, kLongest)) + "'";
+}
+
+// --- Angles --------------------------------------------------------------------------------------
+
+constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar"};
+constexpr std::string_view kPhiWords[] = {"phi", "azimuthal", "azimuth", "azim", "az"};
+constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
+                                          "incoming", "l",     "light", "src",         "source",
+                                          "sun",      "solar", "illum", "illumination"};
+constexpr std::string_view kOutgoing[] = {
+    "o",    "out",      "outgoing", "r",        "refl",      "reflected",  "reflection",
+    "s",    "sc",       "scat",     "scatter",  "scattered", "scattering", "v",
+    "view", "viewing",  "viewer",   "e",        "exit",      "emission",   "emergent",
+    "obs",  "observer", "det",      "detector", "receiver"};
+// With which no word for an angle need stand.
+constexpr std::string_view kIncidentAlone[] = {"inc", "incident", "incidence", "incoming",
+                                               "aoi", "ti",       "thi",       "sza"};
+constexpr std::string_view kOutgoingAlone[] = {
+    "outgoing", "scatter",  "scattered", "scattering", "view", "viewing", "exit", "emission",
+    "detector", "receiver", "to",        "tho",        "tr",   "thr",     "vza"};
+
+// Of theta or phi of what the rest of the name says.
+std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
+  if (side.empty()) return unsaid;
+  if (IsOneOf(side, kIncident)) return incident;
+  if (IsOneOf(side, kOutgoing)) return outgoing;
+  return std::nullopt;
+}
+
+std::optional<Role> RoleByWords(std::string_view key, std::span<const std::string_view> words,
+                                Role incident, Role outgoing, Role unsaid) {
+  for (const std::string_view word : words) {
+    std::optional<Role> role;
+    if (key.starts_with(word)) {
+      role = RoleBySide(key.substr(word.size()), incident, outgoing, unsaid);
+    }
+    if (!role && key.ends_with(word)) {
+      role = RoleBySide(key.substr(0, key.size() - word.size()), incident, outgoing, unsaid);
+    }
+    if (role) return role;
+  }
+  return std::nullopt;
+}
+
+std::optional<Role> AngleRole(std::string key) {
+  if (key == "angle") return Role::kTheta;
+  for (const std::string_view word : {"angle", "of"}) {
+    if (const size_t at = key.find(word); at != std::string::npos) key.erase(at, word.size());
+  }
+  if (IsOneOf(key, kIncidentAlone)) return Role::kThetaI;
+  if (IsOneOf(key, kOutgoingAlone)) return Role::kThetaO;
+  if (key == "pi" || key == "saa") return Role::kPhiI;
+  if (key == "po" || key == "pr" || key == "vaa") return Role::kPhiO;
+  if (key == "dphi" || key == "deltaphi" || key == "relativeazimuth" || key == "raa") {
+    return Role::kPhi;
+  }
+  if (const auto role = RoleByWords(key, kThetaWords, Role::kThetaI, Role::kThetaO, Role::kTheta)) {
+    return role;
+  }
+  return RoleByWords(key, kPhiWords, Role::kPhiI, Role::kPhiO, Role::kPhi);
+}
+
+// --- Values --------------------------------------------------------------------------------------
+
+constexpr std::string_view kValues[] = {"brdf", "bsdf", "bdrf", "reflectance", "rho", "value",
+                                        "val",  "fr",   "f"};
+
+std::optional<Role> ColorRole(std::string_view word) {
+  if (word == "r" || word == "red") return Role::kRed;
+  if (word == "g" || word == "green") return Role::kGreen;
+  if (word == "b" || word == "blue") return Role::kBlue;
+  return std::nullopt;
+}
+
+std::optional<Role> ValueRole(std::string text) {
+  for (const std::string_view suffix : {"persr", "1sr", "sr1"}) TakeSuffix(suffix, &text);
+  const std::string_view key = text;
+  if (IsOneOf(key, kValues)) return Role::kValue;
+  for (const std::string_view word : kValues) {
+    if (!key.starts_with(word)) continue;
+    if (const auto role = ColorRole(key.substr(word.size()))) return role;
+  }
+  return ColorRole(key);
+}
+
+// [nm] "550", "550nm", "0.55 um", "brdf_550", "lambda=550nm"; none for what is no wavelength.
+std::optional<double> WavelengthIn(std::string_view plain, std::string_view unit) {
+  const size_t first = std::min(plain.find_first_of("0123456789"), plain.size());
+  const std::string word = LettersAndDigits(plain.substr(0, first));
+  if (!word.empty() && word != "lambda" && word != "wl" && word != "wavelength" && word != "r" &&
+      !IsOneOf(word, kValues)) {
+    return std::nullopt;
+  }
+  const std::string_view rest = plain.substr(first);
+  double number = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (error != std::errc()) return std::nullopt;
+  const std::string_view after = Trimmed(rest.substr(end - rest.data()));
+  if (after.empty() == unit.empty() && !after.empty()) return std::nullopt;
+  const std::string_view in = after.empty() ? unit : after;
+  const bool micrometres = in == "um" || in == "micron" || in == "microns" ||
+                           (in.empty() && number < 10 && rest.find('.') != std::string_view::npos);
+  if (!micrometres && !in.empty() && in != "nm") return std::nullopt;
+  const double wavelength = micrometres ? 1000 * number : number;
+  if (!(wavelength >= 200 && wavelength <= 20000)) return std::nullopt;
+  return wavelength;
+}
+
+void SetRole(const std::string& plain, TableColumn* column) {
+  if (const auto wavelength = WavelengthIn(Trimmed(plain), column->unit)) {
+    column->role = Role::kBand;
+    column->wavelength = *wavelength;
+    return;
+  }
+  std::string key = LettersAndDigits(plain);
+  if (key == "wavelength" || key == "lambda" || key == "wl") {
+    column->role = Role::kWavelength;
+  } else if (const auto value = ValueRole(key)) {
+    column->role = *value;
+  } else {
+    for (const std::string_view unit : kAngleUnits) {
+      if (!TakeSuffix(unit, &key)) continue;
+      column->unit = unit;
+      break;
+    }
+    column->role = AngleRole(key).value_or(Role::kOther);
+  }
+}
+
+// --- Layout --------------------------------------------------------------------------------------
+
+class ColumnLayouter {
+ public:
+  ColumnLayouter(const TextLines& lines, const std::vector<TableColumn>& columns)
+      : lines_(lines), layout_{.columns = columns}, is_read_(columns.size()) {}
+
+  ColumnLayout Lay(bool theta_i_is_given) {
+    LayAngles(theta_i_is_given);
+    LayValues();
+    for (size_t k = 0; k < is_read_.size(); ++k) {
+      if (!is_read_[k]) layout_.left_out.push_back(k);
+    }
+    return std::move(layout_);
+  }
+
+ private:
+  std::vector<size_t> All(Role role) const {
+    std::vector<size_t> found;
+    for (size_t k = 0; k < layout_.columns.size(); ++k) {
+      if (layout_.columns[k].role == role) found.push_back(k);
+    }
+    return found;
+  }
+
+  std::optional<size_t> One(Role role) {
+    const std::vector<size_t> found = All(role);
+    if (found.empty()) return std::nullopt;
+    if (found.size() > 1) {
+      lines_.Fail("the header has " + std::to_string(layout_.columns.size()) + " columns, and '" +
+                  layout_.columns[found[0]].name + "' and '" + layout_.columns[found[1]].name +
+                  "' say the same; --columns=" + kUsualColumns +
+                  " names those to read, - the others");
+    }
+    is_read_[found[0]] = true;
+    return found[0];
+  }
+
+  [[noreturn]] void FailWithout(const std::string& column, const std::string& advice) const {
+    lines_.Fail("the header has no column " + column + advice);
+  }
+
+  void LayAngles(bool theta_i_is_given) {
+    constexpr Role kRoles[kAngles] = {Role::kThetaI, Role::kPhiI, Role::kThetaO, Role::kPhiO};
+    for (int k = 0; k < kAngles; ++k) layout_.angles[k] = One(kRoles[k]);
+    auto& [theta_i, phi_i, theta_o, phi_o] = layout_.angles;
+    if (!theta_i && !theta_i_is_given) {
+      FailWithout("theta_i", std::string("; --theta_i=DEGREES gives it, and --columns=") +
+                                 kUsualColumns + " names columns");
+    }
+    if (!theta_o) theta_o = One(Role::kTheta);
+    if (!theta_o) {
+      FailWithout("theta_o", std::string("; --columns=") + kUsualColumns + " names columns");
+    }
+    if (!phi_o && !phi_i) phi_o = One(Role::kPhi);
+    if (!phi_o && phi_i) {
+      FailWithout("phi_o", std::string("; it must be ") + kUsualColumns + ", in any order");
+    }
+    for (int k = 0; k < kAngles; ++k) {
+      if (layout_.angles[k]) layout_.units[k] = UnitOf(layout_.columns[*layout_.angles[k]]);
+    }
+  }
+
+  // [rad]
+  double UnitOf(const TableColumn& column) const {
+    if (column.unit.empty() || column.unit.starts_with("deg")) return kPi / 180;
+    if (column.unit.starts_with("rad")) return 1;
+    lines_.Fail("column '" + column.name + "' is neither in degrees nor in radians; --columns=" +
+                kUsualColumns + " takes it as degrees");
+  }
+
+  void LayValues() {
+    const auto red = All(Role::kRed), green = All(Role::kGreen), blue = All(Role::kBlue);
+    const auto values = All(Role::kValue), bands = All(Role::kBand);
+    layout_.wavelength = One(Role::kWavelength);
+    if (!green.empty() && !blue.empty()) {
+      const Role first = red.empty() ? Role::kValue : Role::kRed;  // "fr" beside "fg" and "fb"
+      for (const Role role : {first, Role::kGreen, Role::kBlue}) {
+        if (const auto column = One(role)) layout_.values.push_back(*column);
+      }
+      if (layout_.values.size() < kChannels) FailWithout("r", " beside those of g and b");
+    } else if (bands.size() > 1) {
+      LayBands(bands);
+    } else if (!values.empty()) {
+      layout_.values = {*One(Role::kValue)};
+    } else if (red.size() + green.size() + blue.size() == 1) {
+      layout_.values = {
+          *One(red.empty() ? green.empty() ? Role::kBlue : Role::kGreen : Role::kRed)};
+    } else if (!bands.empty()) {
+      layout_.values = {*One(Role::kBand)};
+    } else {
+      FailWithout("of values",
+                  std::string(", as r, g, b, or brdf, or wavelengths as 550nm; --columns=") +
+                      kUsualColumns + " names columns, - those to leave out");
+    }
+    for (const size_t k : layout_.values) {
+      const TableColumn& column = layout_.columns[k];
+      if (!IsOneOf(column.unit, kNoBrdf)) continue;
+      lines_.Fail("column '" + column.name + "' is in " + column.unit +
+                  ", and a BRDF is in 1/sr; --columns=" + kUsualColumns + " takes it as 1/sr");
+    }
+  }
+
+  void LayBands(std::vector<size_t> bands) {
+    const auto wavelength = [&](size_t k) { return layout_.columns[k].wavelength; };
+    std::ranges::sort(bands, {}, wavelength);
+    for (const size_t k : bands) {
+      is_read_[k] = true;
+      layout_.wavelengths.push_back(wavelength(k));
+    }
+    layout_.values = std::move(bands);
+  }
+
+  const TextLines& lines_;
+  ColumnLayout layout_;
+  std::vector<bool> is_read_;
+};
+
+}  // namespace
+
+TableColumn ColumnNamed(std::string_view name) {
+  TableColumn column{.name = std::string(name)};
+  column.is_usual_name = std::ranges::find(kUsualNames, name) != std::end(kUsualNames);
+  std::string plain = Plain(name);
+  const std::string whole = plain, bracket = TakeBracket(&plain);
+  if (const auto unit = UnitIn(bracket)) {
+    column.unit = *unit;
+  } else if (!bracket.empty()) {  // "theta (incident)" and "r (red)"
+    SetRole(whole, &column);
+    if (column.role != Role::kOther) return column;
+  }
+  SetRole(plain, &column);
+  return column;
+}
+
+std::optional<std::string> UnitIn(std::string_view cell) {
+  std::string plain = Plain(Trimmed(cell));
+  if (plain.size() > 2 && (plain.front() == '[' || plain.front() == '(')) {
+    plain = plain.substr(1, plain.size() - 2);
+  }
+  if (IsOneOf(plain, kAngleUnits) || IsOneOf(plain, kOtherUnits)) return plain;
+  return std::nullopt;
+}
+
+std::vector<std::string> RenamedColumns(const ColumnLayout& layout) {
+  std::vector<std::string> renamed;
+  const auto add = [&](size_t column, const char* usual) {
+    const std::string& name = layout.columns[column].name;
+    std::string plain = Plain(name);
+    TakeBracket(&plain);
+    std::string key = LettersAndDigits(plain);
+    for (const std::string_view unit : kAngleUnits) TakeSuffix(unit, &key);
+    if (key != LettersAndDigits(usual)) renamed.push_back(Quoted(name) + " as " + usual);
+  };
+  for (int k = 0; k < kAngles; ++k) {
+    if (layout.angles[k]) add(*layout.angles[k], kUsualNames[k]);
+  }
+  if (!layout.wavelengths.empty()) return renamed;
+  for (size_t k = 0; k < layout.values.size(); ++k) {
+    add(layout.values[k], layout.values.size() == 1 ? "f" : kUsualNames[kAngles + k]);
+  }
+  return renamed;
+}
+
+std::string LeftOutColumns(const ColumnLayout& layout) {
+  constexpr size_t kMost = 5;
+  std::string text;
+  for (size_t k = 0; k < std::min(layout.left_out.size(), kMost); ++k) {
+    text += (k > 0 ? ", " : "") + Quoted(layout.columns[layout.left_out[k]].name);
+  }
+  if (layout.left_out.size() <= kMost) return text;
+  return text + " and " + std::to_string(layout.left_out.size() - kMost) + " more";
+}
+
+ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
+                      bool theta_i_is_given) {
+  return ColumnLayouter(lines, columns).Lay(theta_i_is_given);
+}
+
+}  // namespace trilobe

@@ -1,0 +1,275 @@
+#include "io/formats/table_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/base/text.h"
+#include "core/files/text_lines.h"
+#include "io/formats/spectrum.h"
+#include "io/formats/table_columns.h"
+#include "io/formats/text_table.h"
+#include "trilobe/core/base/error.h"
+
+namespace trilobe {
+namespace {
+
+TableHead HeadOf(std::string_view text, const std::string& source, const SourceOptions& options) {
+  TableHead head{.lines = TextLines(text, source)};
+  if (!options.columns.empty()) {
+    std::vector<std::string> names;
+    for (const std::string_view name : SplitCells(options.columns)) names.emplace_back(name);
+    head = TableHeadBy(names, text, source);
+  } else if (auto found = FindTableHead(text, source, options.theta_i_deg != -1)) {
+    head = *std::move(found);
+  } else {
+    if (!head.lines.Next()) {
+      throw Error(source + ": no header row; it must be " + kUsualColumns);
+    }
+    if (LooksLikeRow(head.lines.line())) {
+      head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
+                      " names them, - those to leave out");
+    }
+    for (const std::string_view name : SplitCells(head.lines.line())) head.names.emplace_back(name);
+  }
+  return head;
+}
+
+// "", "NA", "-": not measured.
+bool IsGap(std::string_view cell) {
+  return cell.empty() || cell == "-" || cell == "--" || cell == "NA" || cell == "N/A" ||
+         cell == "n/a" || cell == "null";
+}
+
+// Samples of a plane, with signs: whether the samples near the mirror direction are brighter where
+// theta_i and theta_o have the same sign, or different ones.
+class BrighterSide {
+ public:
+  void Add(double theta_i, double theta_o, const Rgb& rho) {
+    const double mean = Mean(rho);
+    if (!(std::abs(theta_i) < kPi / 2 && std::abs(theta_o) < kPi / 2) || !(mean >= 0)) return;
+    if (!std::isfinite(mean) || theta_o == 0) return;
+    const bool same = std::signbit(theta_i) == std::signbit(theta_o);
+    const bool near = std::abs(std::abs(theta_i) - std::abs(theta_o)) < DegreesToRadians(15);
+    for (const bool nearby : {false, near}) {
+      sum_[nearby][same] += mean;
+      ++count_[nearby][same];
+    }
+    seen_[same] = true;
+  }
+  bool both() const { return seen_[0] && seen_[1]; }
+  bool same() const {
+    const bool near = count_[1][0] > 0 && count_[1][1] > 0;
+    return sum_[near][1] * count_[near][0] >= sum_[near][0] * count_[near][1];
+  }
+
+ private:
+  std::array<std::array<double, 2>, 2> sum_{}, count_{};  // [near the mirror direction][same sign]
+  std::array<bool, 2> seen_{};
+};
+
+class TableReader {
+ public:
+  TableReader(std::string_view text, const std::string& source, const SourceOptions& options)
+      : source_(source),
+        options_(options),
+        head_(HeadOf(text, source, options)),
+        layout_(Layout()) {
+    numbers_.resize(layout_.values.size());
+  }
+
+  Measurement Read() {
+    // Whether phi_o is that of the signs, turned by 180 degrees.
+    bool turned = !layout_.angles[kPhiO];
+    Measurement measurement = ReadRows(turned);
+    by_brightness_ = in_plane_ && signed_ && brighter_.both();
+    if (by_brightness_ && brighter_.same() != turned) {
+      turned = brighter_.same();
+      measurement = ReadRows(turned);
+    }
+    if (!IsUsual()) measurement.notes.push_back(Note(turned));
+    if (options_.theta_i_deg != -1 && layout_.angles[kThetaI]) {
+      measurement.notes.emplace_back(
+          "--theta_i is of tables without a column theta_i, and changes nothing here");
+    }
+    return measurement;
+  }
+
+ private:
+  enum Angle { kThetaI, kPhiI, kThetaO, kPhiO };
+
+  ColumnLayout Layout() {
+    const TextLines header = head_.lines;
+    GoToRows(&head_);
+    std::vector<TableColumn> columns;
+    for (const std::string& name : head_.names) columns.push_back(ColumnNamed(name));
+    return LayoutOf(header, columns, options_.theta_i_deg != -1);
+  }
+
+  Measurement ReadRows(bool turned) {
+    SampleCollector collector(source_, "CSV file of scattered samples");
+    std::optional<SpectralColor> color;
+    if (!layout_.wavelengths.empty()) color.emplace(ColorOfSpectra());
+    brighter_ = {};
+    for (TextLines lines = head_.lines; lines.Next();) {
+      Split(lines);
+      const SphericalAngles angles = Angles(lines, turned);
+      if (!Values(lines)) {
+        collector.LeaveOut(&BinCounts::missing);
+        continue;
+      }
+      CheckWavelength(lines);
+      const size_t n = numbers_.size();
+      const Rgb rho = {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
+      if (in_plane_) brighter_.Add(theta_i_, theta_o_, rho);
+      if (color) {
+        AddSpectrum(angles, numbers_, *color, &collector);
+      } else {
+        collector.Add(angles, rho);
+      }
+    }
+    // Light from both sides of one plane shows nothing of a grain.
+    return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
+  }
+
+  SpectralColor ColorOfSpectra() const {
+    try {
+      return {layout_.wavelengths, source_};
+    } catch (const Error& error) {
+      throw Error(std::string(error.what()) +
+                  "; --columns= names three of the columns r, g and b, or one f, the others -");
+    }
+  }
+
+  void Split(const TextLines& lines) {
+    SplitRow(lines.line(), head_.separator, &cells_);
+    const std::vector<TableColumn>& columns = layout_.columns;
+    if (cells_.size() == columns.size() + 1 && cells_.back().empty()) cells_.pop_back();
+    if (cells_.size() == columns.size()) return;
+    lines.Fail(std::to_string(cells_.size()) + (cells_.size() == 1 ? " column" : " columns") +
+               "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
+               " to " + columns.back().name);
+  }
+
+  double Number(const TextLines& lines, size_t column) {
+    if (const auto number = ToNumber(cells_[column])) return *number;
+    if (const auto number = DecimalCommaNumber(cells_[column])) {
+      decimal_commas_ = true;
+      return *number;
+    }
+    return ReadNumber(lines, column, layout_.columns[column].name, cells_[column]);  // throws
+  }
+
+  // [rad]; `missing` without a column.
+  double AngleOf(const TextLines& lines, Angle angle, const AngleRange& range, double missing) {
+    const std::optional<size_t> column = layout_.angles[angle];
+    if (!column) return missing;
+    return ReadAngle(lines, *column, layout_.columns[*column].name, Number(lines, *column),
+                     layout_.units[angle], range);
+  }
+
+  // Theta with its sign, which turns *phi by 180 degrees.
+  static double Unsigned(double theta, double* phi) {
+    if (theta >= -kAngleRounding) return std::max(theta, 0.0);
+    *phi += *phi > 0 ? -kPi : kPi;
+    return -theta;
+  }
+
+  SphericalAngles Angles(const TextLines& lines, bool turned) {
+    constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
+    theta_i_ = AngleOf(lines, kThetaI, kTheta, DegreesToRadians(options_.theta_i_deg));
+    theta_o_ = AngleOf(lines, kThetaO, kTheta, 0);
+    SphericalAngles at;
+    at.phi_i = AngleOf(lines, kPhiI, kPhi, 0);
+    at.phi_o = AngleOf(lines, kPhiO, kPhi, 0);
+    signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
+    in_plane_ &= at.phi_i == at.phi_o;
+    if (!phi_i_) phi_i_ = at.phi_i;
+    one_phi_i_ &= at.phi_i == *phi_i_;
+    at.theta_i = Unsigned(theta_i_, &at.phi_i);
+    if (turned) at.phi_o += kPi;
+    at.theta_o = Unsigned(theta_o_, &at.phi_o);
+    return at;
+  }
+
+  // Takes the values of the row; false where none was measured.
+  bool Values(const TextLines& lines) {
+    const auto is_gap = [&](size_t column) { return IsGap(cells_[column]); };
+    if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
+    for (size_t k = 0; k < numbers_.size(); ++k) numbers_[k] = Number(lines, layout_.values[k]);
+    return true;
+  }
+
+  void CheckWavelength(const TextLines& lines) {
+    if (!layout_.wavelength) return;
+    const double wavelength = Number(lines, *layout_.wavelength);
+    if (!wavelength_) wavelength_ = wavelength;
+    if (wavelength == *wavelength_) return;
+    lines.FailAt(*layout_.wavelength, layout_.columns[*layout_.wavelength].name,
+                 Text(wavelength) + " comes after " + Text(*wavelength_) +
+                     "; make a column of each wavelength, as 550nm, or a file of each");
+  }
+
+  // As this library writes it, and as it was the only way once.
+  bool IsUsual() const {
+    return head_.separator == ',' && !head_.in_comment && head_.lines_before == 0 &&
+           options_.columns.empty() && !signed_ && !decimal_commas_ && layout_.HasAllAngles() &&
+           std::ranges::all_of(layout_.columns, &TableColumn::is_usual_name);
+  }
+
+  std::string Note(bool turned) const;
+
+  const std::string& source_;
+  const SourceOptions& options_;
+  TableHead head_;
+  ColumnLayout layout_;
+  std::vector<std::string_view> cells_;
+  std::vector<double> numbers_;               // the values of a row
+  double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
+  std::optional<double> phi_i_, wavelength_;  // of the first row
+  bool in_plane_ = true, signed_ = false, one_phi_i_ = true, by_brightness_ = false;
+  bool decimal_commas_ = false;
+  BrighterSide brighter_;
+};
+
+std::string TableReader::Note(bool turned) const {
+  std::string note;
+  const auto say = [&](bool is_so, const std::string& what) {
+    if (is_so) note += (note.empty() ? "read as: " : ", ") + what;
+  };
+  say(head_.lines_before > 0, std::to_string(head_.lines_before) + " lines before the header");
+  say(head_.in_comment, "a header in a comment");
+  say(!options_.columns.empty(), "columns by --columns");
+  say(head_.separator == ';', "semicolons");
+  say(head_.separator == '\t', "tabs");
+  say(head_.separator == ' ', "blanks");
+  say(decimal_commas_, "decimal commas");
+  for (const std::string& renamed : RenamedColumns(layout_)) say(true, renamed);
+  say(layout_.HasAnglesIn(kPi / 180), "degrees");
+  say(layout_.HasAnglesIn(1), "radians");
+  say(!layout_.angles[kThetaI], "theta_i = " + Text(options_.theta_i_deg) + " deg");
+  say(!layout_.angles[kPhiI], "phi_i = 0");
+  const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
+                                  : "theta_o > 0 on the side of the light";
+  const bool by_side = !layout_.angles[kPhiO] || by_brightness_;
+  say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
+  say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
+  say(layout_.values.size() == 1, "one value for all channels");
+  say(!layout_.wavelengths.empty(),
+      std::to_string(layout_.wavelengths.size()) + " wavelengths to RGB by CIE 1931");
+  say(true, "f in 1/sr");
+  if (!layout_.left_out.empty()) note += "; left out: " + LeftOutColumns(layout_);
+  return note;
+}
+
+}  // namespace
+
+Measurement ReadTextTable(std::string_view text, const std::string& source,
+                          const SourceOptions& options) {
+  return TableReader(text, source, options).Read();
+}
+
+}  // namespace trilobe

@@ -1,0 +1,52 @@
+#ifndef TRILOBE_IO_FORMATS_TEXT_TABLE_H_
+#define TRILOBE_IO_FORMATS_TEXT_TABLE_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/files/text_lines.h"
+#include "io/formats/table_columns.h"
+
+namespace trilobe {
+
+// How a text table is written: what stands between its cells, and where its header is.
+struct TableHead {
+  TextLines lines;  // at the header or, without one, before the first row
+  std::vector<std::string> names = {};
+  char separator = ',';     // or ';', a tab, or ' ' for any number of blanks and tabs
+  bool in_comment = false;  // the header stands behind # or %
+  int lines_before = 0;     // lines of text before it, which are no comments
+};
+
+// Looks for the first line that names columns of angles and others, or for the last of comments
+// before the first row. None if there is none. "theta" alone is an angle if `theta_i_is_given`.
+std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,
+                                       bool theta_i_is_given);
+
+// The same for a table whose columns have these names, in the place of those of a header. Throws
+// Error if no line could be a row.
+TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view text,
+                      const std::string& source);
+
+// The separator of the first row after the head, which may be another than that of the header; goes
+// beyond a line of units and adds these to the names.
+void GoToRows(TableHead* head);
+
+// Whether a line could be a row: at least so many of its cells, and half of them, are numbers.
+inline constexpr size_t kFewestNumbers = 3;
+bool LooksLikeRow(std::string_view line, size_t fewest = kFewestNumbers);
+
+// Whether the first line that is no comment could be a row.
+bool IsTableOfNumbers(std::string_view text);
+
+// Cells of a row without quotes and white space at their ends.
+void SplitRow(std::string_view line, char separator, std::vector<std::string_view>* cells);
+
+// A number with a decimal comma; none for others.
+std::optional<double> DecimalCommaNumber(std::string_view cell);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_TEXT_TABLE_H_

@@ -1,0 +1,124 @@
+// What is no measurement that can be read is named, with what to do.
+#include "io/formats/foreign_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "io/formats/tensor_file.h"
+#include "tests/test_directory.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using namespace std::string_literals;
+using testing::HasSubstr;
+
+std::string ErrorOfSource(const std::string& name, const std::string& bytes) {
+  return ErrorOf([&] { Source(name, bytes).Read(); });
+}
+
+const std::string kAsCsv = "; save it as CSV, with the header theta_i,phi_i,theta_o,phi_o,r,g,b";
+
+TEST(ForeignFile, IsNamedWithWhatToDo) {
+  struct Case {
+    std::string name, bytes, error;
+  };
+  const std::string zip = "PK\3\4\x14\0\6\0"s, hdf = "\x89HDF\r\n\x1a\n"s;
+  const Case cases[] = {
+      {"f.bsdf", "\n<!DOCTYPE html>\n<html>", "a web page; download the file itself"},
+      {"f.csv", "\xEF\xBB\xBF<HTML><body>", "a web page; download the file itself"},
+      {"f.binary", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
+       "a Git LFS pointer in the place of a file; get the file itself by `git lfs pull`"},
+      {"f.xlsx", zip, "a workbook" + kAsCsv},
+      {"f", zip + "[Content_Types].xml", "a workbook" + kAsCsv},
+      {"f.ods", zip + "mimetypeapplication/vnd.oasis.opendocument.spreadsheet",
+       "a workbook" + kAsCsv},
+      {"f.xls", "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0"s,
+       "a workbook or a document of Office" + kAsCsv},
+      {"f.npz", zip + "rho.npy",
+       "an archive of NumPy arrays; in Python trilobe.Measurement takes their samples"},
+      {"f.npy", "\x93NUMPY\1\0"s, "a NumPy array; in Python trilobe.Measurement takes its samples"},
+      {"f.mat", "MATLAB 5.0 MAT-file",
+       "a MATLAB file; write its samples by writematrix or writetable"},
+      {"f.mat", hdf, "a MATLAB file; write its samples by writetable"},
+      {"f.axf", hdf,
+       "an AxF file, whose format is not public; export the material as samples from the program "
+       "that wrote it"},
+      {"f.h5", hdf, "an HDF5 file" + kAsCsv},
+      {"f.bsdf", "SCATFUN\1",
+       "a SCATFUN .bsdf file of Fourier coefficients; evaluate it at pairs of directions, as "
+       "layerlab does"},
+      {"f.brdf", "analytic\n\n::begin parameters\n",
+       "a BRDF Explorer .brdf script, which is a formula and no measurement; evaluate it at pairs "
+       "of directions"},
+      {"f.brdf", "OPTIS - brdf surface file v8.0\n0\n",
+       "an OPTIS/Speos text file, which is not read" + kAsCsv},
+      {"f.txt", "type bsdf_data\nformat angles=deg\n10 0\n0 0 0.03\n",
+       "a FRED table, which is not read" + kAsCsv},
+      {"f.alta", "#ALTA_BEGIN_HEADER\n#DIM 3 1\n#ALTA_END_HEADER\n0.2 0.3 3.1 0.1\n",
+       "an ALTA file, which is not read" + kAsCsv},
+      {"f.xml", "<?xml version=\"1.0\"?>\n<WindowElement>\n",
+       "a Radiance BSDF .xml file, which is not read" + kAsCsv},
+      {"f.xml", "<?xml version=\"1.0\"?>\n<a/>\n", "an XML file, which is not read" + kAsCsv},
+      {"f.mdl", "// a paint\n/* by me */\nmdl 1.7;\nimport ::df::*;\n",
+       "an MDL module, which describes a material and is no measurement; give the .mbsdf file that "
+       "it names"}};
+  for (const auto& [name, bytes, error] : cases) {
+    EXPECT_EQ(ErrorOfSource(name, bytes), name + ": this is " + error);
+  }
+  EXPECT_EQ(ForeignFile("notes", "x.txt"), "");
+  EXPECT_EQ(ForeignFile("", "x.xlsx"), "");
+}
+
+TEST(ForeignFile, ArchivesAreUnpacked) {
+  EXPECT_THAT(ErrorOfSource("f.zip", "PK\3\4"), HasSubstr("this is a ZIP archive; unpack it"));
+  EXPECT_THAT(ErrorOfSource("f.gz", "\x1F\x8B\x08"), HasSubstr("this is a gzip file; unpack it"));
+  EXPECT_THAT(ErrorOfSource("f.xz", "\xFD\x37zXZ\0"s), HasSubstr("this is an xz file; unpack it"));
+  EXPECT_THAT(ErrorOfSource("f.7z", "7z\xBC\xAF\x27\x1C"), HasSubstr("this is a 7-Zip archive"));
+}
+
+TEST(ForeignFile, OtherMerlFiles) {
+  std::string header("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12);
+  const auto error = [&](size_t size) {
+    std::string bytes = header;
+    bytes.resize(size);
+    return ErrorOfSource("f.binary", bytes);
+  };
+  EXPECT_EQ(error(17496012),
+            "f.binary: its values are float32; a MERL file has float64: write them so, a MERL file "
+            "has 34992012 bytes");
+  for (size_t k = 0; k < header.size(); k += 4) std::reverse(&header[k], &header[k] + 4);
+  EXPECT_EQ(error(34992012),
+            "f.binary: its numbers are big-endian; a MERL file has little-endian ones: swap the "
+            "bytes of its three int32 and of all float64 after them");
+}
+
+TEST(ForeignFile, PolarisedTensors) {
+  TensorFileWriter writer;
+  writer.AddFloat32("M", {1}, {1});
+  writer.AddFloat32("theta_h", {1}, {0});
+  EXPECT_EQ(ErrorOfSource("f.pbsdf", writer.Bytes()),
+            "f.pbsdf: this is a polarised .pbsdf file of Mueller matrices; save their first entry, "
+            "the BRDF of unpolarised light, as CSV");
+}
+
+TEST(ForeignFile, KindsOfZemaxFiles) {
+  const auto error = [](const std::string& symmetry, const std::string& content) {
+    return ErrorOfSource("f.bsdf",
+                         "Source Measured\nSymmetry " + symmetry + "\nSpectralContent " + content);
+  };
+  EXPECT_EQ(error("PlaneSymmetrical", "XYZ"),
+            "f.bsdf: line 3: SpectralContent is XYZ; only Monochrome can be read; export one "
+            "channel as Monochrome, or all as CSV");
+  EXPECT_EQ(
+      error("Asymmetric", "Monochrome"),
+      "f.bsdf: line 2: Symmetry is Asymmetric; only PlaneSymmetrical can be read, and this is "
+      "a file of LightTools; save it as CSV");
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE

@@ -1,0 +1,307 @@
+// Tables as people have them are read as the same samples between commas are.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/formats/spectrum.h"
+#include "io/formats/table_columns.h"
+#include "tests/paths.h"
+#include "tests/test_directory.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kPlain =
+    "theta_i,phi_i,theta_o,phi_o,r,g,b\n"
+    "5,0,0,0,0.25,0.5,0.75\n"
+    "10,0,60.5,123.5,0.1,2e-5,3\n"
+    "45,0,45,180,1,0,0.125\n";
+
+Measurement Read(const std::string& text, const SourceOptions& options = {},
+                 const std::string& name = "x.csv") {
+  return Source(name, text).Read(options);
+}
+
+std::string ReadError(const std::string& text, const SourceOptions& options = {},
+                      const std::string& name = "x.csv") {
+  return ErrorOf([&] { Read(text, options, name); });
+}
+
+void ExpectSameSamples(const Measurement& is, const Measurement& expected) {
+  ASSERT_EQ(is.samples.rho, expected.samples.rho);
+  for (int j = 0; j < is.samples.size(); ++j) {
+    const SphericalAngles &a = is.samples.directions[j], &b = expected.samples.directions[j];
+    EXPECT_NEAR(a.theta_i, b.theta_i, 1e-12);
+    EXPECT_NEAR(a.theta_o, b.theta_o, 1e-12);
+    EXPECT_NEAR(std::remainder(a.phi_i - b.phi_i, 2 * kPi), 0, 1e-12);
+    EXPECT_NEAR(std::remainder(a.phi_o - b.phi_o, 2 * kPi), 0, 1e-12);
+  }
+  EXPECT_EQ(is.counts.total, expected.counts.total);
+  EXPECT_EQ(is.anisotropic, expected.anisotropic);
+}
+
+// That `text` is kPlain in another form, and what is said of it.
+void ExpectPlain(const std::string& text, const std::string& note,
+                 const SourceOptions& options = {}) {
+  const Measurement read = Read(text, options, "x.txt");
+  ExpectSameSamples(read, Read(kPlain));
+  EXPECT_THAT(read.notes, ElementsAre("read as: " + note));
+}
+
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
+  for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+TEST(TextTable, PlainTablesHaveNoNote) { EXPECT_THAT(Read(kPlain).notes, ElementsAre()); }
+
+TEST(TextTable, AnySeparatorAndDecimalCommas) {
+  const std::string semicolons = Replaced(kPlain, ",", ";");
+  ExpectPlain(semicolons, "semicolons, degrees, f in 1/sr");
+  ExpectPlain(Replaced(semicolons, ".", ","), "semicolons, decimal commas, degrees, f in 1/sr");
+  ExpectPlain(Replaced(Replaced(kPlain, ",", "\t"), ".", ","),
+              "tabs, decimal commas, degrees, f in 1/sr");
+  ExpectPlain(Replaced(kPlain, ",", "   "), "blanks, degrees, f in 1/sr");
+  ExpectPlain(Replaced(kPlain, ",", "\t\t"), "blanks, degrees, f in 1/sr");
+  EXPECT_THAT(Read(Replaced(kPlain, "\n", ",\n")).notes, ElementsAre());
+  EXPECT_THAT(Read(Replaced(kPlain, "\n", "\r")).notes, ElementsAre());
+  EXPECT_THAT(Read(Replaced(kPlain, "\n", "\r\n")).notes, ElementsAre());
+  EXPECT_EQ(Read(Replaced(kPlain, "\n", "\r")).counts.valid, 3);
+}
+
+TEST(TextTable, QuotesAndHeadersInComments) {
+  const std::string quoted = "\"" + Replaced(Replaced(kPlain, ",", "\",\""), "\n", "\"\n\"");
+  ExpectSameSamples(Read(quoted.substr(0, quoted.size() - 1)), Read(kPlain));
+  ExpectPlain("# a paint\n# " + kPlain, "a header in a comment, degrees, f in 1/sr");
+  ExpectPlain("% " + Replaced(kPlain, ",", " "),
+              "a header in a comment, blanks, degrees, f in 1/sr");
+  ExpectPlain("Goniometer 7\nsample: a paint, on steel\n\n" + kPlain,
+              "2 lines before the header, degrees, f in 1/sr");
+}
+
+TEST(TextTable, UnitsAndOtherNames) {
+  const std::string rows = kPlain.substr(kPlain.find('\n'));
+  ExpectPlain("theta_i [deg],phi_i [deg],theta_o [deg],phi_o [deg],r,g,b" + rows,
+              "degrees, f in 1/sr");
+  ExpectPlain("Theta_i_deg,Phi_i_deg,Theta_o_deg,Phi_o_deg,R [1/sr],G [1/sr],B [1/sr]" + rows,
+              "degrees, f in 1/sr");
+  ExpectPlain("θi (°),φi (°),θr (°),φr (°),brdf_r,brdf_g,brdf_b" + rows,
+              "'θr (°)' as theta_o, 'φr (°)' as phi_o, 'brdf_r' as r, 'brdf_g' as g, 'brdf_b' as "
+              "b, degrees, f in 1/sr");
+  ExpectPlain("theta_i,phi_i,theta_o,phi_o,r,g,b\ndeg,deg,deg,deg,1/sr,1/sr,1/sr" + rows,
+              "degrees, f in 1/sr");
+  ExpectPlain("theta_i [deg] phi_i [deg] theta_o [deg] phi_o [deg] r g b" + rows,
+              "degrees, f in 1/sr");
+  const Measurement radians =
+      Read("theta_i (rad),phi_i (rad),theta_o_rad,phi_o_rad,r,g,b\n0.5,0,1.25,3,1,2,3\n");
+  EXPECT_EQ(radians.samples.directions[0].theta_o, 1.25);
+  EXPECT_THAT(radians.notes, ElementsAre("read as: radians, f in 1/sr"));
+}
+
+TEST(TextTable, NamesOfAngles) {
+  const auto role = [](const char* name) { return ColumnNamed(name).role; };
+  for (const char* name :
+       {"theta_i", "THETAI", "theta_in", "incident_theta", "inc", "ti", "AOI",
+        "Angle of incidence [deg]", "theta (incident)", "\\theta_i", "zenith_in"}) {
+    EXPECT_EQ(role(name), ColumnRole::kThetaI) << name;
+  }
+  for (const char* name : {"theta_o", "theta_r", "thetar", "theta_s", "ThetaView", "outgoing_theta",
+                           "scatter angle", "to", "theta_out(rad)", "detector theta"}) {
+    EXPECT_EQ(role(name), ColumnRole::kThetaO) << name;
+  }
+  for (const char* name : {"phi_i", "phiin", "Azimuth_in", "phi_inc_deg", "az_i"}) {
+    EXPECT_EQ(role(name), ColumnRole::kPhiI) << name;
+  }
+  for (const char* name : {"phi_o", "phir", "azimuth_out", "phi_s"}) {
+    EXPECT_EQ(role(name), ColumnRole::kPhiO) << name;
+  }
+  for (const char* name : {"brdf", "BSDF [1/sr]", "f", "f_r", "rho", "value", "brdf_1/sr"}) {
+    EXPECT_EQ(role(name), ColumnRole::kValue) << name;
+  }
+  for (const char* name : {"index", "", "time", "theta_h", "sigma", "thetaphi", "no. 5"}) {
+    EXPECT_EQ(role(name), ColumnRole::kOther) << name;
+  }
+  for (const char* name :
+       {"550", "550nm", "550 nm", "0.55um", "0.55 [µm]", "brdf_550", "λ=550nm"}) {
+    EXPECT_EQ(role(name), ColumnRole::kBand) << name;
+    EXPECT_NEAR(ColumnNamed(name).wavelength, 550, 1e-9) << name;
+  }
+}
+
+TEST(TextTable, ColumnsThatAreNoneOfIts) {
+  const Measurement read = Read(
+      ",name,theta_i,phi_i,theta_o,phi_o,r,g,b,\n1,a,5,0,0,0,1,2,3,\n2,\"b, c\",5,0,10,0,4,5,6,\n");
+  EXPECT_EQ(read.samples.rho, (std::vector<Rgb>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_THAT(read.notes, ElementsAre("read as: degrees, f in 1/sr; left out: '', 'name'"));
+}
+
+TEST(TextTable, AnIndexNeedsNoName) {
+  for (const std::string separator : {",", "\t", ";"}) {
+    const std::string text = ",theta_i,phi_i,theta_o,phi_o,r,g,b\n0,5,0,0,0,1,2,3\n";
+    EXPECT_EQ(Read(Replaced(text, ",", separator), {}, "x.tsv").samples.rho,
+              (std::vector<Rgb>{{1, 2, 3}}))
+        << separator;
+  }
+}
+
+TEST(TextTable, OneValueCountsForAllChannels) {
+  const Measurement read = Read("theta_i,phi_i,theta_o,phi_o,brdf\n5,0,0,0,0.25\n5,0,9,0,NA\n");
+  EXPECT_EQ(read.samples.rho, (std::vector<Rgb>{{0.25, 0.25, 0.25}}));
+  EXPECT_EQ(read.counts.missing, 1);
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("one value for all channels, f in 1/sr")));
+}
+
+TEST(TextTable, WavelengthsBecomeColours) {
+  const std::vector<double> wavelengths = {400, 450, 500, 550, 600, 650, 700};
+  const std::vector<double> spectrum = {0.1, 0.2, 0.3, 0.4, 0.5, 0.4, 0.3};
+  const Rgb expected = SpectralColor(wavelengths, "x")(spectrum);
+  for (const char* header :
+       {"400,450,500,550,600,650,700", "400nm,450nm,500nm,550nm,600nm,650nm,700nm",
+        "0.4um,0.45um,0.5um,0.55um,0.6um,0.65um,0.7um"}) {
+    const Measurement read = Read(std::string("theta_i,phi_i,theta_o,phi_o,") + header +
+                                  "\n5,0,10,0,.1,.2,.3,.4,.5,.4,.3\n");
+    EXPECT_EQ(read.samples.rho, (std::vector<Rgb>{expected})) << header;
+    EXPECT_THAT(read.notes,
+                ElementsAre("read as: degrees, 7 wavelengths to RGB by CIE 1931, f in 1/sr"));
+  }
+  const Measurement turned = Read(
+      "700,650,600,550,500,450,400,phi_o,theta_o,phi_i,theta_i\n.3,.4,.5,.4,.3,.2,.1,0,10,0,5\n");
+  EXPECT_EQ(turned.samples.rho, (std::vector<Rgb>{expected}));
+  EXPECT_THAT(ReadError("theta_i,phi_i,theta_o,phi_o,450,550,650\n1,0,1,0,1,1,1\n"),
+              HasSubstr("a colour needs one every 50 nm; --columns= names three of the columns"));
+  EXPECT_THAT(Read("theta_i,phi_i,theta_o,phi_o,532nm\n5,0,10,0,.5\n").notes,
+              ElementsAre(HasSubstr("one value for all channels")));
+  EXPECT_THAT(
+      ReadError("theta_i,phi_i,theta_o,phi_o,wavelength,f\n1,0,1,0,500,1\n1,0,1,0,510,1\n"),
+      HasSubstr("line 3, column 5 (wavelength): 510 comes after 500; make a column of each"));
+}
+
+// A lobe about the mirror direction in the plane of incidence.
+std::string InPlane(const std::string& header, double sign, bool has_phi) {
+  std::string text = header + "\n";
+  for (int theta_i = 10; theta_i <= 50; theta_i += 20) {
+    for (int theta_o = -60; theta_o <= 60; theta_o += 5) {
+      const double f = 0.1 + std::exp(-0.01 * std::pow(theta_o - theta_i, 2));
+      text += std::to_string(theta_i) + (has_phi ? ",0," : ",") +
+              std::to_string(static_cast<int>(sign) * theta_o) + (has_phi ? ",0," : ",") +
+              std::to_string(f) + "\n";
+    }
+  }
+  return text;
+}
+
+TEST(TextTable, SignsInThePlaneOfIncidence) {
+  for (const bool has_phi : {false, true}) {
+    const std::string header = has_phi ? "theta_i,phi_i,theta_o,phi_o,f" : "theta_i,theta_o,f";
+    const std::string end = ", as its samples say, one value for all channels, f in 1/sr";
+    const Measurement forward = Read(InPlane(header, 1, has_phi));
+    EXPECT_THAT(forward.notes,
+                ElementsAre(HasSubstr("theta_o > 0 on the side of the mirror direction" + end)));
+    const Measurement backward = Read(InPlane(header, -1, has_phi));
+    EXPECT_THAT(backward.notes,
+                ElementsAre(HasSubstr("theta_o > 0 on the side of the light" + end)));
+    for (const Measurement& read : {forward, backward}) {
+      EXPECT_FALSE(read.anisotropic);
+      for (int j = 0; j < read.samples.size(); ++j) {
+        const SphericalAngles& at = read.samples.directions[j];
+        const bool is_mirror = std::abs(std::remainder(at.phi_o - at.phi_i, 2 * kPi)) > 3;
+        const double theta_o = RadiansToDegrees(is_mirror ? at.theta_o : -at.theta_o);
+        EXPECT_NEAR(read.samples.rho[j][0],
+                    0.1 + std::exp(-0.01 * std::pow(theta_o - RadiansToDegrees(at.theta_i), 2)),
+                    1e-6);
+      }
+    }
+  }
+}
+
+TEST(TextTable, ANegativeThetaIsTheOtherSide) {
+  ExpectSameSamples(
+      Read("theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,-20,0,1,2,3\n10,0,-30,90,4,5,6\n"),
+      Read("theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,20,180,1,2,3\n10,0,30,270,4,5,6\n"));
+  // The light of both sides of one plane shows nothing of a grain.
+  const Measurement both =
+      Read("theta_i,phi_i,theta_o,phi_o,r,g,b\n-10,0,20,90,1,2,3\n10,0,20,-90,1,2,3\n");
+  EXPECT_FALSE(both.anisotropic);
+  EXPECT_NEAR(std::abs(both.samples.directions[0].phi_i), kPi, 1e-12);
+}
+
+TEST(TextTable, AnglesThatHaveNoColumn) {
+  const SourceOptions at_30 = {.theta_i_deg = 30};
+  const Measurement given = Read("theta_o,phi_o,r,g,b\n20,180,1,2,3\n", at_30);
+  ExpectSameSamples(given, Read("theta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,20,180,1,2,3\n"));
+  EXPECT_THAT(given.notes, ElementsAre("read as: degrees, theta_i = 30 deg, phi_i = 0, f in 1/sr"));
+  const Measurement in_plane = Read("angle;brdf\n20;1\n-20;0,5\n", at_30, "x.txt");
+  ExpectSameSamples(in_plane,
+                    Read("theta_i,phi_i,theta_o,phi_o,f\n30,0,20,180,1\n30,0,20,0,0.5\n"));
+  EXPECT_THAT(Read(kPlain, at_30).notes,
+              ElementsAre(HasSubstr("--theta_i is of tables without a column theta_i")));
+  EXPECT_THAT(ReadError("theta_o,phi_o,r,g,b\n20,180,1,2,3\n"),
+              HasSubstr("line 1: the header has no column theta_i; --theta_i=DEGREES gives it"));
+}
+
+TEST(TextTable, ColumnsMayBeNamed) {
+  const std::string rows = kPlain.substr(kPlain.find('\n') + 1);
+  ExpectPlain(rows, "columns by --columns, degrees, f in 1/sr",
+              {.columns = "theta_i,phi_i,theta_o,phi_o,r,g,b"});
+  ExpectPlain("a;b;c;d;e;f;g\n" + Replaced(rows, ",", ";"),
+              "1 lines before the header, columns by --columns, semicolons, degrees, f in 1/sr",
+              {.columns = "theta_i,phi_i,theta_o,phi_o,r,g,b"});
+  const Measurement some = Read(kPlain, {.columns = "theta_i,phi_i,theta_o,phi_o,-,f,-"});
+  EXPECT_EQ(some.samples.rho[0], (Rgb{0.5, 0.5, 0.5}));
+  EXPECT_EQ(Read("20;1\n-20;0,5\n", {.columns = "theta_o,f", .theta_i_deg = 30}).counts.valid, 2);
+  EXPECT_EQ(ReadError(rows, {}, "x.txt"),
+            "x.txt: line 1: no header row names the columns; "
+            "--columns=theta_i,phi_i,theta_o,phi_o,r,g,b names them, - those to leave out");
+  EXPECT_EQ(ReadError("nothing\n", {.columns = "theta_i,theta_o,f"}),
+            "x.csv: no line holds numbers for --columns");
+  EXPECT_THAT(Source("synth:felt@2x4").Read({.columns = "theta_i", .theta_i_deg = 3}).notes,
+              ElementsAre(HasSubstr("--columns is of text tables, and changes nothing here"),
+                          HasSubstr("--theta_i is of text tables")));
+  EXPECT_THAT(ReadError(kPlain, {.theta_i_deg = 90}), HasSubstr("--theta_i is 90"));
+}
+
+TEST(TextTable, WhatNamesLeaveOpenIsAsked) {
+  const std::string angles = "theta_i,phi_i,theta_o,phi_o";
+  EXPECT_THAT(ReadError(angles + ",radiance\n1,0,1,0,1\n"),
+              HasSubstr("line 1: the header has no column of values, as r, g, b, or brdf"));
+  EXPECT_THAT(ReadError(angles + ",brdf,rho\n1,0,1,0,1,1\n"),
+              HasSubstr("'brdf' and 'rho' say the same; --columns="));
+  EXPECT_THAT(ReadError(angles + ",brdf [%]\n1,0,1,0,1\n"),
+              HasSubstr("column 'brdf [%]' is in %, and a BRDF is in 1/sr; --columns="));
+  EXPECT_THAT(ReadError("theta_i [mrad],phi_i,theta_o,phi_o,f\n1,0,1,0,1\n"),
+              HasSubstr("column 'theta_i [mrad]' is neither in degrees nor in radians"));
+  EXPECT_THAT(ReadError(angles + ",f\n1,0,1,0,0,5\n"), HasSubstr("line 2: 6 columns; expected 5"));
+  EXPECT_THAT(ReadError("theta_i;theta_o;f\n1;1;1.000,5\n"), HasSubstr("'1.000,5' is no number"));
+}
+
+TEST(TextTable, ReadsTheSharedCases) {
+  const std::string folder = MeasuredData("../cases/");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const Measurement good = LoadMeasurement(folder + "good.csv");
+  for (const char* name : {"semicolon_comma.csv", "tabs.csv", "units.csv"}) {
+    ExpectSameSamples(LoadMeasurement(folder + name), good);
+  }
+  const Measurement mono = LoadMeasurement(folder + "mono.csv");
+  const Measurement spectral = LoadMeasurement(folder + "spectral.csv");
+  ASSERT_EQ(mono.samples.size(), good.samples.size());
+  ASSERT_EQ(spectral.samples.size(), good.samples.size());
+  for (int j = 0; j < good.samples.size(); ++j) {
+    EXPECT_EQ(mono.samples.rho[j][2], good.samples.rho[j][0]);
+  }
+  EXPECT_THAT(LoadMeasurement(folder + "inplane_signed.csv").notes,
+              ElementsAre(HasSubstr("theta_o > 0 on the side of the mirror direction")));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
