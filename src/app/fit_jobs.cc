@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "core/base/file_names.h"
+#include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
 #include "fit/reports/fit_details.h"
@@ -28,17 +31,29 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+// Whether a file of a folder is to be fitted: by the ending of a format; a text table by its
+// header, too; and a workbook, so that its error says what to do.
+bool IsMeasurement(const std::string& path) {
+  const std::string ending = EndingOf(path);
+  const auto is_one_of = [&](std::initializer_list<std::string_view> endings) {
+    return std::ranges::find(endings, ending) != endings.end();
+  };
+  if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
+      MeasurementFormats().end()) {
+    return true;
+  }
+  if (is_one_of({".xlsx", ".xls", ".ods"})) return true;
+  return is_one_of({"", ".txt", ".tsv", ".dat", ".asc"}) &&
+         RecogniseFormat(BeginningOf(path)) != nullptr;
+}
+
 // The measurements in a folder, by name.
 std::vector<std::string> MeasurementsIn(const std::string& folder) {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string ending = EndingOf(it->path().string());
     if (it->path().filename() == kTableName) continue;  // of an earlier run
-    if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
-        MeasurementFormats().end()) {
-      found.push_back(it->path().string());
-    }
+    if (IsMeasurement(it->path().string())) found.push_back(it->path().string());
   }
   if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
   if (found.empty()) {

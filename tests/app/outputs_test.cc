@@ -405,6 +405,19 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   EXPECT_EQ(many.status, 0) << many.out << many.err;
 }
 
+TEST(FitMany, AFolderOfOddExports) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "few.txt") << "# by me\nInc [deg]\tscatter angle [deg]\tBSDF [1/sr]\n"
+                                       "10\t20\t1\n20\t-20\t1\n30\t10\t1\n";
+  std::ofstream(folder / "notes.txt") << "on these files\n";
+  std::ofstream(folder / "table.xlsx") << "PK\3\4";
+  const ProgramResult fit = RunProgram(Quick({"fit", folder / "", "--out=" + (folder / "out")}));
+  EXPECT_EQ(fit.status, 3);
+  EXPECT_THAT(fit.out, HasSubstr("/2] few: fitted"));
+  EXPECT_THAT(fit.out + fit.err, HasSubstr("table.xlsx: this is a workbook; save it as CSV"));
+  EXPECT_THAT(fit.out + fit.err, Not(HasSubstr("notes")));
+}
+
 TEST(FitMany, BadUseIsAnError) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "empty");

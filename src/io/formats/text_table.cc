@@ -89,10 +89,13 @@ std::optional<Names> NamesIn(std::string_view line, const Place& place) {
   if (line.starts_with("VARS")) return best;  // of ASTM E1392
   int most = 0;
   for (const char separator : kSeparators) {
+    // Blanks may stand within names; several tabs, and blanks about them, between two.
+    const auto is_empty = [](const std::string& name) { return name.empty(); };
+    if (separator == kBlanks && best && std::ranges::none_of(best->names, is_empty)) break;
     std::vector<std::string> names = SplitNames(line, separator);
     const int known = NamesKnown(names, separator, place);
-    const bool fewer = best && known == most && names.size() < best->names.size();  // of tabs
-    if (known <= most && !fewer) continue;
+    if (known < most || known == 0) continue;
+    if (known == most && names.size() >= best->names.size()) continue;
     most = known;
     best = {std::move(names), separator};
   }
