@@ -124,8 +124,13 @@ void FuzzUtia(std::string_view bytes) {
 
 // Of scattered samples.
 void FuzzFormat(const MeasurementFormat& format, std::string_view bytes) {
-  const auto measurement = Accepted([&] { return format.read(bytes, kSource, {}); });
-  if (measurement) CheckScattered(*measurement);
+  // The second are of text tables.
+  for (const SourceOptions& options :
+       {SourceOptions(), SourceOptions{.columns = "theta_o,-,f", .theta_i_deg = 30}}) {
+    const auto measurement = Accepted([&] { return format.read(bytes, kSource, options); });
+    if (measurement) CheckScattered(*measurement);
+    if (format.name != "csv") break;
+  }
 }
 
 // --- What else is read ---------------------------------------------------------------------------

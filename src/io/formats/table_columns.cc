@@ -89,10 +89,11 @@ constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "inciden
                                           "incoming", "l",     "light", "src",         "source",
                                           "sun",      "solar", "illum", "illumination"};
 constexpr std::string_view kOutgoing[] = {
-    "o",    "out",      "outgoing", "r",        "refl",      "reflected",  "reflection",
-    "s",    "sc",       "scat",     "scatter",  "scattered", "scattering", "v",
-    "view", "viewing",  "viewer",   "e",        "exit",      "emission",   "emergent",
-    "obs",  "observer", "det",      "detector", "receiver"};
+    "o",          "out",      "outgoing", "r",        "refl",     "reflected",
+    "reflection", "s",        "sc",       "scat",     "scatter",  "scattered",
+    "scattering", "v",        "view",     "viewing",  "viewer",   "e",
+    "exit",       "emission", "emergent", "obs",      "observer", "observation",
+    "sensor",     "camera",   "det",      "detector", "receiver"};
 // With which no word for an angle need stand.
 constexpr std::string_view kIncidentAlone[] = {"inc", "incident", "incidence", "incoming",
                                                "aoi", "ti",       "thi",       "sza"};
@@ -159,7 +160,9 @@ std::optional<Role> ValueRole(std::string text) {
   if (IsOneOf(key, kValues)) return Role::kValue;
   for (const std::string_view word : kValues) {
     if (!key.starts_with(word)) continue;
-    if (const auto role = ColorRole(key.substr(word.size()))) return role;
+    const std::string_view rest = key.substr(word.size());
+    if (IsOneOf(rest, kValues)) return Role::kValue;  // "brdf value"
+    if (const auto role = ColorRole(rest)) return role;
   }
   return ColorRole(key);
 }
@@ -367,6 +370,7 @@ std::vector<std::string> RenamedColumns(const ColumnLayout& layout) {
   }
   if (!layout.wavelengths.empty()) return renamed;
   for (size_t k = 0; k < layout.values.size(); ++k) {
+    if (layout.columns[layout.values[k]].role == Role::kValue) continue;
     add(layout.values[k], layout.values.size() == 1 ? "f" : kUsualNames[kAngles + k]);
   }
   return renamed;

@@ -240,11 +240,14 @@ std::string TableReader::Note(bool turned) const {
   const auto say = [&](bool is_so, const std::string& what) {
     if (is_so) note += (note.empty() ? "read as: " : ", ") + what;
   };
-  say(head_.lines_before > 0, std::to_string(head_.lines_before) + " lines before the header");
+  say(head_.lines_before > 0, std::to_string(head_.lines_before) +
+                                  (head_.lines_before == 1 ? " line" : " lines") +
+                                  " before the header");
   say(head_.in_comment, "a header in a comment");
   say(!options_.columns.empty(), "columns by --columns");
   say(head_.separator == ';', "semicolons");
   say(head_.separator == '\t', "tabs");
+  say(head_.separator == '|', "bars");
   say(head_.separator == ' ', "blanks");
   say(decimal_commas_, "decimal commas");
   for (const std::string& renamed : RenamedColumns(layout_)) say(true, renamed);

@@ -9,7 +9,7 @@ namespace trilobe {
 namespace {
 
 constexpr char kBlanks = ' ';
-constexpr char kSeparators[] = {',', ';', '\t', kBlanks};
+constexpr char kSeparators[] = {',', ';', '\t', '|', kBlanks};
 constexpr int kMostLinesBefore = 200;
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r'; }

@@ -15,7 +15,7 @@ namespace trilobe {
 struct TableHead {
   TextLines lines;  // at the header or, without one, before the first row
   std::vector<std::string> names = {};
-  char separator = ',';     // or ';', a tab, or ' ' for any number of blanks and tabs
+  char separator = ',';     // or ';', '|', a tab, or ' ' for any number of blanks and tabs
   bool in_comment = false;  // the header stands behind # or %
   int lines_before = 0;     // lines of text before it, which are no comments
 };

@@ -72,6 +72,7 @@ TEST(TextTable, AnySeparatorAndDecimalCommas) {
   ExpectPlain(Replaced(semicolons, ".", ","), "semicolons, decimal commas, degrees, f in 1/sr");
   ExpectPlain(Replaced(Replaced(kPlain, ",", "\t"), ".", ","),
               "tabs, decimal commas, degrees, f in 1/sr");
+  ExpectPlain(Replaced(kPlain, ",", "|"), "bars, degrees, f in 1/sr");
   ExpectPlain(Replaced(kPlain, ",", "   "), "blanks, degrees, f in 1/sr");
   ExpectPlain(Replaced(kPlain, ",", "\t\t"), "blanks, degrees, f in 1/sr");
   EXPECT_THAT(Read(Replaced(kPlain, "\n", ",\n")).notes, ElementsAre());
@@ -116,8 +117,9 @@ TEST(TextTable, NamesOfAngles) {
         "Angle of incidence [deg]", "theta (incident)", "\\theta_i", "zenith_in"}) {
     EXPECT_EQ(role(name), ColumnRole::kThetaI) << name;
   }
-  for (const char* name : {"theta_o", "theta_r", "thetar", "theta_s", "ThetaView", "outgoing_theta",
-                           "scatter angle", "to", "theta_out(rad)", "detector theta"}) {
+  for (const char* name :
+       {"theta_o", "theta_r", "thetar", "theta_s", "ThetaView", "outgoing_theta", "scatter angle",
+        "to", "theta_out(rad)", "sensor zenith", "detector theta"}) {
     EXPECT_EQ(role(name), ColumnRole::kThetaO) << name;
   }
   for (const char* name : {"phi_i", "phiin", "Azimuth_in", "phi_inc_deg", "az_i"}) {
@@ -126,7 +128,8 @@ TEST(TextTable, NamesOfAngles) {
   for (const char* name : {"phi_o", "phir", "azimuth_out", "phi_s"}) {
     EXPECT_EQ(role(name), ColumnRole::kPhiO) << name;
   }
-  for (const char* name : {"brdf", "BSDF [1/sr]", "f", "f_r", "rho", "value", "brdf_1/sr"}) {
+  for (const char* name :
+       {"brdf", "BSDF [1/sr]", "f", "f_r", "rho", "value", "brdf value", "brdf_1/sr"}) {
     EXPECT_EQ(role(name), ColumnRole::kValue) << name;
   }
   for (const char* name : {"index", "", "time", "theta_h", "sigma", "thetaphi", "no. 5"}) {
@@ -255,7 +258,7 @@ TEST(TextTable, ColumnsMayBeNamed) {
   ExpectPlain(rows, "columns by --columns, degrees, f in 1/sr",
               {.columns = "theta_i,phi_i,theta_o,phi_o,r,g,b"});
   ExpectPlain("a;b;c;d;e;f;g\n" + Replaced(rows, ",", ";"),
-              "1 lines before the header, columns by --columns, semicolons, degrees, f in 1/sr",
+              "1 line before the header, columns by --columns, semicolons, degrees, f in 1/sr",
               {.columns = "theta_i,phi_i,theta_o,phi_o,r,g,b"});
   const Measurement some = Read(kPlain, {.columns = "theta_i,phi_i,theta_o,phi_o,-,f,-"});
   EXPECT_EQ(some.samples.rho[0], (Rgb{0.5, 0.5, 0.5}));
