@@ -11,6 +11,9 @@ docs/python.md of the project has a tour, and the conventions. `trilobe.plot` dr
 is a BSDF for Mitsuba 3.
 """
 
+import importlib
+from typing import Any
+
 from trilobe._brdf import Brdf, Sample, load, materials
 from trilobe._core import Error
 from trilobe._fitting import (
@@ -50,5 +53,13 @@ __all__ = [
     "weightings",
 ]
 __version__ = "0.2.0"
+
+
+def __getattr__(name: str) -> Any:
+    """Imports `trilobe.plot` and `trilobe.mitsuba`, which need more packages, when they are first used."""
+    if name in ("plot", "mitsuba"):
+        return importlib.import_module(f"trilobe.{name}")
+    raise AttributeError(f"module 'trilobe' has no attribute '{name}'")
+
 
 Error.__module__ = "trilobe"

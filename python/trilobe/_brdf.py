@@ -198,12 +198,12 @@ class Brdf:
     @property
     def d(self) -> Table:
         """The diffuse term [1/sr]: (channel)."""
-        return _frozen(Table(self._material.d(), ("channel",), {"channel": CHANNELS}))
+        return _frozen(Table(self._material.d(), ("channel",), {"channel": np.array(CHANNELS)}))
 
     @property
     def s(self) -> Table:
         """The specular weights: (lobe, channel)."""
-        coords = {"lobe": np.arange(self.lobes), "channel": CHANNELS}
+        coords = {"lobe": np.arange(self.lobes), "channel": np.array(CHANNELS)}
         return _frozen(Table(self._material.s(), ("lobe", "channel"), coords))
 
     @property
@@ -267,7 +267,7 @@ class Brdf:
         if axis["per_channel"]:
             dims.append("channel")
             shape.append(3)
-            coords["channel"] = CHANNELS
+            coords["channel"] = np.array(CHANNELS)
         if axis["rule"] == "polar":
             theta, phi = _POLAR[name]
             dims += [theta, phi]

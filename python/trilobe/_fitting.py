@@ -63,18 +63,30 @@ class Result:
         return verdict
 
     def save(self, folder: str | os.PathLike[str]) -> None:
-        """Writes model.json, trace.csv and report.json into a folder, which is made if need be."""
+        """Writes model.json, trace.csv and report.json into a folder, which is made if need be.
+
+        Another model that is there stays as model.previous.json, as `trilobe fit` has it.
+        """
         name = Path(text_of_path(folder))
         try:
             name.mkdir(parents=True, exist_ok=True)
         except (OSError, ValueError) as error:
             raise Error(f"cannot make the folder '{name}': {getattr(error, 'strerror', None) or error}") from None
+        _keep_earlier(name / "model.json", self._texts["model.json"])
         for file, text in self._texts.items():
             write_text(name / file, text)
 
     def __repr__(self) -> str:
         """The verdict."""
         return f"<trilobe.Result: {self.verdict}>"
+
+
+def _keep_earlier(path: Path, text: str) -> None:
+    try:
+        if path.exists() and path.read_bytes() != text.encode("utf-8", "surrogatepass"):
+            path.replace(path.with_name("model.previous.json"))
+    except OSError as error:
+        raise Error(f"cannot keep the earlier '{path}': {error.strerror}") from None
 
 
 def fit(

@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -229,3 +231,18 @@ def test_many_threads_may_use_one_model():
     for f, weight in results:
         np.testing.assert_array_equal(f, results[0][0])
         np.testing.assert_array_equal(weight, results[0][1])
+
+
+def test_tables_are_arrays_of_xarray():
+    xarray = pytest.importorskip("xarray")
+    brdf = trilobe.load("material:acrylic_felt_pink")
+    for table in (brdf.s, brdf.D, brdf.F, brdf.G):
+        array = xarray.DataArray(table, dims=table.dims, coords=table.coords)
+        assert array.equals(table.to_xarray())
+        assert list(array.coords.get("channel", ["red", "green", "blue"])) == ["red", "green", "blue"]
+
+
+def test_modules_are_loaded_when_they_are_used():
+    code = "import trilobe; assert trilobe.plot.factors; assert not hasattr(trilobe, 'plots')"
+    pytest.importorskip("matplotlib")
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -301,3 +301,15 @@ def test_draws(fitted, plastic, tmp_path):
         matplotlib.pyplot.close(figure)
     with pytest.raises(trilobe.Error, match=r"must be a trilobe\.Brdf"):
         plot.factors(3)
+
+
+def test_save_keeps_another_model(tmp_path):
+    results = [
+        trilobe.fit("synth:felt@12x12x24", solver="awls", max_iterations=1, lobes=n, progress=False) for n in (1, 2)
+    ]
+    results[0].save(tmp_path)
+    results[0].save(tmp_path)
+    assert not (tmp_path / "model.previous.json").exists()
+    results[1].save(tmp_path)
+    assert trilobe.load(tmp_path / "model.json").lobes == 2
+    assert trilobe.load(tmp_path / "model.previous.json").lobes == 1
