@@ -168,8 +168,7 @@ class Brdf:
     def albedo(self, wi: Any) -> Floats:
         """The share of the light from wi that is reflected, (..., 3).
 
-        From the tables that `sample` draws by: within 3 % of itself up to 75 degrees from the
-        normal, 6 % up to 85.
+        Within 1.5 % up to 75 degrees from the normal, 3 % up to 85. The first call of a model takes up to a second.
         """
         (wi,) = of_one_precision(wi=wi)
         check_width(wi, "wi", 3, "directions")

@@ -122,8 +122,8 @@ TEST(SolversTest, RejectsBadInput) {
 }
 
 TEST(ProgramTest, RejectsWhatItDoesNotKnow) {
-  ExpectError(RunProgram({"frobnicate"}), "known: fit, solvers, ");
-  ExpectError(RunProgram({"help", "frobnicate"}), "known: fit, solvers, ");
+  ExpectError(RunProgram({"frobnicate"}), "known: fit, study, solvers, ");
+  ExpectError(RunProgram({"help", "frobnicate"}), "known: fit, study, solvers, ");
   ExpectError(RunProgram({"info"}), "takes SOURCE|MODEL");
   ExpectError(RunProgram({"info", "a", "b"}), "takes SOURCE|MODEL, but got 2; ");
   ExpectError(RunProgram({"synth", "--weighting=log"}), "no flag --weighting");

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "core/math/lanes.h"
+#include "model/evaluate/albedo_table.h"
+#include "model/evaluate/max_phi.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/evaluate/half_vector_table.h"
@@ -16,16 +19,6 @@ namespace {
 // Minimum probability of the cosine, as a fraction of the lobes' light, so that directions missed
 // by the table's nodes are still sampled.
 constexpr double kCosineShare = 0.01;
-
-// The azimuth [rad] between half vector and wi up to which wo is above the surface:
-//   0 < cos theta_o = 2 (wi . h) cos theta_h - cos theta_i.
-template <typename Real>
-Real MaxPhi(Real cos_i, Real sin_i, Real cos_h, Real sin_h) {
-  const Real denominator = 2 * sin_h * cos_h * sin_i;
-  const Real numerator = -cos_i * (2 * cos_h * cos_h - 1);
-  if (numerator <= -denominator) return static_cast<Real>(kPi);
-  return numerator >= denominator ? Real{0} : AngleOfCosine(numerator / denominator);
-}
 
 [[noreturn]] void Overflow() {
   throw Error("the model's values overflow; its factors are too large");
@@ -76,6 +69,7 @@ Bsdf<Real>::Bsdf(const FactorModel& model) : model_(model) {
   diffuse_albedo_ = MeanOf(model_.diffuse()) * static_cast<Real>(kPi);
   if (!(diffuse_albedo_ <= std::numeric_limits<float>::max())) Overflow();
   MakeTables(Nodes(model.spec()));
+  albedos_ = std::make_shared<AlbedoTable<Real>>(model.spec());
 }
 
 // Over y and s, the density of wo by solid angle is multiplied by
@@ -87,7 +81,6 @@ void Bsdf<Real>::MakeTables(const Nodes& nodes) {
   const bool anisotropic = model_.anisotropic();
   std::vector<float> values;
   values.reserve(nodes.theta_i.size() * nodes.phi_i * nodes.y.size() * nodes.s);
-  std::vector<std::array<double, kChannels>> albedos;
   const double least_cosine = std::cos(kGrazingTheta);
   std::vector<Colour> lobes(std::max(model_.lobes(), 1));
   for (const double theta_i : nodes.theta_i) {
@@ -96,11 +89,9 @@ void Bsdf<Real>::MakeTables(const Nodes& nodes) {
       const double phi_i = 2 * kPi * p / nodes.phi_i;
       const Vector wi = {static_cast<Real>(sin_i * std::cos(phi_i)),
                          static_cast<Real>(sin_i * std::sin(phi_i)), static_cast<Real>(cos_i)};
-      std::array<double, kChannels> albedo{}, before{};
       for (size_t row = 0; row < nodes.y.size(); ++row) {
         const double cos_h = std::sqrt(1 - nodes.y[row]), sin_h = std::sqrt(nodes.y[row]);
         const double phi_max = MaxPhi(cos_i, sin_i, cos_h, sin_h);
-        std::array<double, kChannels> of_row{};
         for (int k = 0; k < nodes.s; ++k) {
           const double s = static_cast<double>(k) / (nodes.s - 1);
           const double phi = (anisotropic ? 2 * s - 1 : s) * phi_max;
@@ -118,20 +109,12 @@ void Bsdf<Real>::MakeTables(const Nodes& nodes) {
             for (int c = 0; c < kChannels; ++c) value[c] += lobes[m][c] * scale;
           }
           for (double& x : value) x = std::max(x, 0.0);
-          const double end = k == 0 || k == nodes.s - 1 ? 0.5 : 1;
-          for (int c = 0; c < kChannels; ++c) of_row[c] += value[c] * end / (nodes.s - 1);
           values.push_back(static_cast<float>(MeanOf(value)));
           if (!(values.back() <= std::numeric_limits<float>::max())) {
             Overflow();
           }
         }
-        for (int c = 0; row > 0 && c < kChannels; ++c) {
-          albedo[c] += (before[c] + of_row[c]) / 2 * (nodes.y[row] - nodes.y[row - 1]);
-        }
-        before = of_row;
       }
-      Colour& rounded = albedo_.emplace_back();
-      for (int c = 0; c < kChannels; ++c) rounded[c] = static_cast<Real>(albedo[c]);
     }
   }
   half_vectors_ = HalfVectorTable<Real>(nodes, values);
@@ -158,15 +141,7 @@ typename Bsdf<Real>::Incident Bsdf<Real>::Prepare(const Vector& wi) const {
 template <typename Real>
 typename Bsdf<Real>::Colour Bsdf<Real>::Albedo(const Vector& w) const {
   if (!IsAbove(w)) return {};
-  const Incident incident = Prepare(w);
-  Colour albedo;
-  for (int c = 0; c < kChannels; ++c) {
-    albedo[c] = model_.diffuse()[c] * static_cast<Real>(kPi);
-    for (int k = 0; k < incident.at.count; ++k) {
-      albedo[c] += incident.at.weight[k] * albedo_[incident.at.node[k]][c];
-    }
-  }
-  return albedo;
+  return albedos_->At(model_, AngleOfSine2(w[0] * w[0] + w[1] * w[1]), std::atan2(w[1], w[0]));
 }
 
 template <typename Real>
