@@ -16,9 +16,9 @@ constexpr int kSteps = 96;                        // of s
 
 // Nodes of y, as many again between them where tables are coarse.
 std::vector<double> FineNodesOfY(const ModelSpec& spec) {
-  constexpr size_t kEnough = 150;
+  const size_t enough = spec.anisotropic() ? 80 : 150;
   std::vector<double> y = NodesOfY(spec);
-  while (y.size() < kEnough) {
+  while (y.size() < enough) {
     std::vector<double> finer = {y[0]};
     for (size_t k = 1; k < y.size(); ++k) finer.insert(finer.end(), {(y[k - 1] + y[k]) / 2, y[k]});
     y = finer;
