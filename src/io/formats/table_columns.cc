@@ -278,8 +278,7 @@ class ColumnLayouter {
   double UnitOf(const TableColumn& column) const {
     if (column.unit.empty() || column.unit.starts_with("deg")) return kPi / 180;
     if (column.unit.starts_with("rad")) return 1;
-    lines_.Fail("column '" + column.name + "' is neither in degrees nor in radians; --columns=" +
-                kUsualColumns + " takes it as degrees");
+    lines_.Fail("column '" + column.name + "' is neither in degrees nor in radians; convert it");
   }
 
   void LayValues() {
@@ -310,7 +309,7 @@ class ColumnLayouter {
       const TableColumn& column = layout_.columns[k];
       if (!IsOneOf(column.unit, kNoBrdf)) continue;
       lines_.Fail("column '" + column.name + "' is in " + column.unit +
-                  ", and a BRDF is in 1/sr; --columns=" + kUsualColumns + " takes it as 1/sr");
+                  ", and a BRDF is in 1/sr; convert it");
     }
   }
 
