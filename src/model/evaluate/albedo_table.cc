@@ -31,7 +31,7 @@ std::vector<double> FineNodesOfY(const ModelSpec& spec) {
 template <typename Real>
 AlbedoTable<Real>::AlbedoTable(const ModelSpec& spec)
     : anisotropic_(spec.anisotropic()),
-      rings_(anisotropic_ ? 45 : 359),
+      rings_(anisotropic_ ? 45 : std::clamp(4 * spec.g_axis.size, 60, 360) - 1),
       azimuths_(anisotropic_ ? std::max({spec.d_axis.phi_nodes, spec.g_axis.phi_nodes, 12}) : 1),
       y_(FineNodesOfY(spec)) {}
 
