@@ -191,8 +191,10 @@ TEST(BsdfSampling, HasAnAnswerForAnyNumbersAndDirections) {
     const std::string& name = named.name;
     const Bsdf<double> bsdf(named.model);
     const Bsdf<float> rounded(named.model);
+    const bool with_albedo = named.name == "one bin" || IsOneIn(4, {NumberOf(named, models)});
     for (const Direction& wi : directions) {
-      for (const double x : bsdf.Albedo(wi)) EXPECT_TRUE(std::isfinite(x) && x >= 0) << name;
+      for (const double x : with_albedo ? bsdf.Albedo(wi) : Rgb{})
+        EXPECT_TRUE(std::isfinite(x) && x >= 0) << name;
       for (const double u : numbers) {
         for (const double v : numbers) {
           const auto check = [&](const auto& sample) {
@@ -218,7 +220,9 @@ TEST(BsdfSampling, HasAnAnswerForAnyNumbersAndDirections) {
 }
 
 TEST(BsdfTest, FloatAgreesWithDouble) {
+  int number = 0;
   for (const auto& [name, model] : TestMaterials()) {
+    const bool with_albedo = IsOneIn(4, {number++});  // which takes most of the time
     const Bsdf<double> bsdf(model);
     const Bsdf<float> rounded(model);
     Random random(7);
@@ -231,6 +235,7 @@ TEST(BsdfTest, FloatAgreesWithDouble) {
       };
       const double pdf = bsdf.Pdf(wi, wo);
       EXPECT_NEAR(rounded.Pdf(in_float(wi), in_float(wo)), pdf, 0.01 * pdf) << name;
+      if (!with_albedo) continue;
       EXPECT_NEAR(rounded.Albedo(in_float(wi))[1], bsdf.Albedo(wi)[1], 1e-3) << name;
     }
   }
