@@ -155,9 +155,7 @@ std::string StudyPage(std::span<const StudyRun> runs, const StudyPageContents& c
   }
   body += "</p>\n";
   for (const std::string& problem : problems) {
-    std::vector<StudyRun> own;
-    std::ranges::copy_if(runs, std::back_inserter(own),
-                         [&](const StudyRun& run) { return run.problem == problem; });
+    const std::vector<StudyRun> own = RunsOn(problem, runs);
     body += "<section><h2>" + EscapedMarkup(Printable(problem)) + "</h2>\n";
     if (problems.size() > 1) body += Paragraph(VerdictOn(own));
     body += MethodsTable(SummariesOf(own));

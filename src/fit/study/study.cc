@@ -180,6 +180,12 @@ double StudyRun::SecondsTo(double most_excess) const {
   return reached == trace.end() ? kInfinity : reached->seconds;
 }
 
+std::vector<StudyRun> RunsOn(const std::string& problem, std::span<const StudyRun> runs) {
+  std::vector<StudyRun> own;
+  for (const StudyRun* run : RunsOf(runs, problem, "")) own.push_back(*run);
+  return own;
+}
+
 const StudyRun* LowestRun(std::span<const StudyRun> runs, const std::string& problem) {
   return Lowest(RunsOf(runs, problem, ""));
 }

@@ -20,7 +20,7 @@ namespace trilobe {
 // One fit.
 struct StudyRun {
   std::string problem, method;
-  int start = 1;           // 1: the given one; k > 1: random, of seed k
+  int start = 1;           // 1: the given one; the others are random
   std::string folder;      // of its files, within that of the study
   std::string error = {};  // why there is no result; then nothing below is set
 
@@ -55,6 +55,9 @@ inline constexpr double kSameLobes = 0.9;
 // Compares each run with the lowest of its problem. An excess is relative to the lowest E. Where
 // that is below 1e-12 of the highest initial E, as of data without noise, it is relative to this.
 void CompareRuns(std::vector<StudyRun>* runs);
+
+// Copies of the runs on a problem.
+std::vector<StudyRun> RunsOn(const std::string& problem, std::span<const StudyRun> runs);
 
 // The run of the lowest E of a problem; null if all have failed.
 const StudyRun* LowestRun(std::span<const StudyRun> runs, const std::string& problem);

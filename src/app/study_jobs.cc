@@ -1,0 +1,235 @@
+#include "app/study_jobs.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "app/fit_jobs.h"
+#include "app/fit_settings.h"
+#include "app/flags.h"
+#include "app/inputs.h"
+#include "app/model_flags.h"
+#include "app/solver_flags.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/solvers/registry/solvers.h"
+
+DEFINE_string(solvers, "auto,awls,lm", "the solvers to compare, by name");
+DEFINE_int32(
+    runs, 5,
+    "runs of each solver on each problem: the first from the start --init, the others from "
+    "random ones, --init=random with the seeds that follow --seed");
+DEFINE_string(set, "",
+              "FLAG=a,b,c: run with each of these values of a flag of `fit`; several flags are "
+              "separated by ; and values with commas in them by |. A flag that only some solvers "
+              "read is varied for these");
+
+namespace trilobe {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The parts without blanks around them.
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) {
+    const size_t begin = part.find_first_not_of(' ');
+    parts.push_back(begin == std::string::npos
+                        ? ""
+                        : part.substr(begin, part.find_last_not_of(' ') + 1 - begin));
+  }
+  return parts;
+}
+
+// A flag of --set, and its values.
+struct Sweep {
+  std::string flag;
+  std::vector<std::string> values;
+};
+
+// Flags that this command sets itself.
+constexpr const char* kFlagsOfStudy[] = {
+    "solver",      "seed",    "data_seed", "out",   "shard",   "plots",  "reconstruction",
+    "convergence", "threads", "scene",     "cache", "nocache", "verbose"};
+
+}  // namespace
+
+std::vector<std::string> StudyFlags() {
+  std::vector<std::string> flags = FitFlags();
+  for (const std::string& flag : ParticularSolverFlags()) flags.push_back(flag);
+  for (const char* const flag : kFlagsOfStudy) std::erase(flags, flag);
+  return flags;
+}
+
+namespace {
+
+std::vector<Sweep> SweepsFromFlags() {
+  std::vector<Sweep> sweeps;
+  const std::vector<std::string> known = StudyFlags();
+  for (const std::string& part : Split(FLAGS_set, ';')) {
+    const size_t equals = part.find('=');
+    const std::string flag = part.substr(0, equals);
+    const std::string values = equals == std::string::npos ? "" : part.substr(equals + 1);
+    if (std::ranges::find(known, flag) == known.end()) {
+      throw Error("--set=" + part + ": '" + flag +
+                  "' is no flag of fit that can be varied; write FLAG=a,b,c");
+    }
+    if (values.empty()) throw Error("--set=" + part + ": give values, as in FLAG=a,b,c");
+    if (!IsDefault(flag)) throw Error("--" + flag + " and --set=" + part + ": give one of them");
+    if (std::ranges::find(sweeps, flag, &Sweep::flag) != sweeps.end()) {
+      throw Error("--set varies --" + flag + " twice; give all values at once, as in FLAG=a,b,c");
+    }
+    sweeps.push_back({flag, Split(values, values.find('|') == std::string::npos ? ',' : '|')});
+  }
+  return sweeps;
+}
+
+// Throws Error for a flag that none of the solvers reads.
+void CheckThatSomeSolverReads(const std::vector<Sweep>& sweeps,
+                              const std::vector<const SolverEntry*>& solvers) {
+  const std::vector<std::string> particular = ParticularSolverFlags();
+  for (const auto& [flag, values] : sweeps) {
+    if (std::ranges::find(particular, flag) == particular.end()) continue;
+    const auto takes = [&flag = flag](const SolverEntry* solver) {
+      return TakesFlag(*solver, flag);
+    };
+    if (std::ranges::any_of(solvers, takes)) continue;
+    throw Error("--set varies --" + flag +
+                ", which none of --solvers reads; see `trilobe solvers`");
+  }
+}
+
+// Whether E of fits with different values of the flag is of other data or weights.
+bool ChangesProblem(const std::string& flag) {
+  const std::vector<std::string> flags = WithSourceFlags({"weighting", "prior"});
+  return std::ranges::find(flags, flag) != flags.end();
+}
+
+// A choice of a value for each flag that is varied.
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+// All choices for a solver.
+std::vector<Values> ChoicesFor(const SolverEntry& solver, const std::vector<Sweep>& sweeps) {
+  std::vector<Values> choices = {{}};
+  const std::vector<std::string> particular = ParticularSolverFlags();
+  for (const Sweep& sweep : sweeps) {
+    const bool of_some = std::ranges::find(particular, sweep.flag) != particular.end();
+    if (of_some && !TakesFlag(solver, sweep.flag)) continue;
+    std::vector<Values> longer;
+    for (const Values& choice : choices) {
+      for (const std::string& value : sweep.values) {
+        longer.push_back(choice);
+        longer.back().emplace_back(sweep.flag, value);
+      }
+    }
+    choices = std::move(longer);
+  }
+  return choices;
+}
+
+// "dogleg", but "g_filter=1" and "raw=false", which do not tell what they are of.
+std::string Label(const std::string& flag, const std::string& value) {
+  const bool tells = std::isalpha(static_cast<unsigned char>(value[0])) != 0 && value != "true" &&
+                     value != "false";
+  return tells ? value : flag + "=" + value;
+}
+
+void SetFlag(const std::string& flag, const std::string& value) {
+  if (gflags::SetCommandLineOption(flag.c_str(), value.c_str()).empty()) {
+    throw Error("--set: --" + flag + "=" + value + " is no value of this flag");
+  }
+}
+
+// The settings of `trilobe fit` with these flags.
+FitSettings SettingsOf(const std::string& solver, const Values& values, int start) {
+  const gflags::FlagSaver as_given;
+  if (IsDefault("data_seed")) SetFlag("data_seed", std::to_string(FLAGS_seed));  // for all starts
+  SetFlag("solver", solver);
+  // What a solver found, without what would follow it. As to auto's choice of a form, that is it.
+  if (IsDefault("raw") && !ChoosesModel()) SetFlag("raw", "true");
+  for (const auto& [flag, value] : values) SetFlag(flag, value);
+  if (start > 1) {
+    SetFlag("init", "random");
+    SetFlag("seed", std::to_string(FLAGS_seed + start - 1));
+  }
+  return FitSettingsFromFlags();
+}
+
+// What follows the name of a source or a solver, as the end of the name of its folder.
+std::string AsName(std::string labels) {
+  std::ranges::replace(labels, '/', '_');
+  std::ranges::replace(labels, ' ', ',');
+  return labels;
+}
+
+// Throws Error where nothing is to be read.
+void CheckSource(const std::string& source) {
+  std::error_code ignored;
+  if (IsSynthetic(source) || fs::exists(source, ignored)) return;
+  throw Error("cannot read '" + source + "': no such file");
+}
+
+// Throws Error for a folder that is taken.
+void CheckFolder(const StudyJob& job, std::set<std::string>* folders) {
+  for (const char* const taken : kFilesOfStudy) {
+    if (job.folder_of_problem == taken) {
+      throw Error("'" + job.folder_of_problem +
+                  "' is the name of a file of the study; rename the source");
+    }
+  }
+  if (!folders->insert(job.run.folder).second) {
+    throw Error("'" + job.run.problem + "' by '" + job.run.method +
+                "' is asked for twice; name each solver and value once");
+  }
+}
+
+}  // namespace
+
+std::vector<StudyJob> StudyJobsFromFlags(std::span<const std::string> arguments) {
+  if (FLAGS_runs < 1 || FLAGS_runs > 10000) throw Error("--runs must be from 1 to 10000");
+  const std::vector<Sweep> sweeps = SweepsFromFlags();
+  std::vector<const SolverEntry*> solvers;
+  for (const std::string& name : Split(FLAGS_solvers, ',')) solvers.push_back(&FindSolver(name));
+  if (solvers.empty()) throw Error("--solvers is empty; name some, as auto,awls,lm");
+  CheckThatSomeSolverReads(sweeps, solvers);
+  // Random starts are the same for all values of --init.
+  const bool varies_start = std::ranges::find(sweeps, "init", &Sweep::flag) != sweeps.end();
+  const int runs = varies_start ? 1 : FLAGS_runs;
+  std::vector<StudyJob> jobs;
+  std::set<std::string> folders, told;
+  for (const FitOutcome& source : ListSources(arguments)) {
+    CheckSource(source.source);
+    for (const SolverEntry* solver : solvers) {
+      for (const Values& values : ChoicesFor(*solver, sweeps)) {
+        std::string of_problem, of_method;
+        for (const auto& [flag, value] : values) {
+          (ChangesProblem(flag) ? of_problem : of_method) += " " + Label(flag, value);
+        }
+        for (int start = 1; start <= runs; ++start) {
+          StudyJob job;
+          job.settings = SettingsOf(solver->name, values, start);
+          job.run = {.problem = source.name + of_problem,
+                     .method = solver->name + of_method,
+                     .start = start,
+                     .folder = ""};
+          job.folder_of_problem = source.name + AsName(of_problem);
+          job.run.folder = job.folder_of_problem + "/" + solver->name + AsName(of_method) +
+                           "/start-" + std::to_string(start);
+          CheckFolder(job, &folders);
+          // Of the runs on the same data, the first tells what was noticed of them.
+          job.settings.tell_notes = told.insert(job.folder_of_problem).second;
+          job.outcome = {.name = job.run.folder, .source = source.source};
+          jobs.push_back(std::move(job));
+        }
+      }
+    }
+  }
+  return jobs;
+}
+
+}  // namespace trilobe
