@@ -124,16 +124,12 @@ def clock(setting):
 class Fit:
     """What `trilobe fit` wrote into a folder (docs/file-formats.md).
 
-    clock: one of CLOCKS. The trace has seconds on the wall; the processor's are these times the
-    share of the processors that the whole command had.
+    clock: one of CLOCKS.
     """
 
     def __init__(self, folder, clock="wall"):
         self.folder = folder
-        self.pace = 1.0
-        if clock == "processor":
-            unit = json.loads((folder / "unit.json").read_text())
-            self.pace = unit["processor_seconds"] / unit["seconds"]
+        self.by_processor = clock == "processor"
         self.report = json.loads((folder / "report.json").read_text())
         lacking = [name for name in ("objective", "seconds", "phases") if name not in self.report]
         if lacking:
@@ -147,23 +143,32 @@ class Fit:
 
     @property
     def before(self):
-        """Seconds from the start of reading to the solver's start."""
-        return self.taken("read", "prepare", "init")
+        """Seconds until the solver has its start."""
+        return self.trace[0]["clock"]
 
-    def taken(self, *phases):
-        """Seconds of these phases, by their names in report.json; of all if none is named."""
-        seconds = self.report["seconds"]
-        return self.pace * sum(seconds[phase] for phase in phases or seconds)
+    @property
+    def solved(self):
+        """Seconds until the solver has ended."""
+        return self.trace[-1]["clock"]
+
+    @property
+    def all(self):
+        """Seconds of everything, the tracing as well."""
+        if self.by_processor:
+            return json.loads((self.folder / "unit.json").read_text())["processor_seconds"]
+        return sum(self.report["seconds"].values())
 
     @functools.cached_property
     def trace(self):
         """Rows of trace.csv; `clock`: seconds from the start of reading, without those that only
-        the trace has cost, which are shared out evenly."""
+        the trace has cost, which are shared out evenly. On one thread these are the same by both
+        clocks."""
         rows = self._rows("trace.csv")
         a_row = self.report["phases"]["tracing"] / len(rows)
+        reading = sum(self.report["seconds"][phase] for phase in ("read", "prepare", "init"))
         for row in rows:
-            row["clock"] = self.before + self.pace * (
-                row["seconds"] - a_row * (row["iteration"] + 1))
+            now = row["processor_seconds"] if self.by_processor else reading + row["seconds"]
+            row["clock"] = now - a_row * (row["iteration"] + 1)
         return rows
 
     @functools.cached_property

@@ -73,7 +73,7 @@ class _Run:
         self.key = result.unit.key
         fit = Fit(result.folder, clock)
         self.report = fit.report
-        self.seconds = fit.taken("read", "prepare", "init", "solve")
+        self.seconds = fit.solved
         self.model = lobes.Model.read(result.folder / "model.json")
         self.albedos = (lobes.albedos(self.model) if self.report["model"] != "anisotropic"
                         else _reported_albedos(self.report["light"]))

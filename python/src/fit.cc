@@ -281,6 +281,8 @@ nb::dict TraceColumns(const Outcome& outcome) {
   columns["step"] = column([](const IterationRecord& r) { return r.step; });
   columns["optimality"] =
       column([&](const IterationRecord& r) { return r.optimality.value_or(kUnknown); });
+  columns["processor_seconds"] =
+      column([&](const IterationRecord& r) { return r.processor_seconds.value_or(kUnknown); });
   columns["objective_with_prior"] =
       column([&](const IterationRecord& r) { return r.objective_with_prior.value_or(kUnknown); });
   return columns;

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/system/process.h"
 #include "solvers/diagnosis.h"
 #include "solvers/gaussian_filter.h"
 #include "trilobe/core/base/check.h"
@@ -106,6 +107,7 @@ bool Run::Record(const FactorModel& current, const Step& step) {
                 ": E overflows at the starting model; its factors are too large");
   }
   record.seconds = seconds();
+  record.processor_seconds = ProcessorSeconds();
   record.filtered = step.filtered;
   record.accepted = step.accepted;
   record.step = RelativeDistance(current.parameters(), previous_.parameters());

@@ -10,7 +10,8 @@ from lab.tests import FolderTest
 
 REPORT = {"objective": 3, "seconds": {"read": 1, "prepare": 2, "init": 0.5},
           "phases": {"tracing": 0.3}}
-TRACE = "iteration,seconds,objective,optimality\n0,0.1,9,\n1,1.1,4,0.5\n2,2.1,3,0.1\n"
+TRACE = ("iteration,seconds,objective,optimality,processor_seconds\n"
+         "0,0.1,9,,1.1\n1,1.1,4,0.5,1.6\n2,2.1,3,0.1,2.1\n")
 CONVERGENCE = "iteration,seconds,psnr_db\n0,0.1,20\n2,2.1,inf\n"
 
 
@@ -98,15 +99,17 @@ class FitsTest(FolderTest):
         self.assertEqual(fit.convergence[1]["psnr_db"], math.inf)
         self.assertTrue(math.isnan(fit.trace[0]["optimality"]))
 
-    def test_processor_seconds_are_the_share_that_the_command_had(self):
+    def test_processor_seconds_are_those_of_the_process(self):
         (self.folder / "report.json").write_text(json.dumps(REPORT))
         (self.folder / "trace.csv").write_text(TRACE)
         (self.folder / "unit.json").write_text('{"seconds": 8, "processor_seconds": 4}')
         fit = fits.Fit(self.folder, "processor")
-        for clock, expected in zip((row["clock"] for row in fit.trace), (1.75, 2.2, 2.65)):
+        for clock, expected in zip((row["clock"] for row in fit.trace), (1.0, 1.4, 1.8)):
             self.assertAlmostEqual(clock, expected)
-        self.assertAlmostEqual(fit.taken(), 1.75)
-        self.assertAlmostEqual(fit.taken("read", "init"), 0.75)
+        self.assertAlmostEqual(fit.before, 1.0)
+        self.assertAlmostEqual(fit.solved, 1.8)
+        self.assertEqual(fit.all, 4)
+        self.assertEqual(fits.Fit(self.folder).all, 3.5)
 
     def test_a_clock_that_is_none_is_refused(self):
         self.assertEqual(fits.clock(self.setting([])), "wall")

@@ -16,6 +16,12 @@ std::string UtcNow() {
   return text;
 }
 
+double ProcessorSeconds() {
+  timespec used{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
 std::optional<int64_t> PeakMemory() {
   std::ifstream status("/proc/self/status");
   for (std::string key; status >> key;) {

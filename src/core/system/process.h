@@ -28,6 +28,9 @@ class Stopwatch {
 // The current time in ISO 8601: "2024-03-01T12:00:00Z".
 std::string UtcNow();
 
+// Seconds that all threads of this process have had of the processors since it began.
+double ProcessorSeconds();
+
 // Peak resident memory of this process [bytes], from Linux's VmHWM; nothing if not available.
 // (getrusage also counts the process before exec.)
 std::optional<int64_t> PeakMemory();

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view kHeader =
     "iteration,seconds,objective,filtered,accepted,step,optimality";
-// Of a fit with a prior, after these; and what that was called once.
+// After these: what older programs did not write; and of a fit with a prior, with its former name.
+constexpr std::string_view kProcessor = ",processor_seconds";
 constexpr std::string_view kWithPrior = ",objective_with_prior";
 constexpr std::string_view kGuided = ",guided_objective";
 
@@ -32,6 +33,13 @@ std::string_view TakeUntil(char separator, std::string_view* text) {
   const std::string_view head = text->substr(0, end);
   text->remove_prefix(end == std::string_view::npos ? text->size() : end + 1);
   return head;
+}
+
+// Cuts `ending` off, if there is one.
+bool TakeEnding(std::string_view ending, std::string_view* text) {
+  if (!text->ends_with(ending)) return false;
+  text->remove_suffix(ending.size());
+  return true;
 }
 
 int CountCells(std::string_view row) { return static_cast<int>(std::ranges::count(row, ',')) + 1; }
@@ -84,6 +92,8 @@ class Row {
 std::string FormatTrace(std::span<const IterationRecord> records) {
   std::string text(kHeader);
   const bool with_prior = !records.empty() && records.front().objective_with_prior;
+  const bool with_processor = !records.empty() && records.front().processor_seconds;
+  if (with_processor) text += kProcessor;
   if (with_prior) text += kWithPrior;
   text += '\n';
   for (const IterationRecord& record : records) {
@@ -97,6 +107,10 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
     Append(record.step, &text);
     text += ',';
     if (record.optimality) Append(*record.optimality, &text);
+    if (with_processor) {
+      text += ',';
+      Append(record.processor_seconds.value_or(0), &text);
+    }
     if (with_prior) {
       text += ',';
       Append(record.minimised(), &text);
@@ -108,22 +122,18 @@ std::string FormatTrace(std::span<const IterationRecord> records) {
 
 std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string& source) {
   std::vector<IterationRecord> records;
-  bool with_prior = false;
+  bool with_prior = false, with_processor = false;
   for (int line = 1; line == 1 || !text.empty(); ++line) {
     std::string_view content = TakeUntil('\n', &text);
     if (content.ends_with('\r')) content.remove_suffix(1);  // saved by a spreadsheet
     const std::string where = source + ": line " + std::to_string(line);
     if (line == 1) {
-      for (const std::string_view name : {kWithPrior, kGuided}) {
-        if (!content.ends_with(name)) continue;
-        content.remove_suffix(name.size());
-        with_prior = true;
-        break;
-      }
+      with_prior = TakeEnding(kWithPrior, &content) || TakeEnding(kGuided, &content);
+      with_processor = TakeEnding(kProcessor, &content);
       if (content == kHeader) continue;
       throw Error(where + ": not a trace; the first line must be " + std::string(kHeader));
     }
-    Row row(content, CountCells(kHeader) + (with_prior ? 1 : 0), where);
+    Row row(content, CountCells(kHeader) + int{with_processor} + int{with_prior}, where);
     IterationRecord record;
     record.iteration = row.Take<int>("iteration");
     record.seconds = row.Take<double>("seconds");
@@ -132,6 +142,7 @@ std::vector<IterationRecord> ParseTrace(std::string_view text, const std::string
     record.accepted = row.TakeBool("accepted");
     record.step = row.Take<double>("step");
     record.optimality = row.TakeOptional("optimality");
+    if (with_processor) record.processor_seconds = row.Take<double>("processor_seconds");
     if (with_prior) record.objective_with_prior = row.Take<double>("objective_with_prior");
     records.push_back(record);
   }

@@ -60,6 +60,15 @@ TEST(TraceFile, OfAFitWithAPriorHasBothObjectives) {
               HasSubstr("objective_with_prior must"));
 }
 
+TEST(TraceFile, TellsProcessorSecondsWhereTheyAreKnown) {
+  const std::vector<IterationRecord> records = {
+      {.iteration = 0, .objective = 9, .processor_seconds = 0.5, .objective_with_prior = 12}};
+  EXPECT_EQ(FormatTrace(records), kHeader.substr(0, kHeader.size() - 1) +
+                                      ",processor_seconds,objective_with_prior\n"
+                                      "0,0,9,0,1,0,,0.5,12\n");
+  EXPECT_EQ(ParseTrace(FormatTrace(records), ""), records);
+}
+
 TEST(TraceFile, AcceptsWhatASpreadsheetSaves) {
   std::string text = kHeader + "1,2,3,1,0,4,\n";
   for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
