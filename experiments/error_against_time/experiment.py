@@ -3,7 +3,7 @@ import math
 
 import numpy
 
-from lab import fits, stats, tables
+from lab import fits, records, stats, tables
 from lab.fits import Fit
 
 POINTS = 32  # of a curve, at times that grow by a constant factor
@@ -26,11 +26,11 @@ def _labels(result, setting):
 
 
 def _best_objectives(fit_of):
-    """{material: E*}: the lowest E that any fit of it has recorded."""
+    """{material: E*}: the lowest E that any fit of it has recorded, or that the book of records has."""
     best = {}
     for result, fit in fit_of:
         name = result.labels["material"]
-        best[name] = min(best.get(name, math.inf), *(row["objective"] for row in fit.trace))
+        best[name] = min(best.get(name, math.inf), records.lowest(fit.report, name), *(row["objective"] for row in fit.trace))
     return best
 
 

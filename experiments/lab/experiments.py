@@ -12,6 +12,7 @@ pictures can be drawn again anywhere from the tables alone.
 """
 import dataclasses
 import importlib.util
+import json
 import pathlib
 
 from lab import UsageError, manifest, materials
@@ -101,6 +102,11 @@ class Experiment:
     @property
     def title(self):
         return self.page.read_text().splitlines()[0].removeprefix("# ")
+
+    def forms(self):
+        """The forms for measurements: the full one, and that of anisotropic materials where there is one."""
+        given = json.loads((self.folder / "manifest.json").read_text())
+        return ["full", *(form for form in ("anisotropic",) if form in given)]
 
     def settings(self, form="full", changes=()):
         return settings(self.name, form, changes)

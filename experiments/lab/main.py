@@ -7,13 +7,15 @@ import shutil
 import signal
 import sys
 
-from lab import UsageError, campaign, experiments, fits, manifest, materials, tables
+from lab import UsageError, campaign, experiments, fits, manifest, materials, records, tables
 from lab.experiments import Result, Setting
 from lab.units import Store
 
 EPILOGUE = """
 NAME     run an experiment: what is in the folder --out already is kept
 list     the experiments and their questions
+all      all of them, one after the other, and their anisotropic forms, as far as they take what is given
+records  lower the book of records (experiments/records) by the fits in OUT
 report   all pages with their tables and pictures in one file, OUT/report.html
 """
 
@@ -34,7 +36,7 @@ def parse(arguments):
     parser = argparse.ArgumentParser(
         prog="trilobe-experiments", description="Runs the experiments (experiments/README.md).",
         epilog=EPILOGUE, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("name", metavar="NAME|list|report")
+    parser.add_argument("name", metavar="NAME|list|all|records|report")
     parser.add_argument("sources", nargs="*", metavar="SOURCE",
                         help="BRDF files, folders of them, synth:NAME; default: the manifest's")
     parser.add_argument("--quick", action="store_const", const="quick", dest="form", default="full",
@@ -97,7 +99,7 @@ def setting_of(experiment, options):
     if not places and settings.get("needs_sources", True):
         raise UsageError("give BRDF files or folders of them, or --quick")
     return Setting(name=experiment.name, form=options.form, manifest=settings,
-                   sources=materials.find(places), build=options.build,
+                   sources=materials.find([*places, *settings.get("also", [])]), build=options.build,
                    main_program=(options.program or options.build / "bin" / "trilobe").resolve())
 
 
@@ -261,6 +263,36 @@ def write_report(options):
     print(f"wrote {path}")
 
 
+def run_all(options):
+    """Runs every experiment, in the order of their index, in its full and its anisotropic form; or in the quick
+    form. An experiment gets the sources if it has none of its own, and the settings whose names it knows. Returns the
+    worst exit status."""
+    from lab import report
+    of_all = report.in_order([experiments.load(name) for name in experiments.names()],
+                             experiments.FOLDER / "README.md")
+    given = {change.partition("=")[0].partition(".")[0] for change in options.set}
+    known = {name for experiment in of_all for name in experiment.settings()}
+    if unknown := sorted(given - known):
+        raise UsageError(f"--set={unknown[0]}: no experiment has a setting of this name")
+    worst = 0
+    for experiment in of_all:
+        for form in (["quick"] if options.form == "quick" else experiment.forms()):
+            settings = experiment.settings(form)
+            own = dict(vars(options), name=experiment.name, form=form,
+                       set=[change for change in options.set if change.partition("=")[0].partition(".")[0] in settings])
+            if "sources" in settings or not settings.get("needs_sources", True):
+                own["sources"] = []
+            print(f"== {of_form(experiment.name, form)}", flush=True)
+            worst = max(worst, run(experiment, argparse.Namespace(**own)))
+    return worst
+
+
+def update_records(options):
+    """Lowers the book of records by what is in --out."""
+    program = (options.program or options.build / "bin" / "trilobe").resolve()
+    print("\n".join(records.update(program, options.out / "units")))
+
+
 def stop(signal_number, _):
     """As Ctrl-C: the unit that is being made is dropped, all others stay."""
     raise KeyboardInterrupt(signal_number)
@@ -275,6 +307,10 @@ def main(arguments=None):
             list_experiments()
         elif options.name == "report":
             write_report(options)
+        elif options.name == "all":
+            return run_all(options)
+        elif options.name == "records":
+            update_records(options)
         else:
             return run(experiments.load(options.name), options)
         return 0

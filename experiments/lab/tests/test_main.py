@@ -157,6 +157,26 @@ class MainTest(FolderTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertRegex(done.stdout, "(?m)^final_error$")
 
+    def test_all_gives_each_experiment_what_it_takes(self):
+        (self.folder / "README.md").write_text("[y](y/README.md) [x](x/README.md)")
+        (self.folder / "y").mkdir()
+        (self.folder / "y" / "manifest.json").write_text(
+            '{"question": "?", "sources": ["synth:felt"], "probe": null, "anisotropic": {"sources": ["synth:linen"]}}')
+        for name in ("x", "y"):
+            (self.folder / name / "experiment.py").write_text("")
+        ran = []
+
+        def run(experiment, options):
+            ran.append((experiment.name, options))
+            return main.SOME_FAILED if experiment.name == "y" else 0
+
+        with unittest.mock.patch.object(main, "run", run):
+            self.assertEqual(main.main(["all", "synth:foam", "--set=probe=p.hdr"]), 3)
+            self.assertEqual(main.main(["all", "--set=prob=p.hdr"]), 2)
+        self.assertEqual([(name, options.form, options.sources, options.set) for name, options in ran],
+                         [("y", "full", [], ["probe=p.hdr"]), ("y", "anisotropic", [], ["probe=p.hdr"]),
+                          ("x", "full", ["synth:foam"], [])])
+
     def test_settings_that_make_no_sense_are_refused(self):
         self.module.units = lambda setting: setting.manifest["flags"]["none"]
         with self.assertRaisesRegex(UsageError, "settings of x are not what it takes .KeyError"):
