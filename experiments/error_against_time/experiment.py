@@ -286,6 +286,27 @@ def _start_figure(runs, threads):
     return figure
 
 
+def _share(rows, target):
+    """The share of fits that end within the target, with its interval by bootstrap over the materials."""
+    ends = [row["excess"] <= target for row in rows]
+    low, high = stats.bootstrap(ends, numpy.mean)
+    return f"{100 * numpy.mean(ends):.0f} % [{100 * low:.0f}, {100 * high:.0f}]"
+
+
+def _paired_table(rows, solvers):
+    """Each two solvers on the same materials: how often each ends lower by more than 0.1 %, and the sign test's p."""
+    ends = {solver: {row["material"]: math.inf if row.get("objective") is None else row["objective"] for row in of}
+            for solver, of in tables.groups(rows, "solver").items()}
+    lines = []
+    for k, first in enumerate(solvers):
+        for second in solvers[k + 1:]:
+            names = sorted(ends[first])
+            lower, higher, p = stats.sign_test([ends[first][name] for name in names],
+                                               [ends[second][name] for name in names], TARGETS[-1])
+            lines.append([first, second, str(lower), str(higher), str(len(names) - lower - higher), f"{p:.2g}"])
+    return tables.markdown(["solver", "other", "solver lower", "other lower", "alike", "p"], lines)
+
+
 def _summary(rows, solvers):
     """Two Markdown tables, a row a solver: what it reaches, and how soon."""
     of = tables.groups(rows, "solver")
@@ -299,8 +320,7 @@ def _summary(rows, solvers):
         missing = sum(math.isinf(row["excess"]) for row in mine)
         largest = max(row["excess"] for row in mine)
         reached.append([solver, tables.count(len(mine), missing),
-                        *(f"{100 * sum(row['excess'] <= target for row in mine) / len(mine):.0f} %"
-                          for target in TARGETS),
+                        *(_share(mine, target) for target in TARGETS),
                         column("excess", 100),
                         f"{100 * largest:.3g}" if math.isfinite(largest) else "–"])
         times.append([solver, *(column(f"seconds_to_{100 * target:g}_percent")
@@ -406,7 +426,7 @@ def draw(drawn, _):
     if count > names:
         wide = [row for row in everywhere if row["solver"] in widest]
         summary += f"\nAll {count} materials:\n\n{_summary(wide, widest)}\n"
-    products = {"summary.md": summary, "halves.md": _halves(runs, widest, threads)}
+    products = {"summary.md": summary, "paired.md": _paired_table(rows, solvers), "halves.md": _halves(runs, widest, threads)}
     for name, table in (("threads.md", _thread_table(runs)),
                         ("repeats.md", _repeat_table(drawn["runs"]))):
         if table:  # empty where the manifest does not ask for it

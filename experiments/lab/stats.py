@@ -41,6 +41,24 @@ def time_to_target(times, objectives, target):
     return next((t for t, value in zip(times, objectives) if value <= target), math.inf)
 
 
+def bootstrap(values, statistic, draws=2000, level=0.95, seed=1):
+    """(low, high): the percentile interval of statistic(values) over samples of the same size with replacement
+    (Efron and Tibshirani 1993, chapter 13). statistic takes a list."""
+    random = numpy.random.default_rng(seed)
+    of = sorted(statistic([values[i] for i in random.integers(len(values), size=len(values))]) for _ in range(draws))
+    return quantile(of, (1 - level) / 2), quantile(of, (1 + level) / 2)
+
+
+def sign_test(first, second, tolerance):
+    """(how often the first of a pair is lower, how often the second, p): pairs within `tolerance` of each other,
+    relatively, count for neither; p is two-sided, of the binomial distribution with chance 1/2."""
+    lower = sum(a < b / (1 + tolerance) for a, b in zip(first, second))
+    higher = sum(b < a / (1 + tolerance) for a, b in zip(first, second))
+    n = lower + higher
+    tail = sum(math.comb(n, k) for k in range(min(lower, higher) + 1)) / 2 ** n
+    return lower, higher, min(1.0, 2 * tail)
+
+
 def best_so_far(values):
     """The running minimum."""
     return numpy.minimum.accumulate(numpy.asarray(values, dtype=float))

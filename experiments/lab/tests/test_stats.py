@@ -14,6 +14,18 @@ class StatsTest(unittest.TestCase):
         self.assertEqual(stats.quantile([5], 0), 5)
         self.assertTrue(math.isnan(stats.median([])))
 
+    def test_bootstrap(self):
+        self.assertEqual(stats.bootstrap([3, 3, 3], stats.median), (3, 3))
+        low, high = stats.bootstrap(list(range(101)), lambda of: sum(of) / len(of))
+        # The mean of 101 draws has a standard deviation of sqrt((101^2 - 1) / 12 / 101) = 2.9.
+        self.assertAlmostEqual(low, 50 - 1.96 * 2.9, delta=0.6)
+        self.assertAlmostEqual(high, 50 + 1.96 * 2.9, delta=0.6)
+
+    def test_sign_test(self):
+        self.assertEqual(stats.sign_test([1, 1, 1, 1, 1, 2], [2, 2, 2, 2, 2, 1], 0.001), (5, 1, 14 / 64))
+        self.assertEqual(stats.sign_test([1, 1], [1.0005, 1], 0.001), (0, 0, 1.0))
+        self.assertEqual(stats.sign_test([1, INF], [INF, INF], 0.001), (1, 0, 1.0))
+
     def test_excess(self):
         self.assertAlmostEqual(stats.excess(1.5, 1), 0.5)
         self.assertEqual(stats.excess(0, 0), 0)
