@@ -36,6 +36,9 @@ build release
 step "Running the tests that go through choices, with all combinations"
 TRILOBE_ALL_CHOICES=1 run_tests release
 
+step "Running every command of README.md and of the pages that go on from it, as it stands there"
+TRILOBE_ALL_CHOICES=1 quietly readme scripts/check_readme.sh
+
 step "Building them by clang"
 configure clang -DTRILOBE_BUILD_TESTS=ON
 build clang

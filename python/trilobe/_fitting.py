@@ -27,7 +27,7 @@ class Result:
     Attributes:
         model: the fitted `Brdf`, in canonical form.
         trace: a structured array, a row an iteration, with the columns of trace.csv: iteration, seconds,
-            objective, filtered, accepted, step, optimality, processor_seconds, objective_with_prior (NaN where unknown).
+            objective, filtered, accepted, step, optimality, processor_seconds, objective_with_prior (NaN: unknown).
         report: a dict, as report.json is (docs/file-formats.md).
         interrupted: whether Ctrl-C ended it early.
     """

@@ -105,7 +105,7 @@ class Objective(unittest.TestCase):
     def fit(self, source: pathlib.Path, *flags: str) -> tuple[dict, dict]:
         """The model and the report."""
         out = self.folder / "out"
-        self.run_program("fit", source, f"--out={out}", "--solver=awls", *flags)
+        self.run_program("fit", source, f"--out={out}", "--solver=awls", "--noplots", "--nodiagnose", *flags)
         return tuple(json.loads((out / name).read_text()) for name in ("model.json", "report.json"))
 
     def check(self, told: float, expected: float, tolerance: float) -> None:

@@ -50,7 +50,7 @@ def without_seconds(value):
     (SMALL, {}),
     (SMALL, {"solver": "awls", "max_iterations": 3, "g_filter": 0.5, "model": "independent"}),
     (SMALL, {"solver": "varpro", "max_iterations": 3, "stretch": (-0.2, 0.3), "lobes": 2}),
-    ("synth:shot_silk@5x8", {"solver": "lm", "max_iterations": 1, "f_bins": 5, "prior": 0.5}),
+    ("synth:shot_silk@4x8", {"solver": "lm", "max_iterations": 1, "f_bins": 5, "prior": 0.5}),
     ("synth:linen@4x12", {"model": "auto", "solver": "awls", "max_iterations": 2, "lobes": 1, "max_parameters": 300}),
 ])
 def test_is_the_programs_to_the_bit(source, flags, tmp_path):
@@ -272,7 +272,8 @@ def test_other_threads_run_meanwhile(plastic):
 
 
 @needs_program
-def test_fits_many(tmp_path):
+def test_fits_many(tmp_path, monkeypatch):
+    monkeypatch.setenv("TRILOBE_TEST_LIGHTS", "6")
     rows = trilobe.fit_many(["synth:felt@20x20x40", SMALL], tmp_path, program=PROGRAM, workers=2, solver="awls",
                             max_iterations=1, noise=0.01)
     assert [row["state"] for row in rows] == ["fitted", "fitted"]

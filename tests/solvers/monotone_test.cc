@@ -81,7 +81,7 @@ TEST_P(Monotone, EveryUpdate) {
       for (const InitialModel& init : InitialModels()) {
         const bool first = &weighting == &Weightings().front() && &init == &InitialModels().front();
         const bool is_picked =
-            IsOneIn(3, {NumberOf(named, specs), NumberOf(weighting, Weightings()),
+            IsOneIn(9, {NumberOf(named, specs), NumberOf(weighting, Weightings()),
                         NumberOf(init, InitialModels())});
         if (!first && !is_picked) continue;
         for (const SolverEntry& solver : kLibrarySolvers) {

@@ -30,13 +30,13 @@ SceneFitSettings Settings(const FitCache& cache = {}) {
   return settings;
 }
 
-constexpr MerlGrid kGrid{.theta_h = 30, .theta_d = 30, .phi_d = 60};
+constexpr MerlGrid kGrid{.theta_h = 20, .theta_d = 20, .phi_d = 40};
 
 // The directions that a floor seen from above uses; few, and of a small table, for speed.
 SceneMaterial Material(const std::string& synth) {
   SceneMaterial material;
   material.name = synth;
-  material.source = "synth:" + synth + "@30x30x60";
+  material.source = "synth:" + synth + "@20x20x40";
   material.directions = DirectionRanges{{0, 0.4}, {0, 0.4}};
   return material;
 }
@@ -82,6 +82,7 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
   settings.lobes = 2;
   settings.appearance = {.lights = 6, .size = 48};
   SceneMaterial material = Material("plastic");
+  material.source = "synth:plastic@30x30x60";
   material.directions = AllDirections();
   material.channels = SceneChannels::kLuminance;
   const auto fitted = [&](SceneBudget::Unit unit, double amount) {
@@ -116,7 +117,7 @@ TEST(FitMaterial, KeepsWithinABudgetOfLook) {
 // A sphere of few lights shows no pixel whose directions are all near the normal.
 TEST(FitMaterial, NeedsAPictureThatShowsWhatTheSceneSees) {
   SceneFitSettings settings = Settings();
-  settings.appearance = {.lights = 6, .size = 48};
+  settings.appearance = {.lights = 6, .size = 24};
   SceneMaterial material = Material("plastic");
   material.directions = DirectionRanges{{0, 0.1}, {0, 0.1}};
   material.budget = {SceneBudget::Unit::kMeanDeltaE, 1};
@@ -127,7 +128,7 @@ TEST(FitMaterial, NeedsAPictureThatShowsWhatTheSceneSees) {
 // Its sphere is off by what the bins of its narrow highlight are, which no fit mends.
 TEST(FitMaterial, NeverAddsToAModel) {
   SceneFitSettings settings = Settings();
-  settings.appearance = {.lights = 6, .size = 48};
+  settings.appearance = {.lights = 6, .size = 24};
   SceneMaterial material = Material("");
   material.source = "material:chm_orange";
   material.directions = DirectionRanges{{0, 1.2}, {0, 1.2}};

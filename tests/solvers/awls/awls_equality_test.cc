@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "tests/test_util.h"
 #include "trilobe/model/synth/synth.h"
@@ -96,8 +97,8 @@ TEST(AwlsEquality, AnySpecAndWeighting) {
     const std::vector<NamedSpec> specs = TestSpecs(grid);
     for (const NamedSpec& named : specs) {
       for (const Weighting& weighting : Weightings()) {
-        // Each spec and weighting on one of the grids.
-        if (!IsOneIn(2, {odd, NumberOf(named, specs), NumberOf(weighting, Weightings())})) continue;
+        // Each spec and each weighting on both grids.
+        if (!IsOneIn(4, {odd, NumberOf(named, specs), NumberOf(weighting, Weightings())})) continue;
         if (kSanitized && (weighting.name == "log" || weighting.name == "cosine")) continue;
         const Objective objective = MakeObjective(table, named.spec, weighting.name);
         const FactorModel start = FindInitialModel("random").make(objective, 3);
@@ -151,14 +152,16 @@ TEST_P(FullResolution, EqualOver20Sweeps) {
 INSTANTIATE_TEST_SUITE_P(AwlsEquality, FullResolution, testing::Values("plastic", "felt", "chrome"),
                          [](const auto& param) { return param.param; });
 
-// Every bin of a MERL file, one sweep each way.
+// Every bin of a MERL file, one sweep each way; by day of a file with half as many along each axis.
 TEST(AwlsEquality, FullSizeSweep) {
-  const MerlGrid grid =
-      kSanitized ? MerlGrid{.theta_h = 30, .theta_d = 30, .phi_d = 60} : MerlGrid{};
-  const BrdfTable table = Synthesize(FindSynthMaterial("car-paint"), 0.02, 1, grid);
-  const Objective objective = MakeObjective(table, ModelSpec::SharedFactors(3, grid));
-  const FactorModel start = InitialModels().front().make(objective, 1);
-  ExpectSameSweeps(objective, start, Sweeps(1), "car-paint");
+  const std::vector<MerlGrid> grids = {{.theta_h = 45, .theta_d = 45, .phi_d = 90}, {}};
+  for (const MerlGrid& grid : grids) {
+    if (!IsOneIn(2, {NumberOf(grid, grids)})) continue;
+    const BrdfTable table = Synthesize(FindSynthMaterial("car-paint"), 0.02, 1, grid);
+    const Objective objective = MakeObjective(table, ModelSpec::SharedFactors(3, grid));
+    const FactorModel start = InitialModels().front().make(objective, 1);
+    ExpectSameSweeps(objective, start, Sweeps(1), "car-paint");
+  }
 }
 
 }  // namespace
