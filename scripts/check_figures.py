@@ -48,8 +48,15 @@ WORDS = ("zero one two three four five six seven eight nine ten eleven twelve th
          "seventeen eighteen nineteen twenty").split()
 NOTE = re.compile(r"^> \*\*Stale:\*\*.*\n\n", re.MULTILINE)
 PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", "materials/*.md", "benchmarks/*.md"]
-# What decides how a fit comes out.
-FITS = ["src/model", "src/solvers", "src/fit"]
+# What decides how a fit of a table comes out. Not how its model is drawn from by a renderer, what is done to a
+# measurement by flags, what is said about it, and how samples on no grid are read.
+FITS = ["src/model", "src/solvers", "src/fit",
+        *(f":(exclude)src/model/{name}" for name in
+          ("corruption", "evaluate/*bsdf*", "evaluate/half_vector_table*", "evaluate/cover_spikes*", "measurement"))]
+# What these experiments depend on as well.
+ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
+        "diagnosis": ["src/model/measurement", "src/model/corruption"],
+        "robustness": ["src/model/measurement", "src/model/corruption"]}
 FUNCTIONS: dict[str, Callable[..., object]] = {
     "median": stats.median, "quantile": stats.quantile, "mean": np.mean, "max": np.nanmax, "min": np.nanmin,
     "geometric_mean": lambda values: np.exp(np.mean(np.log(values))), "share": np.mean, "count": np.sum, "sum": np.sum,
@@ -231,7 +238,8 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     reasons = []
     if unknown:
         reasons.append(f"by sources that are not in this repository ({', '.join(unknown)})")
-    elif any(git(root, "diff", "--quiet", revision, "--", *FITS) is None for revision in revisions):
+    elif any(git(root, "diff", "--quiet", revision, "--", *paths) is None
+             for paths in (FITS, ALSO.get(results.parent.name)) if paths for revision in revisions):
         reasons.append(f"before changes of fits ({', '.join(revisions)})")
     settings = load(results.parent / "manifest.json", made["form"])
     if any(made["settings"].get(name) != value for name, value in settings.items()

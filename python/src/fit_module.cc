@@ -37,7 +37,6 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .noise = OptionOf<double>(options, "noise", "a number"),
       .missing = OptionOf<double>(options, "missing", "a number"),
       .corrupt = OptionOf<std::string>(options, "corrupt", "a text"),
-      .cosine = OptionOf<double>(options, "cosine", "a number"),
       .tilt_deg = TiltOf(options),
       .seed = OptionOf<uint64_t>(options, "seed", "an integer from 0"),
       .num_threads = ThreadsOf(options),
@@ -49,6 +48,9 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .radiometry = OptionOf<std::string>(options, "radiometry", "a name"),
       .columns = OptionOf<std::string>(options, "columns", "a text"),
       .theta_i_deg = OptionOf<double>(options, "theta_i", "a number of degrees")};
+  SetCosine(OptionOf<std::string>(options, "cosine", "a number, or o:1"), &source);
+  source.scale = OptionOf<double>(options, "scale", "a number");
+  source.azimuth_from_mirror = OptionOf<bool>(options, "azimuth_from_mirror", "True or False");
   CheckSourceOptions(source);
   return source;
 }

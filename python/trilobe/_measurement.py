@@ -179,7 +179,9 @@ def read(
     noise: float = 0,
     missing: float = 0,
     corrupt: str = "",
-    cosine: float = 0,
+    cosine: float | str = 0,
+    scale: float = 1,
+    azimuth_from_mirror: bool = False,
     tilt: float | str = 0,
     seed: int = 1,
     max_angle: float = 90,
@@ -199,7 +201,9 @@ def read(
         noise: relative noise of a synthetic material, 0 to 1.
         missing: the share of the samples that is left out at random.
         corrupt: what is done to it, "KIND:STRENGTH,..." (docs/robustness.md).
-        cosine: takes cos theta_i to this power out of it.
+        cosine: takes cos theta_i to this power out of it; of cos theta_o as "o:1".
+        scale: a factor of all values, as 0.01 for percents.
+        azimuth_from_mirror: phi_o of scattered samples is counted from the mirror direction.
         tilt: takes out by how much the sample leant towards azimuth 0 [degrees]; "auto" as the highlight of
             a table shows.
         seed: of whatever is random.
@@ -221,7 +225,9 @@ def read(
         noise=noise,
         missing=missing,
         corrupt=corrupt,
-        cosine=cosine,
+        cosine=cosine if isinstance(cosine, str) else repr(cosine),
+        scale=scale,
+        azimuth_from_mirror=azimuth_from_mirror,
         tilt=tilt,
         seed=seed,
         max_angle=max_angle,
@@ -298,7 +304,9 @@ def source_options(**given: Any) -> dict[str, Any]:
         "noise": 0.0,
         "missing": 0.0,
         "corrupt": "",
-        "cosine": 0.0,
+        "cosine": "0",
+        "scale": 1.0,
+        "azimuth_from_mirror": False,
         "tilt": 0.0,
         "seed": 1,
         "max_angle": 90.0,

@@ -18,7 +18,8 @@
 #include "io/formats/utia_file.h"
 #include "io/pictures/plots.h"
 #include "model/measurement/anisotropy.h"
-#include "model/measurement/symptoms.h"
+#include "model/measurement/note_symptoms.h"
+#include "model/measurement/sample_symptoms.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/measurement/measurement_stats.h"
@@ -191,6 +192,22 @@ Json ToJson(const Anisotropy& anisotropy) {
           {"share", anisotropy.samples > 0 ? Json(anisotropy.share) : Json()}};
 }
 
+Json ToJson(const std::vector<ReflectedAtLeast>& reflected) {
+  Json json = Json::array();
+  for (const ReflectedAtLeast& one : reflected) {
+    json.push_back({{"theta_i", RadiansToDegrees(one.theta_i)}, {"albedo", one.albedo}});
+  }
+  return json;
+}
+
+// "0.12 to 0.31 of the light, at 6 incidences".
+std::string ReflectedText(const std::vector<ReflectedAtLeast>& reflected) {
+  const auto [low, high] = std::ranges::minmax(reflected, {}, &ReflectedAtLeast::albedo);
+  return Text(low.albedo, 3) + " to " + Text(high.albedo, 3) + " of the light, at " +
+         std::to_string(reflected.size()) + (reflected.size() == 1 ? " incidence" : " incidences") +
+         ", as far as samples reach";
+}
+
 void DescribeScattered(const Measurement& measurement) {
   if (!FLAGS_out.empty() && !measurement.anisotropic) {
     throw Error(
@@ -210,6 +227,7 @@ void DescribeScattered(const Measurement& measurement) {
   if (measurement.anisotropic) anisotropy = AnisotropyOf(OnGrid(measurement));
   const ValueRange range = RangeOf(measurement.samples.rho);
   const PairError reciprocity = ReciprocityError(measurement);
+  const std::vector<ReflectedAtLeast> reflected = ReflectedLightOf(measurement.samples);
   const BinCounts& counts = measurement.counts;
   if (FLAGS_json) {
     PrintJson({{"file", measurement.source},
@@ -223,6 +241,7 @@ void DescribeScattered(const Measurement& measurement) {
                {"min", range.min},
                {"max", range.max},
                {"reciprocity_error", ToJson(reciprocity)},
+               {"reflects_at_least", ToJson(reflected)},
                {"anisotropy", anisotropy ? ToJson(*anisotropy) : Json()},
                {"notes", measurement.notes}});
     return;
@@ -248,6 +267,7 @@ void DescribeScattered(const Measurement& measurement) {
   PrintLine("smallest value, RGB", Text(range.min) + " /sr");
   PrintLine("largest value, RGB", Text(range.max) + " /sr");
   Print("reciprocity error", reciprocity);
+  if (!reflected.empty()) PrintLine("reflects at least", ReflectedText(reflected));
   if (anisotropy) {
     PrintLine("anisotropy", anisotropy->samples == 0
                                 ? "unknown: no sample was measured with the material turned"

@@ -28,7 +28,7 @@
 #include "model/appearance/picture_data.h"
 #include "model/lobes/gauge.h"
 #include "model/measurement/anisotropy.h"
-#include "model/measurement/symptoms.h"
+#include "model/measurement/note_symptoms.h"
 #include "model/objective/canonical_form.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"

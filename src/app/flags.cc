@@ -35,11 +35,16 @@ DEFINE_double(
 DEFINE_string(corrupt, "",
               "do to the measurement what instruments do, by --data_seed: KIND:STRENGTH,..., as "
               "noise:0.05,gaps:0.9; `trilobe help convert` lists the kinds (docs/robustness.md)");
-DEFINE_double(
-    cosine, 0,
+DEFINE_string(
+    cosine, "0",
     "correct a measurement that has been multiplied by cos theta_i to this power, from -2 "
-    "to 2: 1 where it has a cosine too many, -1 where it has one too few; `trilobe info` "
-    "tells");
+    "to 2: 1 where it has a cosine too many, -1 where it has one too few; o:1 where that "
+    "is cos theta_o; `trilobe info` tells");
+DEFINE_double(scale, 1,
+              "multiply all values by this, from 1e-6 to 1e6: 0.01 for percents, 0.3183 for pi f");
+DEFINE_string(azimuth, "from_light",
+              "from_mirror: azimuths phi_o of scattered samples are counted from the mirror "
+              "direction; `trilobe info` tells");
 DEFINE_string(tilt, "0",
               "correct a measurement whose sample leant by so many degrees towards azimuth 0, from "
               "which the light of a table comes, from -30 to 30; `trilobe info` tells; auto: as "
@@ -125,6 +130,11 @@ std::optional<double> TiltFromFlag() {
   throw Error("--tilt=" + FLAGS_tilt + ": give a number of degrees from -30 to 30, or auto");
 }
 
+bool IsFromMirror(const std::string& azimuth) {
+  if (azimuth == "from_mirror" || azimuth == "from_light") return azimuth == "from_mirror";
+  throw Error("--azimuth=" + azimuth + ": give from_mirror or from_light");
+}
+
 }  // namespace
 
 SourceOptions SourceOptionsFromFlags() {
@@ -134,7 +144,6 @@ SourceOptions SourceOptionsFromFlags() {
       .noise = FLAGS_noise,
       .missing = FLAGS_missing,
       .corrupt = FLAGS_corrupt,
-      .cosine = FLAGS_cosine,
       .tilt_deg = TiltFromFlag(),
       .seed = static_cast<uint64_t>(FLAGS_data_seed < 0 ? FLAGS_seed : FLAGS_data_seed),
       .num_threads = ThreadsFromFlags(),
@@ -146,14 +155,17 @@ SourceOptions SourceOptionsFromFlags() {
       .radiometry = FLAGS_radiometry,
       .columns = FLAGS_columns,
       .theta_i_deg = FLAGS_theta_i};
+  SetCosine(FLAGS_cosine, &options);
+  options.scale = FLAGS_scale;
+  options.azimuth_from_mirror = IsFromMirror(FLAGS_azimuth);
   CheckSourceOptions(options);
   return options;
 }
 
 std::vector<std::string> MeasurementFlags() {
-  return {"noise",    "missing",    "corrupt",    "tilt",        "cosine",
-          "seed",     "data_seed",  "max_angle",  "min_theta_d", "extrapolated",
-          "outliers", "dark_noise", "radiometry", "columns",     "theta_i"};
+  return {"noise",    "missing",    "corrupt",    "tilt",      "cosine",      "scale",
+          "azimuth",  "seed",       "data_seed",  "max_angle", "min_theta_d", "extrapolated",
+          "outliers", "dark_noise", "radiometry", "columns",   "theta_i"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -102,8 +102,10 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
     if (given && kind != reader) measurement->notes.push_back(what + ", and changes nothing here");
   };
   note(options.noise != 0, kSynth, "--noise is of synth: sources");
-  note(options.extrapolated, "rgl", "--extrapolated is of RGL files");
+  note(options.extrapolated && measurement->table, "rgl",
+       "--extrapolated is of RGL files and of scattered samples");
   note(options.radiometry != SourceOptions().radiometry, "utia", "--radiometry is of UTIA files");
+  note(options.azimuth_from_mirror && measurement->table, "", "--azimuth is of scattered samples");
   note(!options.columns.empty(), "csv", "--columns is of text tables");
   note(options.theta_i_deg != -1, "csv", "--theta_i is of text tables");
 }
@@ -137,14 +139,28 @@ void CorruptBy(const SourceOptions& options, Measurement* measurement) {
   Corrupt(ParseCorruptions(options.corrupt), options.seed, options.num_threads, measurement);
   // What undoes a corruption is the same, the other way round.
   std::vector<Corruption> corruptions;
-  const auto undo = [&](const char* kind, double strength) {
-    if (strength == 0) return;
-    corruptions.push_back(
-        {.kind = &FindNamed("kind", kind, CorruptionKinds()), .strength = -strength});
+  const auto apply = [&](const char* name, double strength) {
+    const CorruptionKind& kind = FindNamed("kind", name, CorruptionKinds());
+    if (strength != kind.nothing) corruptions.push_back({.kind = &kind, .strength = strength});
   };
-  undo("tilt", options.tilt_deg ? *options.tilt_deg : ShownTilt(measurement));
-  undo("cosine", options.cosine);
+  apply("tilt", -(options.tilt_deg ? *options.tilt_deg : ShownTilt(measurement)));
+  apply("cosine", -options.cosine);
+  apply("cosine_o", -options.cosine_o);
+  apply("scale", options.scale);
   Corrupt(corruptions, options.seed, options.num_threads, measurement);
+  if (options.azimuth_from_mirror && !measurement->table) TurnAzimuths(measurement);
+}
+
+void SetCosine(std::string_view text, SourceOptions* options) {
+  const bool outgoing = text.starts_with("o:");
+  const bool named = outgoing || text.starts_with("i:");
+  const std::optional<double> exponent = ToNumber(text.substr(named ? 2 : 0));
+  if (!exponent) {
+    throw Error("--cosine=" + std::string(text) +
+                ": give the exponent of cos theta_i that values have been multiplied by, as 1, or "
+                "of cos theta_o, as o:1");
+  }
+  (outgoing ? options->cosine_o : options->cosine) = *exponent;
 }
 
 void CheckSourceOptions(const SourceOptions& options) {
@@ -163,8 +179,11 @@ void CheckSourceOptions(const SourceOptions& options) {
   ParseCorruptions(options.corrupt);
   const double tilt = options.tilt_deg.value_or(0);
   CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
-  CheckNumber("--cosine", options.cosine, options.cosine >= -2 && options.cosine <= 2,
-              "from -2 to 2");
+  for (const double exponent : {options.cosine, options.cosine_o}) {
+    CheckNumber("--cosine", exponent, exponent >= -2 && exponent <= 2, "from -2 to 2");
+  }
+  CheckNumber("--scale", options.scale, options.scale >= 1e-6 && options.scale <= 1e6,
+              "from 1e-6 to 1e6");
 }
 
 const std::vector<MeasurementFormat>& MeasurementFormats() {
@@ -297,6 +316,8 @@ Measurement Source::Read(const SourceOptions& options) const {
   CorruptBy(options, &measurement);
   // Of all that was measured: within a limit there may be no light to hold the shadow against.
   if (options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
+  if (!options.extrapolated) LeaveOutFill(&measurement);
+  if (!options.outliers) LeaveOutZeroGaps(&measurement);
   if (!options.dark_noise) SmoothDarkReadings(options.num_threads, &measurement);
   if (!options.outliers) LeaveOutOutliers(options.num_threads, &measurement);
   DecideMeasured(options, &measurement);

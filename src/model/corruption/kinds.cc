@@ -153,6 +153,19 @@ void MultiplyByCosine(double strength, uint64_t /*seed*/, Readings* readings) {
   });
 }
 
+void MultiplyByOutgoingCosine(double strength, uint64_t /*seed*/, Readings* readings) {
+  readings->ForEach([&](int j) {
+    const double factor = std::pow(readings->CosinesOf(j).o, strength);
+    for (double& rho : readings->rho(j)) rho *= factor;
+  });
+}
+
+void Multiply(double strength, uint64_t /*seed*/, Readings* readings) {
+  readings->ForEach([&](int j) {
+    for (double& rho : readings->rho(j)) rho *= strength;
+  });
+}
+
 void BreakReciprocity(double strength, uint64_t /*seed*/, Readings* readings) {
   readings->ForEach([&](int j) {
     const Cosines cosines = readings->CosinesOf(j);

@@ -23,6 +23,8 @@ void MixChannels(double strength, uint64_t seed, Readings* readings);
 void AddStrayLight(double strength, uint64_t seed, Readings* readings);
 void AddFlare(double strength, uint64_t seed, Readings* readings);
 void MultiplyByCosine(double strength, uint64_t seed, Readings* readings);
+void MultiplyByOutgoingCosine(double strength, uint64_t seed, Readings* readings);
+void Multiply(double strength, uint64_t seed, Readings* readings);
 void BreakReciprocity(double strength, uint64_t seed, Readings* readings);
 void CastShadow(double strength, uint64_t seed, Readings* readings);
 

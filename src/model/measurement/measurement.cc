@@ -10,6 +10,7 @@
 #include "model/measurement/bad_readings.h"
 #include "model/measurement/counter_random.h"
 #include "model/measurement/own_shadow.h"
+#include "model/measurement/unmeasured_samples.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 
@@ -90,6 +91,21 @@ void Keep(const std::vector<int>& kept, int BinCounts::*reason, Measurement* mea
   measurement->samples = Selected(measurement->samples, kept);
   measurement->counts.valid -= left_out;
   measurement->counts.*reason += left_out;
+}
+
+// Keeps all but these samples, which are in ascending order.
+void KeepAllBut(const std::vector<int>& left_out, int BinCounts::*reason,
+                Measurement* measurement) {
+  std::vector<int> kept;
+  auto next = left_out.begin();
+  for (int j = 0; j < measurement->samples.size(); ++j) {
+    if (next != left_out.end() && *next == j) {
+      ++next;
+    } else {
+      kept.push_back(j);
+    }
+  }
+  Keep(kept, reason, measurement);
 }
 
 }  // namespace
@@ -184,6 +200,34 @@ void LeaveOutOwnShadow(Measurement* measurement) {
   measurement->notes.push_back(note.str());
 }
 
+void LeaveOutFill(Measurement* measurement) {
+  if (NotNull(measurement, "the measurement").table || measurement->anisotropic) return;
+  CheckDirections(*measurement);
+  const FilledSamples filled = FindFilled(measurement->samples);
+  if (filled.samples.empty()) return;
+  KeepAllBut(filled.samples, &BinCounts::extrapolated, measurement);
+  measurement->notes.push_back(
+      std::to_string(filled.theta_i) + " of " + std::to_string(filled.all_theta_i) +
+      " theta_i and " + std::to_string(filled.theta_o) + " of " +
+      std::to_string(filled.all_theta_o) +
+      " theta_o repeat, to the bit, the values of the one before: " +
+      std::to_string(filled.samples.size()) +
+      " samples seem to be filled in, not measured, and are left out; --extrapolated takes them");
+}
+
+void LeaveOutZeroGaps(Measurement* measurement) {
+  if (NotNull(measurement, "the measurement").table || measurement->anisotropic) return;
+  CheckDirections(*measurement);
+  const std::vector<int> gaps = FindZeroGaps(measurement->samples);
+  if (gaps.empty()) return;
+  const int valid = measurement->samples.size();
+  KeepAllBut(gaps, &BinCounts::missing, measurement);
+  measurement->notes.push_back(
+      std::to_string(gaps.size()) + " of " + std::to_string(valid) +
+      " samples are 0 beside others that are not dark, as where nothing was measured, and left "
+      "out; --outliers takes them");
+}
+
 void SmoothDarkReadings(int num_threads, Measurement* measurement) {
   if (!NotNull(measurement, "the measurement").table) return;
   const int valid = CountsOf(*measurement).valid;
@@ -214,16 +258,9 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
       for (auto& plane : measurement->table->stored) plane[samples.bins[outlier.sample]] = -1;
     }
   } else {
-    std::vector<int> kept;
-    auto next = outliers.begin();
-    for (int j = 0; j < samples.size(); ++j) {
-      if (next != outliers.end() && next->sample == j) {
-        ++next;
-      } else {
-        kept.push_back(j);
-      }
-    }
-    Keep(kept, &BinCounts::negative, measurement);
+    std::vector<int> numbers;
+    for (const Outlier& outlier : outliers) numbers.push_back(outlier.sample);
+    KeepAllBut(numbers, &BinCounts::negative, measurement);
   }
   measurement->notes.push_back(
       std::to_string(count) + " of " + std::to_string(valid) +
@@ -257,6 +294,18 @@ void LeaveOutAtRandom(double share, uint64_t seed, Measurement* measurement) {
     if (!is_lost(j)) kept.push_back(j);
   }
   Keep(kept, &BinCounts::missing, measurement);
+}
+
+void TurnAzimuths(Measurement* scattered) {
+  NotNull(scattered, "the measurement");
+  CheckDirections(*scattered);
+  BrdfSamples& samples = scattered->samples;
+  for (int j = 0; j < samples.size(); ++j) {
+    samples.directions[j].phi_o += kPi;
+    samples.angles[j] = ToHalfDiff(ToDirections(samples.directions[j]));
+  }
+  scattered->look_up = nullptr;
+  scattered->formula = nullptr;
 }
 
 PairError ReciprocityError(const Measurement& scattered) {

@@ -153,12 +153,9 @@ constexpr std::string (*kTelling[])(const BrdfTable&) = {
     [](const BrdfTable& table) -> std::string {
       const CosineSymptom cosine = CosineOf(table);
       if (!cosine.IsOneTooMany() && !cosine.IsOneTooFew()) return "";
-      const int k = cosine.IsOneTooMany() ? 1 : -1;
       return Said("exchanged directions differ by ", Percent(cosine.error),
-                  " in the median, and by ", Percent(cosine.error_without),
-                  " with a cosine of theta_i ", k > 0 ? "less" : "more",
-                  ": values seem to have been ", k > 0 ? "multiplied" : "divided",
-                  " by it once; --cosine=", k, " corrects that");
+                  " in the median, and by ", Percent(cosine.error_without), " ",
+                  WhichCosine(cosine.IsOneTooMany()));
     },
     [](const BrdfTable& table) -> std::string {
       const StrayLightSymptom stray = StrayLightOf(table);
@@ -215,6 +212,16 @@ constexpr std::string (*kTelling[])(const BrdfTable&) = {
 
 }  // namespace
 
+std::string WhichCosine(bool too_many) {
+  return too_many ? "with a cosine of theta_i less: values seem to have been multiplied by it, "
+                    "which --cosine=1 corrects, or divided by that of theta_o, --cosine=o:-1; "
+                    "exchanging directions cannot tell which"
+                  : "with a cosine of theta_i more: values seem to have been multiplied by that of "
+                    "theta_o, as many instruments give them, which --cosine=o:1 corrects, or "
+                    "divided by that of theta_i, --cosine=-1; exchanging directions cannot tell "
+                    "which";
+}
+
 std::vector<std::string> SymptomsOf(const BrdfTable& table, int num_threads) {
   std::array<std::string, std::size(kTelling)> told;
   ParallelFor(static_cast<int>(told.size()), num_threads,
@@ -223,12 +230,6 @@ std::vector<std::string> SymptomsOf(const BrdfTable& table, int num_threads) {
   std::ranges::copy_if(told, std::back_inserter(symptoms),
                        [](const std::string& symptom) { return !symptom.empty(); });
   return symptoms;
-}
-
-void NoteSymptoms(int num_threads, Measurement* measurement) {
-  if (!measurement->table) return;
-  std::ranges::copy(SymptomsOf(*measurement->table, num_threads),
-                    std::back_inserter(measurement->notes));
 }
 
 }  // namespace trilobe

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "trilobe/model/measurement/brdf_table.h"
-#include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
 
@@ -89,11 +88,11 @@ struct TiltSymptom {
 };
 TiltSymptom TiltOf(const BrdfTable& table);
 
+// The end of a sentence about exchanged directions, for one cosine of theta_i too many or too few.
+std::string WhichCosine(bool too_many);
+
 // One sentence per symptom; empty if nothing looks wrong.
 std::vector<std::string> SymptomsOf(const BrdfTable& table, int num_threads);
-
-// Adds them to the notes of a measurement with a table.
-void NoteSymptoms(int num_threads, Measurement* measurement);
 
 }  // namespace trilobe
 

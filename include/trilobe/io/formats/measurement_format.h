@@ -12,12 +12,17 @@ namespace trilobe {
 
 // How a source is read and which of its samples count as measured. `noise` is for `synth:` only,
 // `extrapolated` for RGL files, `radiometry` for UTIA files, `columns` and `theta_i_deg` for text
-// tables; for other sources they only add a note to the measurement.
+// tables, `azimuth_from_mirror` for scattered samples; for other sources they only add a note to
+// the measurement.
 struct SourceOptions {
   double noise = 0.0;        // relative standard deviation of multiplicative noise, 0 to 1
   double missing = 0.0;      // fraction of bins or samples removed at random, in [0, 1)
   std::string corrupt = {};  // corruptions to apply (ParseCorruptions), seeded by `seed`
   double cosine = 0;         // exponent of a factor cos theta_i to remove, -2 to 2
+  double cosine_o = 0;       // the same of cos theta_o
+  double scale = 1;          // factor of all values, above 0
+  // Azimuths phi_o of scattered samples are counted from the mirror direction, phi_i + 180 degrees.
+  bool azimuth_from_mirror = false;
   // Tilt of the sample towards azimuth 0, to remove; nullopt: estimated from the highlight.
   std::optional<double> tilt_deg = 0;
   uint64_t seed = 1;

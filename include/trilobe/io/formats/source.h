@@ -64,7 +64,12 @@ struct SynthSource {
 };
 SynthSource SynthSourceOf(std::string_view name);
 
-// A step of Source::Read: applies SourceOptions::corrupt, then removes `tilt_deg` and `cosine`.
+// Sets `cosine` or `cosine_o` of the options by a text: "1" or "i:1" is cos theta_i, "o:1" is cos
+// theta_o. Throws Error for others.
+void SetCosine(std::string_view text, SourceOptions* options);
+
+// A step of Source::Read: applies SourceOptions::corrupt, then removes `tilt_deg`, `cosine` and
+// `cosine_o`, multiplies by `scale` and turns azimuths.
 void CorruptBy(const SourceOptions& options, Measurement* measurement);
 
 // The last step of Source::Read: decides which bins or samples count as measured.

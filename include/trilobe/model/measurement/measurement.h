@@ -72,6 +72,12 @@ void LimitThetaD(double min_theta_d, Measurement* measurement);
 // The same for scattered samples shaded by the detector (OwnShadow), if any; adds a note.
 void LeaveOutOwnShadow(Measurement* measurement);
 
+// Leaves out scattered samples that were filled in, not measured: angles of a grid that repeat those
+// before (FindFilled), and zeros amid light (FindZeroGaps); adds a note for each. No effect on
+// tables and anisotropic measurements.
+void LeaveOutFill(Measurement* measurement);
+void LeaveOutZeroGaps(Measurement* measurement);
+
 // Leaves out outliers (FindOutliers) and adds a note, if there are at least 10 (scattered samples:
 // and one in 500) and they change the reflected light by at least 2e-5; clean materials have a few
 // in the dark. Outliers by a factor below 8 count only if they are at least 10 and one in 500. For
@@ -81,6 +87,10 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement);
 // For tables, replaces readings lost in dark noise by medians of their neighbours
 // (SmoothDarkReadings) and adds a note, if there is such noise.
 void SmoothDarkReadings(int num_threads, Measurement* measurement);
+
+// Turns phi_o of scattered samples by 180 degrees, for those whose azimuths are counted from the
+// mirror direction.
+void TurnAzimuths(Measurement* scattered);
 
 // Leaves out a random share in [0, 1) of the valid bins or samples, chosen by `seed`, as lost data:
 // bins are marked lost, samples removed. Throws Error for other shares.

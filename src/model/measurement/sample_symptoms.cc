@@ -1,0 +1,398 @@
+#include "model/measurement/sample_symptoms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+#include "core/math/quantile.h"
+#include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/math/angles.h"
+
+namespace trilobe {
+namespace {
+
+constexpr double kSameValue = 1e-9;  // relative
+constexpr int kMostSamples = 20000;  // that a symptom looks at
+
+// The samples, or about kMostSamples of them; with their exact directions.
+BrdfSamples Some(const BrdfSamples& samples) {
+  return Thinned(samples, std::max(1, samples.size() / kMostSamples));
+}
+
+// From -pi to pi; 0 on the side of the light.
+double AzimuthFromLight(const SphericalAngles& at) {
+  return std::remainder(at.phi_o - at.phi_i, 2 * kPi);
+}
+
+// --- exchanged directions
+// --------------------------------------------------------------------------
+
+struct ExchangedSamples {
+  double log_ratio = 0;    // of the values
+  double log_cosines = 0;  // of cos theta_i / cos theta_o of the first
+};
+
+// wi and wo in the frame whose x axis lies under wi, mirrored to wo[1] >= 0.
+DirectionPair Folded(double theta_i, double theta_o, double azimuth) {
+  return ToDirections(SphericalAngles{
+      .theta_i = theta_i, .phi_i = 0, .theta_o = theta_o, .phi_o = std::abs(azimuth)});
+}
+
+std::vector<ExchangedSamples> ExchangedSamplesOf(const BrdfSamples& samples) {
+  constexpr double kApart = 1.5;
+  constexpr int kMost = 3000;  // pairs are looked for among all of these
+  const double least_cosine = std::cos(DegreesToRadians(4));
+  const BrdfSamples some = Thinned(samples, std::max(1, samples.size() / kMost));
+  std::vector<DirectionPair> pairs(some.size()), exchanged(some.size());
+  for (int j = 0; j < some.size(); ++j) {
+    const SphericalAngles& at = some.directions[j];
+    pairs[j] = Folded(at.theta_i, at.theta_o, AzimuthFromLight(at));
+    exchanged[j] = Folded(at.theta_o, at.theta_i, AzimuthFromLight(at));
+  }
+  std::vector<ExchangedSamples> found;
+  for (int j = 0; j < some.size(); ++j) {
+    const double log_cosines = std::log(pairs[j].wi[2] / pairs[j].wo[2]);
+    const double first = Mean(some.rho[j]);
+    if (!(log_cosines > std::log(kApart) && first > 0)) continue;
+    double nearest = least_cosine;
+    int partner = -1;
+    for (int k = 0; k < some.size(); ++k) {
+      const double near =
+          std::min(Dot(exchanged[j].wi, pairs[k].wi), Dot(exchanged[j].wo, pairs[k].wo));
+      if (near > nearest) {
+        nearest = near;
+        partner = k;
+      }
+    }
+    const double second = partner < 0 ? 0 : Mean(some.rho[partner]);
+    if (second > 0) found.push_back({std::log(first / second), log_cosines});
+  }
+  return found;
+}
+
+template <typename Number>
+double MedianOverPairs(const std::vector<ExchangedSamples>& pairs, const Number& number) {
+  std::vector<double> numbers(pairs.size());
+  std::ranges::transform(pairs, numbers.begin(), number);
+  return Quantile(&numbers, 0.5);
+}
+
+// --- incidences
+// ------------------------------------------------------------------------------------
+
+// The samples of about one theta_i, by their numbers.
+std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples) {
+  std::map<int, std::vector<int>> incidences;
+  for (int j = 0; j < samples.size(); ++j) {
+    constexpr double kStep = 5;
+    incidences[static_cast<int>(RadiansToDegrees(samples.directions[j].theta_i) / kStep)].push_back(
+        j);
+  }
+  return incidences;
+}
+
+// Points that are spread evenly over the projected hemisphere (Fibonacci's spiral on the disc), of
+// which each stands for pi / count of the sum over cos theta_o.
+std::vector<Direction> CosinePoints(int count) {
+  const double turn = kPi * (3 - std::sqrt(5.0));
+  std::vector<Direction> points(count);
+  for (int k = 0; k < count; ++k) {
+    const double sin2 = (k + 0.5) / count, sine = std::sqrt(sin2);
+    points[k] = {sine * std::cos(turn * k), sine * std::sin(turn * k), std::sqrt(1 - sin2)};
+  }
+  return points;
+}
+
+double AngleBetween(const Direction& a, const Direction& b) {
+  return std::acos(std::clamp(Dot(a, b), -1.0, 1.0));
+}
+
+double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbers) {
+  constexpr int kPoints = 3000;
+  static const std::vector<Direction> points = CosinePoints(kPoints);
+  struct Seen {
+    Direction wo;
+    double rho, reach;
+  };
+  std::vector<Seen> seen;
+  for (const int j : numbers) {
+    const SphericalAngles& at = samples.directions[j];
+    seen.push_back(
+        {Folded(at.theta_i, at.theta_o, AzimuthFromLight(at)).wo, Mean(samples.rho[j]), 0});
+  }
+  for (Seen& one : seen) {
+    double nearest = DegreesToRadians(10);
+    for (const Seen& other : seen) {
+      const double apart = AngleBetween(one.wo, other.wo);
+      if (apart > 1e-6) nearest = std::min(nearest, apart);
+    }
+    one.reach = std::cos(1.5 * nearest);
+  }
+  double sum = 0;
+  for (const Direction& point : points) {
+    const Direction at = {point[0], std::abs(point[1]), point[2]};
+    // The three nearest, by their cosines.
+    std::array<std::pair<double, double>, 3> near;
+    near.fill({-1, 0});
+    bool within = false;
+    for (const Seen& one : seen) {
+      const double cosine = Dot(at, one.wo);
+      within |= cosine >= one.reach;
+      if (cosine <= near.back().first) continue;
+      near.back() = {cosine, one.rho};
+      for (size_t k = near.size() - 1; k > 0 && near[k].first > near[k - 1].first; --k) {
+        std::swap(near[k], near[k - 1]);
+      }
+    }
+    if (within) sum += std::min({near[0].second, near[1].second, near[2].second});
+  }
+  return kPi * sum / kPoints;
+}
+
+// --- sentences
+// -------------------------------------------------------------------------------------
+
+template <typename... Parts>
+std::string Sentence(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(4);
+  (text << ... << parts);
+  return text.str();
+}
+
+int WholePercent(double share) { return static_cast<int>(std::lround(100 * share)); }
+
+std::string TellCosine(const BrdfSamples& samples) {
+  const CosineSymptom cosine = CosineOf(samples);
+  if (!cosine.IsOneTooMany() && !cosine.IsOneTooFew()) return "";
+  const std::string begin =
+      Sentence("exchanged directions differ by ", WholePercent(cosine.error),
+               " % in the median, and by ", WholePercent(cosine.error_without), " % ");
+  return begin + WhichCosine(cosine.IsOneTooMany());
+}
+
+std::string TellHighlight(const BrdfSamples& samples) {
+  const HighlightSymptom highlight = HighlightOf(samples);
+  if (highlight.IsAtLight()) {
+    return Sentence(
+        "the brightest samples stand at phi_o = phi_i, towards the light, and not at phi_i + 180, "
+        "its mirror "
+        "direction, at ",
+        highlight.at_light, " of ", highlight.incidences,
+        " incidences: either azimuths are counted from the mirror direction, which "
+        "--azimuth=from_mirror corrects, or the material sends light back to where it "
+        "comes from, for which the model has no lobe");
+  }
+  if (highlight.IsAtNormal()) {
+    return Sentence("the brightest samples stand at theta_o = 0 at ", highlight.at_normal, " of ",
+                    highlight.incidences,
+                    " incidences, whatever theta_i: theta_o seems to be counted from the mirror "
+                    "direction; add theta_i to it");
+  }
+  return "";
+}
+
+std::string TellReflected(const BrdfSamples& samples) {
+  std::vector<double> albedos;
+  for (const ReflectedAtLeast& one : ReflectedLightOf(samples)) albedos.push_back(one.albedo);
+  if (albedos.empty()) return "";
+  const double albedo = Quantile(&albedos, 0.5);
+  if (!(albedo > 1.1)) return "";
+  const std::string more = Sentence(
+      "at least ", albedo, " times as much light comes back as fell (median of the incidences), ");
+  // pi f is the reflectance factor: f of a perfect white is 1 / pi.
+  if (albedo < kPi) {
+    return more + Sentence("as where values are reflectance factors, pi f; --scale=", 1 / kPi,
+                           " corrects that");
+  }
+  return more + Sentence("as where values are percents; --scale=0.01 corrects that, and --scale=",
+                         0.01 / kPi, " percents of the reflectance factor, pi f");
+}
+
+std::string TellRepeated(const BrdfSamples& samples) {
+  const RepeatedDirections repeated = RepeatedDirectionsOf(samples);
+  if (10 * repeated.samples < samples.size() || !(repeated.apart > 0.3)) return "";
+  return Sentence(
+      repeated.samples,
+      " samples stand at directions that are there more than once, with values that differ "
+      "by up to ",
+      WholePercent(repeated.apart),
+      " % (nine of ten): as where the sign of an angle was dropped, which tells one side "
+      "of a scan from the other; "
+      "write the angles with their signs, or phi_o = 180 on the mirror's side");
+}
+
+std::string TellLargest(const BrdfSamples& samples) {
+  const LargestValueSymptom largest = LargestValueOf(samples);
+  if (largest.IsMark(samples.size())) {
+    return Sentence(
+        "the value ", largest.value, " is there ", largest.samples, " times, and is ",
+        largest.over_next,
+        " times the next one: it seems to mark what was not measured; leave these lines out");
+  }
+  if (largest.IsPlateau(samples.size())) {
+    return Sentence("the largest value is there ", largest.samples,
+                    " times, as where a detector is saturated: highlights are brighter than that");
+  }
+  return "";
+}
+
+std::string TellAngles(const BrdfSamples& samples) {
+  constexpr int kFewest = 10;
+  double largest = 0;
+  for (const SphericalAngles& at : samples.directions)
+    largest = std::max({largest, at.theta_i, at.theta_o});
+  // A right angle in radians, read as so many degrees.
+  if (samples.size() < kFewest || !(largest > 0 && largest < DegreesToRadians(kPi / 2))) return "";
+  return Sentence("no polar angle is above ", RadiansToDegrees(largest),
+                  " degrees: angles seem to be in radians; name the columns so, as theta_i_rad");
+}
+
+std::string TellNegative(const BinCounts& counts) {
+  if (2 * static_cast<int64_t>(counts.negative) <= counts.total) return "";
+  return Sentence(counts.negative, " of ", counts.total,
+                  " values are negative, as decibels are, and left out; a BRDF is 10^(dB/10)");
+}
+
+}  // namespace
+
+CosineSymptom CosineOf(const BrdfSamples& samples) {
+  constexpr size_t kFewestPairs = 20;
+  const std::vector<ExchangedSamples> pairs = ExchangedSamplesOf(samples);
+  if (pairs.size() < kFewestPairs) return {};
+  CosineSymptom symptom{
+      .exponent = MedianOverPairs(
+          pairs, [](const auto& pair) { return pair.log_ratio / pair.log_cosines; }),
+      .error = MedianOverPairs(pairs, [](const auto& pair) { return std::abs(pair.log_ratio); })};
+  const double nearer = symptom.exponent > 0 ? 1 : -1;
+  symptom.error_without = MedianOverPairs(pairs, [&](const auto& pair) {
+    return std::abs(pair.log_ratio - nearer * pair.log_cosines);
+  });
+  return symptom;
+}
+
+HighlightSymptom HighlightOf(const BrdfSamples& samples) {
+  constexpr double kBrighter = 3;
+  constexpr size_t kFewest = 8;
+  HighlightSymptom symptom;
+  for (const auto& [step, numbers] : ByIncidence(samples)) {
+    if (numbers.size() < kFewest) continue;
+    std::vector<double> values;
+    for (const int j : numbers) values.push_back(Mean(samples.rho[j]));
+    const int brightest = numbers[std::ranges::max_element(values) - values.begin()];
+    const SphericalAngles& at = samples.directions[brightest];
+    const double largest = Mean(samples.rho[brightest]);
+    if (at.theta_i < DegreesToRadians(20) || !(largest > kBrighter * Quantile(&values, 0.5)))
+      continue;
+    ++symptom.incidences;
+    const bool at_normal = at.theta_o < DegreesToRadians(3);
+    symptom.at_normal += at_normal ? 1 : 0;
+    symptom.at_light +=
+        at.theta_o > DegreesToRadians(10) && std::abs(AzimuthFromLight(at)) < DegreesToRadians(30)
+            ? 1
+            : 0;
+  }
+  return symptom;
+}
+
+std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
+  constexpr size_t kFewest = 3;
+  constexpr int kMost = 1000;  // samples of an incidence
+  std::vector<ReflectedAtLeast> reflected;
+  for (const auto& [step, all] : ByIncidence(samples)) {
+    if (all.size() < kFewest) continue;
+    std::vector<int> numbers;
+    const size_t stride = 1 + all.size() / kMost;
+    for (size_t k = 0; k < all.size(); k += stride) numbers.push_back(all[k]);
+    double theta_i = 0;
+    for (const int j : numbers)
+      theta_i += samples.directions[j].theta_i / static_cast<double>(numbers.size());
+    reflected.push_back({theta_i, ReflectedAlbedo(samples, numbers)});
+  }
+  return reflected;
+}
+
+RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples) {
+  constexpr double kStep = 1e-6;  // [rad]
+  const auto key = [&](int j) {
+    const SphericalAngles& at = samples.directions[j];
+    return std::tuple(std::llround(at.theta_i / kStep), std::llround(at.theta_o / kStep),
+                      std::llround(std::cos(AzimuthFromLight(at)) / kStep),
+                      std::llround(std::sin(AzimuthFromLight(at)) / kStep));
+  };
+  std::vector<int> order(samples.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, key);
+  RepeatedDirections repeated;
+  std::vector<double> apart;
+  for (size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    for (end = begin + 1; end < order.size() && key(order[end]) == key(order[begin]); ++end) {
+      const double a = Mean(samples.rho[order[end - 1]]), b = Mean(samples.rho[order[end]]);
+      apart.push_back(a + b > 0 ? 2 * std::abs(a - b) / (a + b) : 0);
+    }
+    if (end - begin > 1) repeated.samples += static_cast<int>(end - begin);
+  }
+  if (!apart.empty()) repeated.apart = Quantile(&apart, 0.9);
+  return repeated;
+}
+
+LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
+  LargestValueSymptom found;
+  for (const bool of_signal : {false, true}) {
+    for (int c = 0; c < kChannels; ++c) {
+      const auto value = [&](int j) {
+        return samples.rho[j][c] * (of_signal ? std::cos(samples.directions[j].theta_i) : 1);
+      };
+      double largest = 0, next = 0;
+      for (int j = 0; j < samples.size(); ++j) largest = std::max(largest, value(j));
+      if (!(largest > 0)) continue;
+      int count = 0;
+      std::set<int64_t> theta_h;
+      constexpr double kStep = 1e-4;  // [rad]
+      for (int j = 0; j < samples.size(); ++j) {
+        if (value(j) <= largest * (1 - kSameValue)) {
+          next = std::max(next, value(j));
+          continue;
+        }
+        ++count;
+        theta_h.insert(std::llround(samples.angles[j].theta_h / kStep));
+      }
+      if (count <= found.samples) continue;
+      found = {.value = largest,
+               .samples = count,
+               .theta_h = static_cast<int>(theta_h.size()),
+               .over_next = next > 0 ? largest / next : std::numeric_limits<double>::infinity()};
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
+  CheckDirections(scattered);
+  std::vector<std::string> told = {TellNegative(scattered.counts)};
+  if (scattered.samples.size() > 0) {
+    const BrdfSamples some = Some(scattered.samples);
+    told.push_back(TellAngles(some));
+    told.push_back(TellReflected(some));
+    told.push_back(TellLargest(scattered.samples));
+    told.push_back(TellRepeated(scattered.samples));
+    // Where directions lack a sign, no other sentence about directions is right.
+    if (!scattered.anisotropic && told.back().empty()) {
+      told.push_back(TellCosine(some));
+      told.push_back(TellHighlight(some));
+    }
+  }
+  std::erase(told, "");
+  return told;
+}
+
+}  // namespace trilobe

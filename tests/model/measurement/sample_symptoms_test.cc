@@ -1,0 +1,220 @@
+#include "model/measurement/sample_symptoms.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/measurement/unmeasured_samples.h"
+#include "tests/paths.h"
+#include "tests/test_directory.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A glossy material, at a goniometer's directions: six theta_i, seventeen theta_o, each 15 degrees.
+double Glossy(const SphericalAngles& at) {
+  const HalfDiffAngles half = ToHalfDiff(ToDirections(at));
+  return 0.05 + 0.02 * std::cos(half.theta_d) + 0.5 * std::exp(-half.theta_h * half.theta_h / 0.02);
+}
+
+template <typename Change>
+Measurement Goniometer(const Change& change, int step_deg = 15) {
+  SampleCollector collector("x.csv", "test");
+  for (const double theta_i : {5.0, 15.0, 30.0, 45.0, 60.0, 70.0}) {
+    for (int theta_o = 0; theta_o <= 80; theta_o += 5) {
+      for (int phi = 0; phi < 360; phi += step_deg) {
+        SphericalAngles at = {.theta_i = DegreesToRadians(theta_i),
+                              .phi_i = 0,
+                              .theta_o = DegreesToRadians(theta_o),
+                              .phi_o = DegreesToRadians(phi)};
+        double rho = Glossy(at);
+        change(&at, &rho);
+        collector.Add(at, {rho, rho, rho});
+      }
+    }
+  }
+  return collector.Take();
+}
+
+template <typename Change>
+std::vector<std::string> Told(const Change& change) {
+  return SymptomsOfSamples(Goniometer(change));
+}
+
+TEST(SampleSymptoms, CleanSamplesHaveNone) {
+  EXPECT_THAT(Told([](SphericalAngles*, double*) {}), IsEmpty());
+  for (const std::string name : {"plastic", "felt", "copper", "rubber"}) {
+    const TestDirectory directory;
+    WriteMeasurement(LoadMeasurement("synth:" + name + "@30x30x60", {.missing = 0.9}),
+                     directory.Path("x.csv"));
+    EXPECT_THAT(SymptomsOfSamples(LoadMeasurement(directory.Path("x.csv"))), IsEmpty()) << name;
+  }
+}
+
+TEST(SampleSymptoms, ACosineIsToldInBothReadings) {
+  EXPECT_THAT(Told([](SphericalAngles* at, double* rho) { *rho *= std::cos(at->theta_o); }),
+              ElementsAre(AllOf(HasSubstr("--cosine=o:1"), HasSubstr("--cosine=-1"))));
+  EXPECT_THAT(Told([](SphericalAngles* at, double* rho) { *rho *= std::cos(at->theta_i); }),
+              ElementsAre(AllOf(HasSubstr("--cosine=1"), HasSubstr("--cosine=o:-1"))));
+}
+
+TEST(SampleSymptoms, AHighlightTowardsTheLightIsTold) {
+  EXPECT_THAT(Told([](SphericalAngles* at, double*) {
+                at->phi_o = std::remainder(at->phi_o + kPi, 2 * kPi);
+              }),
+              ElementsAre(AllOf(HasSubstr("--azimuth=from_mirror"), HasSubstr("4 of 4"))));
+  EXPECT_THAT(Told([](SphericalAngles* at, double* rho) {
+                const SphericalAngles real = {.theta_i = at->theta_i,
+                                              .phi_i = 0,
+                                              .theta_o = std::abs(at->theta_i - at->theta_o),
+                                              .phi_o = kPi};
+                *rho = std::cos(at->phi_o) < -0.9 ? Glossy(real) : 0.05;
+                if (at->theta_o == 0) *rho = 1 + 0.01 * at->phi_o + at->theta_i;
+              }),
+              ElementsAre(HasSubstr("theta_o seems to be counted from the mirror direction")));
+}
+
+TEST(SampleSymptoms, MoreLightThanFellIsTold) {
+  for (const ReflectedAtLeast& one :
+       ReflectedLightOf(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.2; }).samples)) {
+    // As far as 80 degrees, and half a step of 5.
+    EXPECT_GT(one.albedo, 0.2 * kPi * 0.95);
+    EXPECT_LT(one.albedo, 0.2 * kPi * 1.001);
+  }
+  EXPECT_THAT(Told([](SphericalAngles*, double* rho) { *rho *= 100; }),
+              ElementsAre(HasSubstr("--scale=0.01")));
+  EXPECT_THAT(Told([](SphericalAngles*, double* rho) { *rho = 0.2 * kPi; }),
+              ElementsAre(HasSubstr("--scale=0.318")));
+}
+
+TEST(SampleSymptoms, ADroppedSignIsTold) {
+  const Measurement scan =
+      Goniometer([](SphericalAngles* at, double*) { at->phi_o = 0; }, /*step_deg=*/180);
+  EXPECT_THAT(SymptomsOfSamples(scan), ElementsAre(HasSubstr("the sign of an angle was dropped")));
+}
+
+TEST(SampleSymptoms, MarksAndPlateausAreTold) {
+  int k = 0;
+  EXPECT_THAT(Told([&](SphericalAngles*, double* rho) {
+                if (++k % 50 == 0) *rho = 9999;
+              }),
+              testing::Contains(HasSubstr("the value 9999 is there")));
+  EXPECT_THAT(Told([](SphericalAngles*, double* rho) { *rho = std::min(*rho, 0.3); }),
+              ElementsAre(HasSubstr("a detector is saturated")));
+}
+
+TEST(SampleSymptoms, RadiansAndDecibelsAreTold) {
+  EXPECT_THAT(Told([](SphericalAngles* at, double*) {
+                at->theta_i = DegreesToRadians(at->theta_i);
+                at->theta_o = DegreesToRadians(at->theta_o);
+              }),
+              testing::Contains(HasSubstr("in radians")));
+  EXPECT_THAT(Told([](SphericalAngles*, double* rho) { *rho = 10 * std::log10(*rho); }),
+              testing::Contains(HasSubstr("as decibels are")));
+}
+
+TEST(SampleSymptoms, CorrectionsGiveTheValuesBack) {
+  const TestDirectory directory;
+  const Measurement truth = Goniometer([](SphericalAngles*, double*) {});
+  const auto corrected = [&](const Measurement& wrong, const SourceOptions& options) {
+    WriteMeasurement(wrong, directory.Path("x.csv"));
+    return LoadMeasurement(directory.Path("x.csv"), options).samples;
+  };
+  const auto expect_truth = [&](const BrdfSamples& samples) {
+    ASSERT_EQ(samples.size(), truth.samples.size());
+    for (int j = 0; j < samples.size(); ++j) {
+      EXPECT_NEAR(samples.rho[j][1], Glossy(samples.directions[j]), 1e-5);
+    }
+  };
+  expect_truth(
+      corrected(Goniometer([](SphericalAngles* at, double* rho) { *rho *= std::cos(at->theta_o); }),
+                {.cosine_o = 1}));
+  expect_truth(
+      corrected(Goniometer([](SphericalAngles*, double* rho) { *rho *= 100; }), {.scale = 0.01}));
+  expect_truth(corrected(Goniometer([](SphericalAngles* at, double*) {
+                           at->phi_o = std::remainder(at->phi_o + kPi, 2 * kPi);
+                         }),
+                         {.azimuth_from_mirror = true}));
+}
+
+TEST(SampleSymptoms, TheCosineIsGivenByAText) {
+  SourceOptions options;
+  SetCosine("o:-1", &options);
+  SetCosine("i:0.5", &options);
+  EXPECT_EQ(options.cosine_o, -1);
+  EXPECT_EQ(options.cosine, 0.5);
+  SetCosine("2", &options);
+  EXPECT_EQ(options.cosine, 2);
+  for (const char* const text : {"", "o:", "x:1", "1x"}) {
+    EXPECT_THAT(ErrorOf([&] { SetCosine(text, &options); }), HasSubstr("--cosine=")) << text;
+  }
+}
+
+TEST(UnmeasuredSamples, ZerosAmidLightAreGaps) {
+  int lost = 0;
+  const Measurement shadow = Goniometer([&](SphericalAngles* at, double* rho) {
+    if (at->phi_o == 0 && at->theta_o > 0 && std::abs(at->theta_o - at->theta_i) < 0.1) {
+      *rho = 0;
+      ++lost;
+    }
+  });
+  EXPECT_EQ(FindZeroGaps(shadow.samples).size(), lost);
+  for (const int j : FindZeroGaps(shadow.samples)) EXPECT_EQ(shadow.samples.rho[j][0], 0);
+  // The end of a highlight of a black material, below the last level of its detector.
+  const Measurement dark = Goniometer([&](SphericalAngles*, double* rho) {
+    *rho = std::floor(1000 * std::max(*rho - 0.0505, 0.0)) / 1000;
+  });
+  EXPECT_THAT(FindZeroGaps(dark.samples), IsEmpty());
+}
+
+TEST(UnmeasuredSamples, AnglesThatRepeatTheOneBeforeWereFilledIn) {
+  const Measurement filled = Goniometer([](SphericalAngles* at, double* rho) {
+    SphericalAngles seen = *at;
+    seen.theta_i = std::min(at->theta_i, DegreesToRadians(60));
+    seen.theta_o = std::min(at->theta_o, DegreesToRadians(70));
+    *rho = Glossy(seen);
+  });
+  const FilledSamples found = FindFilled(filled.samples);
+  EXPECT_EQ(found.theta_i, 1);
+  EXPECT_EQ(found.theta_o, 2);
+  EXPECT_EQ(found.samples.size(), 17 * 24 + 5 * 2 * 24);
+  EXPECT_THAT(
+      FindFilled(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.3; }).samples).samples,
+      IsEmpty());
+  EXPECT_THAT(FindFilled(Goniometer([](SphericalAngles*, double*) {}).samples).samples, IsEmpty());
+  Measurement measurement = filled;
+  LeaveOutFill(&measurement);
+  EXPECT_EQ(measurement.counts.extrapolated, found.samples.size());
+  EXPECT_THAT(measurement.notes, ElementsAre(HasSubstr("--extrapolated takes them")));
+}
+
+TEST(SampleSymptoms, TheSharedCasesAreTold) {
+  const std::string folder = MeasuredData("../cases/");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const auto told = [&](const std::string& name) {
+    return SymptomsOfSamples(LoadMeasurement(folder + name));
+  };
+  EXPECT_THAT(told("good.csv"), IsEmpty());
+  EXPECT_THAT(told("cosine.csv"), ElementsAre(HasSubstr("--cosine=o:1")));
+  EXPECT_THAT(told("phi0_is_specular.csv"), ElementsAre(HasSubstr("--azimuth=from_mirror")));
+  EXPECT_THAT(told("percent.csv"), ElementsAre(HasSubstr("--scale=0.01")));
+  EXPECT_THAT(told("radians.csv"), testing::Contains(HasSubstr("in radians")));
+  EXPECT_THAT(told("sign_dropped.csv"), ElementsAre(HasSubstr("the sign of an angle")));
+  EXPECT_THAT(told("retro.csv"), ElementsAre(HasSubstr("for which the model has no lobe")));
+  const Measurement shadow = LoadMeasurement(folder + "shadow_zero.csv");
+  EXPECT_GE(shadow.counts.missing, 22);
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
