@@ -52,7 +52,8 @@ PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", 
 # measurement by flags, what is said about it, and how samples on no grid are read.
 FITS = ["src/model", "src/solvers", "src/fit",
         *(f":(exclude)src/model/{name}" for name in
-          ("corruption", "evaluate/*bsdf*", "evaluate/half_vector_table*", "evaluate/cover_spikes*", "measurement"))]
+          ("corruption", "evaluate/*bsdf*", "evaluate/half_vector_table*", "evaluate/cover_spikes*",
+           "measurement/*symptom*", "measurement/unmeasured*", "measurement/measurement.cc"))]
 # What these experiments depend on as well.
 ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
