@@ -8,6 +8,7 @@
 
 #include "core/math/lanes.h"
 #include "model/evaluate/albedo_table.h"
+#include "model/evaluate/cover_spikes.h"
 #include "model/evaluate/max_phi.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
@@ -15,10 +16,6 @@
 
 namespace trilobe {
 namespace {
-
-// Minimum probability of the cosine, as a fraction of the lobes' light, so that directions missed
-// by the table's nodes are still sampled.
-constexpr double kCosineShare = 0.01;
 
 [[noreturn]] void Overflow() {
   throw Error("the model's values overflow; its factors are too large");
@@ -48,19 +45,36 @@ auto MeanOf(const Colour& colour) {
 
 }  // namespace
 
-// Nodes of theta_i, denser towards grazing, where lobes change most.
+// Nodes of theta_i, denser towards grazing, where lobes change most. Of an isotropic model, each
+// entry of G there, if these are a degree apart.
 template <typename Real>
-struct Bsdf<Real>::Nodes : HalfVectorTable<Real>::Nodes {
+struct Bsdf<Real>::Nodes : HalfVectorNodes {
   explicit Nodes(const ModelSpec& spec) {
     const bool anisotropic = spec.anisotropic();
-    this->y = NodesOfY(spec);
-    this->s = anisotropic || spec.stretches.any() ? 33 : 17;
-    this->phi_i = anisotropic ? std::max({spec.d_axis.phi_nodes, spec.g_axis.phi_nodes, 12}) : 1;
-    const int rings = anisotropic ? 16 : 24;
-    for (int k = 0; k < rings; ++k) {
-      const double left = 1 - static_cast<double>(k) / (rings - 1);
-      this->theta_i.push_back(kGrazingTheta * (1 - left * left));
+    y = NodesOfY(spec);
+    if (spec.stretches.any()) KeepEverySecondY();
+    s = anisotropic || spec.stretches.any() ? 33 : 17;
+    phi_i = anisotropic ? std::max({spec.d_axis.phi_nodes, spec.g_axis.phi_nodes, 12}) : 1;
+    if (anisotropic) {
+      constexpr int kRings = 16;
+      for (int k = 0; k < kRings; ++k) {
+        const double left = 1 - static_cast<double>(k) / (kRings - 1);
+        theta_i.push_back(kGrazingTheta * (1 - left * left));
+      }
+    } else {
+      constexpr int kEven = 30;
+      constexpr double kFirst = 72.5, kLast = 88.5;  // [degrees]
+      for (int k = 0; k < kEven; ++k) theta_i.push_back(DegreesToRadians(kFirst * k / kEven));
+      for (double x = kFirst; x <= kLast; ++x) theta_i.push_back(DegreesToRadians(x));
+      theta_i.push_back(kGrazingTheta);
     }
+  }
+
+ private:
+  // Nodes that a narrow highlight of an albedo needs are too many to draw by.
+  void KeepEverySecondY() {
+    for (size_t k = 0; 2 * k < y.size(); ++k) y[k] = y[2 * k];
+    y.resize((y.size() + 1) / 2);
   }
 };
 
@@ -68,7 +82,15 @@ template <typename Real>
 Bsdf<Real>::Bsdf(const FactorModel& model) : model_(model) {
   diffuse_albedo_ = MeanOf(model_.diffuse()) * static_cast<Real>(kPi);
   if (!(diffuse_albedo_ <= std::numeric_limits<float>::max())) Overflow();
-  MakeTables(Nodes(model.spec()));
+  Nodes nodes(model.spec());
+  std::vector<float> values = TabulatedLobes(nodes);
+  // More nodes of s where covering spikes would cost too much light.
+  while (!anisotropic() && !CoverSpikes(model, diffuse_albedo_, nodes, &values) &&
+         4 * nodes.s - 3 <= HalfVectorTable<Real>::kMaxS) {
+    nodes.s = 4 * nodes.s - 3;
+    values = TabulatedLobes(nodes);
+  }
+  half_vectors_ = HalfVectorTable<Real>(nodes, values);
   albedos_ = std::make_shared<AlbedoTable<Real>>(model.spec());
 }
 
@@ -77,7 +99,7 @@ Bsdf<Real>::Bsdf(const FactorModel& model) : model_(model) {
 // s goes once through [-phi_max, phi_max], or through both halves of it, which are alike where the
 // material is isotropic.
 template <typename Real>
-void Bsdf<Real>::MakeTables(const Nodes& nodes) {
+std::vector<float> Bsdf<Real>::TabulatedLobes(const Nodes& nodes) const {
   const bool anisotropic = model_.anisotropic();
   std::vector<float> values;
   values.reserve(nodes.theta_i.size() * nodes.phi_i * nodes.y.size() * nodes.s);
@@ -117,7 +139,7 @@ void Bsdf<Real>::MakeTables(const Nodes& nodes) {
       }
     }
   }
-  half_vectors_ = HalfVectorTable<Real>(nodes, values);
+  return values;
 }
 
 template <typename Real>

@@ -13,9 +13,6 @@
 namespace trilobe {
 namespace {
 
-// Maximum number of nodes of s.
-constexpr int kMaxS = 33;
-
 // Numbers of bins of theta_i, and of fractions of an integral, from which searches start.
 constexpr int kThetaBins = 1024, kPartBins = 64;
 constexpr double kThetaBin = kPi / 2 / kThetaBins;
@@ -42,7 +39,7 @@ HalfVectorTable<Real>::HalfVectorTable(const Nodes& nodes, const std::vector<flo
       values_(values) {
   const int rows = static_cast<int>(y_.size()), rings = static_cast<int>(theta_i_.size());
   if (num_s_ < 5 || num_s_ > kMaxS || num_s_ % 4 != 1) {
-    throw Error("a table needs 5 to 33 nodes of s, one more than a multiple of 4");
+    throw Error("a table needs 5 to 129 nodes of s, one more than a multiple of 4");
   }
   int begin = 0;
   for (int bin = 0; bin <= kThetaBins; ++bin) {

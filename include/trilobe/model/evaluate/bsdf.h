@@ -107,7 +107,7 @@ class Bsdf {
   };
   struct Nodes;
 
-  void MakeTables(const Nodes& nodes);
+  std::vector<float> TabulatedLobes(const Nodes& nodes) const;
   Incident Prepare(const Vector& wi) const;
   Real LobesPdf(const Vector& wi, const Incident& incident, const Vector& wo) const;
   Real PdfOf(const Vector& wi, const Incident& incident, const Vector& wo) const;

@@ -9,20 +9,23 @@
 
 namespace trilobe {
 
+// Nodes of y, ascending from 0 to 1; number of nodes of s from 0 to 1, 4 k + 1 in 5 to 129; nodes
+// of theta_i, ascending from 0 [rad]; and number of even steps of phi_i around the circle.
+struct HalfVectorNodes {
+  std::vector<double> y;
+  int s = 5;
+  std::vector<double> theta_i;
+  int phi_i = 1;
+};
+
 // A density over y and s in [0, 1], conditioned on a direction wi: bilinear in (y, s) between
 // nodes, linear between nodes of wi. Bsdf uses it for half vectors. Sampling inverts the marginal
 // first, so samples are continuous in the random numbers.
 template <typename Real>
 class HalfVectorTable {
  public:
-  // Nodes of y, ascending from 0 to 1; number of nodes of s from 0 to 1, 4 k + 1 in 5 to 33; nodes
-  // of theta_i, ascending from 0 [rad]; and number of even steps of phi_i around the circle.
-  struct Nodes {
-    std::vector<double> y;
-    int s = 5;
-    std::vector<double> theta_i;
-    int phi_i = 1;
-  };
+  using Nodes = HalfVectorNodes;
+  static constexpr int kMaxS = 129;  // nodes of s
 
   HalfVectorTable() = default;
   // `values`: unnormalised densities, finite and >= 0, [theta_i][phi_i][y][s].
