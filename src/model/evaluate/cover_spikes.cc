@@ -104,7 +104,7 @@ class Lobes {
       const float factor2 =
           stretched_ ? cos2_phi * along_[bin_d][k] + (1 - cos2_phi) * across_[bin_d][k] : 1.0F;
       const float part = std::sqrt(theta_h * std::sqrt(factor2) * static_cast<float>(2 / kPi));
-      bin_h[k] = static_cast<int>(std::min(part, 1.0F) * kBins + 0.5F);
+      bin_h[k] = static_cast<int>(std::lrint(std::min(part, 1.0F) * kBins));
     }
     Rgb4 sum{};
     for (int m = 0; m < lobes_; ++m) {
@@ -118,9 +118,8 @@ class Lobes {
   using Values = std::array<Rgb4, kMaxLobes>;
   static constexpr int kBins = 900;
   static int BinOf(double cosine) {
-    return std::clamp(static_cast<int>(AngleOfCosine(static_cast<float>(cosine)) *
-                                           static_cast<float>(kBins / (kPi / 2)) +
-                                       0.5F),
+    const float angle = AngleOfCosine(static_cast<float>(cosine));
+    return std::clamp(static_cast<int>(std::lrint(angle * static_cast<float>(kBins / (kPi / 2)))),
                       0, kBins);
   }
 
