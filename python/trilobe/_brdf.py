@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,6 +25,7 @@ from trilobe._core import Error
 from trilobe._table import Table
 
 CHANNELS = ("red", "green", "blue")
+_ALBEDO_ERROR = 0.03  # of Brdf.albedo, up to 85 degrees
 _POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
 _AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
 
@@ -103,8 +105,25 @@ class Brdf:
         return self._text
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a model file, which `load` and the program read; whole, or not at all."""
+        """Writes a model file, which `load` and the program read; whole, or not at all.
+
+        Warns if a model that was made of arrays, or edited, reflects more light than falls on it.
+        """
+        if not self.fit:
+            self._warn_of_light()
         write_text(path, self._text)
+
+    def _warn_of_light(self) -> None:
+        theta = np.radians(np.arange(86))[:, None]
+        phi = np.radians(np.arange(0, 360, 30 if self.anisotropic else 360))
+        wi = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
+        albedo = self.albedo(wi).max(axis=(1, 2))
+        if albedo.max() > 1 + _ALBEDO_ERROR:
+            warnings.warn(
+                f"the model reflects {albedo.max():.3g} times the light that falls on it at theta_i = "
+                f"{albedo.argmax()} degrees, and would glow in a renderer",
+                stacklevel=3,
+            )
 
     # What it evaluates.
 

@@ -5,6 +5,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -148,6 +149,16 @@ def test_goes_through_a_file(make, tmp_path):
                   copy.deepcopy(brdf), pickle.loads(pickle.dumps(brdf)), brdf.replace()):
         assert other == brdf
     assert [name.name for name in tmp_path.iterdir()] == ["model.json"]
+
+
+def test_a_model_that_makes_light_is_saved_with_a_warning(tmp_path):
+    bright = lambertian().replace(d=[0.5, 0.2, 0.1])  # pi times that is reflected
+    with pytest.warns(UserWarning, match=r"reflects 1\.57 times the light"):
+        bright.save(tmp_path / "bright.json")
+    assert trilobe.load(tmp_path / "bright.json") == bright
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        lambertian().save(tmp_path / "right.json")
 
 
 def test_tables_know_their_axes():
