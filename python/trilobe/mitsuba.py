@@ -43,6 +43,7 @@ except ImportError:
 if tuple(int(part) for part in mi.__version__.split(".")[:2]) < (3, 6):
     raise ImportError(f"trilobe.mitsuba needs Mitsuba 3.6 or newer, not {mi.__version__}: pip install -U mitsuba")
 
+from trilobe._mitsuba_albedo import Albedo
 from trilobe._mitsuba_measured import MeasuredTable
 from trilobe._mitsuba_sampling import Sampling
 from trilobe._mitsuba_spectra import Upsampling
@@ -112,6 +113,7 @@ def _define() -> Any:
                 flags = flags | mi.BSDFFlags.Anisotropic
             self.m_components = [flags]
             self.m_flags = flags
+            self._albedo: Albedo | None = None  # until it is asked for, as it takes up to seconds
             self._colours = Upsampling() if mi.is_spectral else None
             if compiled:
                 self._sampling = Sampling(self._drawn)
@@ -141,6 +143,7 @@ def _define() -> Any:
                     for name in (("d", "s", "D", "F", "G") if self._brdf.lobes > 0 else ("d",))
                 }
                 self._brdf = self._brdf.replace(**parts)
+                self._albedo = None
                 if self._follows:
                     self._drawn = self._brdf
                 if compiled and self._follows:
@@ -215,6 +218,15 @@ def _define() -> Any:
             drawn.pdf = dr.select(active, pdf, 0)
             colour = self._value(si.wi, wo, active) * (wo.z / drawn.pdf)
             return drawn, dr.select(active, self._spectrum(si, colour), 0)
+
+        def eval_diffuse_reflectance(self, si: Any, active: Any = True) -> Any:
+            """The share of light that is reflected, in the integrator's `albedo` picture."""
+            if self._albedo is None:
+                self._albedo = Albedo(self._brdf)
+            if not compiled:
+                return mi.Color3f(self._albedo.of_one(float(si.wi.z)))
+            active = active & (si.wi.z > 0)
+            return dr.select(active, self._albedo(si.wi.z, active), 0)
 
         def to_string(self) -> str:
             return f"Trilobe[{self._brdf!r}]"

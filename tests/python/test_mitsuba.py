@@ -246,6 +246,15 @@ def test_a_furnace_shows_the_albedo(variant):
     np.testing.assert_allclose(middle, albedo, rtol=0.06)
 
 
+@pytest.mark.parametrize("variant", ["scalar_rgb", pytest.param(COMPILED, marks=needs_compiled)])
+def test_the_albedo_picture_has_the_share_that_is_reflected(variant):
+    mi.set_variant(variant)
+    brdf = isotropic()
+    picture = np.array(mi.render(scene(plugin.bsdf(brdf), size=9, spp=1, type="aov", aovs="albedo:albedo")))
+    # In the middle the ball is seen from above.
+    np.testing.assert_allclose(picture[4, 4, -3:], brdf.albedo([0.0, 0, 1]), rtol=0.01)
+
+
 def test_scalar_draws_as_it_evaluates():
     mi.set_variant("scalar_rgb")
     brdf = anisotropic()
