@@ -57,7 +57,8 @@ def units(setting):
 
 
 def _material_rows(budget, compared, side):
-    return [{"material": of["name"], "budget": budget, **of[side],
+    return [{"material": of["name"], "budget": budget,
+             **{key: of[side][key] for key in ("parameters", "bytes", "objective", "psnr_db")},
              "relative_rise": 0.0 if side == FULL else of["relative_rise"]}
             for of in compared["materials"]]
 
@@ -65,8 +66,7 @@ def _material_rows(budget, compared, side):
 def _scene_row(budget, compared, side, rows):
     of = compared["all"]
     return {"budget": budget, "materials": len(rows), "parameters": of["parameters"][side],
-            "bytes": of["bytes"][side], "threads": compared["threads"],
-            "seconds": of["seconds"][side],
+            "bytes": of["bytes"][side],
             "mean_relative_rise": 0.0 if side == FULL else of["mean_relative_rise"],
             "largest_relative_rise": max(row["relative_rise"] for row in rows),
             "mean_psnr_db": of["mean_psnr_db"][side]}
@@ -107,15 +107,14 @@ def _scene_table(rows):
     lines = []
     for row in rows:
         if row.get("parameters") is None:
-            lines.append([_budget(row), "missing", *[""] * 7])
+            lines.append([_budget(row), "missing", *[""] * 5])
             continue
         lines.append([_budget(row), str(row["parameters"]), str(row["bytes"]),
-                      f"{whole['parameters'] / row['parameters']:.1f}", f"{row['seconds']:.1f}",
-                      f"{whole['seconds'] / row['seconds']:.2f}",
+                      f"{whole['parameters'] / row['parameters']:.1f}",
                       _percent(row["mean_relative_rise"]), _percent(row["largest_relative_rise"]),
                       f"{row['mean_psnr_db']:.2f}"])
-    return tables.markdown(["rise of E allowed", "parameters", "bytes", "times fewer", "seconds",
-                            "times sooner", "rise of E, mean", "largest", "PSNR dB, mean"], lines)
+    return tables.markdown(["rise of E allowed", "parameters", "bytes", "times fewer", "rise of E, mean",
+                            "largest", "PSNR dB, mean"], lines)
 
 
 def _materials_table(rows):
@@ -123,11 +122,10 @@ def _materials_table(rows):
     for name, of in tables.groups(rows, "material").items():
         for row in of:
             lines.append([name, _budget(row), str(row["parameters"]), str(row["bytes"]),
-                          f"{row['seconds'] * row['threads']:.1f}",
                           _percent(row["relative_rise"]), f"{row['objective']:.5g}",
                           f"{row['psnr_db']:.2f}"])
-    return tables.markdown(["material", "rise of E allowed", "parameters", "bytes",
-                            "seconds × threads", "rise of E", "E", "PSNR dB"], lines)
+    return tables.markdown(["material", "rise of E allowed", "parameters", "bytes", "rise of E", "E",
+                            "PSNR dB"], lines)
 
 
 def _label_points(axes, points):
@@ -146,8 +144,8 @@ def _label_points(axes, points):
                       fontsize=8, annotation_clip=False)
 
 
-def _figure(rows, budgets, value, label):
-    """A panel a material: the rise of E over value(row), from the full model to larger budgets."""
+def _figure(rows, budgets):
+    """A panel a material: the rise of E over its bytes, from the full model to larger budgets."""
     from lab import plots
     by_material = tables.groups(rows, "material")
     columns = min(5, len(by_material))
@@ -155,7 +153,7 @@ def _figure(rows, budgets, value, label):
     figure, panels = plots.plt.subplots(lines, columns, squeeze=False, sharex=True, sharey=True,
                                         figsize=(2.8 * columns + 0.6, 2.9 * lines + 0.5))
     rises = [100 * row["relative_rise"] for row in rows]
-    values = [value(row) for row in rows]
+    values = [row["bytes"] for row in rows]
     ticks = [0, *(100 * budget for budget in budgets)]
     if min(rises) < -FINEST:
         ticks.insert(0, float(f"{min(rises):.1g}"))
@@ -167,7 +165,7 @@ def _figure(rows, budgets, value, label):
         axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         axes.set_yticks([], minor=True)
         plots.plain_numbers(axes.xaxis)
-        points = [(value(row), 100 * row["relative_rise"]) for row in of]
+        points = [(row["bytes"], 100 * row["relative_rise"]) for row in of]
         axes.plot(*zip(*points[1:]), "o-", color=plots.BLUE, markersize=4.5)
         axes.plot(*points[0], "o", color=plots.VERMILION, markerfacecolor="white", markersize=7,
                   markeredgewidth=2)
@@ -178,7 +176,7 @@ def _figure(rows, budgets, value, label):
         axes.set_title(name, fontsize=10)
     for axes in panels.flat[len(by_material):]:
         axes.set_axis_off()
-    figure.supxlabel(label, fontsize=10)
+    figure.supxlabel("bytes of the model's parameters", fontsize=10)
     figure.supylabel("rise of E (%)", fontsize=10)
     return figure
 
@@ -188,8 +186,5 @@ def draw(drawn, _):
     products = {"scene.md": _scene_table(of_scene), "materials.md": _materials_table(rows)}
     if rows:
         budgets = [row["budget"] for row in of_scene if row["budget"] != FULL]
-        products["bytes"] = _figure(rows, budgets, lambda row: row["bytes"],
-                                    "bytes of the model's parameters")
-        products["seconds"] = _figure(rows, budgets, lambda row: row["seconds"] * row["threads"],
-                                      "seconds × threads to make the model")
+        products["bytes"] = _figure(rows, budgets)
     return products
