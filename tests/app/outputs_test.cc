@@ -342,7 +342,7 @@ TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
   std::vector<std::string> command = {"fit",
                                       "synth:felt@30x30x60",
                                       "synth:rubber@30x30x60",
-                                      "synth:copper",
+                                      "synth:copper@30x30x60",
                                       "--threads=1",
                                       "--solver=awls",
                                       "--max_iterations=3",
@@ -355,7 +355,7 @@ TEST(FitMany, AnInterruptKeepsWhatIsThereAndTheSameCommandGoesOn) {
   EXPECT_TRUE(std::filesystem::exists(out + "/felt/report.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/copper"));
   EXPECT_FALSE(std::filesystem::exists(out + "/rubber/pair.png"));  // for which nobody waits
-  EXPECT_THAT(Contents(out + "/fits.csv"), HasSubstr("\ncopper,synth:copper,missing,"));
+  EXPECT_THAT(Contents(out + "/fits.csv"), HasSubstr("\ncopper,synth:copper@30x30x60,missing,"));
   const ProgramResult rest = RunProgram(command);
   EXPECT_EQ(rest.status, 0) << rest.err;
   EXPECT_THAT(rest.out, HasSubstr("] felt: kept"));
@@ -372,7 +372,7 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
     for (int o = 5; o < 80; o += 15) {
       for (int phi = 0; phi <= 180; phi += 30) {
         text += std::to_string(i) + ",0," + std::to_string(o) + "," + std::to_string(phi) +
-                ",0.1,0.2," + std::to_string(0.3 + 0.001 * (i + o)) + "\n";
+                ",0.02,0.04," + std::to_string(0.06 + 0.0002 * (i + o)) + "\n";
       }
     }
   }
@@ -400,8 +400,8 @@ TEST(FitScattered, FitsAndScoresACsvFile) {
   ExpectRefusal(RunProgram({"score", out + "/model.json", csv, "--out=" + (folder / "x.png")}),
                 "needs a table");
   const ProgramResult many =
-      RunProgram({"fit", csv, "synth:copper", "--solver=awls", "--lobes=1", "--max_iterations=1",
-                  "--max_angle=30", "--out=" + (folder / "many")});
+      RunProgram({"fit", csv, "synth:copper@30x30x60", "--solver=awls", "--lobes=1",
+                  "--max_iterations=1", "--max_angle=30", "--out=" + (folder / "many")});
   EXPECT_EQ(many.status, 0) << many.out << many.err;
 }
 

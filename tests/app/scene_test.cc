@@ -59,7 +59,7 @@ nlohmann::json Json(const std::string& path) { return nlohmann::json::parse(Cont
 TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
   const TemporaryFolder folder;
   const std::string sources[] = {"synth:plastic@20x20x40", FewSamples(folder, "rubber@30x30x60"),
-                                 "synth:velvet@4x12"};
+                                 "synth:velvet@4x8"};
   const std::string names[] = {"plastic", "few", "velvet"};
   const std::string scene = MakeScene(folder, R"({
     "format": "trilobe-scene", "version": 1,
@@ -67,7 +67,7 @@ TEST(Scene, HasTheModelOfAFitWhereItLeavesNothingOut) {
                   "samples": false},
     "materials": [{"name": "plastic", "source": "synth:plastic@20x20x40"},
                   {"name": "few", "source": "few.csv"},
-                  {"name": "velvet", "source": "synth:velvet@4x12"}]})");
+                  {"name": "velvet", "source": "synth:velvet@4x8"}]})");
   const auto fit = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "fit");
     arguments.insert(arguments.end(), {"--solver=awls", "--max_iterations=2", "--lobes=1"});
