@@ -11,6 +11,8 @@
 #include <optional>
 #include <thread>
 
+#include "trilobe/io/formats/source.h"
+
 namespace nb = nanobind;
 
 namespace trilobe::python {

@@ -209,16 +209,14 @@ std::string ReflectedText(const std::vector<ReflectedAtLeast>& reflected) {
 }
 
 void DescribeScattered(const Measurement& measurement) {
-  if (!FLAGS_out.empty() && !measurement.anisotropic) {
-    throw Error(
-        "--out is for a picture of the bins of a table, or of all pairs of directions of "
-        "an anisotropic measurement; " +
-        measurement.source + " is a " + measurement.kind);
-  }
-  const std::string picture = PicturePath();
+  const std::string picture = measurement.samples.size() > 0 ? PicturePath() : "";
   if (!picture.empty()) {
     MakeDirectories(FLAGS_out);
-    DrawPairs(OnGrid(measurement), picture);
+    if (measurement.anisotropic) {
+      DrawPairs(OnGrid(measurement), picture);
+    } else {
+      DrawDirections(measurement, picture);
+    }
   }
   const AngleRange theta_i = RangeOf(measurement.samples.directions, &SphericalAngles::theta_i);
   const AngleRange phi_i = RangeOf(measurement.samples.directions, &SphericalAngles::phi_i);

@@ -7,18 +7,24 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "app/command.h"
+#include "app/flags.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
 #include "core/base/file_names.h"
 #include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
 #include "fit/reports/fit_details.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/core/system/parallel.h"
 #include "trilobe/io/model_files/model_file.h"
 
 DEFINE_string(shard, "",
@@ -180,6 +186,30 @@ void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* ou
       outcome->has_picture && std::ranges::find(files, outcome->picture) != files.end();
   outcome->state =
       run->report.interrupted ? FitOutcome::State::kInterrupted : FitOutcome::State::kFitted;
+}
+
+void MakeJobs(size_t count, const std::string& things,
+              const std::function<FitOutcome&(size_t k)>& outcome_of,
+              const std::function<void(size_t k)>& make,
+              const std::function<void(size_t k, size_t done)>& tell) {
+  JobProgress progress(count, things);
+  std::mutex mutex;
+  size_t done = 0;
+  ParallelJobs(static_cast<int>(count), ThreadsFromFlags(), [&](int k) {
+    if (InterruptGuard::signal() != 0) return;
+    FitOutcome& outcome = outcome_of(k);
+    try {
+      make(k);
+    } catch (const std::exception& exception) {
+      outcome.state = FitOutcome::State::kFailed;
+      outcome.error = MessageOf(exception);
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    progress.Clear();
+    tell(k, ++done);
+    progress.Done(outcome.name, outcome.state != FitOutcome::State::kKept);
+  });
+  progress.Clear();
 }
 
 std::string ErrorToSend(const std::string& error, const FitOutcome& outcome,

@@ -2,6 +2,7 @@
 #define TRILOBE_APP_FIT_JOBS_H_
 
 #include <cstddef>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -28,6 +29,14 @@ void TakeReport(const nlohmann::ordered_json& report, FitOutcome* outcome);
 // Fits outcome->source on one thread into a folder, unless its whole result is there. Fills the
 // outcome. Throws Error if the fit fails.
 void FitOrKeep(const FitSettings& settings, ResultFolder* folder, FitOutcome* outcome);
+
+// Makes jobs side by side, --threads at once, with progress by the name of `things`. `make` makes
+// one; what it throws becomes the error of its outcome, which has failed then. `tell` is called as
+// each ends, one at a time, with how many have ended. After Ctrl-C none begins.
+void MakeJobs(size_t count, const std::string& things,
+              const std::function<FitOutcome&(size_t k)>& outcome_of,
+              const std::function<void(size_t k)>& make,
+              const std::function<void(size_t k, size_t done)>& tell);
 
 // Why a fit failed, for tables and pages, which may go to others: without names of folders.
 std::string ErrorToSend(const std::string& error, const FitOutcome& outcome,

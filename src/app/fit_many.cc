@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -16,7 +15,6 @@
 #include "app/flags.h"
 #include "app/inputs.h"
 #include "app/interrupt.h"
-#include "app/progress.h"
 #include "app/result_folder.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
@@ -24,7 +22,6 @@
 #include "model/appearance/verdict.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/core/system/parallel.h"
 
 DECLARE_string(shard);
 
@@ -132,24 +129,13 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   summary.Open();
 
   const InterruptGuard guard;
-  JobProgress progress(outcomes.size(), "measurements");
-  std::mutex mutex;
-  size_t done = 0;
-  ParallelJobs(static_cast<int>(outcomes.size()), ThreadsFromFlags(), [&](int k) {
-    if (InterruptGuard::signal() != 0) return;
-    FitOutcome& outcome = outcomes[k];
-    try {
-      FitOrKeep(settings, &folders[k], &outcome);
-    } catch (const std::exception& exception) {
-      outcome.state = FitOutcome::State::kFailed;
-      outcome.error = MessageOf(exception);
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    progress.Clear();
-    PrintOutcome(outcome, ++done, outcomes.size());
-    progress.Done(outcome.name, outcome.state != FitOutcome::State::kKept);
-    outcome.error = ErrorToSend(outcome.error, outcome, out);
-  });
+  MakeJobs(
+      outcomes.size(), "measurements", [&](size_t k) -> FitOutcome& { return outcomes[k]; },
+      [&](size_t k) { FitOrKeep(settings, &folders[k], &outcomes[k]); },
+      [&](size_t k, size_t done) {
+        PrintOutcome(outcomes[k], done, outcomes.size());
+        outcomes[k].error = ErrorToSend(outcomes[k].error, outcomes[k], out);
+      });
 
   std::string written = "a folder each";
   if (FLAGS_shard.empty()) {
@@ -159,7 +145,6 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
     written += std::string(", ") + kTableName + ", " + kPageName;
   }
   const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);
-  progress.Clear();
   std::cout << "all          " << Summary(outcomes) << "\n"
             << "written      " << written << " in " << Printable(out)
             << (failed > 0 ? "; " + std::to_string(failed) + " failed" : "") << "\n";

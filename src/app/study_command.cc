@@ -7,14 +7,12 @@
 #include <iostream>
 #include <iterator>
 #include <limits>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
 #include "app/fit_jobs.h"
 #include "app/flags.h"
 #include "app/interrupt.h"
-#include "app/progress.h"
 #include "app/result_folder.h"
 #include "app/solver_flags.h"
 #include "app/study_jobs.h"
@@ -27,7 +25,6 @@
 #include "io/pictures/gnuplot.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
-#include "trilobe/core/system/parallel.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/io/model_files/trace_file.h"
 
@@ -194,25 +191,16 @@ int RunStudy(std::span<const std::string> arguments) {
 
   const std::vector<size_t> shard = JobsOfShard(jobs.size());
   const InterruptGuard guard;
-  {
-    JobProgress progress(shard.size(), "runs");
-    std::mutex mutex;
-    size_t done = 0;
-    ParallelJobs(static_cast<int>(shard.size()), ThreadsFromFlags(), [&](int k) {
-      if (InterruptGuard::signal() != 0) return;
-      StudyJob& job = jobs[shard[k]];
-      try {
-        MakeRun(&job, &folders[shard[k]]);
-      } catch (const std::exception& exception) {
-        job.outcome.state = FitOutcome::State::kFailed;
-        job.run.error = ErrorToSend(MessageOf(exception), job.outcome, out);
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      progress.Clear();
-      PrintRun(job, ++done, shard.size());
-      progress.Done(job.outcome.name, job.outcome.state != FitOutcome::State::kKept);
-    });
-  }
+  MakeJobs(
+      shard.size(), "runs", [&](size_t k) -> FitOutcome& { return jobs[shard[k]].outcome; },
+      [&](size_t k) { MakeRun(&jobs[shard[k]], &folders[shard[k]]); },
+      [&](size_t k, size_t done) {
+        StudyJob& job = jobs[shard[k]];
+        if (!job.outcome.error.empty()) {
+          job.run.error = ErrorToSend(job.outcome.error, job.outcome, out);
+        }
+        PrintRun(job, done, shard.size());
+      });
   if (InterruptGuard::signal() != 0) {
     std::cout << "interrupted  the same command goes on with what is missing\n";
     return 128 + InterruptGuard::signal();

@@ -716,8 +716,9 @@ TEST(InfoTest, DescribesScatteredSamples) {
       json::parse(RunProgram({"info", folder / "x.csv", "--json", "--max_angle=60"}).out);
   EXPECT_EQ(limited["samples"]["beyond_max_angle"], 2);
   EXPECT_TRUE(limited["reciprocity_error"]["median"].is_null());
-  ExpectError(RunProgram({"info", folder / "x.csv", "--out=" + (folder / "p")}),
-              "--out is for a picture of the bins of a table, or of all pairs of directions");
+  EXPECT_THAT(RunProgram({"info", folder / "x.csv", "--out=" + (folder / "p")}).out,
+              AllOf(ContainsRegex("reflects at least|written"), HasSubstr("p/measured.png")));
+  EXPECT_THAT(Contents(folder / "p/measured.png"), testing::StartsWith("\x89PNG"));
   const ProgramResult none = RunProgram({"info", folder / "x.csv", "--max_angle=5"});
   EXPECT_EQ(none.status, 0) << none.err;
   EXPECT_THAT(none.out, ContainsRegex("valid +0\n"));

@@ -119,6 +119,7 @@ std::set<int64_t> RepeatedAngles(const BrdfSamples& samples, std::vector<Place> 
   std::ranges::sort(places, {}, &Place::Key);
   struct Count {
     int places = 0, equal = 0;
+    std::set<Rgb> values;  // where they are equal
   };
   std::map<int64_t, Count> counts;
   for (size_t k = 1; k < places.size(); ++k) {
@@ -129,11 +130,15 @@ std::set<int64_t> RepeatedAngles(const BrdfSamples& samples, std::vector<Place> 
     }
     Count& count = counts[second.angle];
     ++count.places;
-    count.equal += samples.rho[first.sample] == samples.rho[second.sample] ? 1 : 0;
+    if (samples.rho[first.sample] != samples.rho[second.sample]) continue;
+    ++count.equal;
+    count.values.insert(samples.rho[second.sample]);
   }
   std::set<int64_t> repeated;
   for (const auto& [angle, count] : counts) {
-    if (count.places >= kFewestPlaces && count.equal > kShare * count.places) {
+    // Few values are those of a material that reflects alike in all of these directions.
+    if (count.places >= kFewestPlaces && count.equal > kShare * count.places &&
+        4 * count.values.size() >= static_cast<size_t>(count.equal)) {
       repeated.insert(angle);
     }
   }

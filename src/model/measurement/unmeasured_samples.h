@@ -17,8 +17,8 @@ namespace trilobe {
 std::vector<int> FindZeroGaps(const BrdfSamples& samples);
 
 // Samples on a grid of theta_i, theta_o and phi_o - phi_i that were filled in: where a theta_i (or
-// theta_o) has, in nine of ten places, to the bit the values of the one before. None if half of the
-// angles do so, as those of a white reference, or if there are fewer than five.
+// theta_o) has, in nine of ten places, to the bit the values of the one before, and these are many.
+// None if half of the angles do so, as those of a white reference, or if there are fewer than five.
 struct FilledSamples {
   std::vector<int> samples;      // ascending
   int theta_i = 0, theta_o = 0;  // how many angles were filled in

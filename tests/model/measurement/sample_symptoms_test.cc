@@ -193,6 +193,10 @@ TEST(UnmeasuredSamples, AnglesThatRepeatTheOneBeforeWereFilledIn) {
       FindFilled(Goniometer([](SphericalAngles*, double* rho) { *rho = 0.3; }).samples).samples,
       IsEmpty());
   EXPECT_THAT(FindFilled(Goniometer([](SphericalAngles*, double*) {}).samples).samples, IsEmpty());
+  const Measurement matt_outside = Goniometer([](SphericalAngles* at, double* rho) {
+    if (at->theta_o > DegreesToRadians(50)) *rho = 0.05;
+  });
+  EXPECT_THAT(FindFilled(matt_outside.samples).samples, IsEmpty());
   Measurement measurement = filled;
   LeaveOutFill(&measurement);
   EXPECT_EQ(measurement.counts.extrapolated, found.samples.size());
@@ -211,6 +215,7 @@ TEST(SampleSymptoms, TheSharedCasesAreTold) {
   EXPECT_THAT(told("percent.csv"), ElementsAre(HasSubstr("--scale=0.01")));
   EXPECT_THAT(told("radians.csv"), testing::Contains(HasSubstr("in radians")));
   EXPECT_THAT(told("sign_dropped.csv"), ElementsAre(HasSubstr("the sign of an angle")));
+  EXPECT_EQ(LoadMeasurement(folder + "retro.csv").counts.valid, 2310);
   EXPECT_THAT(told("retro.csv"), ElementsAre(HasSubstr("for which the model has no lobe")));
   const Measurement shadow = LoadMeasurement(folder + "shadow_zero.csv");
   EXPECT_GE(shadow.counts.missing, 22);
