@@ -72,9 +72,9 @@ void LimitThetaD(double min_theta_d, Measurement* measurement);
 // The same for scattered samples shaded by the detector (OwnShadow), if any; adds a note.
 void LeaveOutOwnShadow(Measurement* measurement);
 
-// Leaves out scattered samples that were filled in, not measured: angles of a grid that repeat those
-// before (FindFilled), and zeros amid light (FindZeroGaps); adds a note for each. No effect on
-// tables and anisotropic measurements.
+// Leaves out scattered samples that were filled in, not measured: angles of a grid that repeat
+// those before (FindFilled), and zeros amid light (FindZeroGaps); adds a note for each. No effect
+// on tables and anisotropic measurements.
 void LeaveOutFill(Measurement* measurement);
 void LeaveOutZeroGaps(Measurement* measurement);
 
