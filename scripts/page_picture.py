@@ -39,7 +39,6 @@ def main() -> int:
         if page.locator("#canvas").count() == 1:
             milliseconds = 1000 * options.seconds
             page.wait_for_function("window.trilobe?.renderer?.shown", timeout=milliseconds)
-            page.evaluate("trilobe.renderer.patience = 1e6")
             page.wait_for_function("!trilobe.renderer.pending", timeout=milliseconds)
             box = page.locator("#canvas").bounding_box()
             x, y = map(float, options.point.split(","))

@@ -88,20 +88,27 @@ export function editedModel(base, edit, all = false) {
   return model;
 }
 
-// States, with a way back and forth.
+// States, with a way back and forth. What one control does within a second of its last step is one step.
 export class History {
   constructor(state) {
     this.states = [JSON.stringify(state)];
     this.at = 0;
+    this.last = {control: null, time: 0};
   }
-  push(state) {
+  push(state, control = null, time = performance.now()) {
     const text = JSON.stringify(state);
     if (text === this.states[this.at]) return;
-    this.states = [...this.states.slice(0, this.at + 1), text].slice(-200);
+    const goesOn = control !== null && control === this.last.control && time - this.last.time < 1000;
+    this.last = {control, time};
+    this.states = [...this.states.slice(0, this.at + (goesOn ? 0 : 1)), text].slice(-200);
     this.at = this.states.length - 1;
   }
   get canUndo() { return this.at > 0; }
   get canRedo() { return this.at + 1 < this.states.length; }
-  undo() { return JSON.parse(this.states[(this.at = Math.max(0, this.at - 1))]); }
-  redo() { return JSON.parse(this.states[(this.at = Math.min(this.states.length - 1, this.at + 1))]); }
+  undo() { return this.go(Math.max(0, this.at - 1)); }
+  redo() { return this.go(Math.min(this.states.length - 1, this.at + 1)); }
+  go(at) {
+    this.last = {control: null, time: 0};
+    return JSON.parse(this.states[(this.at = at)]);
+  }
 }

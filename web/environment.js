@@ -1,7 +1,7 @@
 // Light from everywhere by latitude and longitude, and the half vectors that pictures are summed over: those of
 // src/model/appearance/environment.cc and mirrored_environment.cc.
 
-const DEGREE = Math.PI / 180;
+export const DEGREE = Math.PI / 180;
 
 const AREA_LIGHTS = [
   [35, -125, 18, 14, [9.0, 8.2, 7.0]],

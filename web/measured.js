@@ -39,7 +39,7 @@ export function decodeMeasured(header, text) {
       }
     }
   }
-  return header.kind === 'table' ? tableMeasured(header.shape, rgb, valid, header) : nodesMeasured(header, rgb, valid);
+  return header.kind === 'table' ? tableMeasured(header.shape, rgb, valid, {count: header.samples}) : nodesMeasured(header, rgb, valid);
 }
 
 export function bytesOf(base64) {
@@ -91,7 +91,7 @@ function fillFromNearest(rgb, valid, [nh, nd, np]) {
   }
 }
 
-function tableMeasured(shape, rgb, valid, extra) {
+export function tableMeasured(shape, rgb, valid, extra) {
   const [nh, nd, np] = shape;
   fillFromNearest(rgb, valid, shape);
   // Linear between the middles of bins; null where the bin was not measured.
@@ -113,7 +113,7 @@ function tableMeasured(shape, rgb, valid, extra) {
     }
     return sum;
   };
-  return {kind: 'table', shape, rgb, valid, rho, samples: extra.samples ?? valid.reduce((a, b) => a + b, 0)};
+  return {kind: 'table', shape, rgb, valid, rho, count: extra.count ?? valid.reduce((a, b) => a + b, 0)};
 }
 
 function nodesMeasured(header, rgb, valid) {
@@ -139,7 +139,7 @@ function nodesMeasured(header, rgb, valid) {
     }
     return sum;
   };
-  return {kind: 'nodes', thetas, phis, maxTheta, rgb, valid, rho, samples: header.samples};
+  return {kind: 'nodes', thetas, phis, maxTheta, rgb, valid, rho, count: header.samples};
 }
 
 // A MERL .binary file. Throws an Error of one line.
@@ -169,110 +169,6 @@ export function parseMerl(buffer) {
   }
   if (!valid.includes(1)) throw new Error('the MERL file has no valid bin');
   return tableMeasured(shape, rgb, valid, {});
-}
-
-// A CSV file of scattered samples of an isotropic material, averaged in bins of (theta_h, theta_d, phi_d).
-export function parseCsv(text) {
-  const lines = text.split(/\r?\n/).map(line => line.split('#')[0].trim()).filter(line => line !== '');
-  const names = (lines.shift() ?? '').split(',').map(name => name.trim());
-  const wanted = ['theta_i', 'phi_i', 'theta_o', 'phi_o', 'r', 'g', 'b'];
-  const columns = wanted.map(name => names.indexOf(name));
-  if (columns.includes(-1)) throw new Error(`not a CSV file of samples: its header must have ${wanted.join(', ')}`);
-  const shape = [90, 45, 18], pairs = shape[0] * shape[1] * shape[2];
-  const rgb = new Float32Array(3 * pairs), counts = new Uint32Array(pairs);
-  lines.forEach((line, number) => {
-    const cells = line.split(','), row = columns.map(c => Number(cells[c]));
-    if (cells.length !== names.length || !row.every(Number.isFinite)) throw new Error(`row ${number + 2} of the CSV file is no sample`);
-    const [ti, pi, to, po] = row.slice(0, 4).map(x => (x * Math.PI) / 180);
-    if (!(ti < Math.PI / 2 && to < Math.PI / 2) || row.slice(4).some(x => x < 0)) return;
-    const at = anglesOf([Math.sin(ti) * Math.cos(pi), Math.sin(ti) * Math.sin(pi), Math.cos(ti)],
-                        [Math.sin(to) * Math.cos(po), Math.sin(to) * Math.sin(po), Math.cos(to)]);
-    const h = Math.min(Math.floor(Math.sqrt(at.theta_h / (Math.PI / 2)) * shape[0]), shape[0] - 1);
-    const d = Math.min(Math.floor((at.theta_d / (Math.PI / 2)) * shape[1]), shape[1] - 1);
-    const p = Math.min(Math.floor((at.phi_d / Math.PI) * shape[2]), shape[2] - 1);
-    const k = (h * shape[1] + d) * shape[2] + p;
-    ++counts[k];
-    for (let c = 0; c < 3; ++c) rgb[3 * k + c] += row[4 + c];
-  });
-  const valid = new Uint8Array(pairs);
-  counts.forEach((n, k) => {
-    if (n === 0) return;
-    valid[k] = 1;
-    for (let c = 0; c < 3; ++c) rgb[3 * k + c] /= n;
-  });
-  if (!valid.includes(1)) throw new Error('the CSV file has no sample above the surface');
-  return tableMeasured(shape, rgb, valid, {samples: lines.length});
-}
-
-// Mean log ratio of fitted over measured in `size` x `size` bins of (theta_h, theta_d), NaN where nothing was
-// measured: {size, ratio: Float32Array, typical, hardlySeen: Uint8Array}, typical where it is seen. theta_h by its root, as in the tables, which
-// have `size` bins or more: else some would be empty.
-export function differenceMap(measured, evaluate, size = 45) {
-  const sums = new Float64Array(size * size), weights = new Float64Array(size * size);
-  const [light, density, pairs] = [0, 1, 2].map(() => new Float64Array(size * size));
-  const absolute = new Float64Array(size * size);
-  const luminance = c => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-  const add = (wi, wo, rho, bin, solidAngle) => {
-    const fitted = luminance(evaluate(wi, wo).rho), seen = luminance(rho), brighter = Math.max(fitted, seen);
-    density[bin] += brighter * wi[2] * wo[2];
-    light[bin] += brighter * wi[2] * wo[2] * solidAngle;
-    ++pairs[bin];
-    if (!(fitted > 0 && seen > 0)) return;
-    const log = Math.log(fitted / seen);
-    sums[bin] += log;
-    weights[bin] += 1;
-    absolute[bin] += Math.abs(log);
-  };
-  if (measured.kind === 'table') {
-    const {shape: [nh, nd, np], rgb, valid} = measured;
-    for (let h = 0; h < nh; ++h) {
-      const thetaH = ((h + 0.5) / nh) ** 2 * (Math.PI / 2), row = Math.floor(((h + 0.5) / nh) * size) * size;
-      for (let d = 0; d < nd; ++d) {
-        const thetaD = ((d + 0.5) / nd) * (Math.PI / 2), bin = row + Math.floor(((d + 0.5) / nd) * size);
-        const solidAngle = Math.sqrt(thetaH) * Math.sin(thetaH) * Math.sin(thetaD) * Math.cos(thetaD);
-        const known = Array.from({length: np}, (_, p) => p).filter(p => valid[(h * nd + d) * np + p]);
-        for (let n = 0; n < known.length; n += Math.ceil(known.length / 8)) {  // nothing is narrow in phi_d
-          const p = known[n], k = (h * nd + d) * np + p;
-          const [wi, wo] = directionsOf(thetaH, thetaD, ((p + 0.5) / np) * Math.PI);
-          if (wi[2] > 0 && wo[2] > 0) add(wi, wo, [rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]], bin, solidAngle);
-        }
-      }
-    }
-  } else {
-    const {thetas, phis, rgb, valid} = measured, nodes = thetas * phis;
-    const w = Array.from({length: nodes}, (_, n) => {
-      const theta = (Math.floor(n / phis) / thetas) * (Math.PI / 2), phi = ((n % phis) / phis) * 2 * Math.PI;
-      return [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
-    });
-    const step = Math.max(1, Math.round((nodes * nodes) / 30000)) | 1;
-    for (let k = 0; k < nodes * nodes; k += step) {
-      const i = Math.floor(k / nodes), o = k % nodes;
-      if (!valid[k] || !(w[i][2] > 0 && w[o][2] > 0)) continue;
-      const at = anglesOf(w[i], w[o]);
-      const h = Math.min(Math.floor(Math.sqrt(at.theta_h / (Math.PI / 2)) * size), size - 1);
-      const d = Math.min(Math.floor((at.theta_d / (Math.PI / 2)) * size), size - 1);
-      add(w[i], w[o], rgb.subarray(3 * k, 3 * k + 3), h * size + d, Math.sqrt((1 - w[i][2] ** 2) * (1 - w[o][2] ** 2)));
-    }
-  }
-  const ratio = Float32Array.from(sums, (s, k) => (weights[k] > 0 ? s / weights[k] : NaN));
-  for (let k = 0; k < pairs.length; ++k) density[k] /= Math.max(pairs[k], 1);
-  const unseen = hardlySeen(light, density, pairs), ofSeen = list => list.reduce((sum, x, k) => sum + (unseen[k] ? 0 : x), 0);
-  return {size, ratio, typical: ofSeen(absolute) / ofSeen(weights), hardlySeen: unseen};
-}
-
-// The bins that an eye hardly sees, as in src/model/appearance/hardly_seen.h: those of the least light for their solid
-// angle that together have at most HARDLY_SEEN of the light of all.
-export const HARDLY_SEEN = 0.003;
-function hardlySeen(light, density, pairs) {
-  const most = HARDLY_SEEN * light.reduce((a, b) => a + b, 0), found = new Uint8Array(light.length);
-  const order = Array.from(light.keys()).filter(k => pairs[k] > 0).sort((a, b) => density[a] - density[b]);
-  let sum = 0;
-  for (const k of order) {
-    sum += light[k];
-    if (sum > most) break;
-    found[k] = 1;
-  }
-  return found;
 }
 
 // Two directions by their half and difference angles.

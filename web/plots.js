@@ -23,9 +23,27 @@ function prepare(canvas) {
   return {context, width, height};
 }
 
+// Lines over what `path` adds to the context's path, within a box.
+function hatch(context, color, [left, top, width, height], path, thick = 1, step = 7, slope = 1) {
+  context.save();
+  context.beginPath();
+  path();
+  context.clip();
+  context.strokeStyle = color;
+  context.lineWidth = thick;
+  context.setLineDash([]);
+  context.beginPath();
+  for (let x = left - height; x < left + width + height; x += step) {
+    context.moveTo(x, top + height);
+    context.lineTo(x + slope * height, top);
+  }
+  context.stroke();
+  context.restore();
+}
+
 // series: [{points: [[x, y]...], color, width, dash, dots}]; x: {min, max, ticks: [[value, text]], map}; y: {log, min, max,
-// label}; marks: [{x, text, color}].
-export function drawLines(canvas, {series, x, y, marks = []}) {
+// label}; marks: [{x, text, color}]; hatched where x is more than `known`.
+export function drawLines(canvas, {series, x, y, marks = [], known = Infinity}) {
   const made = prepare(canvas);
   if (!made) return;
   const {context, width, height} = made, style = styleOf(canvas);
@@ -72,6 +90,10 @@ export function drawLines(canvas, {series, x, y, marks = []}) {
     context.stroke();
     context.textAlign = v === x.max ? 'right' : 'center';
     context.fillText(text, v === x.max ? px(v) + 4 : px(v), height - bottom + 5);
+  }
+  if (known < x.max) {
+    const box = [px(known), top, width - right - px(known), height - top - bottom];
+    hatch(context, style.line, box, () => context.rect(...box));
   }
   context.save();
   context.beginPath();
@@ -134,39 +156,16 @@ export function logColor(ratio, dark) {
   return middle.map((m, k) => Math.round(m + t * (end[k] - m)));
 }
 
-// The difference over (theta_h, theta_d), root of theta_h to the right, with a mark. What is hardly seen is hatched.
-export function drawHeat(canvas, {size, ratio, hardlySeen}, mark, dark) {
+// The difference over (theta_h, theta_d), root of theta_h to the right, with a mark: of bins {size, ratio, hardlySeen}, of
+// which those that are hardly seen are hatched, and those that were not measured the other way; or of samples {points}.
+export function drawHeat(canvas, map, mark, dark) {
   const made = prepare(canvas);
   if (!made) return;
   const {context, width, height} = made, style = styleOf(canvas), left = 40, right = 8, top = 8, bottom = 20;
-  const image = new ImageData(size, size);
-  for (let d = 0; d < size; ++d) {
-    for (let h = 0; h < size; ++h) {
-      const value = ratio[h * size + d], at = 4 * ((size - 1 - d) * size + h);
-      if (Number.isNaN(value)) continue;
-      image.data.set([...logColor(value, dark), 255], at);
-    }
-  }
-  const small = new OffscreenCanvas(size, size);
-  small.getContext('2d').putImageData(image, 0, 0);
-  const w = width - left - right, h = height - top - bottom;
-  context.imageSmoothingEnabled = false;
-  context.drawImage(small, left, top, w, h);
-  context.save();
-  context.beginPath();
-  hardlySeen.forEach((hardly, k) => {
-    if (hardly) context.rect(left + (Math.floor(k / size) / size) * w, top + (1 - ((k % size) + 1) / size) * h, w / size, h / size);
-  });
-  context.clip();
-  context.strokeStyle = style.surface;
-  context.lineWidth = 3;
-  context.beginPath();
-  for (let x = left - h; x < left + w; x += 7) {
-    context.moveTo(x, top + h);
-    context.lineTo(x + h, top);
-  }
-  context.stroke();
-  context.restore();
+  const w = width - left - right, h = height - top - bottom, box = [left, top, w, h];
+  const place = (thetaH, thetaD) => [left + Math.sqrt(Math.min(thetaH / 90, 1)) * w, top + (1 - thetaD / 90) * h];
+  if (map.points) drawPoints(context, map.points, place, style, dark);
+  else drawBins(context, map, box, style, dark);
   context.lineWidth = 1;
   context.strokeStyle = style.line;
   context.strokeRect(left + 0.5, top + 0.5, w - 1, h - 1);
@@ -181,7 +180,7 @@ export function drawHeat(canvas, {size, ratio, hardlySeen}, mark, dark) {
   context.textBaseline = 'middle';
   for (const degrees of [0, 30, 60, 90]) context.fillText(`${degrees}°`, left - 5, top + (1 - degrees / 90) * h);
   if (mark) {
-    const x = left + Math.sqrt(Math.min(mark[0] / 90, 1)) * w, y = top + (1 - mark[1] / 90) * h;
+    const [x, y] = place(...mark);
     context.lineWidth = 2;
     for (const [color, radius] of [[style.surface, 6.5], [style.strong, 5]]) {
       context.strokeStyle = color;
@@ -192,24 +191,66 @@ export function drawHeat(canvas, {size, ratio, hardlySeen}, mark, dark) {
   }
 }
 
+function drawBins(context, {size, ratio, hardlySeen}, box, style, dark) {
+  const [left, top, w, h] = box, image = new ImageData(size, size);
+  const bins = chosen => ratio.forEach((value, k) => {
+    if (chosen(value, k)) context.rect(left + (Math.floor(k / size) / size) * w, top + (1 - ((k % size) + 1) / size) * h, w / size, h / size);
+  });
+  ratio.forEach((value, k) => {
+    const at = 4 * ((size - 1 - (k % size)) * size + Math.floor(k / size));
+    if (!Number.isNaN(value)) image.data.set([...logColor(value, dark), 255], at);
+  });
+  const small = new OffscreenCanvas(size, size);
+  small.getContext('2d').putImageData(image, 0, 0);
+  context.imageSmoothingEnabled = false;
+  context.drawImage(small, left, top, w, h);
+  hatch(context, style.surface, box, () => bins((_, k) => hardlySeen[k]), 3);
+  hatch(context, style.text, box, () => bins(value => Number.isNaN(value)), 0.7, 6, -1);
+}
+
+function drawPoints(context, points, place, style, dark) {
+  context.lineWidth = 0.5;
+  context.strokeStyle = style.text;
+  const radius = points.length > 5000 ? 1.5 : 3;
+  for (const {theta_h: thetaH, theta_d: thetaD, log} of points) {
+    context.fillStyle = `rgb(${logColor(log, dark)})`;
+    context.beginPath();
+    context.arc(...place((thetaH * 180) / Math.PI, (thetaD * 180) / Math.PI), radius, 0, 7);
+    context.fill();
+    if (radius > 2) context.stroke();
+  }
+}
+
 // What goes where, in the plane of incidence: [{values: [[theta_o, value]...], color, dots}], theta_o from -90 to 90 [deg],
-// light from the left. Radii are cube roots.
-export function drawPolar(canvas, curves, thetaI) {
+// light from the left. Radii are cube roots. Hatched where `known` of theta_o is false.
+export function drawPolar(canvas, curves, thetaI, known) {
   const made = prepare(canvas);
   if (!made) return;
   const {context, width, height} = made, style = styleOf(canvas);
   const radius = Math.min(width / 2 - 14, height - 26), cx = width / 2, cy = height - 14;
-  const most = Math.max(1e-12, ...curves.flatMap(c => c.values.map(v => v[1])));
+  const most = curves.reduce((all, c) => c.values.reduce((x, v) => Math.max(x, v[1]), all), 1e-12);
   const place = (theta, value) => {
     const r = radius * Math.cbrt(Math.max(value, 0) / most), t = (theta * Math.PI) / 180;
     return [cx + r * Math.sin(t), cy - r * Math.cos(t)];
   };
+  hatch(context, style.line, [cx - radius, cy - radius, 2 * radius, radius], () => {
+    for (let degrees = -90; degrees < 90; degrees += 2) {
+      if (known(degrees + 1)) continue;
+      const [from, to] = [degrees - 90, degrees - 88].map(t => (t * Math.PI) / 180);
+      context.moveTo(cx, cy);
+      context.arc(cx, cy, radius, from, to);
+    }
+  });
   context.strokeStyle = style.line;
+  context.fillStyle = style.text;
   context.lineWidth = 1;
+  context.textAlign = 'left';
+  context.textBaseline = 'bottom';
   for (const part of [1, 0.5, 0.1]) {
     context.beginPath();
     context.arc(cx, cy, radius * Math.cbrt(part), Math.PI, 2 * Math.PI);
     context.stroke();
+    context.fillText(String(+(part * most).toPrecision(2)), cx + 3, cy - radius * Math.cbrt(part));
   }
   context.beginPath();
   context.moveTo(cx - radius - 8, cy);

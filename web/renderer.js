@@ -4,42 +4,23 @@
 
 import {packModel, TABLE_WIDTH} from './pack.js';
 import {halfCells} from './environment.js';
-import {knotMesh} from './knot.js';
+import {drawSurface} from './surface.js';
 
 const PROLOGUE = '#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D; precision highp sampler3D;\n';
 const NO_MODEL = '#define TB_LOBES 0\nuniform sampler2D trilobe_tables;\nconst vec3 trilobe_diffuse = vec3(0.0);\n';
 const FULL_SCREEN = 'void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }';
-const KNOT_VERTEX = `layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal_in;
-layout(location = 2) in vec3 tangent_in;
-uniform mat3 turned_by;
-out vec3 n, t;
-void main() {
-  vec3 p = turned_by * position;
-  n = turned_by * normal_in;
-  t = turned_by * tangent_in;
-  gl_Position = vec4(p.x, -p.y, -p.z * 0.5, 1.0);
-}`;
-const KNOT_FRAGMENT = `in vec3 n, t;
-layout(location = 0) out vec4 normal;
-layout(location = 1) out vec4 tangent;
-void main() {
-  vec3 m = normalize(n);
-  if (!(m.z > 0.0)) discard;
-  normal = vec4(m, 1.0);
-  tangent = vec4(normalize(t - m * dot(m, t)), 0.0);
-}`;
-export const OBJECTS = ['sphere', 'knot', 'cloth', 'flat'];
 const MODES = {fitted: 0, measured: 1, wipe: 2, difference: 3};
 const COARSEST = 16;  // pixels across of the first picture, or up to twice as many
+const JUDGED = 96;    // of the picture that tells how far apart the materials are, whatever the window
 const FRAME_MS = 30;
-const MOVING_MS = 18;  // for a material under a lamp that moves; half the pixels across where all take longer
+const MOVING_MS = 18;  // for a material under a lamp that moves; about half the pixels across where all take longer
 
 export class Renderer {
   constructor(canvas, shaderText) {
     this.canvas = canvas;
     this.text = shaderText;
-    const gl = (this.gl = canvas.getContext('webgl2', {alpha: true, antialias: false, preserveDrawingBuffer: true}));
+    const gl = (this.gl = canvas.getContext('webgl2', {
+      alpha: true, antialias: false, preserveDrawingBuffer: true, powerPreference: 'high-performance'}));
     if (!gl) throw new Error('This browser has no WebGL 2, which the picture needs.');
     if (gl.getExtension('EXT_color_buffer_float')) this.format = gl.RGBA32F;
     else if (gl.getExtension('EXT_color_buffer_half_float')) this.format = gl.RGBA16F;
@@ -47,14 +28,16 @@ export class Renderer {
     this.programs = {};
     this.levels = [];
     this.size = 0;
-    this.patience = 12;  // seconds that the next finer picture may take
+    this.patience = 1;  // seconds that a finer picture may take before the page shows that it is being drawn
+    this.slice = FRAME_MS;  // that one call of work() may take, about
+    this.finer = null;  // the part that is done of a picture that takes longer
     this.rate = 2e6;  // evaluations a second, until it is known better
     this.exposure = 0;
     this.turn = [0, 0];
     this.environmentTurn = 0;
     this.object = 'sphere';
     this.lamp = null;
-    this.level = 0;
+    this.leastCosine = 0;  // of the largest angle to the eye that was measured
     this.shown = null;
     this.pending = true;
     this.onImage = () => {};
@@ -196,7 +179,9 @@ export class Renderer {
     }
     this.size = size;
     this.levels = [];
-    for (let s = size; s >= COARSEST; s = Math.round(s / 2)) this.levels.unshift(this.makeLevel(s));
+    // Halves, but of JUDGED and its doubles, so that it is among them.
+    const coarser = s => (s <= JUDGED ? Math.round(s / 2) : JUDGED * 2 ** Math.max(Math.floor(Math.log2((0.7 * s) / JUDGED)), 0));
+    for (let s = size; s >= COARSEST; s = coarser(s)) this.levels.unshift(this.makeLevel(s));
     this.shown = null;
     this.restart();
   }
@@ -217,51 +202,11 @@ export class Renderer {
             framebuffers: [surface, ...targets], surfaceOf: ''};
   }
 
+  get judgedSize() { return Math.min(this.size, JUDGED); }
+
   restart() {
     this.pending = true;
-    this.progress = null;
-  }
-
-  drawSurface(level) {
-    const {gl} = this, key = JSON.stringify([this.object, this.turn]);
-    if (level.surfaceOf === key) return;
-    level.surfaceOf = key;
-    const [a, b] = this.turn;
-    if (this.object !== 'knot') {
-      const made = this.program('surface', this.text('surface.glsl'));
-      this.use(made);
-      gl.uniform1i(made.place('object'), {sphere: 0, cloth: 1, flat: 2}[this.object]);
-      gl.uniform2f(made.place('turn'), a, b);
-      gl.uniform1f(made.place('size'), level.size);
-      this.draw(level.surface, level.size, level.size);
-      return;
-    }
-    if (!this.knot) {
-      const {vertices, indices} = knotMesh();
-      this.knot = {array: gl.createVertexArray(), count: indices.length};
-      gl.bindVertexArray(this.knot.array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
-      for (let k = 0; k < 3; ++k) {
-        gl.enableVertexAttribArray(k);
-        gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 36, 12 * k);
-      }
-      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
-    }
-    const made = this.program('knot', KNOT_FRAGMENT, KNOT_VERTEX);
-    this.use(made);
-    const [ca, sa, cb, sb] = [Math.cos(a), Math.sin(a), Math.cos(b), Math.sin(b)];
-    gl.uniformMatrix3fv(made.place('turned_by'), false, [ca, sa * sb, -sa * cb, 0, cb, sb, sa, -ca * sb, ca * cb]);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, level.surface);
-    gl.viewport(0, 0, level.size, level.size);
-    gl.bindVertexArray(this.knot.array);
-    gl.enable(gl.DEPTH_TEST);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.drawElements(gl.TRIANGLES, this.knot.count, gl.UNSIGNED_SHORT, 0);
-    gl.disable(gl.DEPTH_TEST);
-    gl.bindVertexArray(this.empty);
+    this.progress = this.finer = null;
   }
 
   // Adds the cells from..to to the sum of one material.
@@ -357,14 +302,15 @@ export class Renderer {
       let first = 0;
       const seconds = (lamp ? MOVING_MS * sides.length : FRAME_MS) / 1000;
       while (!exposing && first + 1 < levels.length && costOf(levels[first + 1]) < this.rate * seconds) ++first;
-      if (lamp) first = Math.max(first, levels.length - (this.moving ? 2 : 1), 0);
+      const judged = levels.findIndex(level => level.size === this.judgedSize);
+      if (lamp && this.moving) first = Math.max(first, levels.length - 2, 0);
+      else first = Math.min(first, judged);
       this.progress = {level: first, side: 0, cell: 0};
     }
     const {progress} = this, level = levels[progress.level];
     const begin = performance.now();
-    this.drawSurface(level);
-    let done = 0;
-    while (performance.now() - begin < FRAME_MS) {
+    drawSurface(this, level);
+    while (performance.now() - begin < this.slice) {
       const left = cells - progress.cell;
       const number = sides[progress.side];
       const fits = Math.max(1, Math.floor((this.rate * FRAME_MS) / 1000 / (level.size ** 2 * 0.7)));
@@ -377,7 +323,8 @@ export class Renderer {
       if (this.measuredRate && cost > 2e4) this.rate = Math.min(Math.max(0.5 * this.rate + (0.5 * cost) / Math.max(seconds, 1e-4), 2e5), 1e10);
       this.measuredRate = true;
       progress.cell += count;
-      done += count;
+      const all = cells * sides.length;
+      this.finer = costOf(level) > this.patience * this.rate ? (progress.side * cells + progress.cell) / all : null;
       if (progress.cell < cells) continue;
       progress.cell = 0;
       if (++progress.side < sides.length) continue;
@@ -386,10 +333,11 @@ export class Renderer {
       else if (exposing) this.expose(level);
       if (exposing && this.lamp) {
         this.progress = null;  // and now by the lamp
-      } else if (progress.level + 1 < levels.length && !this.moving && costOf(levels[progress.level + 1]) < this.patience * this.rate) {
+      } else if (progress.level + 1 < levels.length && !this.moving) {
         this.progress = {level: progress.level + 1, side: 0, cell: 0};
       } else {
         this.pending = false;
+        this.finer = null;
       }
       this.onImage(level, this.pending);
       return true;
@@ -409,8 +357,8 @@ export class Renderer {
     const compared = Boolean(this.measured);
     gl.enable(gl.SCISSOR_TEST);
     for (const {mode, x, y, size} of panels) {
-      const defines = `#define SHOWN ${MODES[mode]}\n#define EXACT ${Number(size === shown.size)}\n`;
-      const made = this.program(`show ${mode} ${size === shown.size}`, defines + this.text('show.glsl'));
+      const defines = `#define SHOWN ${MODES[mode]}\n#define EXACT ${Number(size === shown.size)}\n#define COMPARED ${Number(compared)}\n`;
+      const made = this.program(`show ${mode} ${size === shown.size} ${compared}`, defines + this.text('show.glsl'));
       this.use(made, {
         normals: [gl.TEXTURE_2D, shown.normals],
         fitted: [gl.TEXTURE_2D, shown.sides[0].textures[2]],
@@ -419,6 +367,7 @@ export class Renderer {
       gl.uniform1i(made.place('round_'), this.object === 'sphere' ? 1 : 0);
       gl.uniform1f(made.place('exposure'), this.exposure * 2 ** stops);
       gl.uniform1f(made.place('size'), shown.size);
+      gl.uniform1f(made.place('least_cosine'), this.leastCosine);
       gl.uniform1f(made.place('wipe'), wipe);
       gl.uniform3f(made.place('mark'), mark ? mark[0] : 0, mark ? mark[1] : 0, mark ? 1 : 0);
       const bottom = canvas.height - y - size;

@@ -1,9 +1,10 @@
 // A panel of the picture, SHOWN: 0 the fitted material, 1 the measured one, 2 both with a line between, 3 how far apart
 // they are to the eye (CIELAB, 1976). EXACT: a pixel of the object is one of the panel. These are macros, since without a
-// graphics card what a shader leaves out takes its time, too.
+// graphics card what a shader leaves out takes its time, too. Hatched where most of the light is of directions that were
+// not measured: with COMPARED as the measurement says, else where the eye is lower than what was measured.
 uniform highp sampler2D normals, fitted, measured;
 uniform bool round_;
-uniform float exposure, size, wipe;
+uniform float exposure, size, wipe, least_cosine;
 uniform vec4 panel;  // x, y, width, height [pixels]
 uniform vec3 mark;   // x, y from -1 to 1, and whether to draw it
 layout(location = 0) out vec4 color;
@@ -33,12 +34,19 @@ void main() {
   p.y = 1.0 - p.y;
   vec4 a = vec4(0.0), b = vec4(0.0);
   float weights = 0.0;
+  float cover = 0.0;
+  ivec2 nearest = clamp(ivec2(p * size), ivec2(0), ivec2(int(size) - 1));
 #if EXACT
-  ivec2 pixel = ivec2(p * size);
-  if (texelFetch(normals, pixel, 0).w != 0.0) {
+  if (texelFetch(normals, nearest, 0).w != 0.0) {
     weights = 1.0;
-    a = texelFetch(fitted, pixel, 0);
-    b = texelFetch(measured, pixel, 0);
+    a = texelFetch(fitted, nearest, 0);
+    b = texelFetch(measured, nearest, 0);
+    // Edges fade over a pixel.
+    for (int k = 0; k < 9; ++k) {
+      ivec2 beside = clamp(nearest + ivec2(k % 3 - 1, k / 3 - 1), ivec2(0), ivec2(int(size) - 1));
+      cover += texelFetch(normals, beside, 0).w != 0.0 ? 1.0 / 9.0 : 0.0;
+    }
+    cover = clamp(1.5 * cover - 0.5, 0.1, 1.0);
   }
 #else
   vec2 at = p * size - 0.5;
@@ -50,15 +58,15 @@ void main() {
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(size)))) continue;
     if (texelFetch(normals, pixel, 0).w == 0.0) continue;
     weights += weight;
-#if SHOWN != 1
+#if SHOWN != 1 || COMPARED
     a += weight * texelFetch(fitted, pixel, 0);
 #endif
-#if SHOWN != 0
+#if SHOWN != 0 || COMPARED
     b += weight * texelFetch(measured, pixel, 0);
 #endif
   }
+  cover = weights;
 #endif
-  float cover = weights;
   if (round_) cover = weights > 0.0 ? clamp((1.0 - length(2.0 * p - 1.0)) * panel.z / 2.0 + 0.5, 0.0, 1.0) : 0.0;
   if (cover <= 0.0) {
     color = vec4(0.0);
@@ -67,6 +75,11 @@ void main() {
   a /= weights;
   b /= weights;
   vec3 shown;
+#if COMPARED
+  bool known = b.a >= 0.5 * a.a;
+#else
+  bool known = texelFetch(normals, nearest, 0).z >= least_cosine;
+#endif
 #if SHOWN == 0
   shown = encoded(exposure * a.rgb);
 #elif SHOWN == 1
@@ -75,10 +88,12 @@ void main() {
   shown = encoded(exposure * (p.x < wipe ? b.rgb : a.rgb));
   if (abs(p.x - wipe) * panel.z < 1.0) shown = vec3(1.0);
 #else
-  bool known = b.a >= 0.5 * a.a;
   vec3 ca = clamp(exposure * a.rgb, 0.0, 1.0), cb = clamp(exposure * b.rgb, 0.0, 1.0);
   shown = known ? color_of(distance(lab(ca), lab(cb))) : vec3(0.6);
 #endif
+  if (!known && fract((gl_FragCoord.x + gl_FragCoord.y) / 7.0) < 0.3) {
+    shown = mix(shown, vec3(dot(shown, vec3(0.33)) < 0.45 ? 0.9 : 0.1), 0.6);
+  }
   if (mark.z == 0.0) {
     color = vec4(shown * cover, cover);
     return;

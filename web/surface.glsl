@@ -1,7 +1,7 @@
 // The normal and the tangent that each pixel sees, of a sphere, a cloth or a flat sample. The cloth is that of
 // src/model/appearance/view.cc.
 uniform int object;  // 0 sphere, 1 cloth, 2 flat
-uniform vec2 turn;   // of the object about y and x, or of the cloth's thread [rad]
+uniform vec2 turn;   // of the object about y and x, of the cloth's thread, or of the sphere's axis about z and x [rad]
 uniform float size;  // pixels
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 tangent;
@@ -23,9 +23,10 @@ void main() {
     float z2 = 1.0 - dot(p, p);
     if (!(z2 > 0.0)) return;
     vec3 n = vec3(p, sqrt(z2));
-    float around = length(n.xz);
+    vec3 axis = vec3(sin(turn.x) * cos(turn.y), cos(turn.x) * cos(turn.y), sin(turn.y));
+    vec3 along = cross(axis, n);
     normal = vec4(n, 1.0);
-    tangent = vec4(n.z / around, 0.0, -n.x / around, 0.0);
+    tangent = vec4(along / max(length(along), 1e-12), 0.0);
   } else if (object == 1) {
     const float c = 0.8660254037844386, s = 0.5;  // of the lean
     float u = p.x, v = p.y / c;

@@ -29,8 +29,9 @@ std::string FormatFigure(const FitOutcome& outcome) {
          << '/' << outcome.picture << R"(" loading="lazy" alt=")"
          << EscapedMarkup(Printable(outcome.name))
          << ": measured and fitted\"></a>\n<figcaption><b>"
-         << EscapedMarkup(Printable(outcome.name)) << "</b>" << EscapedMarkup(outcome.verdict)
-         << "<br>PSNR " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
+         << EscapedMarkup(Printable(outcome.name)) << "</b><span class=\""
+         << EscapedMarkup(outcome.visibility) << "\">" << EscapedMarkup(outcome.verdict)
+         << "</span><br>PSNR " << Text(outcome.psnr_db, 3) << " dB, CIELAB difference "
          << Text(outcome.mean_delta_e, 2) << ", mean colour off by "
          << Text(100 * outcome.mean_color_error, 2) << " %, " << outcome.num_parameters
          << " parameters</figcaption></figure>\n";

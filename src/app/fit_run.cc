@@ -8,7 +8,10 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <sstream>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "app/inputs.h"
 #include "app/interrupt.h"
@@ -89,9 +92,25 @@ std::string WhereModelIs(const ModelFile& file, const ResultFolder& folder) {
   return saved.empty() ? "" : "; the model is saved as '" + saved + "' instead";
 }
 
+// The sentences of advice among what is printed.
+std::vector<std::string> AdviceIn(const ReportedVerdict& verdict) {
+  constexpr std::string_view kAdvice = "advice ";
+  std::vector<std::string> advice;
+  std::istringstream lines(Describe(verdict));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(kAdvice)) continue;
+    advice.push_back(line.substr(line.find_first_not_of(' ', kAdvice.size())));
+  }
+  return advice;
+}
+
 void WriteView(const FitRun& run, const FitSettings& settings, ResultFolder* folder) {
   const FitReport& report = run.report;
-  Compared compared = {.seen = report.samples_seen, .basis = VerdictOn(report).verdict.basis};
+  const ReportedVerdict verdict = VerdictOn(report);
+  Compared compared = {.seen = report.samples_seen,
+                       .basis = verdict.verdict.basis,
+                       .reach = report.reach,
+                       .advice = AdviceIn(verdict)};
   if (report.appearance) compared.seen = report.appearance->sphere;
   const ViewedPage page = ViewPage(run.file, run.file.fit.source, &run.measured, compared,
                                    report.summary.trace, settings.fit.appearance);

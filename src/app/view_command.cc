@@ -79,9 +79,8 @@ int RunView(std::span<const std::string> arguments) {
   const bool missing = measured && !page.has_measured;
   Write(path, page.text, missing ? "a page of the model alone" : "a page");
   if (missing) {
-    PrintLine("note: " + arguments[1] + " is not on it: " +
-              (measured->table ? "a table knows no azimuths, which an anisotropic model needs"
-                               : "its samples stand at no grid of directions"));
+    PrintLine("note: " + arguments[1] +
+              " is not on it: a table knows no azimuths, which an anisotropic model needs");
   }
   return 0;
 }

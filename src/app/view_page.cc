@@ -7,6 +7,8 @@
 #include "model/appearance/verdict.h"
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/appearance/material.h"
+#include "trilobe/model/appearance/sampled_sphere.h"
+#include "trilobe/model/lobes/reconstruct.h"
 
 namespace trilobe {
 namespace {
@@ -16,10 +18,25 @@ void Compare(const SeenError& seen, const Measurement& measured, const std::opti
   const Basis basis = known ? *known : BasisOf(SamplesOf(measured), contents->parameters);
   const Verdict verdict = VerdictOf(seen, basis);
   contents->verdict = Words(verdict);
+  contents->measured_share = basis.measured_share;
   contents->visibility = VisibilityName(verdict);
   contents->psnr_db = seen.psnr_db;
   contents->mean_delta_e = seen.mean_delta_e;
   contents->delta_e_95 = seen.delta_e_95;
+}
+
+// As a fit does.
+void CompareAtSamples(const FactorModel& model, const Measurement& measured,
+                      const AppearanceOptions& appearance, PageContents* contents) {
+  const int threads = appearance.num_threads;
+  const BrdfSamples& samples = measured.samples;
+  contents->of_sphere = false;
+  Compare(CompareSampledSphere(samples, EvaluateSamples(model, samples, threads),
+                               MaterialOf(model).spherical, measured.anisotropic, appearance),
+          measured, std::nullopt, contents);
+  const Reach reach = ReachOf(samples, model, threads);
+  contents->reach_beyond = reach.beyond;
+  contents->reach_between = reach.between;
 }
 
 }  // namespace
@@ -36,8 +53,13 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
   contents.trace.assign(trace.begin(), trace.end());
   const Environment& environment = EnvironmentOf(appearance);
   if (environment.name != StudioEnvironment().name) contents.probe = &environment;
+  if (compared.reach) {
+    contents.reach_beyond = compared.reach->beyond;
+    contents.reach_between = compared.reach->between;
+  }
   if (measured != nullptr) {
     contents.source = measured->source;
+    contents.notes = measured->notes;
     PictureData data = PictureDataOf(*measured);
     std::optional<BrdfTable> sampled;
     contents.of_sphere = !data.empty() || !seen;
@@ -52,10 +74,19 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
       contents.measured = data.nodes ? EncodeMeasured(*data.nodes) : EncodeMeasured(*data.table);
       Compare(seen ? *seen : CompareAppearance(data, fitted, appearance).sphere, *measured,
               compared.basis, &contents);
-    } else if (seen) {
-      Compare(*seen, *measured, compared.basis, &contents);
+    } else {
+      if (!measured->table) {
+        contents.measured =
+            EncodeMeasured(measured->samples, measured->max_theta, measured->anisotropic);
+      }
+      if (seen) {
+        Compare(*seen, *measured, compared.basis, &contents);
+      } else if (!measured->table) {
+        CompareAtSamples(model.model, *measured, appearance, &contents);
+      }
     }
   }
+  contents.notes.insert(contents.notes.end(), compared.advice.begin(), compared.advice.end());
   return {.text = FormatPage(model, contents), .has_measured = contents.measured.has_value()};
 }
 

@@ -4,7 +4,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "trilobe/fit/prior/reach.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/seen_error.h"
@@ -22,6 +24,8 @@ struct ViewedPage {
 struct Compared {
   std::optional<SeenError> seen = {};  // their difference; else it is computed, on the sphere
   std::optional<Basis> basis = {};     // of a verdict; else of the samples of the measurement
+  std::optional<Reach> reach = {};     // of the model where nothing was measured
+  std::vector<std::string> advice = {};
 };
 
 // The page of a model (io/page/page.h), compared with `measured` unless that is null. `path` names

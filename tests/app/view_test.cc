@@ -40,6 +40,33 @@ TEST_F(View, WritesOneFileWithTheModelAndTheMeasurement) {
   EXPECT_LT(Contents(alone).size(), 300000U);
 }
 
+TEST_F(View, HoldsScatteredSamplesAndWhatIsSaidOfTheFit) {
+  const std::string file = folder_ / "few.csv", page = folder_ / "x.html";
+  std::ofstream csv(file);
+  csv << "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+  for (int i = 5; i <= 45; i += 10) {
+    for (int o = 0; o <= 45; o += 5)
+      csv << i << ",0," << o << ",180,0.1,0.2," << (7 * i + o) % 10 + 1 << "\n";
+  }
+  csv.close();
+  const ProgramResult result = RunProgram({"view", model(), file, "--out=" + page});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, Not(HasSubstr("is not on it")));
+  const std::string text = Contents(page);
+  EXPECT_THAT(text, HasSubstr(R"("kind":"samples","shape":[50],"samples":50)"));
+  EXPECT_THAT(text, HasSubstr(R"("of_sphere":false)"));
+  EXPECT_THAT(text, HasSubstr(R"("reach":{"beyond":)"));
+  EXPECT_LT(text.size(), 300000U);
+  // A fit also says its advice.
+  const ProgramResult fit = RunProgram({"fit", file, "--lobes=1", "--solver=awls", "--plots",
+                                        "--max_iterations=1", "--out=" + (folder_ / "few")});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  const size_t at = fit.out.find("advice       ");
+  ASSERT_NE(at, std::string::npos) << fit.out;
+  const std::string advice = fit.out.substr(at + 13, fit.out.find('\n', at) - at - 13);
+  EXPECT_THAT(Contents(folder_ / "few/view.html"), HasSubstr("\"" + advice + "\""));
+}
+
 TEST_F(View, SaysInOneLineWhatIsWrong) {
   const auto refusal = [](const std::vector<std::string>& command, const std::string& part) {
     const ProgramResult result = RunProgram(command);

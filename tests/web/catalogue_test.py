@@ -47,6 +47,16 @@ def test_two_hundred_fits_are_sorted_filtered_and_compared(folder: Path, browser
     milliseconds = page.evaluate("(() => { const t = performance.now(); catalogue.order.value = 6; catalogue.arrange();"
                                  " document.body.offsetHeight; return performance.now() - t; })()")
     assert milliseconds < 1000
+    # Verdicts have the colours that they have on the page of a fit.
+    for kind, color in (("none", "--good"), ("hardly", "--fair"), ("visible", "--warn"), ("plain", "--bad")):
+        shown, wanted = page.evaluate(
+            "([kind, color]) => { const mark = document.querySelector('main figcaption span'), own = mark.className;"
+            " mark.className = kind; const shown = getComputedStyle(mark).color; mark.className = own;"
+            " const probe = document.createElement('i'); probe.style.color = `var(${color})`; document.body.append(probe);"
+            " const wanted = getComputedStyle(probe).color; probe.remove(); return [shown, wanted]; }", [kind, color])
+        assert shown == wanted
+    classes = page.evaluate("Array.from(document.querySelectorAll('main figcaption span'), s => s.className)")
+    assert len(classes) == 200 and set(classes) <= {"none", "hardly", "visible", "plain", "unknown"}
     # The button to compare covers no sphere.
     box, image = (page.locator(f"main figure {what}").first.bounding_box() for what in ("label", "img"))
     assert box["y"] >= image["y"] + image["height"]

@@ -3,17 +3,21 @@ Playwright (PyPI) or Debian's chromium is not there."""
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 import pytest
 
+Open = Callable[..., Any]
 REPOSITORY = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("TRILOBE_BUILD", REPOSITORY / "build/release"))
 # WebGL 2 without a graphics card.
@@ -105,3 +109,57 @@ def models(folder: Path, fits: Path) -> dict[str, Path]:
         paths[name].write_text(json.dumps(model))
     paths["anisotropic"] = fits / "shot_silk/model.json"
     return paths
+
+
+@pytest.fixture(scope="session")
+def pages(fits: Path) -> dict[str, Path]:
+    """A page of each fit beside its measurement, and one of the model alone."""
+    made = {}
+    for name in ("plastic", "shot_silk"):
+        made[name] = fits / name / "page.html"
+        run("view", fits / name / "model.json", f"synth:{name}", f"--out={made[name]}",
+            f"--trace={fits / name / 'trace.csv'}")
+    made["coarse"] = fits / "plastic/coarse.html"
+    run("view", fits / "plastic/model.json", "synth:plastic@24x30x12", f"--out={made['coarse']}")
+    made["alone"] = fits / "plastic/alone.html"
+    run("view", fits / "plastic/model.json", f"--out={made['alone']}")
+    return made
+
+
+@pytest.fixture
+def open_page(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
+    """Opens a page in a state, waits for its finished picture, and fails for any complaint on the console."""
+    complaints: list[str] = []
+    contexts = []
+
+    def opened(name: str, size: tuple[int, int] = (1200, 800), scheme: str = "light", size_of_picture: int = 64,
+               **state: Any) -> Any:
+        context = browser.new_context(
+            viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, accept_downloads=True)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        text = base64.urlsafe_b64encode(json.dumps({"size": size_of_picture, **state}).encode()).decode().rstrip("=")
+        page.goto(f"file://{pages[name]}#{text}")
+        finished(page)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    # What drivers say of their own speed is not the page's.
+    own = [text for text in complaints if "GPU stall due to ReadPixels" not in text]
+    assert own == []
+
+
+def finished(page: Any) -> None:
+    wait_for(page, "window.trilobe?.renderer?.shown && !trilobe.renderer.pending")
+
+
+def picture(page: Any, side: int) -> npt.NDArray[np.float64]:
+    """The light of the fitted (0) or measured (1) object, row by row, with its exposure."""
+    numbers, size, exposure = page.evaluate(
+        f"(() => {{ const r = trilobe.renderer; return [Array.from(r.numbersOf(r.shown, {side})), r.shown.size,"
+        " r.exposure]; })()")
+    return np.array(numbers).reshape(size, size, 4)[..., :3] * exposure

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,64 +11,7 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from conftest import run, wait_for
-
-Open = Callable[..., Any]
-
-
-@pytest.fixture(scope="session")
-def pages(fits: Path) -> dict[str, Path]:
-    """A page of each fit beside its measurement, and one of the model alone."""
-    made = {}
-    for name in ("plastic", "shot_silk"):
-        made[name] = fits / name / "page.html"
-        run("view", fits / name / "model.json", f"synth:{name}", f"--out={made[name]}",
-            f"--trace={fits / name / 'trace.csv'}")
-    made["coarse"] = fits / "plastic/coarse.html"
-    run("view", fits / "plastic/model.json", "synth:plastic@24x30x12", f"--out={made['coarse']}")
-    made["alone"] = fits / "plastic/alone.html"
-    run("view", fits / "plastic/model.json", f"--out={made['alone']}")
-    return made
-
-
-@pytest.fixture
-def open_page(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
-    """Opens a page in a state, waits for its finished picture, and fails for any complaint on the console."""
-    complaints: list[str] = []
-    contexts = []
-
-    def opened(name: str, size: tuple[int, int] = (1200, 800), scheme: str = "light", **state: Any) -> Any:
-        import base64
-
-        context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, accept_downloads=True)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        text = base64.urlsafe_b64encode(json.dumps({"size": 64, **state}).encode()).decode().rstrip("=")
-        page.goto(f"file://{pages[name]}#{text}")
-        finished(page)
-        return page
-
-    yield opened
-    for context in contexts:
-        context.close()
-    # What drivers say of their own speed is not the page's.
-    own = [text for text in complaints if "GPU stall due to ReadPixels" not in text]
-    assert own == []
-
-
-def finished(page: Any) -> None:
-    wait_for(page, "window.trilobe?.renderer?.shown && !trilobe.renderer.pending")
-
-
-def picture(page: Any, side: int) -> npt.NDArray[np.float64]:
-    """The light of the fitted (0) or measured (1) object, row by row, with its exposure."""
-    numbers, size, exposure = page.evaluate(
-        f"(() => {{ const r = trilobe.renderer; return [Array.from(r.numbersOf(r.shown, {side})), r.shown.size,"
-        " r.exposure]; })()")
-    return np.array(numbers).reshape(size, size, 4)[..., :3] * exposure
+from conftest import Open, finished, picture, run, wait_for
 
 
 def encoded(linear: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -255,6 +197,9 @@ def test_lobes_go_off_and_an_edited_model_is_saved(open_page: Open, tmp_path: Pa
         ("hello", "not a MERL file"),
         ("theta_i,phi_i,theta_o,phi_o,r,g\n", "header"),
         ("theta_i,phi_i,theta_o,phi_o,r,g,b\n1,2,3\n", "row 2"),
+        ("theta_i,phi_i,theta_o,phi_o,r,g,b\n1,0,1.5,0,1,1,1\n", "as in radians"),
+        ("theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,-50,0,1,1,1\n", "negative angle"),
+        ("theta_i,phi_i,theta_o,phi_o,r,g,b\n10,0,95,0,1,1,1\n", "no sample above the surface"),
     ],
 )
 def test_a_broken_file_gives_one_line(text: str, words: str, open_page: Open, tmp_path: Path) -> None:
@@ -275,13 +220,6 @@ def test_a_measurement_is_opened(open_page: Open, tmp_path: Path) -> None:
     finished(page)
     assert page.locator("#captions div").count() == 3
     assert page.evaluate("trilobe.renderer.measured.shape") == [90, 90, 90]
-    rows = ["theta_i,phi_i,theta_o,phi_o,r,g,b"]
-    rows += [f"{i},0,{o},180,0.1,0.2,0.3" for i in range(0, 80, 5) for o in range(0, 80, 5)]
-    (tmp_path / "few.csv").write_text("\n".join(rows))
-    page.set_input_files("#file", tmp_path / "few.csv")
-    wait_for(page, "document.querySelector('#message').textContent.startsWith('Opened few')")
-    finished(page)
-    assert page.evaluate("trilobe.renderer.measured.samples") == 256
 
 
 def test_a_link_holds_the_state(open_page: Open) -> None:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +14,10 @@
 #include "core/base/file_names.h"
 #include "core/base/json_text.h"
 #include "io/page/document.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/core/geometry/channels.h"
+#include "trilobe/core/math/angles.h"
 #include "trilobe/io/model_files/model_file.h"
 
 namespace trilobe {
@@ -156,7 +159,7 @@ MeasuredData EncodeMeasured(const NodeBrdf& brdf) {
     }
   }
   MeasuredData data;
-  data.nodes = true;
+  data.kind = MeasuredData::Kind::kNodes;
   data.shape = {nodes, nodes};
   data.grid = grid;
   data.max_theta = table.max_theta;
@@ -167,15 +170,49 @@ MeasuredData EncodeMeasured(const NodeBrdf& brdf) {
 
 namespace {
 
+void AddFloat(double x, std::string* bytes) {
+  const auto bits = std::bit_cast<uint32_t>(static_cast<float>(x));
+  for (int shift = 0; shift < 32; shift += 8) *bytes += static_cast<char>(bits >> shift & 255);
+}
+
+}  // namespace
+
+MeasuredData EncodeMeasured(const BrdfSamples& samples, double max_theta, bool anisotropic) {
+  if (samples.directions.size() != samples.rho.size()) {
+    throw Error(samples.source + ": samples without directions");
+  }
+  MeasuredData data;
+  data.kind = MeasuredData::Kind::kSamples;
+  data.samples = samples.size();
+  const int64_t kept = std::min(samples.size(), kMostSamples);
+  data.shape = {static_cast<int>(kept)};
+  data.max_theta = max_theta;
+  data.anisotropic = anisotropic;
+  for (int64_t k = 0; k < kept; ++k) {
+    const auto j = static_cast<size_t>(k * samples.size() / kept);
+    const SphericalAngles& at = samples.directions[j];
+    for (const double angle : {at.theta_i, at.phi_i, at.theta_o, at.phi_o}) {
+      AddFloat(RadiansToDegrees(angle), &data.bits);
+    }
+    for (const double rho : samples.rho[j]) AddFloat(rho, &data.bits);
+  }
+  return data;
+}
+
+namespace {
+
 using Json = nlohmann::ordered_json;
 
 Json ToJson(const MeasuredData& data) {
-  Json json = {{"kind", data.nodes ? "nodes" : "table"},
-               {"shape", data.shape},
-               {"floor", kMeasuredFloor},
-               {"steps", kMeasuredSteps},
-               {"samples", data.samples}};
-  if (data.nodes) {
+  Json json = {{"kind", ""}, {"shape", data.shape}, {"samples", data.samples}};
+  if (data.kind == MeasuredData::Kind::kSamples) {
+    json["kind"] = "samples";
+    json.update({{"max_theta", data.max_theta}, {"anisotropic", data.anisotropic}});
+  } else {
+    json["kind"] = data.kind == MeasuredData::Kind::kNodes ? "nodes" : "table";
+    json.update({{"floor", kMeasuredFloor}, {"steps", kMeasuredSteps}});
+  }
+  if (data.kind == MeasuredData::Kind::kNodes) {
     json.update(
         {{"thetas", data.grid.thetas}, {"phis", data.grid.phis}, {"max_theta", data.max_theta}});
   }
@@ -231,6 +268,12 @@ Json ToJson(const std::vector<IterationRecord>& trace) {
   return rows;
 }
 
+Json Printables(const std::vector<std::string>& sentences) {
+  Json json = Json::array();
+  for (const std::string& sentence : sentences) json.push_back(Printable(sentence));
+  return json;
+}
+
 }  // namespace
 
 std::string FormatPage(const ModelFile& model, const PageContents& contents) {
@@ -244,6 +287,9 @@ std::string FormatPage(const ModelFile& model, const PageContents& contents) {
                {"mean_delta_e", number(contents.mean_delta_e)},
                {"delta_e_95", number(contents.delta_e_95)},
                {"of_sphere", contents.of_sphere},
+               {"measured_share", contents.measured_share},
+               {"reach", {{"beyond", contents.reach_beyond}, {"between", contents.reach_between}}},
+               {"notes", Printables(contents.notes)},
                {"trace", ToJson(contents.trace)}};
   if (contents.measured) json["measured"] = ToJson(*contents.measured);
   if (contents.probe != nullptr) json["probe"] = ToJson(*contents.probe);

@@ -7,6 +7,7 @@
 
 #include "trilobe/model/appearance/environment.h"
 #include "trilobe/model/evaluate/read_model.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/objective/iteration_record.h"
@@ -22,14 +23,20 @@ namespace trilobe {
 // lowest.
 inline constexpr double kMeasuredFloor = 1e-3;  // [1/sr]
 inline constexpr int kMeasuredSteps = 256;
+//
+// Scattered samples are stored as they are: theta_i, phi_i, theta_o, phi_o [degrees], R, G, B
+// [1/sr], each a float of 4 bytes, the lowest first.
 struct MeasuredData {
-  // Table: theta_h, theta_d, phi_d. Nodes: incident, outgoing.
+  enum class Kind { kTable, kNodes, kSamples };
+
+  Kind kind = Kind::kTable;
+  // Table: theta_h, theta_d, phi_d. Nodes: incident, outgoing. Samples: those stored.
   std::vector<int> shape;
-  bool nodes = false;
-  HemisphereGrid grid;   // for nodes
-  double max_theta = 0;  // for nodes [rad]
-  int samples = 0;       // number measured
-  std::string bits;      // the code
+  HemisphereGrid grid;       // for nodes
+  double max_theta = 0;      // for nodes and samples [rad]
+  bool anisotropic = false;  // for samples: their azimuths count
+  int samples = 0;           // number measured
+  std::string bits;          // the code
 };
 
 // Merges pairs of phi_d bins if there are more than 90, so that a page stays below 2 MB.
@@ -38,6 +45,11 @@ MeasuredData EncodeMeasured(const BrdfTable& table);
 // Resamples by linear interpolation if there are more than kMostNodes nodes.
 inline constexpr int kMostNodes = 432;
 MeasuredData EncodeMeasured(const NodeBrdf& brdf);
+
+// Of more than kMostSamples those spread evenly over their order, so that a page stays below 2 MB.
+// Throws Error unless the samples have directions.
+inline constexpr int kMostSamples = 40000;
+MeasuredData EncodeMeasured(const BrdfSamples& samples, double max_theta, bool anisotropic);
 
 // Contents of a page besides the model.
 struct PageContents {
@@ -48,7 +60,12 @@ struct PageContents {
   // Visible difference of the spheres or samples; empty if nothing was compared.
   std::string verdict, visibility;
   double psnr_db = 0, mean_delta_e = 0, delta_e_95 = 0;
-  bool of_sphere = true;  // or of samples
+  bool of_sphere = true;      // or of samples
+  double measured_share = 1;  // of what a renderer reads (MeasuredShare)
+  // Largest values of the model where nothing was measured, over the largest measured one: beyond
+  // the measured angles, and between samples; 0 if unknown.
+  double reach_beyond = 0, reach_between = 0;
+  std::vector<std::string> notes;  // on the measurement, and advice
   std::vector<IterationRecord> trace;
   const Environment* probe = nullptr;  // the light; null: the studio, which the page computes
 };

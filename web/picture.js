@@ -1,0 +1,141 @@
+// The picture: where its panels are, what stands below them, and when it is drawn again.
+
+import {byId, element, tell} from './dom.js';
+import {drawCharts} from './charts.js';
+import {compareImages, compareSamples} from './judge.js';
+import {edited, hasSamples, isPictured, lampDirection, page, state} from './page_state.js';
+import {lookAgain} from './readout.js';
+import {captionOf, pictureLabel, showVerdict} from './said.js';
+
+let panels = [], shape = [1, 1];
+
+export function layout() {
+  const picture = byId('picture'), canvas = byId('canvas'), width = picture.clientWidth;
+  const scale = Math.min(window.devicePixelRatio || 1, 2), gap = 14;
+  const modes = state.view === 'side' ? ['measured', 'fitted', 'difference'] : [state.view];
+  const columns = modes.length === 1 ? 1 : width < 620 ? 2 : 3, caption = columns === 2 ? 62 : 46;  // one more line
+  if (width === 0) return;  // not on a screen
+  const size = Math.floor(Math.min((width - gap * (columns + 1)) / columns, modes.length === 1 ? 560 : 620,
+                                   Math.max(window.innerHeight * 0.58, 220)));
+  const rows = Math.ceil(modes.length / columns), height = rows * (size + caption + gap) + gap / 2;
+  canvas.style.height = `${height}px`;
+  const [w, h] = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
+  shape = [width, height];
+  panels = modes.map((mode, k) => {
+    const row = Math.floor(k / columns), inRow = Math.min(columns, modes.length - row * columns);
+    const left = (width - inRow * size - (inRow - 1) * gap) / 2 + (k % columns) * (size + gap);
+    const top = gap + row * (size + caption + gap);
+    return {mode, left, top, css: size, x: Math.round(left * scale), y: Math.round(top * scale), size: Math.round(size * scale)};
+  });
+  showCaptions();
+  page.renderer.setSize(state.size || Math.min(Math.max(Math.round(size * scale), 96), 512));
+  page.pictureStale = true;
+}
+
+function showCaptions() {
+  byId('captions').replaceChildren(...panels.map(({mode, left, top, css}) => {
+    const [title, text] = captionOf(mode);
+    const made = element('div', {}, element('b', {textContent: title}), text);
+    // In parts of the picture, which is narrower in print.
+    const part = (x, axis) => `${(100 * x) / shape[axis]}%`;
+    Object.assign(made.style, {left: part(left, 0), top: part(top + css + 4, 1), width: part(css, 0)});
+    return made;
+  }));
+  byId('canvas').ariaLabel = pictureLabel();
+}
+
+// Where in which panel: from -1 to 1, y up.
+export function placeOf(event) {
+  const box = byId('canvas').getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+  for (const panel of panels) {
+    const at = [(2 * (x - panel.left)) / panel.css - 1, 1 - (2 * (y - panel.top)) / panel.css];
+    if (page.dragging?.panel === panel || (Math.abs(at[0]) <= 1 && Math.abs(at[1]) <= 1)) return {panel, at};
+  }
+  return null;
+}
+
+// ---- What changes it ---------------------------------------------------------------------------------------------
+
+function restart() {
+  page.renderer.moving = page.dragging !== null || byId('turntable').checked;
+  page.renderer.restart();
+  if (!hasSamples()) page.seen = null;
+  showCaptions();
+}
+
+export function applyLight() {
+  page.renderer.lamp = state.light === 'lamp' ? lampDirection() : null;
+  page.renderer.environmentTurn = state.around;
+  restart();
+  lookAgain();
+}
+
+export function applyObject() {
+  page.renderer.object = state.object;
+  page.renderer.turn = state.object === 'cloth' ? [state.turn[0], 0] : state.turn;
+  restart();
+}
+
+// How far apart the two are as shown, of a picture of the size at which that is told.
+export function judge(level) {
+  const {renderer} = page;
+  if (hasSamples()) page.seen ??= compareSamples(page.measured.samples, page.evaluate);
+  else if (!isPictured() || level.size !== renderer.judgedSize || renderer.moving) return;
+  else page.seen = compareImages(renderer.numbersOf(level, 0), renderer.numbersOf(level, 1), renderer.exposure);
+  showCaptions();
+  showVerdict();
+}
+
+export function drawPicture(mark = page.point?.at ?? null) {
+  page.renderer.show(panels, {wipe: state.wipe, stops: state.exposure, mark});
+  page.pictureStale = false;
+}
+
+// ---- Frame by frame ----------------------------------------------------------------------------------------------
+
+function turn(seconds) {
+  if (state.object === 'sphere' && state.light === 'lamp') {
+    const [x, y] = state.lamp, c = Math.cos(seconds * 0.8), s = Math.sin(seconds * 0.8);
+    state.lamp = [x * c - y * s, x * s + y * c];
+    applyLight();
+  } else if (state.object === 'sphere') {
+    state.around = (state.around + seconds * 0.08) % 1;
+    applyLight();
+  } else {
+    state.turn = [state.turn[0] + seconds * 0.6, state.turn[1]];
+    applyObject();
+  }
+}
+
+function showProgress() {
+  const {finer} = page.renderer, text = finer === null ? '' : `finer: ${Math.round(100 * finer)} %`;
+  if (byId('progress').textContent !== text) byId('progress').textContent = text;
+}
+
+// While nobody does anything, the page may wait for the picture.
+const IDLE_MS = 600, IDLE_SLICE_MS = 150, BUSY_SLICE_MS = 30;
+let lastInput = 0;
+export function listenForRest() {
+  for (const type of ['pointermove', 'pointerdown', 'keydown', 'input', 'wheel', 'scroll']) {
+    window.addEventListener(type, () => (lastInput = performance.now()), {passive: true, capture: true});
+  }
+}
+
+let before = 0;
+export function frame(now) {
+  requestAnimationFrame(frame);
+  const {renderer} = page;
+  if (byId('turntable').checked) turn(Math.min(now - before, 100) / 1000);
+  before = now;
+  try {
+    renderer.slice = renderer.finer !== null && performance.now() - lastInput > IDLE_MS ? IDLE_SLICE_MS : BUSY_SLICE_MS;
+    if (renderer.work(!edited())) page.pictureStale = true;
+    if (page.pictureStale) drawPicture();
+    if (page.chartsStale && renderer.shown) drawCharts();  // after the first picture, which people wait for
+    showProgress();
+  } catch (error) {
+    tell(error.message);
+    throw error;
+  }
+}

@@ -1,0 +1,114 @@
+// What the page says in words: the heading, the verdict, notes and facts.
+
+import {byId, counted, element, grouped, short, shortDeltaE} from './dom.js';
+import {visibilityOf} from './judge.js';
+import {asItCame, contents, edited, hasMeasured, hasSamples, heading, isPictured, lobesText, page, state} from './page_state.js';
+
+const NOTABLE_REACH = 2;  // as in the program's summary
+
+// How far apart the two are: of the fit as it came the report's, else the page's own, {words, name, mean, at95, of}, or null
+// while that is not known.
+export function judgement() {
+  if (asItCame() && !edited() && contents.verdict) {
+    return {words: contents.verdict, name: contents.visibility, mean: contents.mean_delta_e, at95: contents.delta_e_95,
+            of: contents.of_sphere ? 'the sphere' : 'the samples'};
+  }
+  if (!page.seen) return null;
+  return {...visibilityOf(page.seen), ...page.seen, of: hasSamples() ? 'the samples' : `the ${state.object} as it is lit now`};
+}
+
+// Whether the picture is that on which the report's verdict rests.
+export function asJudged() {
+  return asItCame() && !edited() && Boolean(contents.verdict) && contents.of_sphere && state.object === 'sphere' &&
+    state.light === 'environment' && state.around === 0 && state.turn.every(x => x === 0);
+}
+
+function verdictParts() {
+  const judged = judgement(), parts = [];
+  if (!hasMeasured() && !(judged && contents.source)) {
+    return [`A fitted model of ${lobesText(page.base)}. Drop its measurement here (MERL or CSV) to see where they differ.`];
+  }
+  parts.push(edited() ? 'The model has been changed since. Beside what was measured, it: ' : 'Beside what was measured, the fit: ');
+  if (!judged) return [...parts.slice(0, -1), edited() ? 'The model has been changed since, and is being compared.' : 'Being compared with what was measured.'];
+  parts.push(element('b', {className: judged.name, textContent: judged.words}),
+             `. Colours are ΔE ${shortDeltaE(judged.mean)} apart in the mean, and 95 % of ${judged.of} stay below ` +
+             `${shortDeltaE(judged.at95)}; up to 1 and 2.3 they cannot be told apart.`);
+  if (!hasMeasured()) parts.push(' The measurement makes no picture beside a model of this form.');
+  return parts;
+}
+
+function notes() {
+  const {reach} = contents, said = [];
+  if (page.measured?.leftOut) said.push(`${counted(page.measured.leftOut, 'row', 'rows')} of the file are below the surface or negative, and left out`);
+  if (hasSamples() && page.measured.samples.length < page.measured.count) {
+    said.push(`the page holds ${grouped(page.measured.samples.length)} of ${grouped(page.measured.count)} samples`);
+  }
+  if (!asItCame()) return said;
+  const fitted = edited() ? 'as it was fitted: ' : '';
+  const times = x => `the model reaches ${short(x)} times the largest measured value`;
+  if (reach?.beyond >= NOTABLE_REACH && !contents.notes.some(note => note.includes('beyond, it reaches'))) {
+    said.push(`${fitted}beyond the measured angles ${times(reach.beyond)}`);
+  }
+  if (reach?.between >= NOTABLE_REACH) said.push(`${fitted}between the samples ${times(reach.between)}`);
+  return [...contents.notes.map(note => fitted + note), ...said];
+}
+
+export function showVerdict() {
+  byId('name').textContent = heading();
+  document.title = `${heading()} · Trilobe`;
+  byId('verdict').replaceChildren(...verdictParts());
+  const said = notes();
+  byId('notes').hidden = said.length === 0;
+  byId('notes').replaceChildren(...said.map(note => element('li', {textContent: `${note[0].toUpperCase()}${note.slice(1)}.`})));
+}
+
+export function showFacts() {
+  const {base, measuredFile, modelFile} = page, {fit = {}} = base.json, rows = [];
+  byId('formula').textContent = base.lobes > 0
+    ? 'ρ is the diffuse colour and, for each lobe, its strength × D(θh) × F(θd) × G(θi) G(θo) / (cos θi cos θo). Lines mark the point under the pointer.'
+    : 'ρ is the diffuse colour alone.';
+  const row = (title, value) => value !== undefined && value !== '' && value !== 0 &&
+    rows.push(element('tr', {}, element('th', {textContent: title, scope: 'row'}), element('td', {textContent: value})));
+  if (modelFile.dropped) row('model', modelFile.name);
+  row('fitted to', fit.source);
+  row('samples', fit.valid_samples ? grouped(fit.valid_samples) : '');
+  row('up to', fit.max_angle ? `${fit.max_angle}° from the normal` : '');
+  if (hasMeasured()) row('shown beside', `${measuredFile.name}, ${counted(page.measured.count, 'sample', 'samples')}`);
+  if (asItCame() && contents.verdict) row('measured', `${short(100 * contents.measured_share)} % of what a renderer reads`);
+  row('form', `${base.anisotropic ? 'anisotropic' : 'isotropic'}, ${formText()}`);
+  row('solver', fit.solver ? `${fit.solver}${fit.iterations ? `, ${fit.iterations} iterations` : ''}` : '');
+  row('stopped', fit.stop_reason);
+  row('seconds', fit.seconds ? short(fit.seconds) : '');
+  row('PSNR', asItCame() && contents.verdict && contents.psnr_db ? `${short(contents.psnr_db)} dB` : '');
+  row('by', [fit.program, fit.date].filter(Boolean).join(', '));
+  byId('facts').replaceChildren(...rows);
+  byId('trace-figure').hidden = modelFile.dropped || contents.trace.length < 2;
+  byId('difference').hidden = !hasMeasured();
+  for (const id of ['chart-d', 'chart-f', 'chart-g']) byId(id).closest('figure').hidden = base.lobes === 0;
+  byId('disc-figure').hidden = !(base.lobes > 0 && base.axes.D.phis > 1);
+}
+
+function formText() {
+  const numbers = page.modelFile.dropped || !contents.parameters ? '' : `, ${grouped(contents.parameters)} numbers`;
+  return lobesText(page.base) + numbers;
+}
+
+// Of a panel: [title, text].
+export function captionOf(mode) {
+  const changed = edited() ? ', edited' : '';
+  if (mode === 'measured') return ['Measured', counted(page.measured.count, 'sample', 'samples')];
+  if (mode === 'fitted') return [`Fitted${changed}`, formText()];
+  if (mode === 'wipe') return [`Measured | Fitted${changed}`, 'move the line below the picture, or drag it'];
+  const mean = asJudged() ? contents.mean_delta_e : page.seen?.mean;
+  if (!Number.isFinite(mean)) return ['Where they differ', 'to the eye'];
+  return ['Where they differ', `ΔE ${shortDeltaE(mean)} in the mean${asJudged() ? '' : ', as shown'}`];
+}
+
+// The canvas in words.
+export function pictureLabel() {
+  const what = {side: 'measured, fitted and their difference', wipe: 'measured on the left, fitted on the right', difference: 'the difference of measured and fitted',
+                measured: 'measured', fitted: 'fitted'}[state.view];
+  const judged = isPictured() ? judgement() : null;
+  return `${heading()} on a ${state.object === 'flat' ? 'flat sample' : state.object}: ${what}` +
+    `${state.light === 'lamp' ? ', by one lamp' : ', lit all around'}${judged ? `. ΔE ${shortDeltaE(judged.mean)} in the mean: ${judged.words}` : ''}`;
+}
