@@ -249,8 +249,9 @@ std::string TellLargest(const BrdfSamples& samples) {
 std::string TellAngles(const BrdfSamples& samples) {
   constexpr int kFewest = 10;
   double largest = 0;
-  for (const SphericalAngles& at : samples.directions)
+  for (const SphericalAngles& at : samples.directions) {
     largest = std::max({largest, at.theta_i, at.theta_o});
+  }
   // A right angle in radians, read as so many degrees.
   if (samples.size() < kFewest || !(largest > 0 && largest < DegreesToRadians(kPi / 2))) return "";
   return Sentence("no polar angle is above ", RadiansToDegrees(largest),
@@ -291,8 +292,9 @@ HighlightSymptom HighlightOf(const BrdfSamples& samples) {
     const int brightest = numbers[std::ranges::max_element(values) - values.begin()];
     const SphericalAngles& at = samples.directions[brightest];
     const double largest = Mean(samples.rho[brightest]);
-    if (at.theta_i < DegreesToRadians(20) || !(largest > kBrighter * Quantile(&values, 0.5)))
+    if (at.theta_i < DegreesToRadians(20) || !(largest > kBrighter * Quantile(&values, 0.5))) {
       continue;
+    }
     ++symptom.incidences;
     const bool at_normal = at.theta_o < DegreesToRadians(3);
     symptom.at_normal += at_normal ? 1 : 0;
@@ -314,8 +316,9 @@ std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
     const size_t stride = 1 + all.size() / kMost;
     for (size_t k = 0; k < all.size(); k += stride) numbers.push_back(all[k]);
     double theta_i = 0;
-    for (const int j : numbers)
+    for (const int j : numbers) {
       theta_i += samples.directions[j].theta_i / static_cast<double>(numbers.size());
+    }
     reflected.push_back({theta_i, ReflectedAlbedo(samples, numbers)});
   }
   return reflected;
