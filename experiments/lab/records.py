@@ -46,6 +46,12 @@ def lowest(report, material):
     return row["objective"] if row else math.inf
 
 
+def excess(objective, report, material):
+    """How far an E is above the record of this fit's measurement, weighting and form; None without a record."""
+    least = lowest(report, material)
+    return objective / least - 1 if 0 < least < math.inf else None
+
+
 def _arguments(record):
     """The words of a unit's `trilobe fit`; None if it is no fit of a measurement as it is."""
     words = record["command"]

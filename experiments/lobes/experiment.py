@@ -116,8 +116,8 @@ def _row(run, reference):
         "run": labels["run"], "material": labels["material"], "solver": labels["solver"],
         "lobes": run.model.lobes, "seed": labels["seed"], "objective": report["objective"],
         # Under noise E is mostly noise, which a model must not follow.
-        "excess": (stats.excess(report["objective"], min(reference.report["objective"],
-                                                         records.lowest(report, labels["material"])))
+        "over_record": records.excess(report["objective"], report, labels["material"]),
+        "excess": (stats.excess(report["objective"], reference.report["objective"])
                    if run.group[1] != "noise" else None),
         "seconds": run.seconds,
         "stop_reason": report["stop_reason"], "iterations": report["iterations"],
