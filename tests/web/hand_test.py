@@ -130,8 +130,8 @@ def test_it_is_printed_light_on_two_pages(open_page: Open) -> None:
 
 def test_what_takes_long_is_finished_and_said(open_page: Open) -> None:
     page = open_page("plastic", size_of_picture=16, view="fitted", object="knot")
-    page.evaluate("trilobe.renderer.patience = 0; trilobe.renderer.setSize(128); trilobe.state.size = 128")
+    page.evaluate("trilobe.renderer.patience = 0; trilobe.renderer.setSize(48); trilobe.state.size = 48")
     wait_for(page, "document.getElementById('progress').textContent.startsWith('finer: ')")
     finished(page)
-    assert page.evaluate("trilobe.renderer.shown.size") == 128
+    assert page.evaluate("trilobe.renderer.shown.size") == 48
     wait_for(page, "document.getElementById('progress').textContent === ''")
