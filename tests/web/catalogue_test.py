@@ -52,7 +52,8 @@ def test_two_hundred_fits_are_sorted_filtered_and_compared(folder: Path, browser
         shown, wanted = page.evaluate(
             "([kind, color]) => { const mark = document.querySelector('main figcaption span'), own = mark.className;"
             " mark.className = kind; const shown = getComputedStyle(mark).color; mark.className = own;"
-            " const probe = document.createElement('i'); probe.style.color = `var(${color})`; document.body.append(probe);"
+            " const probe = document.createElement('i'); probe.style.color = `var(${color})`;"
+            " document.body.append(probe);"
             " const wanted = getComputedStyle(probe).color; probe.remove(); return [shown, wanted]; }", [kind, color])
         assert shown == wanted
     classes = page.evaluate("Array.from(document.querySelectorAll('main figcaption span'), s => s.className)")
