@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/appearance/verdict.h"
 #include "trilobe/fit/prior/reach.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/appearance/appearance.h"
