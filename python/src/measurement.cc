@@ -73,7 +73,13 @@ Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
                   {rho.data()[3 * k], rho.data()[3 * k + 1], rho.data()[3 * k + 2]});
   }
   Measurement measurement = azimuths == "auto" ? collector.TakeByAzimuths() : collector.Take();
-  if (azimuths != "auto") measurement.anisotropic = azimuths == "yes";
+  if (azimuths != "auto") {
+    measurement.anisotropic = azimuths == "yes";
+  } else if (measurement.anisotropic) {
+    measurement.notes.emplace_back(
+        "light comes from several azimuths: the material is taken for anisotropic; "
+        "anisotropic=False says that azimuths do not matter, and is sooner fitted");
+  }
   if (source_options.min_theta_d_deg < 0) LeaveOutOwnShadow(&measurement);
   DecideMeasured(source_options, &measurement);
   return {.data = std::make_shared<const Measurement>(std::move(measurement))};

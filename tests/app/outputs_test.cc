@@ -271,7 +271,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   const std::string words = Json(out + "/felt/report.json")["verdict"]["words"];
   EXPECT_THAT(result.out, HasSubstr("] felt: fitted, " + words + ", sphere "));
   EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt@30x30x60,fitted," + words + ","));
-  EXPECT_THAT(page, HasSubstr("<b>felt</b>" + words + "<br>PSNR "));
+  EXPECT_THAT(page, HasSubstr("<b>felt</b><span class=\"unknown\">" + words + "</span><br>PSNR "));
   EXPECT_THAT(result.out, HasSubstr(" of 2 cannot be told apart; sphere "));
 
   // A thread more or less, and alone or with others: the same model.

@@ -380,10 +380,6 @@ Measurement SampleCollector::TakeByAzimuths() {
     if (first == nullptr) first = &at;
     if (std::abs(std::remainder(at.phi_i - first->phi_i, 2 * kPi)) > kSame) {
       measurement_.anisotropic = true;
-      measurement_.notes.emplace_back(
-          "light comes from several azimuths: the material is taken for anisotropic; "
-          "--model=isotropic, or anisotropic=False in Python, fits one whose azimuths do not "
-          "matter, sooner");
       break;
     }
   }

@@ -218,8 +218,8 @@ std::string TellReflected(const BrdfSamples& samples) {
                          0.01 / kPi, " percents of the reflectance factor, pi f");
 }
 
-std::string TellRepeated(const BrdfSamples& samples) {
-  const RepeatedDirections repeated = RepeatedDirectionsOf(samples);
+std::string TellRepeated(const BrdfSamples& samples, bool anisotropic) {
+  const RepeatedDirections repeated = RepeatedDirectionsOf(samples, anisotropic);
   if (10 * repeated.samples < samples.size() || !(repeated.apart > 0.3)) return "";
   return Sentence(
       repeated.samples,
@@ -324,13 +324,15 @@ std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples) {
   return reflected;
 }
 
-RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples) {
+RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotropic) {
   constexpr double kStep = 1e-6;  // [rad]
   const auto key = [&](int j) {
     const SphericalAngles& at = samples.directions[j];
     return std::tuple(std::llround(at.theta_i / kStep), std::llround(at.theta_o / kStep),
                       std::llround(std::cos(AzimuthFromLight(at)) / kStep),
-                      std::llround(std::sin(AzimuthFromLight(at)) / kStep));
+                      std::llround(std::sin(AzimuthFromLight(at)) / kStep),
+                      anisotropic ? std::llround(std::cos(at.phi_i) / kStep) : 0,
+                      anisotropic ? std::llround(std::sin(at.phi_i) / kStep) : 0);
   };
   std::vector<int> order(samples.size());
   std::iota(order.begin(), order.end(), 0);
@@ -387,7 +389,7 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
     told.push_back(TellAngles(some));
     told.push_back(TellReflected(some));
     told.push_back(TellLargest(scattered.samples));
-    told.push_back(TellRepeated(scattered.samples));
+    told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
     // Where directions lack a sign, no other sentence about directions is right.
     if (!scattered.anisotropic && told.back().empty()) {
       told.push_back(TellCosine(some));

@@ -40,13 +40,13 @@ struct ReflectedAtLeast {
 };
 std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples);
 
-// Directions that are there more than once, and how far apart their values are: the 90th percentile
-// of |a - b| / ((a + b) / 2) over neighbours.
+// Directions that are there more than once, at equal azimuths of an anisotropic measurement, and
+// how far apart their values are: the 90th percentile of |a - b| / ((a + b) / 2) over neighbours.
 struct RepeatedDirections {
   int samples = 0;  // at such directions
   double apart = 0;
 };
-RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples);
+RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotropic);
 
 // The largest value of a channel, or the largest signal, rho cos theta_i, to 1e-9: how often it is
 // there, at how many theta_h, and how many times as large as the next it is. The same value at one

@@ -91,7 +91,7 @@ TEST(MbsdfFile, ReadsPublishedMeasurements) {
   const std::string folder = MeasuredData("mbsdf/");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   const std::string path = folder + "carpaint_blue.mbsdf";
-  const Measurement blue = LoadMeasurement(path, {.min_theta_d_deg = 0});
+  const Measurement blue = LoadMeasurement(path, {.min_theta_d_deg = 0, .extrapolated = true});
   EXPECT_FALSE(blue.table);
   EXPECT_EQ(blue.counts.total, 45 * 45 * 90);
   EXPECT_NEAR(blue.counts.negative / 182250.0, 0.4082139917695473, 1e-12);
@@ -110,10 +110,15 @@ TEST(MbsdfFile, ReadsPublishedMeasurements) {
   }
   EXPECT_LT(blue.samples.angles[brightest].theta_h, DegreesToRadians(4));
 
-  const Measurement lit = LoadMeasurement(path);  // the detector stood in its own light
+  // The detector stood in its own light, and a third of the file was filled in.
+  const Measurement lit = LoadMeasurement(path, {.extrapolated = true});
   EXPECT_EQ(lit.counts.valid, 94767);
   EXPECT_EQ(lit.counts.below_min_theta_d, blue.counts.valid - 94767);
   EXPECT_THAT(lit.notes, ElementsAre(HasSubstr("below 14 deg")));
+  const Measurement measured = LoadMeasurement(path);
+  EXPECT_EQ(measured.counts.extrapolated, lit.counts.valid - measured.counts.valid);
+  EXPECT_THAT(measured.notes, ElementsAre(HasSubstr("below 14 deg"),
+                                          HasSubstr("11 of 45 theta_i and 4 of 45 theta_o")));
 }
 
 }  // namespace
