@@ -98,7 +98,7 @@ std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
 namespace {
 
 // The angle that may have been filled in, and the two others.
-struct Place {
+struct GridSample {
   int64_t others[2];
   int64_t angle;
   int sample;
@@ -106,24 +106,24 @@ struct Place {
 };
 
 // The angles of one kind that repeat the one before.
-std::set<int64_t> RepeatedAngles(const BrdfSamples& samples, std::vector<Place> places,
+std::set<int64_t> RepeatedAngles(const BrdfSamples& samples, std::vector<GridSample> places,
                                  int* all_angles) {
   constexpr int kFewestAngles = 5, kFewestPlaces = 20;
   constexpr double kShare = 0.9;
   std::set<int64_t> angles;
-  for (const Place& place : places) angles.insert(place.angle);
+  for (const GridSample& place : places) angles.insert(place.angle);
   *all_angles = static_cast<int>(angles.size());
   if (*all_angles < kFewestAngles) return {};
   std::map<int64_t, int64_t> before;  // each angle's
   for (auto at = std::next(angles.begin()); at != angles.end(); ++at) before[*at] = *std::prev(at);
-  std::ranges::sort(places, {}, &Place::Key);
+  std::ranges::sort(places, {}, &GridSample::Key);
   struct Count {
     int places = 0, equal = 0;
     std::set<Rgb> values;  // where they are equal
   };
   std::map<int64_t, Count> counts;
   for (size_t k = 1; k < places.size(); ++k) {
-    const Place &first = places[k - 1], &second = places[k];
+    const GridSample &first = places[k - 1], &second = places[k];
     if (!std::ranges::equal(first.others, second.others) || first.angle == second.angle ||
         before.at(second.angle) != first.angle || IsZero(samples.rho[second.sample])) {
       continue;
@@ -148,7 +148,7 @@ std::set<int64_t> RepeatedAngles(const BrdfSamples& samples, std::vector<Place> 
 }  // namespace
 
 FilledSamples FindFilled(const BrdfSamples& samples) {
-  std::vector<Place> by_theta_i, by_theta_o;
+  std::vector<GridSample> by_theta_i, by_theta_o;
   for (int j = 0; j < samples.size(); ++j) {
     const SphericalAngles& at = samples.directions[j];
     const int64_t theta_i = Rounded(at.theta_i), theta_o = Rounded(at.theta_o);
