@@ -164,7 +164,7 @@ class Cover {
   };
   // The angles of a row of half vectors.
   struct Geometry {
-    Geometry(double cos_i, double y) : cos_i(cos_i) {
+    Geometry(double cosine, double y) : cos_i(cosine) {
       cos_h = std::sqrt(1 - y);
       const double sin_i = std::sqrt(1 - cos_i * cos_i);
       sin_h = std::sqrt(y);
