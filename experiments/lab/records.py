@@ -17,7 +17,8 @@ BOOK = FOLDER / "records.csv"
 # What a record is of. The checksum is that of the measured values (`source_xxh128` of a report).
 KEY = ("material", "source_xxh128", "valid_samples", "weighting", "model", "lobes", "parameters")
 # Flags that give a fit other data, or lower another E, than the measurement and the weighting say.
-OTHER_DATA = ("corrupt", "missing", "dark_noise", "outliers", "extrapolated", "tilt", "cosine", "robust", "scene")
+OTHER_DATA = ("corrupt", "missing", "dark_noise", "outliers", "extrapolated", "tilt", "cosine", "scale",
+              "azimuth", "robust", "scene")
 # As precisely as a model file's E can be found again.
 AGREES = 1e-9
 

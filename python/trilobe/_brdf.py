@@ -114,10 +114,7 @@ class Brdf:
         write_text(path, self._text)
 
     def _warn_of_light(self) -> None:
-        theta = np.radians(np.arange(86))[:, None]
-        phi = np.radians(np.arange(0, 360, 30 if self.anisotropic else 360))
-        wi = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
-        albedo = self.albedo(wi).max(axis=(1, 2))
+        albedo = self._albedo_by_degree(85).max(axis=(1, 2))
         if albedo.max() > 1 + _ALBEDO_ERROR:
             warnings.warn(
                 f"the model reflects {albedo.max():.3g} times the light that falls on it at theta_i = "
@@ -195,6 +192,13 @@ class Brdf:
         out = np.empty((_count(shape), 3), wi.dtype)
         self._material.albedo(_all_rows(wi, shape), out)
         return out.reshape(*shape, 3)
+
+    def _albedo_by_degree(self, last: int) -> Floats:
+        """The albedo at theta_i of 0 to so many whole degrees, all around if it is anisotropic, (last + 1, phi, 3)."""
+        theta = np.radians(np.arange(last + 1))[:, None]
+        phi = np.radians(np.arange(0, 360, 30 if self.anisotropic else 360))
+        wi = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
+        return self.albedo(wi)
 
     # What it is made of.
 

@@ -17,10 +17,7 @@ class Albedo:
     """`Brdf.albedo` over theta_i, linear between whole degrees; of an anisotropic model its mean over the azimuths."""
 
     def __init__(self, brdf: Brdf) -> None:
-        theta = np.radians(np.arange(_STEPS + 1))[:, None]
-        phi = np.radians(np.arange(0, 360, 30 if brdf.anisotropic else 360))
-        wi = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
-        self._at = brdf.albedo(wi).mean(axis=1)  # (90, 3)
+        self._at = brdf._albedo_by_degree(_STEPS).mean(axis=1)  # (90, 3)
         self._columns = [mi.Float(np.ascontiguousarray(column, np.float32)) for column in self._at.T] if (
             dr.is_jit_v(mi.Float)
         ) else []

@@ -23,18 +23,12 @@ namespace {
 constexpr double kSameValue = 1e-9;  // relative
 constexpr int kMostSamples = 20000;  // that a symptom looks at
 
-// The samples, or about kMostSamples of them; with their exact directions.
-BrdfSamples Some(const BrdfSamples& samples) {
-  return Thinned(samples, std::max(1, samples.size() / kMostSamples));
-}
-
 // From -pi to pi; 0 on the side of the light.
 double AzimuthFromLight(const SphericalAngles& at) {
   return std::remainder(at.phi_o - at.phi_i, 2 * kPi);
 }
 
-// --- exchanged directions
-// --------------------------------------------------------------------------
+// --- exchanged directions ---
 
 struct ExchangedSamples {
   double log_ratio = 0;    // of the values
@@ -51,7 +45,7 @@ std::vector<ExchangedSamples> ExchangedSamplesOf(const BrdfSamples& samples) {
   constexpr double kApart = 1.5;
   constexpr int kMost = 3000;  // pairs are looked for among all of these
   const double least_cosine = std::cos(DegreesToRadians(4));
-  const BrdfSamples some = Thinned(samples, std::max(1, samples.size() / kMost));
+  const BrdfSamples some = EvenlySpread(samples, kMost);
   std::vector<DirectionPair> pairs(some.size()), exchanged(some.size());
   for (int j = 0; j < some.size(); ++j) {
     const SphericalAngles& at = some.directions[j];
@@ -86,8 +80,7 @@ double MedianOverPairs(const std::vector<ExchangedSamples>& pairs, const Number&
   return Quantile(&numbers, 0.5);
 }
 
-// --- incidences
-// ------------------------------------------------------------------------------------
+// --- incidences ---
 
 // The samples of about one theta_i, by their numbers.
 std::map<int, std::vector<int>> ByIncidence(const BrdfSamples& samples) {
@@ -158,8 +151,7 @@ double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbe
   return kPi * sum / kPoints;
 }
 
-// --- sentences
-// -------------------------------------------------------------------------------------
+// --- sentences ---
 
 template <typename... Parts>
 std::string Sentence(const Parts&... parts) {
@@ -385,7 +377,7 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
   CheckDirections(scattered);
   std::vector<std::string> told = {TellNegative(scattered.counts)};
   if (scattered.samples.size() > 0) {
-    const BrdfSamples some = Some(scattered.samples);
+    const BrdfSamples some = EvenlySpread(scattered.samples, kMostSamples);
     told.push_back(TellAngles(some));
     told.push_back(TellReflected(some));
     told.push_back(TellLargest(scattered.samples));
