@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,6 +19,7 @@
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/geometry/merl_grid.h"
 #include "trilobe/core/math/angles.h"
+#include "trilobe/model/axis.h"
 #include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/measurement/albedo.h"
 #include "trilobe/model/measurement/brdf_samples.h"
@@ -36,6 +40,18 @@ std::vector<double> Angles() {
   return angles;
 }
 
+// At all nodes of G, of which a single one may glow, and halfway between those beyond 60 degrees.
+std::vector<double> NodesOf(const Axis& g_axis) {
+  constexpr double kSteep = DegreesToRadians(60), kLast = DegreesToRadians(89.5);
+  std::vector<double> angles;
+  for (int k = 0; k < g_axis.size; ++k) {
+    const double theta = g_axis.Theta(k);
+    if (k > 0 && theta > kSteep) angles.push_back((g_axis.Theta(k - 1) + theta) / 2);
+    angles.push_back(std::min(theta, kLast));
+  }
+  return angles;
+}
+
 std::vector<Rgb> AlbedosOf(const FactorModel& model, std::span<const double> angles,
                            int num_threads) {
   const PreparedModel<double> prepared(model);
@@ -52,6 +68,18 @@ double At(double theta, const std::vector<double>& angles, const std::vector<dou
   const size_t k = after - angles.begin();
   const double t = (theta - angles[k - 1]) / (angles[k] - angles[k - 1]);
   return (1 - t) * values[k - 1] + t * values[k];
+}
+
+// The least of those between the nodes beside `nodes[i]`, all of which its G reaches.
+double LeastAround(const Axis& g_axis, std::span<const int> nodes, size_t i,
+                   const std::vector<double>& angles, const std::vector<double>& values) {
+  const double from = i > 0 ? g_axis.Theta(nodes[i - 1]) : -1;
+  const double to = i + 1 < nodes.size() ? g_axis.Theta(nodes[i + 1]) : kPi;
+  double least = 1;
+  for (size_t k = 0; k < angles.size(); ++k) {
+    if (angles[k] > from && angles[k] < to) least = std::min(least, values[k]);
+  }
+  return least;
 }
 
 // The directional albedo within the data, by cells of theta_i.
@@ -170,6 +198,58 @@ double LastWellCovered(std::span<const double> coverage, const FactorModel& mode
   return last;
 }
 
+// How much lower G is to be at a stored node, from what the albedo at each angle asks for.
+using FactorAtNode =
+    std::function<double(std::span<const int> nodes, size_t i, const std::vector<double>& factor)>;
+
+// Lowers G until the albedo exceeds no limit; whether anything changed. An angle that is within its
+// limit stays so, as G only falls.
+bool LowerG(const AlbedoLimits& limits, const FactorAtNode& at_node, const TableLayout& layout,
+            int num_threads, const StopCheck& stop, FactorModel* model) {
+  const ModelSpec& spec = model->spec();
+  const std::vector<double>& angles = limits.theta_i;
+  const size_t first_beyond =
+      std::ranges::upper_bound(angles, limits.beyond_theta) - angles.begin();
+  std::vector<size_t> all(angles.size());
+  std::iota(all.begin(), all.end(), 0);
+  bool changed = false;
+  // First what lies beyond the data: its light may come from angles that are within, too, and then
+  // it does not help.
+  for (const bool beyond : {true, false}) {
+    std::vector<size_t> exceeding(all.begin() + (beyond ? first_beyond : 0), all.end());
+    for (int pass = 0; pass < (beyond ? kPassesBeyond : kPasses) && !stop(); ++pass) {
+      std::vector<double> looked_at;
+      for (const size_t k : exceeding) looked_at.push_back(angles[k]);
+      const std::vector<Rgb> albedos = AlbedosOf(*model, looked_at, num_threads);
+      std::vector<double> factor(angles.size(), 1.0);
+      std::vector<size_t> left;
+      for (size_t j = 0; j < exceeding.size(); ++j) {
+        const size_t k = exceeding[j];
+        const Rgb& limit = k >= first_beyond ? limits.beyond[k] : limits.everywhere;
+        for (int c = 0; c < kChannels; ++c) {
+          const double diffuse = kPi * model->d()[c], albedo = albedos[j][c];
+          if (!(albedo > (1 + kTolerance) * limit[c]) || !(limit[c] > diffuse)) continue;
+          factor[k] = std::min(factor[k], std::sqrt((limit[c] - diffuse) / (albedo - diffuse)));
+        }
+        if (factor[k] < 1) left.push_back(k);
+      }
+      if (left.empty()) break;
+      exceeding = std::move(left);
+      changed = true;
+      for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+        const std::span<double> G = model->table(Factor::kG, t);
+        const std::span<const int> nodes = layout.of(Factor::kG, t);
+        for (size_t i = 0; i < nodes.size(); ++i) {
+          if (beyond && !(spec.g_axis.Theta(nodes[i]) > limits.beyond_theta)) continue;
+          G[nodes[i]] *= at_node(nodes, i, factor);
+        }
+      }
+      ExpandStored(layout, model);
+    }
+  }
+  return changed;
+}
+
 }  // namespace
 
 AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
@@ -207,7 +287,8 @@ AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model) {
 }
 
 PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads) {
-  const std::vector<double> angles = Angles();
+  std::vector<double> angles = Angles();
+  std::ranges::copy(NodesOf(model.spec().g_axis), std::back_inserter(angles));
   const std::vector<Rgb> albedos = AlbedosOf(model, angles, num_threads);
   PeakAlbedo peak;
   for (size_t k = 0; k < angles.size(); ++k) {
@@ -219,47 +300,20 @@ PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads) {
 
 bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_threads,
                  const StopCheck& stop, FactorModel* model) {
-  const ModelSpec& spec = model->spec();
-  const size_t n = limits.theta_i.size();
-  const size_t first_beyond =
-      std::ranges::upper_bound(limits.theta_i, limits.beyond_theta) - limits.theta_i.begin();
-  bool changed = false;
-  // First what lies beyond the data: its light may come from angles that are within, too, and then
-  // it does not help.
-  bool beyond = true;
-  for (int pass = 0; pass < kPasses && !stop(); ++pass) {
-    beyond = beyond && pass < kPassesBeyond;
-    const size_t first = beyond ? first_beyond : 0;
-    const std::vector<Rgb> albedos =
-        AlbedosOf(*model, std::span(limits.theta_i).subspan(first), num_threads);
-    std::vector<double> factor(n, 1.0);
-    bool exceeds = false;
-    for (size_t k = first; k < n; ++k) {
-      const Rgb& limit = k >= first_beyond ? limits.beyond[k] : limits.everywhere;
-      for (int c = 0; c < kChannels; ++c) {
-        const double diffuse = kPi * model->d()[c], albedo = albedos[k - first][c];
-        if (!(albedo > (1 + kTolerance) * limit[c]) || !(limit[c] > diffuse)) continue;
-        factor[k] = std::min(factor[k], std::sqrt((limit[c] - diffuse) / (albedo - diffuse)));
-        exceeds = true;
-      }
-    }
-    if (!exceeds && !beyond) break;
-    if (!exceeds) {
-      beyond = false;
-      continue;
-    }
-    changed = true;
-    for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-      const std::span<double> G = model->table(Factor::kG, t);
-      for (const int k : layout.of(Factor::kG, t)) {
-        const double theta = spec.g_axis.Theta(k);
-        if (beyond && !(theta > limits.beyond_theta)) continue;
-        G[k] *= At(theta, limits.theta_i, factor);
-      }
-    }
-    ExpandStored(layout, model);
-  }
-  return changed;
+  const Axis& g_axis = model->spec().g_axis;
+  const auto between = [&](std::span<const int> nodes, size_t i, const auto& factor) {
+    return At(g_axis.Theta(nodes[i]), limits.theta_i, factor);
+  };
+  const bool lowered = LowerG(limits, between, layout, num_threads, stop, model);
+  const std::vector<double> nodes_of_g = NodesOf(g_axis);
+  const AlbedoLimits at_nodes{.theta_i = nodes_of_g,
+                              .everywhere = limits.everywhere,
+                              .beyond = std::vector<Rgb>(nodes_of_g.size(), limits.everywhere),
+                              .beyond_theta = limits.beyond_theta};
+  const auto around = [&](std::span<const int> nodes, size_t i, const auto& factor) {
+    return LeastAround(g_axis, nodes, i, nodes_of_g, factor);
+  };
+  return LowerG(at_nodes, around, layout, num_threads, stop, model) || lowered;
 }
 
 }  // namespace trilobe

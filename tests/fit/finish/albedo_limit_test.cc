@@ -20,12 +20,12 @@ namespace {
 constexpr MerlGrid kGrid{.theta_h = 16, .theta_d = 18, .phi_d = 20};
 
 // A grey lobe over a diffuse base, with G = cos theta times exp(rise) at the horizon.
-FactorModel Grey(double strength, double rise) {
-  FactorModel model(ModelSpec::SharedFactors(1, kGrid));
+FactorModel Grey(const MerlGrid& grid, double strength, double rise) {
+  FactorModel model(ModelSpec::SharedFactors(1, grid));
   std::ranges::fill(model.parameters(), 1.0);
   std::ranges::fill(model.d(), 0.05);
   std::ranges::fill(model.s(0), strength);
-  for (int k = 0; k < kGrid.theta_h; ++k) model.table(Factor::kD, 0)[k] = std::exp(-0.5 * k);
+  for (int k = 0; k < grid.theta_h; ++k) model.table(Factor::kD, 0)[k] = std::exp(-0.5 * k);
   const Axis& axis = model.spec().g_axis;
   for (int k = 0; k < axis.size; ++k) {
     const double t = axis.Theta(k) / (kPi / 2);
@@ -33,6 +33,8 @@ FactorModel Grey(double strength, double rise) {
   }
   return model;
 }
+
+FactorModel Grey(double strength, double rise) { return Grey(kGrid, strength, rise); }
 
 std::vector<Rgb> Albedos(const FactorModel& model, std::span<const double> theta_i) {
   const PreparedModel<double> prepared(model);
@@ -110,6 +112,26 @@ TEST(AlbedoLimit, OfAMeasurementInOtherUnitsIsWhatItReflects) {
   const FactorModel model = Grey(5, 0);
   const AlbedoLimits limits = AlbedoLimitsOf(DataOf(TableOf(model, kGrid)), model);
   for (const double x : limits.everywhere) EXPECT_NEAR(x, LargestAlbedo(model), 0.15 * x);
+}
+
+// Coarse angles pass a ridge that one node of G makes beside a narrow highlight.
+TEST(AlbedoLimit, ASingleNodeDoesNotGlow) {
+  constexpr MerlGrid kFine{.theta_h = 90, .theta_d = 90, .phi_d = 12};
+  FactorModel model = Grey(kFine, 1000, 0);
+  for (int k = 0; k < kFine.theta_h; ++k) {
+    model.table(Factor::kD, 0)[k] = std::exp(-0.2 * k * k);
+  }
+  const Objective data(ValidSamples(TableOf(model, kFine)), model.spec(),
+                       FindWeighting("appearance"), 1);
+  const AlbedoLimits limits = AlbedoLimitsOf(data, model);
+  std::vector<double> ridges;
+  for (const double degrees : {31.5, 81.5}) {
+    ridges.push_back(DegreesToRadians(degrees));
+    model.table(Factor::kG, 0)[static_cast<int>(degrees)] *= 40;
+  }
+  for (const Rgb& albedo : Albedos(model, ridges)) ASSERT_GT(albedo[0], 1.2);
+  EXPECT_TRUE(LimitAlbedo(limits, TableLayout::Full(model.spec()), 1, {}, &model));
+  for (const Rgb& albedo : Albedos(model, ridges)) EXPECT_LE(albedo[0], 1 + 2e-3);
 }
 
 // Measured up to 60 degrees, a lobe that explodes beyond is brought back to how its albedo goes on.
