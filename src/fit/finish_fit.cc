@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "core/system/process.h"
-#include "fit/finish/albedo_limit.h"
-#include "fit/finish/anisotropic_albedo.h"
 #include "fit/finish/data_edge.h"
+#include "fit/finish/limit_light.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
 #include "fit/held_out.h"
@@ -181,26 +180,16 @@ void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
   constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3, kNotable = 1.05;
   const Objective data(fit->objective.data(), fit->model.spec());
   const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
-  const int threads = data.num_threads();
-  const bool anisotropic = data.spec().anisotropic();
+  const LightLimit limit(data, fit->model);
   FactorModel limited = fit->model;
-  Rgb limit;
-  if (anisotropic) {
-    limit = AnisotropicAlbedoLimit(data, fit->model);
-    if (!LimitAnisotropicAlbedo(limit, layout, threads, stop, &limited)) return;
-  } else {
-    const AlbedoLimits limits = AlbedoLimitsOf(data, fit->model);
-    limit = limits.everywhere;
-    if (!LimitAlbedo(limits, layout, threads, stop, &limited)) return;
-  }
+  if (!limit.Apply(layout, stop, &limited)) return;
   const double E = data.Value(fit->model);
   if (data.Value(limited) <= E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy())) {
     fit->model = std::move(limited);
-    if (anisotropic) return;  // nothing is left
+    if (data.spec().anisotropic()) return;  // nothing is left
   }
-  const PeakAlbedo peak =
-      anisotropic ? PeakAnisotropicAlbedo(fit->model, threads) : PeakAlbedoOf(fit->model, threads);
-  if (peak.albedo > kNotable * std::ranges::max(limit)) {
+  const PeakAlbedo peak = PeakLight(fit->model, data.num_threads());
+  if (peak.albedo > kNotable * std::ranges::max(limit.everywhere())) {
     fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
   }
 }

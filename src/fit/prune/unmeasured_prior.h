@@ -16,6 +16,8 @@ class UnmeasuredPrior {
   // at directions farther from the normal than these.
   UnmeasuredPrior(const Objective& objective, const FactorModel& model);
 
+  bool empty() const { return samples_.rho.empty(); }
+
   // Adds the samples to an objective of a part of the samples.
   Objective JoinTo(const Objective& objective) const;
 

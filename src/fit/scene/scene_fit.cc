@@ -10,8 +10,10 @@
 
 #include "core/files/content.h"
 #include "core/system/process.h"
+#include "fit/finish/limit_light.h"
 #include "fit/prune/prune_anisotropic.h"
 #include "fit/prune/thinned_objective.h"
+#include "fit/prune/unmeasured_prior.h"
 #include "fit/scene/cached_fits.h"
 #include "fit/scene/scene_appearance.h"
 #include "model/appearance/picture_data.h"
@@ -166,8 +168,7 @@ class MaterialFitter {
     options.seed = settings_.seed;
     options.num_threads = num_threads_;
     options.stop = settings_.stop;
-    const bool limited = material_.reductions.samples &&
-                         !std::holds_alternative<AllDirections>(material_.directions);
+    const bool limited = !reads_all_directions();
     if (limited || material_.channels != SceneChannels::kRgb) {
       options.select = [this, limited](BrdfSamples samples) {
         if (limited) samples = UsedSamples(samples, material_.directions);
@@ -223,6 +224,37 @@ class MaterialFitter {
   static FitProblem Guide(const FitProblem& problem, const FullFit& fit) {
     if (problem.with_prior || problem.data.spec().anisotropic()) return problem;
     return {.data = ThinnedObjective(problem.data, StoredParameters(fit), kFewSamples)};
+  }
+
+  bool reads_all_directions() const {
+    return !material_.reductions.samples ||
+           std::holds_alternative<AllDirections>(material_.directions);
+  }
+
+  // Beyond the data, which no sample holds, a pruned model stays near the full one's guess.
+  FitProblem WithGuess(FitProblem problem, const FactorModel& full) const {
+    if (problem.with_prior || full.spec().anisotropic() || !reads_all_directions()) return problem;
+    const UnmeasuredPrior prior(problem.data, full);
+    if (!prior.empty()) problem.with_prior = prior.JoinTo(problem.data);
+    return problem;
+  }
+
+  // A scene that reads few directions may do without physics in the others.
+  void LimitLight(const Objective& data, const FactorModel& full, PrunedModel* pruned) const {
+    if (!reads_all_directions()) return;
+    const Objective of_pruned(data, pruned->model.spec());
+    FactorModel limited = pruned->model;
+    if (!LightLimit(data, full).Apply(pruned->layout, settings_.stop, &limited)) return;
+    const double E = of_pruned.Value(limited);
+    pruned->decisions.push_back({.what = "G lowered",
+                                 .parameters_before = pruned->num_parameters,
+                                 .parameters_after = pruned->num_parameters,
+                                 .E_before = pruned->E,
+                                 .E_after = E,
+                                 .taken = true,
+                                 .why = "it reflected more light than fell on it"});
+    pruned->model = std::move(limited);
+    pruned->E = E;
   }
 
   // The search looks at a quarter of the pixels; that the budget is kept on all of them is seen
@@ -297,9 +329,11 @@ class MaterialFitter {
     }
     if (!model.spec().anisotropic()) prune_options.layout = full->file.layout;
     PrunedModel pruned =
-        by_appearance ? PruneByAppearance(*appearance, Guide(problem, *full), model, prune_options)
-                      : PruneWithin(problem, model, prune_options);
+        by_appearance ? PruneByAppearance(*appearance, WithGuess(Guide(problem, *full), model),
+                                          model, prune_options)
+                      : PruneWithin(WithGuess(problem, model), model, prune_options);
     if (settings_.stop()) return std::nullopt;
+    LimitLight(objective, model, &pruned);
     MaterialFit fit;
     fit.prune_seconds = stopwatch.Lap();
     fit.fit_seconds = full->seconds;

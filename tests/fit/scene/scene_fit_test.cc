@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/files/file.h"
+#include "fit/finish/limit_light.h"
 #include "tests/test_directory.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
@@ -243,6 +244,21 @@ TEST(FitMaterial, InLuminanceIsGrey) {
   EXPECT_EQ(model.d()[0], model.d()[1]);
   EXPECT_EQ(model.d()[0], model.d()[2]);
   EXPECT_FALSE(model.spec().F.per_channel);
+}
+
+// Where nothing was measured, what was left out must not come back as light.
+TEST(FitMaterial, MakesNoLight) {
+  SceneFitSettings settings = Settings();
+  settings.max_angle_deg = 65;
+  for (const char* const synth : {"foam", "copper"}) {
+    SceneMaterial material = Material(synth);
+    material.source = std::string("synth:") + synth + "@30x30x60";
+    material.directions = AllDirections();
+    material.budget = {SceneBudget::Unit::kRelativeRise, 0.05};
+    const auto fit = FitMaterial(material, settings, 1);
+    EXPECT_LT(fit->num_parameters, fit->full_parameters);
+    EXPECT_LE(PeakLight(fit->file.model, 1).albedo, 1 + 2e-3) << synth;
+  }
 }
 
 TEST(FitMaterial, ThatIsStoppedKeepsNothing) {

@@ -1,0 +1,27 @@
+#include "fit/finish/limit_light.h"
+
+#include "fit/finish/anisotropic_albedo.h"
+
+namespace trilobe {
+
+LightLimit::LightLimit(const Objective& data, const FactorModel& fit)
+    : num_threads_(data.num_threads()) {
+  if (fit.spec().anisotropic()) {
+    everywhere_ = AnisotropicAlbedoLimit(data, fit);
+  } else {
+    isotropic_ = AlbedoLimitsOf(data, fit);
+    everywhere_ = isotropic_->everywhere;
+  }
+}
+
+bool LightLimit::Apply(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const {
+  return isotropic_ ? LimitAlbedo(*isotropic_, layout, num_threads_, stop, model)
+                    : LimitAnisotropicAlbedo(everywhere_, layout, num_threads_, stop, model);
+}
+
+PeakAlbedo PeakLight(const FactorModel& model, int num_threads) {
+  return model.spec().anisotropic() ? PeakAnisotropicAlbedo(model, num_threads)
+                                    : PeakAlbedoOf(model, num_threads);
+}
+
+}  // namespace trilobe
