@@ -53,11 +53,16 @@ PAGES = ["*.md", "docs/**/*.md", "experiments/*.md", "experiments/*/README.md", 
 FITS = ["src/model", "src/solvers", "src/fit",
         *(f":(exclude)src/model/{name}" for name in
           ("corruption", "evaluate/*bsdf*", "evaluate/half_vector_table*", "evaluate/cover_spikes*",
-           "measurement/*symptom*", "measurement/unmeasured*", "measurement/measurement.cc"))]
+           "measurement/*symptom*", "measurement/unmeasured*", "measurement/measurement.cc")),
+        *(f":(exclude)src/fit/{name}" for name in
+          ("guess_error*", "scene", "reports", "study", "export", "open_pbr"))]
+# What comes after the solver, which raw fits do without, and these programs.
+FINISH = [f":(exclude)src/fit/{name}" for name in ("finish", "finish_fit.cc", "held_out*", "prune")]
+UNFINISHED = ("awls_equality", "softening", "stiff")
 # What these experiments depend on as well.
 ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
-        "robustness": ["src/model/measurement", "src/model/corruption"]}
+        "robustness": ["src/model/measurement", "src/model/corruption"], "scene": ["src/fit/scene"]}
 FUNCTIONS: dict[str, Callable[..., object]] = {
     "median": stats.median, "quantile": stats.quantile, "mean": np.mean, "max": np.nanmax, "min": np.nanmin,
     "geometric_mean": lambda values: np.exp(np.mean(np.log(values))), "share": np.mean, "count": np.sum, "sum": np.sum,
@@ -235,12 +240,14 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     made = json.loads((results / "manifest.json").read_text())
     revisions = sorted({str(revision or "an unknown revision") for revision in
                         [*(program["revision"] for program in made["programs"]), made["tabulated_at"]]})
+    unfinished = (made["settings"].get("flags") or {}).get("raw") or results.parent.name in UNFINISHED
+    fits = FITS + FINISH if unfinished else FITS
     unknown = [revision for revision in revisions if git(root, "merge-base", "--is-ancestor", revision, "HEAD") is None]
     reasons = []
     if unknown:
         reasons.append(f"by sources that are not in this repository ({', '.join(unknown)})")
     elif any(git(root, "diff", "--quiet", revision, "--", *paths) is None
-             for paths in (FITS, ALSO.get(results.parent.name)) if paths for revision in revisions):
+             for paths in (fits, ALSO.get(results.parent.name)) if paths for revision in revisions):
         reasons.append(f"before changes of fits ({', '.join(revisions)})")
     settings = load(results.parent / "manifest.json", made["form"])
     if any(made["settings"].get(name) != value for name, value in settings.items()
