@@ -37,11 +37,18 @@ namespace nb = nanobind;
 namespace trilobe::python {
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 // What the thread that fits tells the one that waits for it, and is told.
 class RunningFit {
  public:
   void Stop() { stopped_ = true; }
   bool stopped() const { return stopped_; }
+
+  // From its beginning on, a fit ends when the limit is passed.
+  void Begin() { begun_ = true; }
+  void Limit(double seconds) { limit_ = seconds; }
+  bool IsToEnd() const { return stopped_ || (begun_ && since_.Seconds() >= limit_); }
 
   void Show(const IterationRecord& record) {
     const std::lock_guard lock(mutex_);
@@ -56,7 +63,9 @@ class RunningFit {
   }
 
  private:
-  std::atomic<bool> stopped_ = false;
+  std::atomic<bool> stopped_ = false, begun_ = false;
+  const Stopwatch since_;
+  double limit_ = std::numeric_limits<double>::infinity();
   mutable std::mutex mutex_;
   IterationRecord latest_;
   int count_ = 0;
@@ -66,6 +75,7 @@ class RunningFit {
 struct Outcome {
   bool begun = false;
   std::string model_text, trace_text, report_text;
+  std::vector<double> parameters;
   std::vector<IterationRecord> trace;
   bool interrupted = false;
 };
@@ -228,9 +238,44 @@ FitOptions OptionsOf(const nb::dict& options, const nb::dict& solver_options) {
   return fit;
 }
 
+// The fields of trilobe.Record.
+nb::tuple RecordOf(const IterationRecord& r) {
+  return nb::make_tuple(r.iteration, r.seconds, r.objective, r.filtered, r.accepted, r.step,
+                        r.optimality.value_or(kUnknown), r.processor_seconds.value_or(kUnknown),
+                        r.objective_with_prior.value_or(kUnknown));
+}
+
+// Asks Python after an iteration whether to stop.
+void Ask(const nb::object& callback, const IterationRecord& record, const FactorModel& model,
+         RunningFit* running) {
+  ModelFile file;
+  file.model = model;
+  const std::string text = FormatModel(file);
+  const nb::gil_scoped_acquire held;
+  if (nb::cast<bool>(callback(RecordOf(record), nb::bytes(text.data(), text.size())))) {
+    running->Stop();
+  }
+}
+
+// One that a limit of time has ended was not interrupted.
+void TellOfLimit(const RunningFit& running, FitResult* fit) {
+  if (running.stopped() || !fit->interrupted) return;
+  fit->interrupted = false;
+  if (fit->summary.stop_reason == StopReason::kInterrupted) {
+    fit->summary.stop_reason = StopReason::kMaxSeconds;
+    fit->file.fit.stop_reason = StopReasonName(StopReason::kMaxSeconds);
+  }
+}
+
 Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict& solver_options,
-               RunningFit* running) {
+               RunningFit* running, const std::optional<Weights>& weights,
+               const nb::object& callback) {
   FitOptions fit_options = OptionsOf(options, solver_options);
+  if (weights) {
+    fit_options.select = [by_sample = ByRow(*weights)](BrdfSamples samples) {
+      return Weighted(std::move(samples), by_sample);
+    };
+  }
   const std::shared_ptr<const Measurement> data = measured.data;
   FitReport report;
   report.noise = measured.noise;
@@ -240,10 +285,20 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   const nb::gil_scoped_release released;
   { const BlasCall memory_is_there; }
   Outcome outcome;
-  fit_options.stop = [running] { return running->stopped(); };
-  fit_options.on_begin = [&outcome] { outcome.begun = true; };
+  running->Limit(fit_options.solver_options(ModelSpec()).max_seconds);
+  fit_options.stop = [running] { return running->IsToEnd(); };
+  fit_options.on_begin = [&outcome, running] {
+    outcome.begun = true;
+    running->Begin();
+  };
   fit_options.on_progress = [running](const IterationRecord& record) { running->Show(record); };
-  const FitResult fit = Fit(*data, fit_options);
+  if (!callback.is_none()) {
+    fit_options.on_iteration = [&](const IterationRecord& record, const FactorModel& model) {
+      Ask(callback, record, model, running);
+    };
+  }
+  FitResult fit = Fit(*data, fit_options);
+  TellOfLimit(*running, &fit);
   outcome.interrupted = fit.interrupted;
   if (!outcome.begun) return outcome;
   ModelFile file = fit.file;
@@ -255,6 +310,7 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
   FillReport(fit, &report);
   report.summary.phases.reading = report.seconds.read;
   report.peak_memory = PeakMemory();
+  outcome.parameters.assign(file.model.parameters().begin(), file.model.parameters().end());
   outcome.model_text = FormatModel(file);
   outcome.trace = fit.summary.trace;
   outcome.trace_text = FormatTrace(fit.summary.trace);
@@ -271,7 +327,6 @@ nb::dict TraceColumns(const Outcome& outcome) {
     const size_t count = values.size();
     return OwnedArray(std::move(values), {count});
   };
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   nb::dict columns;
   columns["iteration"] = column([](const IterationRecord& r) { return int64_t{r.iteration}; });
   columns["seconds"] = column([](const IterationRecord& r) { return r.seconds; });
@@ -280,11 +335,11 @@ nb::dict TraceColumns(const Outcome& outcome) {
   columns["accepted"] = column([](const IterationRecord& r) { return uint8_t{r.accepted}; });
   columns["step"] = column([](const IterationRecord& r) { return r.step; });
   columns["optimality"] =
-      column([&](const IterationRecord& r) { return r.optimality.value_or(kUnknown); });
+      column([](const IterationRecord& r) { return r.optimality.value_or(kUnknown); });
   columns["processor_seconds"] =
-      column([&](const IterationRecord& r) { return r.processor_seconds.value_or(kUnknown); });
+      column([](const IterationRecord& r) { return r.processor_seconds.value_or(kUnknown); });
   columns["objective_with_prior"] =
-      column([&](const IterationRecord& r) { return r.objective_with_prior.value_or(kUnknown); });
+      column([](const IterationRecord& r) { return r.objective_with_prior.value_or(kUnknown); });
   return columns;
 }
 
@@ -327,6 +382,10 @@ void BindFit(nb::module_* module) {
                    [](const Outcome& self) {
                      return nb::bytes(self.model_text.data(), self.model_text.size());
                    })
+      .def("parameters",
+           [](const Outcome& self) {
+             return OwnedArray(std::vector<double>(self.parameters), {self.parameters.size()});
+           })
       .def_ro("trace_text", &Outcome::trace_text)
       .def_prop_ro("report_text",
                    [](const Outcome& self) {
@@ -334,7 +393,7 @@ void BindFit(nb::module_* module) {
                    })
       .def("trace", &TraceColumns);
   module->def("fit", &RunFit, nb::arg("measured"), nb::arg("options"), nb::arg("solver_options"),
-              nb::arg("running"));
+              nb::arg("running"), nb::arg("weights").none(), nb::arg("callback").none());
   module->def("solvers", &SolverList);
   module->def("initial_models", [] { return Names(InitialModels()); });
   module->def("weightings", [] { return Names(Weightings()); });

@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "trilobe/io/formats/source.h"
 
@@ -22,6 +25,21 @@ int ThreadsOf(const nb::dict& options) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (threads < 0) throw Error("threads is negative; give 0 for all cores");
   return threads == 0 ? cores : std::min(threads, cores);
+}
+
+std::vector<double> ByRow(const Weights& weights) {
+  return {weights.data(), weights.data() + weights.shape(0)};
+}
+
+BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights) {
+  const size_t count = samples.size();
+  if (weights.size() != count) {
+    throw Error("there are " + std::to_string(weights.size()) + " weights for " +
+                std::to_string(count) + " valid samples");
+  }
+  if (samples.multiplicity.empty()) samples.multiplicity.assign(count, 1);
+  for (size_t k = 0; k < count; ++k) samples.multiplicity[k] *= weights[k];
+  return samples;
 }
 
 namespace {

@@ -2,14 +2,17 @@
 #define TRILOBE_PYTHON_FIT_MODULE_H_
 
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/form.h"
 #include "trilobe/io/formats/measurement_format.h"
+#include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe::python {
@@ -39,6 +42,13 @@ SourceOptions SourceOptionsOf(const nanobind::dict& options);
 
 // The form of a model, by the names that trilobe.fit has.
 FormOptions FormOf(const nanobind::dict& options);
+
+// How often each valid sample counts. [samples]
+using Weights =
+    nanobind::ndarray<const double, nanobind::ndim<1>, nanobind::c_contig, nanobind::device::cpu>;
+std::vector<double> ByRow(const Weights& weights);
+// Throws Error unless there is a weight for each sample.
+BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights);
 
 void BindMeasurement(nanobind::module_* module);
 void BindFit(nanobind::module_* module);

@@ -275,6 +275,7 @@ void BindMeasurement(nb::module_* module) {
   module->attr("REASONS") = ReasonNames();
   nb::class_<Measured>(*module, "Measured", "A measurement in memory.")
       .def_prop_ro("source", [](const Measured& self) { return self.data->source; })
+      .def_prop_ro("xxh128", [](const Measured& self) { return self.data->xxh128; })
       .def_prop_ro("kind", [](const Measured& self) { return self.data->kind; })
       .def_prop_ro("anisotropic", [](const Measured& self) { return self.data->anisotropic; })
       .def_prop_ro("notes", [](const Measured& self) { return self.data->notes; })

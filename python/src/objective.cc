@@ -3,6 +3,7 @@
 #include "trilobe/model/objective/objective.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -40,8 +42,11 @@ using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::
 // The objective of a fit without a prior.
 class FitObjective {
  public:
-  FitObjective(const Measured& measured, const nb::dict& options)
-      : data_(measured.data), objective_(Make(measured, options)), equations_(objective_) {}
+  FitObjective(const Measured& measured, const nb::dict& options,
+               const std::optional<Weights>& weights)
+      : data_(measured.data),
+        objective_(Make(measured, options, weights)),
+        equations_(objective_) {}
 
   const Objective& objective() const { return objective_; }
 
@@ -88,15 +93,22 @@ class FitObjective {
   }
 
  private:
-  static Objective Make(const Measured& measured, const nb::dict& options) {
+  static Objective Make(const Measured& measured, const nb::dict& options,
+                        const std::optional<Weights>& weights) {
     const FormOptions form = FormOf(options);
+    std::optional<ModelSpec> like;
+    if (options.contains("like")) {
+      const auto text = OptionOf<nb::bytes>(options, "like", "the text of a model file");
+      like = ParseModel({text.c_str(), text.size()}, "the model").model.spec();
+    }
     const Weighting& weighting =
         FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
     const int threads = ThreadsOf(options);
     const std::shared_ptr<const Measurement> data = measured.data;
     const nb::gil_scoped_release released;
     BrdfSamples samples = SamplesOf(*data);
-    const ModelSpec spec = SpecFor(*data, form, samples.size());
+    if (weights) samples = Weighted(std::move(samples), ByRow(*weights));
+    const ModelSpec spec = like ? *like : SpecFor(*data, form, samples.size());
     return Objective(std::move(samples), spec, weighting, threads);
   }
 
@@ -235,7 +247,8 @@ std::vector<std::tuple<std::string, int, int>> Parts(const FitObjective& self) {
 
 void BindObjective(nb::module_* module) {
   nb::class_<FitObjective>(*module, "Objective", "E of a measurement, a form and a weighting.")
-      .def(nb::init<const Measured&, const nb::dict&>(), nb::arg("measured"), nb::arg("options"))
+      .def(nb::init<const Measured&, const nb::dict&, const std::optional<Weights>&>(),
+           nb::arg("measured"), nb::arg("options"), nb::arg("weights").none())
       .def_prop_ro(
           "num_parameters",
           [](const FitObjective& self) { return self.objective().spec().num_parameters(); })

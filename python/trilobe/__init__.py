@@ -17,7 +17,6 @@ from typing import Any
 from trilobe._brdf import Brdf, Sample, load, materials
 from trilobe._core import Error
 from trilobe._fitting import (
-    Result,
     Solver,
     fit,
     fit_many,
@@ -29,6 +28,7 @@ from trilobe._fitting import (
 )
 from trilobe._measurement import Measurement, convert, read
 from trilobe._objective import Objective
+from trilobe._result import Record, Result
 from trilobe._table import Table
 
 __all__ = [
@@ -36,6 +36,7 @@ __all__ = [
     "Error",
     "Measurement",
     "Objective",
+    "Record",
     "Result",
     "Sample",
     "Solver",

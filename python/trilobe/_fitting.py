@@ -5,94 +5,30 @@ from __future__ import annotations
 import json
 import os
 import re
-import threading
-from collections.abc import Iterable
-from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, model_of, text_of_path, write_text
+from trilobe._brdf import Brdf, model_of, text_of_path
 from trilobe._core import Error
 from trilobe._measurement import Measurement, fits, measurement_of
+from trilobe._options import Form, InitName, SolverName, SolverOptions
+from trilobe._result import Problem, Result
+from trilobe._running import Callback, Stop, run
 
-_POLL_SECONDS = 0.05
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-
-class Result:
-    """What a fit has come to.
-
-    Attributes:
-        model: the fitted `Brdf`, in canonical form.
-        trace: a structured array, a row an iteration, with the columns of trace.csv: iteration, seconds,
-            objective, filtered, accepted, step, optimality, processor_seconds, objective_with_prior (NaN: unknown).
-        report: a dict, as report.json is (docs/file-formats.md).
-        interrupted: whether Ctrl-C ended it early.
-    """
-
-    model: Brdf
-    trace: NDArray[np.void]
-    report: dict[str, Any]
-    interrupted: bool
-
-    def __init__(self, outcome: Any) -> None:
-        """Takes what C++ returned."""
-        self.model = Brdf.from_json(outcome.model_text.decode(), "the fitted model")
-        columns = {
-            name: values.astype(bool) if name in ("filtered", "accepted") else values
-            for name, values in outcome.trace().items()
-        }
-        rows = len(columns["iteration"])
-        self.trace = np.empty(rows, [(name, values.dtype) for name, values in columns.items()])
-        for name, values in columns.items():
-            self.trace[name] = values
-        self.interrupted = outcome.interrupted
-        self._texts = {
-            "model.json": self.model.to_json(),
-            "trace.csv": outcome.trace_text,
-            "report.json": outcome.report_text.decode(),
-        }
-        self.report = json.loads(self._texts["report.json"])
-
-    @property
-    def verdict(self) -> str:
-        """What a person would see of the model beside its measurement."""
-        verdict: str = self.report["verdict"]["words"]
-        return verdict
-
-    def save(self, folder: str | os.PathLike[str]) -> None:
-        """Writes model.json, trace.csv and report.json into a folder, which is made if need be.
-
-        Another model that is there stays as model.previous.json, as `trilobe fit` has it.
-        """
-        name = Path(text_of_path(folder))
-        try:
-            name.mkdir(parents=True, exist_ok=True)
-        except (OSError, ValueError) as error:
-            raise Error(f"cannot make the folder '{name}': {getattr(error, 'strerror', None) or error}") from None
-        _keep_earlier(name / "model.json", self._texts["model.json"])
-        for file, text in self._texts.items():
-            write_text(name / file, text)
-
-    def __repr__(self) -> str:
-        """The verdict."""
-        return f"<trilobe.Result: {self.verdict}>"
-
-
-def _keep_earlier(path: Path, text: str) -> None:
-    try:
-        if path.exists() and path.read_bytes() != text.encode("utf-8", "surrogatepass"):
-            path.replace(path.with_name("model.previous.json"))
-    except OSError as error:
-        raise Error(f"cannot keep the earlier '{path}': {error.strerror}") from None
+Weights = Union[ArrayLike, Callable[[Any, Any, Any], ArrayLike]]
 
 
 def fit(
     measurement: Measurement | str | os.PathLike[str],
-    model: Literal["shared", "isotropic", "anisotropic", "independent", "auto"] = "shared",
-    solver: str = "auto",
+    model: Form = "shared",
+    solver: SolverName = "auto",
     *,
     lobes: int | None = None,
     stretch: ArrayLike | None = None,
@@ -100,9 +36,10 @@ def fit(
     g_nodes: str | None = None,
     f_bins: int | None = None,
     nodes: Literal["given", "held_out"] = "given",
-    init: str = "analytic",
+    init: InitName = "analytic",
     start: Brdf | str | os.PathLike[str] | None = None,
     weighting: str = "appearance",
+    weights: Weights | None = None,
     prior: float | None = None,
     robust: float = 0,
     smoothness: float = 0.005,
@@ -112,7 +49,9 @@ def fit(
     seed: int = 1,
     threads: int = 0,
     progress: bool = True,
-    **solver_options: Any,
+    callback: Callback | None = None,
+    stop: Stop | None = None,
+    **solver_options: Unpack[SolverOptions],
 ) -> Result:
     """Fits a model to a measurement, as `trilobe fit` does: the same options give the same bits.
 
@@ -131,6 +70,10 @@ def fit(
         init: a name of `initial_models()`.
         start: a model to start from, or the file of one or material:NAME, whose form the fit then has.
         weighting: a name of `weightings()`, or "power:...".
+        weights: a factor of the weight of each sample, (n,) as the rows of `measurement.rho`, those of samples that
+            are not valid for nothing; or a function of wi, wo and rho, each (n, 3), that returns it. With
+            weighting="uniform" they are the whole weight. A table that is weighted is judged as samples are, and
+            the light that it reflects is not mended.
         prior: of scattered samples, how much a small model counts between them.
         robust: above 0, a loss that is linear in the error beyond this.
         smoothness: by which share E may rise for the smoothest tables, where that is not seen; 0: the least E.
@@ -140,7 +83,14 @@ def fit(
         seed: of whatever is random.
         threads: 0 for all cores. The result does not depend on it.
         progress: shows a bar, where tqdm is installed.
-        **solver_options: as `max_iterations`, `max_seconds`; `solvers()` says what each solver takes.
+        callback: called after each iteration with a `Record` and the model so far, in this thread, while the fit
+            waits. If it returns true, the fit ends with the best model so far; what it raises ends the fit, too. Of
+            model="auto" the first form alone calls it.
+        stop: a threading.Event, or what else has `is_set()`; when another thread sets it, the fit ends likewise.
+        **solver_options: as `max_iterations`, `max_seconds`; `solvers()` says what each solver takes. When
+            `max_seconds` are over since the call, the fit ends with the best model so far and without what would
+            follow the solver. It takes longer by what is under way, as by the iteration, and by the comparison
+            with the measurement (report["seconds"]["score"]).
 
     Raises:
         Error: with the program's line.
@@ -164,10 +114,31 @@ def fit(
         "threads": threads,
     }
     data = measurement_of(measurement)
-    outcome = _run(data, options, solver_options, bool(progress))
+    if callback is not None and not callable(callback):
+        raise Error("callback must be a function of a record and a model")
+    if stop is not None and not callable(getattr(stop, "is_set", None)):
+        raise Error("stop must be a threading.Event, or have is_set()")
+    by_sample = weights_of(weights, data)
+    outcome = run(data, options, {**solver_options}, by_sample, callback, stop, bool(progress))
     if not outcome.begun:
+        if stop is not None and stop.is_set():
+            raise Error("the fit was stopped before there was a model")
         raise KeyboardInterrupt
-    return Result(outcome)
+    return Result(outcome, Problem(data, weighting, by_sample, threads))
+
+
+def weights_of(weights: Weights | None, data: Measurement) -> NDArray[np.float64] | None:
+    """The weights of the valid samples. Raises Error."""
+    if weights is None:
+        return None
+    given = weights(data.wi, data.wo, data.rho) if callable(weights) else weights
+    array = as_array(given, "weights").astype(np.float64)
+    if array.shape != data.valid.shape:
+        raise Error(f"weights have the shape {array.shape}, and must have {data.valid.shape}, one for each row of rho")
+    array = np.ascontiguousarray(array[data.valid])
+    if not (np.isfinite(array) & (array >= 0)).all() or not array.any():
+        raise Error("weights of valid samples must be finite and 0 or more, and one above 0")
+    return array
 
 
 def form_options(
@@ -207,67 +178,6 @@ def _nodes_of(name: str, text: Any) -> tuple[int, bool, int] | None:
         given = " ".join(repr(text).split())[:60]
         raise Error(f"{name}={given} are no nodes; give theta x phi, as '6x48'")
     return int(match[1]), bool(match[2]), int(match[3])
-
-
-def _run(data: Measurement, options: dict[str, Any], solver_options: dict[str, Any], progress: bool) -> Any:
-    """Fits in a thread, so that this one hears Ctrl-C whatever C++ does."""
-    module = fits()
-    running = module.RunningFit()
-    ended: dict[str, Any] = {}
-    done = threading.Event()  # as join() forgets the thread when Ctrl-C ends it
-
-    def work() -> None:
-        try:
-            ended["outcome"] = module.fit(data._data, options, solver_options, running)
-        except BaseException as error:
-            ended["error"] = error
-        finally:
-            done.set()
-
-    thread = threading.Thread(target=work, name="trilobe.fit", daemon=True)
-    bar = _Bar(progress, data.source)
-    stopped = False
-    thread.start()
-    try:
-        while not done.is_set():
-            try:
-                done.wait(_POLL_SECONDS)
-                bar.show(*running.latest())
-            except KeyboardInterrupt:
-                running.stop()
-                if stopped:
-                    raise
-                stopped = True
-    finally:
-        bar.close()
-    if "error" in ended:
-        raise ended["error"]
-    return ended["outcome"]
-
-
-class _Bar:
-    """tqdm's, where it is installed and wanted."""
-
-    def __init__(self, wanted: bool, name: str) -> None:
-        self._bar: Any = None
-        self._count = 0
-        if wanted:
-            try:
-                from tqdm.auto import tqdm
-            except ImportError:
-                return
-            self._bar = tqdm(desc=f"fit {os.path.basename(name)}", unit="it", leave=False)
-
-    def show(self, count: int, iteration: int, seconds: float, objective: float) -> None:
-        """How many records there have been, and what the last one says."""
-        if self._bar is not None and count > self._count:
-            self._bar.set_postfix_str(f"E {objective:.4g}", refresh=False)
-            self._bar.update(count - self._count)
-            self._count = count
-
-    def close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()
 
 
 def score(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, load, text_of_path
+from trilobe._brdf import CHANNELS, Brdf, load, text_of_path
 from trilobe._core import Error
 
 
@@ -79,17 +79,87 @@ class Measurement:
             raise Error("anisotropic must be True, False or None")
         azimuths = "auto" if anisotropic is None else "yes" if anisotropic else "no"
         options = source_options(max_angle=max_angle, min_theta_d=min_theta_d)
-        self._set(fits().from_arrays(*arrays.values(), _name(source), azimuths, options))
+        made = (*arrays.values(), _name(source), azimuths, options)
+        self._set(fits().from_arrays(*made), (_of_arrays, made))
 
-    def _set(self, data: Any) -> None:
+    def _set(self, data: Any, made: tuple[Callable[..., Measurement], tuple[Any, ...]]) -> None:
+        """`made` is how to make it again."""
         self._data = data
+        self._made = made
         self._cache: dict[str, NDArray[Any]] = {}
 
     @classmethod
-    def _of(cls, data: Any) -> Measurement:
+    def _of(cls, data: Any, made: tuple[Callable[..., Measurement], tuple[Any, ...]]) -> Measurement:
         measurement = cls.__new__(cls)
-        measurement._set(data)
+        measurement._set(data, made)
         return measurement
+
+    def __reduce__(self) -> Any:
+        """Arrays are pickled; of a file its path, which is read again, and an Error if it has changed since."""
+        return self._made
+
+    def __copy__(self) -> Measurement:
+        """Itself, as it never changes."""
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Measurement:
+        """Itself, as it never changes."""
+        return self
+
+    def save(self, path: str | os.PathLike[str]) -> list[str]:
+        """Writes it as `convert` does, for `read`: ".binary", ".bin" or ".csv". Returns the program's lines."""
+        return convert(self, path)
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of rho [1/sr] and reason, if xarray is installed.
+
+        Of a table the dimensions are theta_h, theta_d, phi_d and channel, with angles in radians; of samples they are
+        sample and channel, and theta_i, phi_i, theta_o and phi_o are coordinates of the samples.
+        """
+        import xarray
+
+        channels = ("channel", np.array(CHANNELS))
+        told = {"reasons": self.reasons}
+        if self.grid is None:
+            angles = {name: ("sample", values) for name, values in self._angles().items()}
+            return xarray.Dataset(
+                {"rho": (("sample", "channel"), self.rho), "reason": ("sample", self.reason, told)},
+                coords={**angles, "channel": channels},
+                attrs={"source": self.source},
+            )
+        half = (self.wi + self.wo).reshape(*self.grid, 3)
+        half = half / np.linalg.norm(half, axis=-1, keepdims=True)
+        theta_h = np.arctan2(np.hypot(half[..., 0], half[..., 1]), half[..., 2])[:, 0, 0]
+        theta_d = np.arccos(np.clip((self.wi.reshape(half.shape) * half).sum(axis=-1), -1, 1))[0, :, 0]
+        phi_d = (np.arange(self.grid[2]) + 0.5) * np.pi / self.grid[2]
+        dims = ("theta_h", "theta_d", "phi_d")
+        return xarray.Dataset(
+            {
+                "rho": ((*dims, "channel"), self.rho.reshape(*self.grid, 3)),
+                "reason": (dims, self.reason.reshape(self.grid), told),
+            },
+            coords={"theta_h": theta_h, "theta_d": theta_d, "phi_d": phi_d, "channel": channels},
+            attrs={"source": self.source},
+        )
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame`` with a row for each of them, if pandas is installed.
+
+        Columns are theta_i, phi_i, theta_o and phi_o [rad], red, green and blue [1/sr], and reason, in words.
+        """
+        import pandas
+
+        colours = dict(zip(CHANNELS, self.rho.T))
+        reason = pandas.Categorical.from_codes(self.reason.astype(int), self.reasons)
+        return pandas.DataFrame({**self._angles(), **colours, "reason": reason})
+
+    def _angles(self) -> dict[str, NDArray[np.float64]]:
+        """By name, of all of them [rad]."""
+        angles: dict[str, NDArray[np.float64]] = {}
+        for end, w in (("i", self.wi), ("o", self.wo)):
+            angles[f"theta_{end}"] = np.arctan2(np.hypot(w[:, 0], w[:, 1]), w[:, 2])
+            angles[f"phi_{end}"] = np.arctan2(w[:, 1], w[:, 0])
+        return angles
 
     @property
     def source(self) -> str:
@@ -240,7 +310,23 @@ def read(
         theta_i=theta_i,
         threads=threads,
     )
-    return Measurement._of(fits().read(text_of_path(source), options))
+    name = text_of_path(source)
+    again = os.path.abspath(name) if os.path.exists(name) else name
+    data = fits().read(name, options)
+    return Measurement._of(data, (_read_again, (again, options, data.xxh128)))
+
+
+def _read_again(path: str, options: dict[str, Any], xxh128: str) -> Measurement:
+    """What a pickle has of a file."""
+    data = fits().read(path, options)
+    if data.xxh128 != xxh128:
+        raise Error(f"{path} has changed since the measurement was pickled; read it again")
+    return Measurement._of(data, (_read_again, (path, options, xxh128)))
+
+
+def _of_arrays(*made: Any) -> Measurement:
+    """What a pickle has of arrays."""
+    return Measurement._of(fits().from_arrays(*made), (_of_arrays, made))
 
 
 def measurement_of(value: Any) -> Measurement:

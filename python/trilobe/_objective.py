@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from trilobe._arrays import as_array
 from trilobe._brdf import Brdf, model_of
 from trilobe._core import Error
-from trilobe._fitting import form_options
+from trilobe._fitting import Weights, form_options, weights_of
 from trilobe._measurement import Measurement, fits, measurement_of
+from trilobe._options import Form
 
 Vector = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ class Objective:
     def __init__(
         self,
         measurement: Measurement | str | os.PathLike[str],
-        model: Literal["shared", "isotropic", "anisotropic", "independent"] = "shared",
+        model: Form = "shared",
         *,
         lobes: int | None = None,
         stretch: ArrayLike | None = None,
@@ -49,9 +50,11 @@ class Objective:
         g_nodes: str | None = None,
         f_bins: int | None = None,
         weighting: str = "appearance",
+        weights: Weights | None = None,
         threads: int = 0,
+        like: Brdf | None = None,
     ) -> None:
-        """Prepares E; arguments are those of `fit`.
+        """Prepares E; arguments are those of `fit`. `like` is a model whose form it has in the place of a name.
 
         Raises:
             Error: with the program's line.
@@ -60,8 +63,10 @@ class Objective:
             raise Error("model='auto' chooses among forms; give the one that E is of")
         options = form_options(model, lobes, stretch, d_nodes, g_nodes, f_bins, "given")
         options |= {"weighting": weighting, "threads": threads}
+        if like is not None:
+            options["like"] = model_of(like).to_json().encode()
         data = measurement_of(measurement)
-        self._objective = fits().Objective(data._data, options)
+        self._objective = fits().Objective(data._data, options, weights_of(weights, data))
         self._source = data.source
         self.num_parameters: int = self._objective.num_parameters
         self.num_samples: int = self._objective.num_samples

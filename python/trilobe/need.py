@@ -222,15 +222,15 @@ def _write_scene(
     materials: list[Material], counts: list[Any], budget: float, folder: Path
 ) -> tuple[Path, list[str]]:
     """The scene file, and the names of the materials that it has: those that are read."""
+    read_ones = [(material, count) for material, count in zip(materials, counts) if count.bins.sum() > 0]
     entries = [
         {"name": material.name, "source": material.source, "directions": _directions(material, count, folder)}
-        for material, count in zip(materials, counts)
-        if count.bins.sum() > 0
+        for material, count in read_ones
     ]
     text = {"format": "trilobe-scene", "version": 1, "budget": {"mean_delta_e": budget}, "materials": entries}
     path = folder / "scene.json"
     write_text(path, json.dumps(text, indent=1) + "\n")
-    return path, [entry["name"] for entry in entries]
+    return path, [material.name for material, _ in read_ones]
 
 
 # The whole.

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from trilobe._brdf import CHANNELS, Brdf, model_of
 from trilobe._core import Error
-from trilobe._fitting import Result
 from trilobe._measurement import Measurement, fits, measurement_of
+from trilobe._result import Result
+from trilobe._uncertainty import Uncertainty
 
 _COLORS = ("#c03028", "#2a8a3a", "#2b55b8")
 
@@ -33,17 +34,25 @@ def _figure(figure: Any, size: tuple[float, float]) -> Any:
     return figure
 
 
-def factors(model: Brdf | str | os.PathLike[str], figure: Any = None) -> Any:
+def factors(
+    model: Brdf | str | os.PathLike[str], figure: Any = None, *, uncertainty: Uncertainty | None = None
+) -> Any:
     """D, F and G of a model over their angles; entries that no data touched are dotted.
 
     Of an anisotropic model D and G are maps, the angle from the normal upwards and the azimuth to the right.
+    `uncertainty`, as `Result.uncertainty()` returns it, is drawn as bands of two standard deviations to each side.
     """
     brdf = model_of(model)
+    if uncertainty is not None and brdf.anisotropic:
+        raise Error("bands are drawn of isotropic models alone")
     figure = _figure(figure, (11, 3.4) if not brdf.anisotropic else (11, 2.4 * max(brdf.lobes, 1)))
     if brdf.anisotropic and brdf.lobes > 0:
         return _polar_factors(brdf, figure)
     for axes, name in zip(figure.subplots(1, 3), "DFG"):
         table, unobserved = getattr(brdf, name), brdf.unobserved(name)
+        if uncertainty is not None and getattr(uncertainty, name).shape != table.shape:
+            raise Error("the uncertainty is of another model")
+        deviations = None if uncertainty is None else getattr(uncertainty, name).reshape(-1, table.shape[-1])
         angles = np.degrees(table.coords[table.dims[-1]])
         rows = np.asarray(table).reshape(-1, table.shape[-1])
         hidden = unobserved.reshape(rows.shape)
@@ -54,6 +63,9 @@ def factors(model: Brdf | str | os.PathLike[str], figure: Any = None) -> Any:
             label = of_lobe + ("" if channel is None else CHANNELS[channel])
             axes.plot(angles, row, ":", lw=1, **style)
             axes.plot(angles, np.where(without, np.nan, row), lw=1.6, label=label, **style)
+            if deviations is not None:
+                wide = np.where(np.isfinite(deviations[k]), 2 * deviations[k], np.nan)
+                axes.fill_between(angles, np.maximum(row - wide, 0), row + wide, alpha=0.2, lw=0, **style)
         axes.set_title(name)
         axes.set_xlabel({"D": "θh [°]", "F": "θd [°]", "G": "θ [°]"}[name])
         if name == "D" and brdf.lobes > 0:
