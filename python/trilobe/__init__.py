@@ -8,7 +8,7 @@
     result.model.save("model.json")
 
 docs/python.md of the project has a tour, and the conventions. `trilobe.plot` draws, by matplotlib; `trilobe.mitsuba`
-is a BSDF for Mitsuba 3.
+is a BSDF for Mitsuba 3; `trilobe.torch` evaluates in PyTorch.
 """
 
 import importlib
@@ -57,8 +57,8 @@ __version__ = "0.2.0"
 
 
 def __getattr__(name: str) -> Any:
-    """Imports `trilobe.plot` and `trilobe.mitsuba`, which need more packages, when they are first used."""
-    if name in ("plot", "mitsuba"):
+    """Imports `trilobe.plot`, `trilobe.mitsuba` and `trilobe.torch`, which need more, when they are first used."""
+    if name in ("plot", "mitsuba", "torch"):
         return importlib.import_module(f"trilobe.{name}")
     raise AttributeError(f"module 'trilobe' has no attribute '{name}'")
 
