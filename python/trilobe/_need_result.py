@@ -70,6 +70,7 @@ class Result:
         self.pictures: dict[str, Picture] = {}
         self.differences: dict[str, Difference] = {}
         self.tries: list[dict[str, Any]] = []
+        self.prune_seconds = 0.0  # of the last budget
         self._out, self._scene, self._settings = out, scene, settings
         self._images: dict[str, NDArray[np.float32]] = {}
         self._white = 1.0  # the brightest 2 % of the first picture are beyond it

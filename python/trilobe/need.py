@@ -260,8 +260,8 @@ def need(path: Path, out: Path, options: Options, tell: Tell = print) -> dict[st
             result.add(f"{prefix}{kind}", _render(scene.load(materials), options.spp),
                        "" if kind == "measured" else f"{prefix}measured")
 
-        for material, row in zip(file.materials, result.rows):
-            result.tell(f"fitting {material.name}")
+        for number, (material, row) in enumerate(zip(file.materials, result.rows), 1):
+            result.tell(f"fitting {material.name}, {number} of {len(file.materials)}")
             material.prepare(out / "full")
             row["seconds"]["full"] = material.fit_seconds
             tell(f"{material.name}: {material.source}, fitted in {material.fit_seconds:.1f} s")
@@ -314,10 +314,11 @@ def _prune(
         tell(f"pruning, {_within(budget)}: {line}")
         result.tell(f"pruning, {_within(budget)}: {line}")
 
-    result.tell(f"pruning, {_within(budget)}")
     scene, names = _write_scene(materials, counts, budget, out)
     command = [find_program(options.program), "fit", f"--scene={scene}", f"--out={out / 'pruned'}", *options.flags]
-    plan = plan_of(command, out / "pruned", names, told)
+    begin = time.perf_counter()
+    plan = plan_of(command, out / "pruned", names, told, result.prune_seconds)
+    result.prune_seconds = time.perf_counter() - begin
     planned = {entry["name"]: entry for entry in plan["materials"]}
     for row in result.rows:
         entry = planned.get(row["name"])

@@ -85,13 +85,14 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
         brdf: the model, or the form of one.
         wi: directions (..., 3), of any length; f is 0 below the surface.
         wo: the same; both broadcast.
-        **parts: d, s, D, F or G in the place of the model's, perhaps with an axis of texels in front, which is the first
-            axis of the directions then.
+        **parts: d, s, D, F or G in the place of the model's, perhaps with an axis of texels in front, which is then the
+            first axis of the directions.
     """
     unknown = set(parts) - set(_NAMES)
     if unknown:
         raise Error(f"there is no {min(unknown)}; there are d, s, D, F and G")
-    wi, wo = torch.broadcast_tensors(wi, wo)
+    shape = np.broadcast_shapes(wi.shape, wo.shape)
+    wi, wo = wi.expand(shape), wo.expand(shape)
     tables = {}
     texels = None
     for name in _NAMES:
@@ -108,7 +109,6 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
         tables[name] = value
     if texels is not None and (wi.ndim < 2 or wi.shape[0] != texels):
         raise Error(f"there are {texels} texels, and directions of the shape {tuple(wi.shape)}")
-    shape = wi.shape
     rows = (texels or 1, -1, 3)
     wi, wo = (_unit(w.reshape(rows)) for w in (wi, wo))
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
@@ -251,12 +251,14 @@ class _Reader:
         if phis == 1:
             return (1 - t) * _at(table, low) + t * _at(table, low + 1)
         there = _hypot(w[..., 0], w[..., 1]) > 1e-9
-        x, y = (torch.where(there, part, torch.full_like(part, fill)) for part, fill in ((w[..., 0], 1), (w[..., 1], 0)))
+        x = torch.where(there, w[..., 0], torch.ones_like(theta))
+        y = torch.where(there, w[..., 1], torch.zeros_like(theta))
         turns = torch.atan2(y, x) * (0.5 / math.pi)
         place = torch.where(turns < 0, turns + 1, turns) * phis
         left = place.detach().floor().long().clamp(max=phis - 1)
         f = (place - left)[:, None]
         right = (left + 1) % phis
         below, above = low * phis, (low + 1) * phis
-        return (1 - t) * ((1 - f) * _at(table, below + left) + f * _at(table, below + right)) + t * (
-            (1 - f) * _at(table, above + left) + f * _at(table, above + right))
+        at_low: Tensor = (1 - f) * _at(table, below + left) + f * _at(table, below + right)
+        at_high: Tensor = (1 - f) * _at(table, above + left) + f * _at(table, above + right)
+        return (1 - t) * at_low + t * at_high

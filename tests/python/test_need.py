@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -137,12 +138,27 @@ time.sleep(1.5)
 def test_tells_what_is_finished_while_the_program_runs(tmp_path):
     (tmp_path / "b.json").write_text("of an earlier run")
     told = []
-    plan = plan_of([sys.executable, "-c", PROGRAM, str(tmp_path)], tmp_path, ["a", "b"], told.append)
-    assert plan == {"materials": []}
-    assert len(told) == 1 and told[0].startswith("1 of 2 materials, about ") and told[0].endswith(" s left")
+    command = [sys.executable, "-c", PROGRAM, str(tmp_path)]
+    assert plan_of(command, tmp_path, ["a", "b"], told.append) == {"materials": []}
+    assert told[0] == "0 of 2 materials; left are a and b"
+    assert len(told) == 2 and re.fullmatch(r"1 of 2 materials after \d s, about \d s left for b", told[1])
+
+
+def test_tells_what_is_left_while_nothing_is_finished(tmp_path):
+    told = []
+    slow = [sys.executable, "-c", PROGRAM.replace('(out / "a.json").write_text("{}")', "").replace("1.5", "3"),
+            str(tmp_path)]
+    plan_of(slow, tmp_path, ["a", "b", "c", "d"], told.append, expected=60, every=1)
+    assert told[0] == "0 of 4 materials, about 60 s left for a, b and 2 more"
+    assert len(told) >= 3
+    assert all(re.fullmatch(r"0 of 4 materials after \d s, about 5\d s left for a, b and 2 more", line)
+               for line in told[1:])
+
+
+def test_a_program_that_fails_says_why(tmp_path):
     failing = [sys.executable, "-c", "import sys; sys.exit('trilobe: error: no such scene')"]
     with pytest.raises(trilobe.Error, match="^error: no such scene$"):
-        plan_of(failing, tmp_path, [], told.append)
+        plan_of(failing, tmp_path, [], lambda line: None)
 
 
 def test_has_a_page_before_all_is_there():
@@ -158,6 +174,20 @@ def test_has_a_page_before_all_is_there():
     assert "<p>Ended early, while pruning" in ended and "refresh" not in ended
     done = page({**report, "doing": ""})
     assert "0 of 0 parameters are left" in done and "never read" in done and "refresh" not in done
+
+
+def test_writes_a_page_before_it_fits(scene, tmp_path, monkeypatch):
+    out = tmp_path / "need"
+
+    def prepare(material, folder):
+        text = (out / "index.html").read_text()
+        raise trilobe.Error(f"seen {'Not finished yet: fitting plate, 1 of 2.' in text}")
+
+    monkeypatch.setattr(need.Material, "prepare", prepare)
+    options = need.Options(1, 1, 1, 0.01, [1], {}, {}, None, [])
+    with pytest.raises(trilobe.Error, match="seen True"):
+        need.need(scene, out, options)
+    assert "Ended early, while fitting plate" in (out / "index.html").read_text()
 
 
 def test_says_in_a_line_what_is_wrong(scene, tmp_path, capsys):
