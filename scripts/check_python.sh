@@ -16,7 +16,7 @@ if [[ ! -e $venv/ready ]]; then
   touch "$venv/ready"
 fi
 
-"$venv/bin/ruff" check --quiet --config python/ruff.toml python tests/python
+"$venv/bin/ruff" check --quiet --config python/ruff.toml python tests/python scripts/run_notebook.py
 
 # The preset has the package no longer than this takes.
 trap 'configure release -DTRILOBE_BUILD_PYTHON=OFF' EXIT
