@@ -28,6 +28,7 @@
   X(Rgl)                           \
   X(Mbsdf)                         \
   X(Csv)                           \
+  X(LightTools)                    \
   X(Zemax)                         \
   X(Astm)                          \
   X(Cornell)                       \

@@ -107,6 +107,9 @@ constexpr double kToSrgb[kChannels][3] = {{3.2404542, -1.5371385, -0.4985314},
                                           {-0.9692660, 1.8760108, 0.0415560},
                                           {0.0556434, -0.2040259, 1.0572252}};
 
+// XYZ of its white, D65.
+constexpr double kWhite[] = {0.95047, 1, 1.08883};
+
 void CheckWavelengths(std::span<const double> wavelengths, const std::string& source) {
   constexpr double kMaxGap = 50;
   const auto fail = [&](const auto&... parts) {
@@ -166,16 +169,39 @@ Rgb SpectralColor::operator()(std::span<const double> spectrum) const {
   return rgb;
 }
 
-void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
-                 const SpectralColor& color, SampleCollector* collector) {
+namespace {
+
+// Adds the colour of values that are all valid; else a sample that counts by what they are.
+template <typename Color>
+void AddColorOf(const SphericalAngles& angles, std::span<const double> values, const Color& color,
+                SampleCollector* collector) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  if (!std::ranges::all_of(spectrum, [](double x) { return std::isfinite(x); })) {
+  if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) {
     collector->Add(angles, {kNan, kNan, kNan});
-  } else if (std::ranges::any_of(spectrum, [](double x) { return x < 0; })) {
+  } else if (std::ranges::any_of(values, [](double x) { return x < 0; })) {
     collector->Add(angles, {-1, -1, -1});
   } else {
-    collector->AddColor(angles, color(spectrum));
+    collector->AddColor(angles, color(values));
   }
+}
+
+}  // namespace
+
+void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
+                 const SpectralColor& color, SampleCollector* collector) {
+  AddColorOf(angles, spectrum, color, collector);
+}
+
+void AddTristimulus(const SphericalAngles& angles, const std::array<double, 3>& xyz,
+                    SampleCollector* collector) {
+  const auto color = [](std::span<const double> values) {
+    Rgb rgb{};
+    for (int c = 0; c < kChannels; ++c) {
+      for (int k = 0; k < 3; ++k) rgb[c] += kToSrgb[c][k] * kWhite[k] * values[k];
+    }
+    return rgb;
+  };
+  AddColorOf(angles, xyz, color, collector);
 }
 
 // --- Smooth spectra ------------------------------------------------------------------------------

@@ -32,6 +32,11 @@ class SpectralColor {
 void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
                  const SpectralColor& color, SampleCollector* collector);
 
+// The same for CIE 1931 tristimulus values, each relative to that of white: a grey has X = Y = Z.
+// Their white is taken for D65.
+void AddTristimulus(const SphericalAngles& angles, const std::array<double, 3>& xyz,
+                    SampleCollector* collector);
+
 // Smooth spectra of colours (Jakob and Hanika, "A Low-Dimensional Function Space for Efficient
 // Spectral Upsampling", 2019). With wavelengths mapped to t in [-1, 1],
 //   r(t) = scale S(c0 t^2 + c1 t + c2),  S(x) = 1/2 + x / (2 sqrt(1 + x^2)).

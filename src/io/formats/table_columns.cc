@@ -78,7 +78,7 @@ constexpr std::string_view kNoBrdf[] = {"%", "percent", "db"};
 // For a note, in UTF-8.
 std::string Quoted(std::string_view name) {
   constexpr size_t kLongest = 40;
-  return "'" + Printable(name.substr(0, kLongest)) + "'";
+  return std::string("'").append(Printable(name.substr(0, kLongest))).append("'");
 }
 
 // --- Angles --------------------------------------------------------------------------------------

@@ -1,10 +1,12 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <vector>
 
 #include "core/files/text_lines.h"
+#include "io/formats/angle_list.h"
+#include "io/formats/spectrum.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -13,14 +15,10 @@ namespace {
 
 enum List { kRotation, kIncidence, kAzimuth, kRadial, kLists };
 
-struct ListSpec {
-  const char* key;
-  double min_deg, max_deg;
-};
-constexpr ListSpec kListSpecs[kLists] = {{"SampleRotation", 0, 360},
-                                         {"AngleOfIncidence", 0, 90},
-                                         {"ScatterAzimuth", 0, 360},
-                                         {"ScatterRadial", 0, 180}};
+constexpr AngleList kListSpecs[kLists] = {{"SampleRotation", 0, 360},
+                                          {"AngleOfIncidence", 0, 90},
+                                          {"ScatterAzimuth", 0, 360},
+                                          {"ScatterRadial", 0, 180}};
 
 // Keys with one word, and which words can be read.
 const std::map<std::string_view, std::vector<std::string_view>>& Words() {
@@ -28,86 +26,129 @@ const std::map<std::string_view, std::vector<std::string_view>>& Words() {
       {"Source", {"Measured"}},
       {"Symmetry",
        {"PlaneSymmetrical", "Asymmetrical", "ASymmetrical", "Asymmetrical4D", "ASymmetrical4D"}},
-      {"SpectralContent", {"Monochrome"}},
+      {"SpectralContent", {"Monochrome", "XYZ", "RGB"}},
       {"ScatterType", {"BRDF"}}};
   return words;
 }
 
-// What to do about a word that cannot be read.
-std::string AdviceFor(std::string_view word) {
-  if (word == "XYZ" || word == "RGB") return "; export one channel as Monochrome, or all as CSV";
-  if (word == "Asymmetric") return ", and this is a file of LightTools; save it as CSV";
-  return "";
+// How the lines are called that each block of data begins with.
+std::vector<std::string_view> BlocksOf(std::string_view content) {
+  if (content == "XYZ") return {"TristimulusX", "TristimulusY", "TristimulusZ"};
+  if (content == "RGB") return {"TristimulusR", "TristimulusG", "TristimulusB"};
+  return {"Monochrome"};
 }
 
-using Header = std::array<std::vector<double>, kLists>;  // [degrees]
-
-std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, const char* what) {
-  const std::vector<std::string> names(count, what);
-  std::vector<double> numbers;
-  ReadNumbers(lines, SplitWords(lines.line()), names, &numbers);
-  return numbers;
+bool NamesABlock(std::string_view word) {
+  return word == "Monochrome" || word.starts_with("Tristimulus");
 }
 
-// Angles that ascend, on the line after the one that gives their number.
-std::vector<double> ReadList(const ListSpec& spec, std::string_view count_text, TextLines* lines) {
-  const auto count = ToNumber(count_text);
-  constexpr double kMost = 10000;
-  if (!count || !(*count >= 1 && *count <= kMost) || *count != std::floor(*count)) {
-    lines->Fail(std::string("expected the number of angles after ") + spec.key);
+struct ZemaxHeader {
+  std::array<std::vector<double>, kLists> angles;  // [degrees]
+  std::string content;                             // the word after SpectralContent
+  std::string first;  // the name of the first block of data; "": it has none
+};
+
+[[noreturn]] void FailAtZemaxWord(const TextLines& lines, std::string_view key,
+                                  const std::vector<std::string_view>& known,
+                                  std::string_view word) {
+  if (word == "BTDF") {
+    lines.Fail("ScatterType is BTDF: these are transmitted light; only reflection can be read");
   }
-  if (!lines->Next()) lines->Fail(std::string("the angles of ") + spec.key + " are missing");
-  std::vector<double> angles = ReadNumbersOfLine(*lines, static_cast<size_t>(*count), spec.key);
-  for (size_t k = 0; k < angles.size(); ++k) {
-    std::ostringstream problem;
-    if (!(angles[k] >= spec.min_deg && angles[k] <= spec.max_deg)) {
-      problem << angles[k] << " is no such angle; expected degrees from " << spec.min_deg << " to "
-              << spec.max_deg;
-    } else if (k > 0 && !(angles[k] > angles[k - 1])) {
-      problem << angles[k] << " must be above the angle before it, " << angles[k - 1];
-    } else {
-      continue;
+  std::string expected;
+  for (const std::string_view one : known) {
+    expected.append(expected.empty() ? "" : one == known.back() ? " and " : ", ").append(one);
+  }
+  lines.Fail(std::string(key) + " is " + std::string(word.substr(0, 40)) + "; only " + expected +
+             " can be read");
+}
+
+void CheckIsWhole(const std::map<std::string_view, bool>& seen, const TextLines& lines) {
+  for (const AngleList& list : kListSpecs) {
+    if (!seen.contains(list.key)) lines.Fail(std::string("the header has no ") + list.key);
+  }
+  for (const auto& [key, values] : Words()) {
+    if (key != "Source" && !seen.contains(key)) {
+      lines.Fail("the header has no " + std::string(key));
     }
-    lines->FailAt(k, spec.key, problem.str());
   }
-  return angles;
 }
 
 // Up to the line DataBegin.
-Header ReadHeader(TextLines* lines) {
-  Header header;
+ZemaxHeader ReadZemaxHeader(TextLines* lines) {
+  ZemaxHeader header;
   std::map<std::string_view, bool> seen;
   while (lines->Next()) {
     const auto words = SplitWords(lines->line());
     if (words[0] == "DataBegin") {
-      for (const ListSpec& spec : kListSpecs) {
-        if (!seen[spec.key]) lines->Fail(std::string("the header has no ") + spec.key);
-      }
-      for (const auto& [key, values] : Words()) {
-        if (key != "Source" && !seen[key]) lines->Fail("the header has no " + std::string(key));
-      }
+      CheckIsWhole(seen, *lines);
       return header;
     }
-    if (words.size() == 1 && words[0] == "Monochrome") continue;  // names the block of data
+    if (words.size() == 1 && NamesABlock(words[0])) {
+      header.first = words[0];
+      continue;
+    }
     if (words.size() != 2) lines->Fail("expected a key and its value, or DataBegin");
     const auto list = std::ranges::find_if(
-        kListSpecs, [&](const ListSpec& spec) { return words[0] == spec.key; });
+        kListSpecs, [&](const AngleList& spec) { return words[0] == spec.key; });
     const auto word = Words().find(words[0]);
     if (list != std::end(kListSpecs)) {
       seen[list->key] = true;
-      header[list - kListSpecs] = ReadList(*list, words[1], lines);
+      header.angles[list - kListSpecs] = ReadAngleList(*list, words[1], lines);
     } else if (word != Words().end()) {
       seen[word->first] = true;
-      if (std::ranges::find(word->second, words[1]) == word->second.end()) {
-        lines->Fail(std::string(words[0]) + " is " + std::string(words[1].substr(0, 40)) +
-                    "; only " + std::string(word->second.front()) + " can be read" +
-                    AdviceFor(words[1]));
+      const auto& [key, known] = *word;
+      if (std::ranges::find(known, words[1]) == known.end()) {
+        FailAtZemaxWord(*lines, key, known, words[1]);
       }
+      if (key == "SpectralContent") header.content = words[1];
     } else {
       lines->Fail("'" + std::string(words[0].substr(0, 40)) + "' is no key of this format");
     }
   }
   lines->Fail("the file ends before DataBegin");
+}
+
+void GoTo(const char* what, TextLines* lines) {
+  if (!lines->Next()) lines->Fail(std::string("the file ends before ") + what);
+}
+
+// The values of a block, by rotation, incidence, azimuth and distance, after DataBegin.
+std::vector<double> ReadZemaxBlock(const ZemaxHeader& header, TextLines* lines) {
+  const auto& [rotations, incidences, azimuths, radials] = header.angles;
+  std::vector<double> values;
+  for (size_t k = 0; k < rotations.size() * incidences.size(); ++k) {
+    GoTo("TIS", lines);
+    if (SplitWords(lines->line())[0] != "TIS") {
+      lines->Fail("expected TIS, at the beginning of an angle of incidence");
+    }
+    for (size_t a = 0; a < azimuths.size(); ++a) {
+      GoTo("the last azimuth", lines);
+      const std::vector<double> row =
+          ReadNumbersOfLine(*lines, radials.size(), "BRDF by ScatterRadial");
+      values.insert(values.end(), row.begin(), row.end());
+    }
+  }
+  GoTo("DataEnd", lines);
+  if (lines->line() != "DataEnd") lines->Fail("expected DataEnd: there are more data than angles");
+  return values;
+}
+
+// One block, or three, in the order that SpectralContent says.
+std::vector<std::vector<double>> ReadZemaxBlocks(const ZemaxHeader& header, TextLines* lines) {
+  const std::vector<std::string_view> names = BlocksOf(header.content);
+  if (names.size() > 1 && header.first != names[0]) {
+    lines->Fail("expected the line " + std::string(names[0]) + " before DataBegin");
+  }
+  std::vector<std::vector<double>> blocks = {ReadZemaxBlock(header, lines)};
+  while (blocks.size() < names.size()) {
+    const std::string name(names[blocks.size()]);
+    GoTo(name.c_str(), lines);
+    if (lines->line() != name) lines->Fail("expected " + name);
+    GoTo("DataBegin", lines);
+    if (lines->line() != "DataBegin") lines->Fail("expected DataBegin");
+    blocks.push_back(ReadZemaxBlock(header, lines));
+  }
+  return blocks;
 }
 
 // The light comes from theta = `incidence`, phi = 180 degrees - `rotation`. Seen from the mirror
@@ -130,52 +171,50 @@ SphericalAngles AnglesOf(double rotation, double incidence, double azimuth, doub
           turned(std::atan2(y, x) - rotation)};
 }
 
-// How many entries there are without a last one that repeats the first a whole turn later.
-size_t Distinct(const std::vector<double>& degrees) {
-  return degrees.size() - (degrees.size() > 1 && degrees.back() - degrees.front() == 360 ? 1 : 0);
-}
-
 // A BRDF in the tabular text format of Zemax OpticStudio (`.bsdf`, docs/file-formats.md), by sample
 // rotation, angle of incidence, and azimuth and distance about the direction of mirror reflection
-// [degrees]; one channel, which counts for all three. A value of exactly 0 is a gap. Azimuths
-// matter where there are several sample rotations. Throws Error, with the line, on anything else.
+// [degrees]; a block of one channel, which counts for all three, or three blocks. A value of
+// exactly 0 is a gap. Azimuths matter where there are several sample rotations. Throws Error, with
+// the line, on anything else.
 Measurement ParseZemax(std::string_view text, const std::string& source) {
   TextLines lines(text, source);
-  const Header header = ReadHeader(&lines);
-  const auto& [rotations, incidences, azimuths, radials] = header;
-  const auto next = [&](const char* what) {
-    if (!lines.Next()) lines.Fail(std::string("the file ends before ") + what);
-  };
+  const ZemaxHeader header = ReadZemaxHeader(&lines);
+  const std::vector<std::vector<double>> blocks = ReadZemaxBlocks(header, &lines);
+  const auto& [rotations, incidences, azimuths, radials] = header.angles;
   SampleCollector collector(source, "Zemax BSDF file of scattered samples");
-  for (size_t r = 0; r < rotations.size(); ++r) {
+  size_t next = 0;
+  const auto add = [&](double rotation, double incidence, double azimuth, double radial) {
+    const size_t k = next++;
+    const auto value = [&](size_t c) { return blocks[blocks.size() == 1 ? 0 : c][k]; };
+    const Rgb values = {value(0), value(1), value(2)};
+    const SphericalAngles at = AnglesOf(DegreesToRadians(rotation), DegreesToRadians(incidence),
+                                        DegreesToRadians(azimuth), DegreesToRadians(radial));
+    if (values == Rgb{} && std::max(at.theta_i, at.theta_o) < kPi / 2) {
+      collector.LeaveOut(&BinCounts::missing);
+    } else if (header.content == "XYZ") {
+      AddTristimulus(at, values, &collector);
+    } else {
+      collector.Add(at, values);
+    }
+  };
+  for (size_t r = 0; r < Distinct(rotations); ++r) {
     for (const double incidence : incidences) {
-      next("TIS");
-      if (SplitWords(lines.line())[0] != "TIS") {
-        lines.Fail("expected TIS, at the beginning of an angle of incidence");
-      }
       for (size_t a = 0; a < azimuths.size(); ++a) {
-        next("the last azimuth");
-        const std::vector<double> values =
-            ReadNumbersOfLine(lines, radials.size(), "BRDF by ScatterRadial");
-        if (r >= Distinct(rotations) || a >= Distinct(azimuths)) continue;
-        for (size_t k = 0; k < radials.size(); ++k) {
-          if (radials[k] == 0 && a > 0) continue;  // the mirror direction, again
-          const SphericalAngles at =
-              AnglesOf(DegreesToRadians(rotations[r]), DegreesToRadians(incidence),
-                       DegreesToRadians(azimuths[a]), DegreesToRadians(radials[k]));
-          if (values[k] == 0 && std::max(at.theta_i, at.theta_o) < kPi / 2) {
-            collector.LeaveOut(&BinCounts::missing);
+        for (const double radial : radials) {
+          if (a >= Distinct(azimuths) || (radial == 0 && a > 0)) {
+            ++next;  // it is there twice
           } else {
-            collector.Add(at, {values[k], values[k], values[k]});
+            add(rotations[r], incidence, azimuths[a], radial);
           }
         }
       }
     }
   }
-  next("DataEnd");
-  if (lines.line() != "DataEnd") lines.Fail("expected DataEnd: there are more data than angles");
   Measurement measurement = collector.Take();
   measurement.anisotropic = Distinct(rotations) > 1;
+  if (header.content == "XYZ") {
+    measurement.notes.emplace_back("read as: X, Y, Z relative to white, which is taken for D65");
+  }
   return measurement;
 }
 

@@ -106,19 +106,5 @@ TEST(ForeignFile, PolarisedTensors) {
             "the BRDF of unpolarised light, as CSV");
 }
 
-TEST(ForeignFile, KindsOfZemaxFiles) {
-  const auto error = [](const std::string& symmetry, const std::string& content) {
-    return ErrorOfSource("f.bsdf",
-                         "Source Measured\nSymmetry " + symmetry + "\nSpectralContent " + content);
-  };
-  EXPECT_EQ(error("PlaneSymmetrical", "XYZ"),
-            "f.bsdf: line 3: SpectralContent is XYZ; only Monochrome can be read; export one "
-            "channel as Monochrome, or all as CSV");
-  EXPECT_EQ(
-      error("Asymmetric", "Monochrome"),
-      "f.bsdf: line 2: Symmetry is Asymmetric; only PlaneSymmetrical can be read, and this is "
-      "a file of LightTools; save it as CSV");
-}
-
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

@@ -50,6 +50,7 @@ TEST(RecogniseFormat, GoesByTheFirstLinesOfAText) {
   EXPECT_EQ(FormatOf("1\n400\n"), "");
   EXPECT_EQ(FormatOf("# by me\nSource \tMeasured\r\nSymmetry\tAsymmetrical\n"), "zemax");
   EXPECT_EQ(FormatOf("Source\tSimulated\n"), "");
+  EXPECT_EQ(FormatOf("Source Measured\nSymmetry Asymmetric\n"), "lighttools");
   // What is wrong further on is for the reader to say.
   EXPECT_EQ(FormatOf(csv + std::string("1,\0,2\n", 6)), "csv");
   EXPECT_EQ(FormatOf(std::string("31\n400 410\n\0", 12)), "cornell");

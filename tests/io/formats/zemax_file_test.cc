@@ -4,7 +4,9 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "tests/io/formats/known_truth.h"
 #include "tests/io/formats/read_as.h"
 #include "tests/paths.h"
 #include "tests/test_directory.h"
@@ -102,9 +104,13 @@ TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
     text.replace(text.find(from), from.size(), after);
     return ParseError(text);
   };
-  EXPECT_EQ(changed("BRDF", "BTDF"), "x.bsdf: line 5: ScatterType is BTDF; only BRDF can be read");
+  EXPECT_EQ(changed("BRDF", "BTDF"),
+            "x.bsdf: line 5: ScatterType is BTDF: these are transmitted light; only reflection can "
+            "be read");
+  EXPECT_EQ(changed("Content\tMonochrome", "Content\tLab"),
+            "x.bsdf: line 4: SpectralContent is Lab; only Monochrome, XYZ and RGB can be read");
   EXPECT_THAT(changed("Content\tMonochrome", "Content\tXYZ"),
-              HasSubstr("line 4: SpectralContent is XYZ; only Monochrome can be read"));
+              HasSubstr("line 16: expected the line TristimulusX before DataBegin"));
   EXPECT_THAT(changed("Rotation\t2", "Rotation\t2.5"),
               HasSubstr("line 6: expected the number of angles after SampleRotation"));
   EXPECT_THAT(changed("Rotation\t2", "Rotation\t1000000000"), HasSubstr("the number of angles"));
@@ -128,6 +134,77 @@ TEST(ZemaxFile, ErrorsSayWhereAndWhatIsExpected) {
             }())
                 .counts.negative,
             1);
+}
+
+// Of a material that is known: values at the directions that the format says, in blocks.
+const std::vector<double> kIncidences = {10, 50}, kAzimuths = {0, 45, 90, 135, 180},
+                          kRadials = {0, 5, 30};
+
+// The value of an azimuth and a distance about the mirror direction.
+Rgb TruthAbout(double incidence, double azimuth, double radial) {
+  const Direction mirror = At(incidence, 0), up = At(90 - incidence, 180);
+  const Direction side = {0, -1, 0};  // mirror x up
+  const double a = DegreesToRadians(azimuth), r = DegreesToRadians(radial);
+  Direction wo;
+  for (int k = 0; k < 3; ++k) {
+    wo[k] = std::cos(r) * mirror[k] + std::sin(r) * (std::cos(a) * up[k] + std::sin(a) * side[k]);
+  }
+  if (!(wo[2] > 0)) return {};
+  return TrueMaterial().brdf({At(incidence, 180), wo});
+}
+
+template <typename Value>
+std::string Block(const std::string& name, const Value& value) {
+  std::string text = name + "\nDataBegin\n";
+  for (const double incidence : kIncidences) {
+    text += "TIS 0.1\n";
+    for (const double azimuth : kAzimuths) {
+      for (const double radial : kRadials) {
+        text += Text(value(TruthAbout(incidence, azimuth, radial))) + " ";
+      }
+      text += "\n";
+    }
+  }
+  return text + "DataEnd\n";
+}
+
+std::string GeneratedHeader(const std::string& content) {
+  return "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent " + content +
+         "\nScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 2\n10 50\n"
+         "ScatterAzimuth 5\n0 45 90 135 180\nScatterRadial 3\n0 5 30\n\n";
+}
+
+TEST(ZemaxFile, ReadsBackAKnownMaterial) {
+  const Measurement grey = Parse(GeneratedHeader("Monochrome") +
+                                 Block("Monochrome", [](const Rgb& rho) { return rho[1]; }));
+  EXPECT_EQ(grey.counts.total, 2 * (1 + 5 * 2));
+  ExpectTruth(grey, /*grey=*/true);
+  std::string text = GeneratedHeader("RGB");
+  for (int c = 0; c < kChannels; ++c) {
+    text += Block(std::string("Tristimulus") + "RGB"[c], [c](const Rgb& rho) { return rho[c]; });
+  }
+  ExpectTruth(Parse(text), /*grey=*/false);
+}
+
+TEST(ZemaxFile, TristimulusValuesAreRelativeToWhite) {
+  // sRGB's primaries (IEC 61966-2-1) and white.
+  constexpr double kXyz[3][3] = {{0.4124564, 0.3575761, 0.1804375},
+                                 {0.2126729, 0.7151522, 0.0721750},
+                                 {0.0193339, 0.1191920, 0.9503041}};
+  constexpr double kWhite[] = {0.95047, 1, 1.08883};
+  std::string text = GeneratedHeader("XYZ");
+  for (int k = 0; k < 3; ++k) {
+    text += Block(std::string("Tristimulus") + "XYZ"[k], [&](const Rgb& rho) {
+      return (kXyz[k][0] * rho[0] + kXyz[k][1] * rho[1] + kXyz[k][2] * rho[2]) / kWhite[k];
+    });
+  }
+  const Measurement measurement = Parse(text);
+  ExpectTruth(measurement, /*grey=*/false, /*anisotropic=*/false, 1e-5);
+  EXPECT_THAT(measurement.notes, ElementsAre(HasSubstr("X, Y, Z relative to white")));
+  EXPECT_THAT(ParseError(text.substr(0, text.find("TristimulusZ"))),
+              HasSubstr("the file ends before TristimulusZ"));
+  EXPECT_THAT(ParseError(text.replace(text.find("TristimulusY"), 12, "TristimulusZ")),
+              HasSubstr("expected TristimulusY"));
 }
 
 TEST(ZemaxFile, ReadsARealMeasurement) {

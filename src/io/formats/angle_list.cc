@@ -1,0 +1,45 @@
+#include "io/formats/angle_list.h"
+
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+
+namespace trilobe {
+
+std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, const char* what) {
+  const std::vector<std::string> names(count, what);
+  std::vector<double> numbers;
+  ReadNumbers(lines, SplitWords(lines.line()), names, &numbers);
+  return numbers;
+}
+
+std::vector<double> ReadAngleList(const AngleList& list, std::string_view count_text,
+                                  TextLines* lines) {
+  const std::optional<double> count = ToNumber(count_text);
+  constexpr double kMost = 10000;
+  if (!count || !(*count >= 1 && *count <= kMost) || *count != std::floor(*count)) {
+    lines->Fail(std::string("expected the number of angles after ") + list.key);
+  }
+  if (!lines->Next()) lines->Fail(std::string("the angles of ") + list.key + " are missing");
+  std::vector<double> angles = ReadNumbersOfLine(*lines, static_cast<size_t>(*count), list.key);
+  for (size_t k = 0; k < angles.size(); ++k) {
+    std::ostringstream problem;
+    if (!(angles[k] >= list.min_deg && angles[k] <= list.max_deg)) {
+      problem << angles[k] << " is no such angle; expected degrees from " << list.min_deg << " to "
+              << list.max_deg;
+    } else if (k > 0 && !(angles[k] > angles[k - 1])) {
+      problem << angles[k] << " must be above the angle before it, " << angles[k - 1];
+    } else {
+      continue;
+    }
+    lines->FailAt(k, list.key, problem.str());
+  }
+  return angles;
+}
+
+size_t Distinct(const std::vector<double>& degrees) {
+  return degrees.size() - (degrees.size() > 1 && degrees.back() - degrees.front() == 360 ? 1 : 0);
+}
+
+}  // namespace trilobe
