@@ -30,6 +30,7 @@ from trilobe._measurement import Measurement, convert, read
 from trilobe._objective import Objective
 from trilobe._result import Record, Result
 from trilobe._table import Table
+from trilobe._uncertainty import Uncertainty
 
 __all__ = [
     "Brdf",
@@ -41,6 +42,7 @@ __all__ = [
     "Sample",
     "Solver",
     "Table",
+    "Uncertainty",
     "convert",
     "fit",
     "fit_many",

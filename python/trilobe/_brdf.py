@@ -176,7 +176,7 @@ class Brdf:
         check_width(wi, "wi", 3, "directions")
         check_width(u, "u", 2, "pairs of random numbers")
         shape = common_shape(wi, u)
-        out = np.empty((_count(shape), 7), wi.dtype)
+        out: Any = np.empty((_count(shape), 7), wi.dtype)
         self._material.sample(rows(wi, shape), rows(u, shape), out)
         out = out.reshape(*shape, 7)
         return Sample(out[..., :3], out[..., 3], out[..., 4:])
@@ -189,7 +189,7 @@ class Brdf:
         (wi,) = of_one_precision(wi=wi)
         check_width(wi, "wi", 3, "directions")
         shape = wi.shape[:-1]
-        out = np.empty((_count(shape), 3), wi.dtype)
+        out: Floats = np.empty((_count(shape), 3), wi.dtype)
         self._material.albedo(_all_rows(wi, shape), out)
         return out.reshape(*shape, 3)
 

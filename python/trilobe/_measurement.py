@@ -150,7 +150,7 @@ class Measurement:
         import pandas
 
         colours = dict(zip(CHANNELS, self.rho.T))
-        reason = pandas.Categorical.from_codes(self.reason.astype(int), self.reasons)
+        reason = pandas.Categorical.from_codes(self.reason.astype(np.int64), pandas.Index(self.reasons))
         return pandas.DataFrame({**self._angles(), **colours, "reason": reason})
 
     def _angles(self) -> dict[str, NDArray[np.float64]]:

@@ -20,7 +20,7 @@ Vector = NDArray[np.float64]
 
 
 class Uncertainty:
-    """Standard deviations of the numbers of a model, and what they follow from.
+    """Standard deviations of the numbers of a model, as `Result.uncertainty` returns them.
 
     Attributes:
         x: of all parameters, in the order of `Objective.parts`. [n]
@@ -45,6 +45,10 @@ class Uncertainty:
     D: Table
     F: Table
     G: Table
+
+    def __repr__(self) -> str:
+        """How many numbers it is of, and how many of them the data say nothing on."""
+        return f"<trilobe.Uncertainty of {len(self.x)} parameters, {int(np.isinf(self.x).sum())} of them unknown>"
 
 
 class _Steps:
@@ -96,7 +100,7 @@ def uncertainty(
     problem: Problem, model: Brdf, method: Any, replicates: Any, blocks: Any, seed: Any
 ) -> Uncertainty:
     """What `Result.uncertainty` returns."""
-    if method not in ("covariance", "bootstrap"):
+    if not isinstance(method, str) or method not in ("covariance", "bootstrap"):
         raise Error(f"unknown method {' '.join(repr(method).split())[:60]}; known: covariance, bootstrap")
     for name, value, least in (("replicates", replicates, 2), ("blocks", blocks, 1), ("seed", seed, 0)):
         if not isinstance(value, (int, np.integer)) or not least <= value <= 1_000_000:

@@ -43,6 +43,8 @@ def factors(
     `uncertainty`, as `Result.uncertainty()` returns it, is drawn as bands of two standard deviations to each side.
     """
     brdf = model_of(model)
+    if uncertainty is not None and not isinstance(uncertainty, Uncertainty):
+        raise Error("uncertainty must be what Result.uncertainty() returns")
     if uncertainty is not None and brdf.anisotropic:
         raise Error("bands are drawn of isotropic models alone")
     figure = _figure(figure, (11, 3.4) if not brdf.anisotropic else (11, 2.4 * max(brdf.lobes, 1)))

@@ -22,12 +22,12 @@ from trilobe._core import Error
 
 try:
     import torch
+    from torch import Tensor
 except ImportError:
     raise ImportError("trilobe.torch needs PyTorch: pip install torch") from None
 
 __all__ = ["Model", "eval"]
 
-Tensor = torch.Tensor
 _NAMES = ("d", "s", "D", "F", "G")
 _SMALL = 1e-12
 

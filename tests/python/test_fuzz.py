@@ -169,7 +169,8 @@ def test_reads_any_source(source, options):
 
 FIT_OPTIONS = ["model", "solver", "lobes", "stretch", "d_nodes", "g_nodes", "f_bins", "nodes", "init", "start",
                "weighting", "prior", "robust", "smoothness", "match_reflectance", "raw", "max_parameters", "seed",
-               "threads", "max_iterations", "max_seconds", "tolerance", "g_filter", "memory", "starts", "unheard_of"]
+               "threads", "max_iterations", "max_seconds", "tolerance", "g_filter", "memory", "starts", "weights",
+               "callback", "stop", "unheard_of"]
 names = st.sampled_from(["auto", "awls", "lm", "independent", "isotropic", "anisotropic", "moments", "log", "held_out",
                          "6x8", "4rx4"])
 
@@ -190,4 +191,15 @@ def test_fits_by_any_option(options):
     holds(lambda: result.model.eval([0, 0, 1], [0, 0, 1]))
 
 
+@needs_fits
+@settings
+@hypothesis.given(st.one_of(st.sampled_from(["covariance", "bootstrap"]), anything),
+                  st.dictionaries(st.sampled_from(["replicates", "blocks", "seed"]), anything, max_size=2))
+def test_is_uncertain_by_any_option(method, options):
+    if isinstance(options.get("replicates"), int):
+        options["replicates"] = min(options["replicates"], 3)  # of which each takes time
+    holds(lambda: FITTED.uncertainty(method, **{"replicates": 2, **options}))
+
+
 TINY = trilobe.read("synth:plastic@6x6x12") if has_fits() else None
+FITTED = trilobe.fit(TINY, progress=False, solver="awls", max_iterations=1) if has_fits() else None

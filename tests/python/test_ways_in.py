@@ -250,5 +250,6 @@ def test_draws_deviations_as_bands(fitted, tmp_path):
             assert drawn.max() == pytest.approx(high.max()) and drawn.min() == pytest.approx(max(low.min(), 0))
         assert len(axes.collections) == 3
     matplotlib.pyplot.close(figure)
-    with pytest.raises(trilobe.Error, match="of another model"):
-        plot.factors(isotropic(), uncertainty=told)
+    for other, error in ((told, "of another model"), (3, "what Result.uncertainty")):
+        with pytest.raises(trilobe.Error, match=error):
+            plot.factors(isotropic(), uncertainty=other)
