@@ -47,6 +47,10 @@ class Model(torch.nn.Module):
     ) -> None:
         """Makes parameters of the tables."""
         super().__init__()
+        if not isinstance(brdf, Brdf):
+            raise Error("the model must be a trilobe.Brdf")
+        if texels is not None and (not isinstance(texels, int) or texels < 1):
+            raise Error("texels must be an integer from 1, or None")
         self._form = brdf
         for name in _NAMES:
             table = torch.tensor(np.asarray(getattr(brdf, name)), dtype=dtype)
@@ -88,10 +92,21 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
         **parts: d, s, D, F or G in the place of the model's, perhaps with an axis of texels in front, which is then the
             first axis of the directions.
     """
+    if not isinstance(brdf, Brdf):
+        raise Error("the model must be a trilobe.Brdf")
+    for name, tensor in {"wi": wi, "wo": wo, **parts}.items():
+        if not isinstance(tensor, Tensor):
+            raise Error(f"{name} must be a tensor of PyTorch")
+    for name, w in (("wi", wi), ("wo", wo)):
+        if w.ndim == 0 or w.shape[-1] != 3:
+            raise Error(f"{name} has the shape {tuple(w.shape)}; directions are a tensor of the shape (..., 3)")
     unknown = set(parts) - set(_NAMES)
     if unknown:
         raise Error(f"there is no {min(unknown)}; there are d, s, D, F and G")
-    shape = np.broadcast_shapes(wi.shape, wo.shape)
+    try:
+        shape = np.broadcast_shapes(wi.shape, wo.shape)
+    except ValueError:
+        raise Error(f"shapes {tuple(wi.shape)} and {tuple(wo.shape)} do not go together") from None
     wi, wo = wi.expand(shape), wo.expand(shape)
     tables = {}
     texels = None

@@ -109,6 +109,20 @@ def test_says_what_is_wrong():
         trilobe.torch.eval(brdf, w, w, d=torch.ones(5, 3))
 
 
+@pytest.mark.parametrize(("ask", "told"), [
+    (lambda w: trilobe.torch.Model(3), r"must be a trilobe\.Brdf"),
+    (lambda w: trilobe.torch.eval("model.json", w, w), r"must be a trilobe\.Brdf"),
+    (lambda w: trilobe.torch.Model(isotropic(), texels=0), "texels must be an integer from 1"),
+    (lambda w: trilobe.torch.Model(isotropic())(w.numpy(), w), "wi must be a tensor"),
+    (lambda w: trilobe.torch.eval(isotropic(), w, w, d=[1, 1, 1]), "d must be a tensor"),
+    (lambda w: trilobe.torch.eval(isotropic(), w, w[:, :2]), r"wo has the shape \(1, 2\)"),
+    (lambda w: trilobe.torch.eval(isotropic(), torch.ones(4, 3), torch.ones(5, 3)), "do not go together"),
+])
+def test_says_in_a_line_what_is_wrong(ask, told):
+    with pytest.raises(trilobe.Error, match=told):
+        ask(torch.tensor([[0.0, 0.0, 1.0]]))
+
+
 def test_needs_torch_to_be_imported():
     hidden = "import sys; sys.modules['torch'] = None; import trilobe; trilobe.torch"
     run = subprocess.run([sys.executable, "-c", hidden], capture_output=True, text=True)
