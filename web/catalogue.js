@@ -1,5 +1,8 @@
 // Many fits on one page: sorted, filtered by name, and up to four of them side by side.
 
+import {drawCompared} from './catalogue_compare.js';
+import {element} from './dom.js';
+
 const fits = JSON.parse(document.getElementById('data').textContent);
 const figures = Array.from(document.querySelectorAll('main figure'));
 const main = document.querySelector('main');
@@ -15,17 +18,11 @@ const ORDERS = [
   ['name', null],
 ];
 
-function make(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
-
-const order = make('select', {}, ...ORDERS.map(([text], k) => make('option', {value: k, textContent: text})));
-const filter = make('input', {type: 'search', placeholder: 'Filter by name', ariaLabel: 'Filter by name'});
-const count = make('output', {});
-const compared = make('section', {id: 'compared', ariaLabel: 'Compared'});
-const tools = make('div', {className: 'tools'}, filter, make('label', {}, 'Order ', order), count);
+const order = element('select', {}, ...ORDERS.map(([text], k) => element('option', {value: k, textContent: text})));
+const filter = element('input', {type: 'search', placeholder: 'Filter by name', ariaLabel: 'Filter by name'});
+const count = element('output', {});
+const compared = element('section', {id: 'compared', ariaLabel: 'Compared'});
+const tools = element('div', {className: 'tools'}, filter, element('label', {}, 'Order ', order), count);
 
 function arrange() {
   const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -43,12 +40,15 @@ function arrange() {
 
 function compare() {
   const chosen = figures.filter(figure => figure.querySelector('input').checked);
-  compared.replaceChildren(...chosen.map(figure => {
+  const copies = chosen.map(figure => {
     const copy = figure.cloneNode(true);
     copy.hidden = false;
     copy.querySelector('label').remove();
     return copy;
-  }));
+  });
+  const common = element('p', {className: 'hint', textContent: 'Below each pair, its model under one light, with the exposure of the first, and how far it is from the first (white: not seen).'});
+  compared.replaceChildren(...(chosen.length > 1 ? [common] : []), ...copies);
+  drawCompared(chosen.map((figure, k) => ({...fits[figures.indexOf(figure)], figure: copies[k]}))).catch(error => (common.textContent = error.message));
   for (const figure of figures) {
     const box = figure.querySelector('input');
     box.disabled = chosen.length >= 4 && !box.checked;
@@ -57,9 +57,9 @@ function compare() {
 
 if (figures.length > 0) {
   figures.forEach((figure, k) => {
-    const box = make('input', {type: 'checkbox', ariaLabel: `Compare ${fits[k].name}`});
+    const box = element('input', {type: 'checkbox', ariaLabel: `Compare ${fits[k].name}`});
     box.addEventListener('change', compare);
-    figure.querySelector('figcaption').append(make('label', {}, box, ' compare'));
+    figure.querySelector('figcaption').append(element('label', {}, box, ' compare'));
   });
   main.before(tools, compared);
   order.addEventListener('change', arrange);

@@ -7,11 +7,19 @@ import {directionsOf} from './measured.js';
 const MOST = Math.log(100);  // what is black counts as so much too dark
 const logRatio = (fitted, measured) => Math.min(Math.max(Math.log(fitted / measured), -MOST), MOST);
 
+const WITHIN = 10;  // degrees of phi_d, where nothing has bins of it
+const isNear = (phi, degrees) => degrees === null || Math.abs(((phi * 180) / Math.PI - degrees + 270) % 180 - 90) <= WITHIN;
+
+function turnedBy([x, y, z], angle) {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  return [c * x - s * y, s * x + c * y, z];
+}
+
 // Mean log ratio of fitted over measured in `size` x `size` bins of (theta_h, theta_d), NaN where nothing was
 // measured: {size, ratio: Float32Array, typical, bias, hardlySeen: Uint8Array}. Where it is seen, `bias` is the mean of
 // the logs and `typical` that of their sizes. theta_h by its root, as in the tables, which have `size` bins or more: else
-// some would be empty.
-export function differenceMap(measured, evaluate, size = 45) {
+// some would be empty. With `phiD` [degrees] of directions about there alone, and hardlySeen as in the map `like`.
+export function differenceMap(measured, evaluate, {size = 45, phiD = null, like = null}) {
   const sums = new Float64Array(size * size), weights = new Float64Array(size * size);
   const [light, density, pairs] = [0, 1, 2].map(() => new Float64Array(size * size));
   const absolute = new Float64Array(size * size);
@@ -26,18 +34,26 @@ export function differenceMap(measured, evaluate, size = 45) {
     weights[bin] += 1;
     absolute[bin] += Math.abs(log);
   };
-  if (measured.kind === 'table') {
-    const {shape: [nh, nd, np], rgb, valid} = measured;
+  // Of another model, at azimuths that spread, as it may be anisotropic.
+  const addTurned = (wi, wo, p, bin, solidAngle) => {
+    const [i, o] = [wi, wo].map(w => turnedBy(w, p * Math.PI * (3 - Math.sqrt(5))));
+    add(i, o, measured.rho(i, o), bin, solidAngle);
+  };
+  if (measured.kind !== 'nodes') {
+    const {shape: [nh, nd, np], rgb, valid, kind} = measured;
     for (let h = 0; h < nh; ++h) {
       const thetaH = ((h + 0.5) / nh) ** 2 * (Math.PI / 2), row = Math.floor(((h + 0.5) / nh) * size) * size;
       for (let d = 0; d < nd; ++d) {
         const thetaD = ((d + 0.5) / nd) * (Math.PI / 2), bin = row + Math.floor(((d + 0.5) / nd) * size);
         const solidAngle = Math.sqrt(thetaH) * Math.sin(thetaH) * Math.sin(thetaD) * Math.cos(thetaD);
-        const known = Array.from({length: np}, (_, p) => p).filter(p => valid[(h * nd + d) * np + p]);
+        const all = phiD === null ? Array.from({length: np}, (_, p) => p) : [Math.floor((phiD / 180) * np)];
+        const known = all.filter(p => kind === 'model' || valid[(h * nd + d) * np + p]);
         for (let n = 0; n < known.length; n += Math.ceil(known.length / 8)) {  // nothing is narrow in phi_d
           const p = known[n], k = (h * nd + d) * np + p;
           const [wi, wo] = directionsOf(thetaH, thetaD, ((p + 0.5) / np) * Math.PI);
-          if (wi[2] > 0 && wo[2] > 0) add(wi, wo, [rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]], bin, solidAngle);
+          if (!(wi[2] > 0 && wo[2] > 0)) continue;
+          if (kind === 'model') addTurned(wi, wo, p, bin, solidAngle);
+          else add(wi, wo, [rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]], bin, solidAngle);
         }
       }
     }
@@ -52,6 +68,7 @@ export function differenceMap(measured, evaluate, size = 45) {
       const i = Math.floor(k / nodes), o = k % nodes;
       if (!valid[k] || !(w[i][2] > 0 && w[o][2] > 0)) continue;
       const at = anglesOf(w[i], w[o]);
+      if (!isNear(at.phi_d, phiD)) continue;
       const h = Math.min(Math.floor(Math.sqrt(at.theta_h / (Math.PI / 2)) * size), size - 1);
       const d = Math.min(Math.floor((at.theta_d / (Math.PI / 2)) * size), size - 1);
       add(w[i], w[o], rgb.subarray(3 * k, 3 * k + 3), h * size + d, Math.sqrt((1 - w[i][2] ** 2) * (1 - w[o][2] ** 2)));
@@ -59,7 +76,7 @@ export function differenceMap(measured, evaluate, size = 45) {
   }
   const ratio = Float32Array.from(sums, (s, k) => (weights[k] > 0 ? s / weights[k] : NaN));
   for (let k = 0; k < pairs.length; ++k) density[k] /= Math.max(pairs[k], 1);
-  const unseen = hardlySeen(light, density, pairs), ofSeen = list => list.reduce((sum, x, k) => sum + (unseen[k] ? 0 : x), 0);
+  const unseen = like?.hardlySeen ?? hardlySeen(light, density, pairs), ofSeen = list => list.reduce((sum, x, k) => sum + (unseen[k] ? 0 : x), 0);
   const count = ofSeen(weights);
   return {size, ratio, typical: ofSeen(absolute) / count, bias: ofSeen(sums) / count, hardlySeen: unseen};
 }
@@ -80,11 +97,12 @@ function hardlySeen(light, density, pairs) {
 }
 
 // Of samples: {points: [{theta_h, theta_d, log}], typical, bias}.
-export function differencePoints({samples}, evaluate) {
+export function differencePoints({samples}, evaluate, phiD = null) {
   const points = [];
   for (const {wi, wo, rho} of samples) {
     if (!(luminance(rho) > 0)) continue;
     const at = anglesOf(wi, wo);
+    if (!isNear(at.phi_d, phiD)) continue;
     points.push({theta_h: at.theta_h, theta_d: at.theta_d, log: logRatio(luminance(evaluate(wi, wo).rho), luminance(rho))});
   }
   const mean = of => points.reduce((sum, p) => sum + of(p.log), 0) / points.length;

@@ -1,9 +1,11 @@
 // The panel in which the model is changed, and the switches of its lobes.
 
+import {makeChartChoices} from './charts.js';
 import {byId, element, swatch} from './dom.js';
 import {editedModel, hexOf, isEdited, noEdit} from './edit.js';
 import {evaluatorOf} from './model.js';
-import {lobeColor, lobeName, page, state} from './page_state.js';
+import {forget, lobeColor, lobeName, page, state} from './page_state.js';
+import {help} from './words.js';
 
 // Set by main.js: what else changes with the model, and what follows a change that is done.
 export const onEdit = {change: () => {}, settle: () => {}};
@@ -11,9 +13,8 @@ export const onEdit = {change: () => {}, settle: () => {}};
 export function applyEdit() {
   page.model = editedModel(page.base, state.edit);
   page.evaluate = evaluatorOf(page.model);
-  page.heat = page.seen = null;
   page.renderer.setModel(page.model);
-  page.chartsStale = true;
+  forget();
   showEdits();
   onEdit.change();
 }
@@ -51,7 +52,8 @@ function slider(label, get, set, [min, max, step], from = x => x, to = x => x) {
     output.textContent = text();
     input.setAttribute('aria-valuetext', text());
   });
-  return [label.split(': ').at(-1), input, output];
+  const word = label.split(': ').at(-1);
+  return [word === 'rise of F' || label === 'Lobe 1: roughness' ? element('span', {}, word, ' ', help(word === 'roughness' ? word : 'rise')) : word, input, output];
 }
 function logSlider(label, get, set, range) {
   return slider(label, get, set, range, x => Math.log2(Math.max(x, 2 ** range[0])), x => 2 ** x);
@@ -111,6 +113,7 @@ export function makeEdits() {
   });
   const diffuse = chip('diffuse', '#999', () => state.edit.diffuseOn, (e, on) => (e.diffuseOn = on), 'diffuse');
   byId('lobes').replaceChildren(...chips, element('span', {className: 'chip'}, diffuse, aloneButton('the diffuse term', -1)));
+  makeChartChoices();
   byId('disc-lobe').replaceChildren(...base.s.map((_, m) => element('option', {value: m, textContent: m + 1})));
 }
 

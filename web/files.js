@@ -1,11 +1,12 @@
-// Files that are dropped on the page or opened: models and measurements.
+// Files that are dropped on the page or opened: models, two of them beside each other; measurements; and light.
 
 import {byId, tell} from './dom.js';
 import {History, noEdit} from './edit.js';
 import {applyEdit, makeEdits} from './edits.js';
 import {parseMerl} from './measured.js';
 import {evaluatorOf, parseModel} from './model.js';
-import {hasSamples, page, state} from './page_state.js';
+import {forget, hasSamples, page, state} from './page_state.js';
+import {parseRadiance} from './radiance.js';
 import {parseCsv, usualThetaI} from './samples.js';
 
 function takeModel(name, parsed) {
@@ -26,29 +27,52 @@ function takeMeasured(name, measured) {
   if (hasSamples()) state.thetaI = usualThetaI(measured);
 }
 
-// `shown` follows.
-async function openFile(file, shown) {
+// In place of a measurement.
+function takeModelBeside(name, model) {
+  const evaluate = evaluatorOf(model), rho = (wi, wo) => evaluate(wi, wo).rho;
+  const distinct = page.modelFile.name !== name ? name : `${name} (${model.json.fit?.source || 'the other'})`;
+  takeMeasured(distinct, {kind: 'model', model, rho, shape: [45, 45, 16]});
+}
+
+function takeLight(name, environment) {
+  page.environment = environment;
+  page.lightFile = {name};
+  state.light = 'environment';
+  state.around = 0;
+  page.renderer.setEnvironment(environment);
+}
+
+// `shown` follows. `second`: a model goes beside the one that was opened with it.
+async function openFile(file, second, shown) {
   try {
     if (file.size > 200e6) throw new Error('the file is larger than 200 MB');
     const head = await file.slice(0, 400).text(), first = head.trimStart();
     if (first.startsWith('{')) {
       if (file.size > 16e6) throw new Error('a model of more than 16 MB');
-      takeModel(file.name, parseModel(await file.text()));
+      const model = parseModel(await file.text());
+      if (second) takeModelBeside(file.name, model);
+      else takeModel(file.name, model);
+    } else if (head.startsWith('#?')) {
+      takeLight(file.name, parseRadiance(file.name, await file.arrayBuffer()));
     } else if (/theta_i/.test(head) || /\.csv$/i.test(file.name)) {
       takeMeasured(file.name, parseCsv(await file.text()));
     } else {
       takeMeasured(file.name, parseMerl(await file.arrayBuffer()));
     }
+    forget();
     shown();
     tell(`Opened ${file.name}.`, true);
+    return first.startsWith('{');
   } catch (error) {
     tell(`${file.name}: ${error.message}.`);
+    return false;
   }
 }
 
 export function listenToFiles(shown) {
   const openAll = async files => {
-    for (const file of files) await openFile(file, shown);
+    let second = false;
+    for (const file of files) second = (await openFile(file, second, shown)) || second;
   };
   byId('open').addEventListener('click', () => byId('file').click());
   byId('file').addEventListener('change', async () => {

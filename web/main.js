@@ -1,21 +1,23 @@
 // The page of one model: its beginning, and its controls.
 
-import {drawCharts, maxAngle} from './charts.js';
+import {drawCharts} from './charts.js';
 import {DEGREES, byId, download, element, isDark, tell} from './dom.js';
 import {listenToFiles} from './files.js';
-import {bytesOf, decodeMeasured} from './measured.js';
+import {bytesOf, decodeMeasured, directionsOf} from './measured.js';
 import {History, checkedEdit, editedModel, noEdit} from './edit.js';
 import {listenToEdits, makeEdits, onEdit, showEdits} from './edits.js';
 import {probeEnvironment, studioEnvironment} from './environment.js';
 import {visibilityOf} from './judge.js';
+import {listenToMap} from './map.js';
 import {evaluatorOf, formatModel, isNearlyDiffuse, parseModel} from './model.js';
-import {DRAGS, LIGHTS, VIEWS, contents, edited, hasSamples, isPictured, lampDirection, modelFileName, page, state, stateText, takeState, whatTheLinkHolds} from './page_state.js';
+import {DRAGS, LIGHTS, VIEWS, contents, edited, forget, hasSamples, isModelBeside, isPictured, lampDirection, maxAngle, modelFileName, page, state, stateText, takeState, whatTheLinkHolds} from './page_state.js';
 import {applyLight, applyObject, drawPicture, frame, judge, layout, listenForRest} from './picture.js';
 import {listenToPointer} from './pointer.js';
 import {lookAgain, showNumbers} from './readout.js';
 import {Renderer} from './renderer.js';
 import {showFacts, showVerdict} from './said.js';
 import {decodeSamples, usualThetaI} from './samples.js';
+import {listenToHelp} from './words.js';
 
 function makeSegments(id, entries, key, change) {
   const legend = byId(id).querySelector('legend');
@@ -38,13 +40,16 @@ function showView() {
 // A file has come: all that is shown is of what the page holds now.
 function filesChanged() {
   if (!isPictured()) state.view = 'fitted';
-  makeSegments('views', isPictured() ? VIEWS.compared : VIEWS.alone, 'view', showView);
+  const names = isModelBeside() ? {measured: 'Beside', fitted: 'Model'} : {}, views = isPictured() ? VIEWS.compared : VIEWS.alone;
+  makeSegments('views', views.map(([value, text]) => [value, names[value] ?? text]), 'view', showView);
+  makeSegments('lights', LIGHTS, 'light', applyLight);
   byId('views').hidden = !isPictured();
   byId('guess-key').hidden = !isPictured() && maxAngle() >= 90;
-  page.heat = page.seen = null;
-  page.chartsStale = true;
+  forget();
   page.renderer.leastCosine = maxAngle() < 90 ? Math.cos(maxAngle() / DEGREES) : 0;
   page.renderer.setMeasured(isPictured() ? page.measured : null);
+  page.renderer.lamp = state.light === 'lamp' ? lampDirection() : null;
+  page.renderer.environmentTurn = state.around;
   showControls();
   showVerdict();
   showFacts();
@@ -112,7 +117,7 @@ function listenToControls() {
     state.thetaI = Number(byId('polar-theta').value);
     page.chartsStale = true;
   });
-  for (const id of ['disc-lobe', 'chart-channel']) byId(id).addEventListener('change', () => (page.chartsStale = true));
+  for (const id of ['disc-lobe', 'chart-lobe', 'chart-channel']) byId(id).addEventListener('change', () => (page.chartsStale = true));
   byId('save').addEventListener('click', () => {
     download(formatModel(editedModel(page.base, state.edit), edited() ? 'in a page' : null), 'application/json', `${modelFileName()}.json`);
     tell('The model is among your downloads.', true);
@@ -139,6 +144,8 @@ function listen() {
   listenToControls();
   listenToPointer();
   listenToEdits();
+  listenToMap();
+  listenToHelp();
   listenToFiles(filesChanged);
   listenForRest();
   listenToPrint();
@@ -183,7 +190,6 @@ async function begin() {
   renderer.lamp = state.light === 'lamp' ? lampDirection() : null;
   renderer.environmentTurn = state.around;
   renderer.setModel(page.model);
-  makeSegments('lights', LIGHTS, 'light', applyLight);
   makeSegments('drags', DRAGS, 'drag', () => {});
   makeEdits();
   filesChanged();
@@ -195,7 +201,7 @@ async function begin() {
 
 // For tests, and for those who look.
 window.trilobe = {state, contents, page, get renderer() { return page.renderer; }, get model() { return page.model; },
-                  isNearlyDiffuse, visibilityOf};
+                  directionsOf, isNearlyDiffuse, visibilityOf};
 begin().catch(error => {
   tell(error.message);
   console.warn(error);

@@ -2,7 +2,7 @@
 
 import {byId, tell} from './dom.js';
 import {isEdited} from './edit.js';
-import {brightestDirection} from './environment.js';
+import {DEGREE, brightestDirection} from './environment.js';
 import {isNearlyDiffuse} from './model.js';
 import {LOBE_COLORS} from './plots.js';
 
@@ -19,15 +19,16 @@ export const DRAGS = [['light', 'Light'], ['object', 'Object']];
 // Settings, which a link holds.
 export const state = {
   view: 'fitted', object: 'sphere', light: 'environment', lamp: [-0.35, 0.4], around: 0, turn: [0, 0], exposure: 0, wipe: 0.5,
-  theme: null, size: 0, edit: null, thetaI: 45, drag: 'light',
+  theme: null, size: 0, edit: null, thetaI: 45, phiD: null, drag: 'light',
+  log: {D: true, F: null, G: null, slice: true, albedo: false, trace: true},  // null: by the values
 };
 
 // The rest. `model` is `base` with the edit; `measured` a table, nodes or samples, or null. Of each file, its name and
-// whether it was dropped on the page. `seen` is how far apart the two are as shown.
+// whether it was dropped on the page; `measured` may also be another model. `seen` is how far apart the two are as shown.
 export const page = {
   base: null, model: null, evaluate: null, measured: null, environment: null, renderer: null, history: null,
   modelFile: {name: contents.name, dropped: false}, measuredFile: contents.measured ? {name: contents.source, dropped: false} : null,
-  point: null, dragging: null, seen: null, heat: null,
+  lightFile: null, point: null, dragging: null, seen: null, heat: null, heatAt: null, albedo: null,
   pictureStale: true, chartsStale: true,
 };
 
@@ -35,10 +36,23 @@ export const hasMeasured = () => page.measured !== null;
 export const hasSamples = () => page.measured?.kind === 'samples';
 // Whether there is a picture of what was measured.
 export const isPictured = () => hasMeasured() && !hasSamples();
+export const isModelBeside = () => page.measured?.kind === 'model';
 export const edited = () => isEdited(state.edit, page.base);
 export const lobesText = model => `${model.lobes} ${model.lobes === 1 ? 'lobe' : 'lobes'}`;
 export const lobeName = m => `lobe ${m + 1}${isNearlyDiffuse(page.base, m) ? ' (nearly diffuse)' : ''}`;
 export const lobeColor = m => LOBE_COLORS[m % LOBE_COLORS.length];
+
+// What was computed of the model and what is beside it.
+export function forget() {
+  page.heat = page.heatAt = page.seen = page.albedo = null;
+  page.chartsStale = true;
+}
+
+// The largest angle that was measured [degrees], 90 if nothing says less.
+export function maxAngle() {
+  if (page.measured?.maxTheta) return page.measured.maxTheta / DEGREE;
+  return hasMeasured() ? 90 : page.base.json.fit?.max_angle ?? 90;
+}
 
 // ---- Names -------------------------------------------------------------------------------------------------------
 
@@ -52,6 +66,9 @@ export function heading() {
   const {modelFile, measuredFile} = page;
   return measuredFile && !asItCame() ? `${modelFile.name} beside ${measuredFile.name}` : modelFile.name;
 }
+// What is beside the model, for a title and within a sentence.
+export const referenceTitle = () => (isModelBeside() ? page.measuredFile.name : 'Measured');
+export const referenceWord = () => (isModelBeside() ? 'beside' : 'measured');
 // Of the model, for files.
 export function modelFileName() {
   const name = page.modelFile.name.replace(/\.json$/i, '').replace(/[^\w.-]+/g, '_');
@@ -62,13 +79,13 @@ export function modelFileName() {
 
 export function stateText() {
   const dropped = droppedFiles();
-  const kept = {...state, edit: edited() ? state.edit : undefined, dropped: dropped.length > 0 ? dropped : undefined};
+  const kept = {...state, edit: edited() ? state.edit : undefined, dropped: dropped.length > 0 ? dropped : undefined, lightFile: page.lightFile?.name};
   const bytes = new TextEncoder().encode(JSON.stringify(kept));
   return btoa(String.fromCharCode(...bytes)).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
 }
 
 export function whatTheLinkHolds() {
-  const dropped = droppedFiles();
+  const dropped = [...droppedFiles(), ...(page.lightFile ? [page.lightFile.name] : [])];
   return dropped.length === 0 ? 'it opens this page as it looks now'
     : `it holds the settings, but not ${dropped.join(' and ')}, to be dropped on the page again`;
 }
@@ -93,11 +110,14 @@ export function takeState(text) {
     number('wipe', 0, 1);
     number('size', 0, 512);
     number('thetaI', 0, 85);
+    number('phiD', 0, 175);
+    for (const key of Object.keys(state.log)) if (typeof given.log?.[key] === 'boolean') state.log[key] = given.log[key];
     const dropped = Array.isArray(given.dropped) ? given.dropped.filter(name => typeof name === 'string') : [];
     // An edit is of the model that it was made on.
     state.edit = dropped.length > 0 ? null : given.edit ?? null;
-    if (dropped.length > 0) {
-      tell(`The link was made with ${dropped.join(' and ')}, which it does not hold; drop ${dropped.length > 1 ? 'them' : 'it'} here to see the same.`);
+    const missing = typeof given.lightFile === 'string' ? [...dropped, given.lightFile] : dropped;
+    if (missing.length > 0) {
+      tell(`The link was made with ${missing.join(' and ')}, which it does not hold; drop ${missing.length > 1 ? 'them' : 'it'} here to see the same.`);
     }
   } catch {
     tell('The link holds no state that this page knows; it shows the model as it is.');

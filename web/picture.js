@@ -1,7 +1,9 @@
 // The picture: where its panels are, what stands below them, and when it is drawn again.
 
+import {continueAlbedo} from './albedo.js';
 import {byId, element, tell} from './dom.js';
 import {drawCharts} from './charts.js';
+import {drawAlbedo} from './light_charts.js';
 import {compareImages, compareSamples} from './judge.js';
 import {edited, hasSamples, isPictured, lampDirection, page, state} from './page_state.js';
 import {lookAgain} from './readout.js';
@@ -133,6 +135,7 @@ export function frame(now) {
     if (renderer.work(!edited())) page.pictureStale = true;
     if (page.pictureStale) drawPicture();
     if (page.chartsStale && renderer.shown) drawCharts();  // after the first picture, which people wait for
+    else if (renderer.shown && !renderer.pending && !page.dragging && continueAlbedo()) drawAlbedo();
     showProgress();
   } catch (error) {
     tell(error.message);

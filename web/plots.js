@@ -3,6 +3,7 @@
 // Those of factors.png (src/io/pictures/gnuplot.h).
 export const LOBE_COLORS = ['#E69F00', '#56B4E9', '#CC79A7', '#8E6BBF', '#8C6D31', '#23939C', '#7D7D7D', '#A8A800'];
 export const CHANNEL_COLORS = ['#D55E00', '#009E73', '#0072B2'];
+export const CHANNEL_NAMES = ['red', 'green', 'blue'];
 
 function styleOf(canvas) {
   const style = getComputedStyle(canvas);
@@ -39,114 +40,6 @@ function hatch(context, color, [left, top, width, height], path, thick = 1, step
   }
   context.stroke();
   context.restore();
-}
-
-// series: [{points: [[x, y]...], color, width, dash, dots}]; x: {min, max, ticks: [[value, text]], map}; y: {log, min, max,
-// label}; marks: [{x, text, color}]; hatched where x is more than `known`.
-export function drawLines(canvas, {series, x, y, marks = [], known = Infinity}) {
-  const made = prepare(canvas);
-  if (!made) return;
-  const {context, width, height} = made, style = styleOf(canvas);
-  const left = 40, right = 8, top = 8, bottom = 20;
-  const values = series.flatMap(s => s.points.map(p => p[1])).filter(v => Number.isFinite(v) && (!y.log || v > 0));
-  if (values.length === 0) return;
-  let low = y.min ?? Math.min(...values), high = y.max ?? Math.max(...values);
-  if (y.log) {
-    low = Math.max(low, high * (y.decades ? 10 ** -y.decades : 1e-12));
-    [low, high] = [Math.log10(low), Math.log10(high)];
-  }
-  if (!(high > low)) [low, high] = [low - 0.5, high + 0.5];
-  const padding = 0.04 * (high - low);
-  if (y.min === undefined || y.log) low -= padding;
-  high += padding;
-  const map = x.map ?? (v => v);
-  const px = v => left + ((map(v) - map(x.min)) / (map(x.max) - map(x.min))) * (width - left - right);
-  const py = v => {
-    const t = ((y.log ? Math.log10(Math.max(v, 1e-300)) : v) - low) / (high - low);
-    return top + (1 - Math.min(Math.max(t, -0.02), 1.02)) * (height - top - bottom);
-  };
-  context.strokeStyle = style.line;
-  context.fillStyle = style.text;
-  context.lineWidth = 1;
-  const grid = y.log
-    ? Array.from({length: Math.floor(high) - Math.ceil(low) + 1}, (_, k) => Math.ceil(low) + k)
-        .filter((d, _, all) => all.length < 5 || d % Math.ceil(all.length / 4) === 0).map(d => [10 ** d, `10${superscript(d)}`])
-    : niceTicks(low, high).map(v => [v, String(+v.toPrecision(3))]);
-  context.textAlign = 'right';
-  context.textBaseline = 'middle';
-  for (const [v, text] of grid) {
-    context.beginPath();
-    context.moveTo(left, py(v));
-    context.lineTo(width - right, py(v));
-    context.stroke();
-    context.fillText(text, left - 5, py(v));
-  }
-  context.textAlign = 'center';
-  context.textBaseline = 'top';
-  for (const [v, text] of x.ticks) {
-    context.beginPath();
-    context.moveTo(px(v), top);
-    context.lineTo(px(v), height - bottom);
-    context.stroke();
-    context.textAlign = v === x.max ? 'right' : 'center';
-    context.fillText(text, v === x.max ? px(v) + 4 : px(v), height - bottom + 5);
-  }
-  if (known < x.max) {
-    const box = [px(known), top, width - right - px(known), height - top - bottom];
-    hatch(context, style.line, box, () => context.rect(...box));
-  }
-  context.save();
-  context.beginPath();
-  context.rect(left - 3, top - 3, width - left - right + 6, height - top - bottom + 6);
-  context.clip();
-  for (const {points, color, width: thick = 2, dash = [], dots = false} of series) {
-    context.strokeStyle = context.fillStyle = color;
-    context.lineWidth = thick;
-    context.setLineDash(dash);
-    context.beginPath();
-    let pen = false;
-    for (const [a, b] of points) {
-      if (!Number.isFinite(b) || (y.log && !(b > 0))) {
-        pen = false;
-        continue;
-      }
-      if (dots) {
-        context.moveTo(px(a) + 2, py(b));
-        context.arc(px(a), py(b), 2, 0, 7);
-      } else if (pen) context.lineTo(px(a), py(b));
-      else context.moveTo(px(a), py(b));
-      pen = true;
-    }
-    if (dots) context.fill();
-    else context.stroke();
-  }
-  context.setLineDash([]);
-  for (const {x: at, color} of marks) {
-    context.strokeStyle = color ?? style.strong;
-    context.lineWidth = 1.5;
-    context.beginPath();
-    context.moveTo(px(at), top);
-    context.lineTo(px(at), height - bottom);
-    context.stroke();
-  }
-  context.restore();
-  context.fillStyle = style.strong;
-  context.textBaseline = 'top';
-  for (const {x: at, text} of marks) {
-    if (!text) continue;
-    context.textAlign = px(at) > width - 60 ? 'right' : 'left';
-    context.fillText(text, px(at) + (context.textAlign === 'left' ? 4 : -4), top);
-  }
-}
-
-function superscript(n) {
-  return String(n).replace(/./g, c => ({'-': '⁻'})[c] ?? '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)]);
-}
-
-function niceTicks(low, high) {
-  const rough = (high - low) / 3, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map(m => m * power).find(s => s >= rough);
-  return Array.from({length: Math.floor(high / step) - Math.ceil(low / step) + 1}, (_, k) => (Math.ceil(low / step) + k) * step);
 }
 
 // Blue where the fit is too dark, over what cannot be seen, to red where it is too bright.
@@ -189,6 +82,27 @@ export function drawHeat(canvas, map, mark, dark) {
       context.stroke();
     }
   }
+}
+
+// What the colours of a map stand for, with these percents.
+export function drawScale(canvas, percents, dark) {
+  const made = prepare(canvas);
+  if (!made) return;
+  const {context, width} = made, left = 40, w = width - 48, most = Math.log(1.5);
+  for (let x = 0; x < w; ++x) {
+    context.fillStyle = `rgb(${logColor((2 * (x + 0.5) / w - 1) * most, dark)})`;
+    context.fillRect(left + x, 2, 1.5, 9);
+  }
+  context.fillStyle = styleOf(canvas).text;
+  context.textBaseline = 'top';
+  context.textAlign = 'center';
+  percents.forEach((percent, k) => {
+    if (width < 360 && k > 0 && k < percents.length - 1 && percent % 25 !== 0) return;
+    const ends = k === 0 ? '≤ ' : k === percents.length - 1 ? '≥ ' : '', sign = percent < 0 ? '−' : percent > 0 ? '+' : '';
+    const x = Math.min(Math.max(Math.log(1 + percent / 100) / most, -1), 1);
+    context.textAlign = k === 0 ? 'left' : k === percents.length - 1 ? 'right' : 'center';
+    context.fillText(`${ends}${sign}${Math.abs(percent)} %`, left + ((x + 1) / 2) * w, 15);
+  });
 }
 
 function drawBins(context, {size, ratio, hardlySeen}, box, style, dark) {
@@ -287,10 +201,10 @@ export function drawPolar(canvas, curves, thetaI, known) {
   context.setLineDash([]);
 }
 
-// A table over a hemisphere seen from above: theta outwards, phi around.
+// A table over a hemisphere seen from above: theta outwards, phi around. Returns the range of its colours.
 export function drawDisc(canvas, table, axis, color, mark) {
   const made = prepare(canvas);
-  if (!made) return;
+  if (!made) return [NaN, NaN];
   const {context, width, height} = made, style = styleOf(canvas), size = 160;
   const values = Array.from(table).filter(v => v > 0), high = Math.log(Math.max(...values, 1e-12));
   const low = Math.max(Math.log(Math.min(...values, 1)), high - 9);
@@ -316,11 +230,12 @@ export function drawDisc(canvas, table, axis, color, mark) {
   small.getContext('2d').putImageData(image, 0, 0);
   const side = Math.min(width, height) - 8, x0 = (width - side) / 2, y0 = (height - side) / 2;
   context.drawImage(small, x0, y0, side, side);
-  if (!mark) return;
+  if (!mark) return [Math.exp(low), Math.exp(high)];
   const r = (mark[0] / 90) * (side / 2);
   context.strokeStyle = style.strong;
   context.lineWidth = 2;
   context.beginPath();
   context.arc(x0 + side / 2 + r * Math.cos(mark[1]), y0 + side / 2 - r * Math.sin(mark[1]), 5, 0, 7);
   context.stroke();
+  return [Math.exp(low), Math.exp(high)];
 }

@@ -13,7 +13,7 @@ function moveLine(at) {
 
 function turnObject(by) {
   state.turn = [state.turn[0] + by[0], state.turn[1] + by[1]];
-  if (state.object === 'sphere' && !page.model.anisotropic && page.measured?.kind !== 'nodes') {
+  if (state.object === 'sphere' && !page.model.anisotropic && page.measured?.kind !== 'nodes' && !page.measured?.model?.anisotropic) {
     state.turn = [0, 0];
     tell('A sphere of this material looks alike from all sides; choose another object to turn it.', true);
     return;

@@ -1,25 +1,13 @@
 // The numbers under the pointer.
 
+import {albedo} from './albedo.js';
 import {DEGREES, byId, element, short, shortAngle} from './dom.js';
-import {halfCells} from './environment.js';
 import {anglesOf} from './model.js';
-import {hasMeasured, hasSamples, lightDirection, page, state} from './page_state.js';
+import {hasMeasured, hasSamples, lightDirection, page, referenceWord, state} from './page_state.js';
 import {nearestSample} from './samples.js';
+import {help} from './words.js';
 
 const NEAR = 7.5;  // degrees from a sample within which it is told, as trilobe/model/measurement/measured_share.h has it
-
-const cells = halfCells();
-export function albedo(theta) {
-  const wo = [Math.sin(theta), 0, Math.cos(theta)], sum = [0, 0, 0];
-  for (let k = 0; k < cells.length; k += 4) {
-    const h = [cells[k], cells[k + 1], cells[k + 2]], along = wo[0] * h[0] + wo[2] * h[2];
-    const wi = h.map((x, a) => 2 * along * x - wo[a]);
-    if (!(along > 0 && wi[2] > 0)) continue;
-    const {rho} = page.evaluate(wi, wo);
-    for (let c = 0; c < 3; ++c) sum[c] += rho[c] * wi[2] * 4 * along * cells[k + 3];
-  }
-  return sum;
-}
 
 // At (x, y) of the object, from -1 to 1.
 export function lookAt(at) {
@@ -44,18 +32,32 @@ export function lookAgain() {
 
 // What was measured there: {title, rho, at}, rho null if nothing was, `at` the directions of the nearest sample.
 function measuredAt(point) {
-  if (!hasSamples()) return {title: 'ρ measured', rho: point && page.measured.rho(point.wi, point.wo)};
+  if (!hasSamples()) return {title: `ρ ${referenceWord()}`, rho: point && page.measured.rho(point.wi, point.wo)};
   const nearest = point && nearestSample(page.measured, point.wi, point.wo);
   if (!nearest || nearest.degrees > NEAR) return {title: 'ρ measured', rho: null, why: point ? `no sample within ${NEAR}°` : ''};
   return {title: `ρ measured ${shortAngle(nearest.degrees)} away`, rho: nearest.sample.rho, at: nearest.sample};
 }
 
-const rowOf = (title, ...values) => element('tr', {}, element('th', {textContent: title, scope: 'row'}),
-                                            ...values.map(v => element('td', {textContent: v})));
-function wideRow(title, value) {
-  const row = rowOf(title, value);
-  row.lastChild.colSpan = 3;
-  return row;
+const HELP = {angles: 'angles', '1/sr': 'rho', 'albedo at θo': 'albedo', 'pdf of wi': 'pdf'};
+
+function headOf(title) {
+  const head = element('th', {scope: 'row'}, title);
+  if (HELP[title]) head.append(' ', help(HELP[title]));
+  return head;
+}
+
+// [title, values]: three of them, or one across.
+function showRows(rows) {
+  const body = byId('numbers'), titles = rows.map(([title]) => title).join();
+  if (body.dataset.titles !== titles) {  // else a word that is explained stays so
+    body.dataset.titles = titles;
+    body.replaceChildren(...rows.map(([title]) => element('tr', {}, headOf(title))));
+  }
+  rows.forEach(([, values], k) => {
+    const row = body.rows[k], list = Array.isArray(values) ? values : [values];
+    while (row.cells.length > 1) row.lastChild.remove();
+    row.append(...list.map(v => element('td', {textContent: v, colSpan: list.length === 1 ? 3 : 1})));
+  });
 }
 
 export function showNumbers() {
@@ -64,21 +66,19 @@ export function showNumbers() {
   byId('point-hint').textContent = !point ? 'Point at the object.' : point.lit
     ? `Light: the ${state.light === 'lamp' ? 'lamp' : 'brightest of the environment'}.` : 'In the shade of the light.';
   const angle = x => shortAngle(x * DEGREES);
-  const rows = [];
-  rows.push(wideRow('angles', at ? `θh ${angle(at.theta_h)}, θd ${angle(at.theta_d)}, θi ${angle(at.theta_i)}, θo ${angle(at.theta_o)}` : '–'));
-  rows.push(rowOf('1/sr', 'R', 'G', 'B'));
   const fitted = lit ? page.evaluate(lit.wi, lit.wo).rho : null, none = [NaN, NaN, NaN];
+  const rows = [['angles', at ? `θh ${angle(at.theta_h)}, θd ${angle(at.theta_d)}, θi ${angle(at.theta_i)}, θo ${angle(at.theta_o)}` : '–'],
+                ['1/sr', ['R', 'G', 'B']]];
   if (hasMeasured()) {
     const {title, rho, at: there, why} = measuredAt(lit);
-    rows.push(rho ? rowOf(title, ...rho.map(short)) : wideRow(title, lit ? why ?? 'not measured' : '–'));
-    if (there) rows.push(rowOf('ρ fitted there', ...page.evaluate(there.wi, there.wo).rho.map(short)));
+    rows.push([title, rho ? rho.map(short) : lit ? why ?? 'not measured' : '–']);
+    if (there) rows.push(['ρ fitted there', page.evaluate(there.wi, there.wo).rho.map(short)]);
   }
-  rows.push(rowOf('ρ fitted', ...(fitted ?? none).map(short)));
-  const white = at ? albedo(at.theta_o) : none;
-  rows.push(rowOf('albedo at θo', ...white.map(x => (Number.isFinite(x) ? x.toFixed(3) : '–'))));
-  const mean = white.reduce((a, b) => a + b, 0);
-  rows.push(wideRow('pdf of wi', fitted && mean > 0 ? `${short((fitted.reduce((a, b) => a + b, 0) * lit.wi[2]) / mean)} /sr` : '–'));
-  byId('numbers').replaceChildren(...rows);
+  rows.push(['ρ fitted', (fitted ?? none).map(short)]);
+  const white = at ? albedo(at.theta_o) : none, mean = white.reduce((a, b) => a + b, 0);
+  rows.push(['albedo at θo', white.map(x => (Number.isFinite(x) ? x.toFixed(3) : '–'))]);
+  rows.push(['pdf of wi', fitted && mean > 0 ? `${short((fitted.reduce((a, b) => a + b, 0) * lit.wi[2]) / mean)} /sr` : '–']);
+  showRows(rows);
   announce();
 }
 
@@ -88,6 +88,6 @@ function announce() {
   clearTimeout(timer);
   if (!page.point) return;
   timer = setTimeout(() => {
-    byId('heard').textContent = Array.from(byId('numbers').rows, row => Array.from(row.cells, c => c.textContent).join(' ')).join('; ');
+    byId('heard').textContent = Array.from(byId('numbers').rows, row => [row.cells[0].firstChild.textContent, ...Array.from(row.cells).slice(1).map(c => c.textContent)].join(' ')).join('; ');
   }, 600);
 }

@@ -105,8 +105,11 @@ export class Renderer {
 
   setEnvironment(environment) {
     const {gl} = this;
+    if (this.environment) gl.deleteTexture(this.environment);
     this.environment = this.texture(gl.RGBA32F, environment.width, environment.height, gl.FLOAT, environment.data);
     this.mirroredTurn = null;
+    this.exposure = 0;
+    this.restart();
   }
 
   // The map that cells read, of the environment as it is turned now.
@@ -130,21 +133,35 @@ export class Renderer {
     return this.mirror;
   }
 
+  tablesOf(packed) {
+    return this.texture(this.gl.RGBA32F, TABLE_WIDTH, packed.rows, this.gl.FLOAT, packed.data);
+  }
+  modelText(packed) {
+    return packed.preamble + this.text('bsdf.glsl') +
+      'vec4 material(vec3 wi, vec3 wo) { return vec4(trilobe_eval(wi, wo), 1.0); }\n' + this.text('light.glsl');
+  }
+
   setModel(model) {
     const {gl} = this, packed = packModel(model);
     if (this.tables) gl.deleteTexture(this.tables);
-    this.tables = this.texture(gl.RGBA32F, TABLE_WIDTH, packed.rows, gl.FLOAT, packed.data);
+    this.tables = this.tablesOf(packed);
     this.model = model;
-    this.fittedText = packed.preamble + this.text('bsdf.glsl') +
-      'vec4 material(vec3 wi, vec3 wo) { return vec4(trilobe_eval(wi, wo), 1.0); }\n' + this.text('light.glsl');
+    this.fittedText = this.modelText(packed);
     this.restart();
   }
 
+  // A table, nodes, or {kind: 'model', model}; or null.
   setMeasured(measured) {
     const {gl} = this;
     this.measured = measured;
     this.exposure = 0;
     if (!measured) return this.restart();
+    if (measured.kind === 'model') {
+      const packed = packModel(measured.model);
+      this.measuredTexture = {trilobe_tables: [gl.TEXTURE_2D, this.tablesOf(packed)]};
+      this.measuredText = this.modelText(packed);
+      return this.restart();
+    }
     const {rgb, valid} = measured, texels = new Float32Array((rgb.length / 3) * 4);
     for (let k = 0; k < valid.length; ++k) {
       for (let c = 0; c < 3; ++c) texels[4 * k + c] = Math.min(rgb[3 * k + c], 65504);  // the most of a half float
@@ -226,9 +243,10 @@ export class Renderer {
       trilobe_tables: [gl.TEXTURE_2D, this.tables],
       ...(number === 1 ? this.measuredTexture : {}),
     });
-    if (number === 0) {
-      gl.uniform3fv(made.place('trilobe_diffuse'), this.model.d);
-      if (this.model.lobes > 0) gl.uniform3fv(made.place('trilobe_specular'), this.model.s.flat());
+    const model = number === 0 ? this.model : this.measured.model;
+    if (model) {
+      gl.uniform3fv(made.place('trilobe_diffuse'), model.d);
+      if (model.lobes > 0) gl.uniform3fv(made.place('trilobe_specular'), model.s.flat());
     }
     gl.uniform1i(made.place('from'), from);
     gl.uniform1i(made.place('to'), to);

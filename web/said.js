@@ -2,7 +2,7 @@
 
 import {byId, counted, element, grouped, short, shortDeltaE} from './dom.js';
 import {visibilityOf} from './judge.js';
-import {asItCame, contents, edited, hasMeasured, hasSamples, heading, isPictured, lobesText, page, state} from './page_state.js';
+import {asItCame, contents, edited, hasMeasured, hasSamples, heading, isModelBeside, isPictured, lobesText, page, referenceTitle, state} from './page_state.js';
 
 const NOTABLE_REACH = 2;  // as in the program's summary
 
@@ -19,7 +19,7 @@ export function judgement() {
 
 // Whether the picture is that on which the report's verdict rests.
 export function asJudged() {
-  return asItCame() && !edited() && Boolean(contents.verdict) && contents.of_sphere && state.object === 'sphere' &&
+  return asItCame() && !edited() && !page.lightFile && Boolean(contents.verdict) && contents.of_sphere && state.object === 'sphere' &&
     state.light === 'environment' && state.around === 0 && state.turn.every(x => x === 0);
 }
 
@@ -28,8 +28,9 @@ function verdictParts() {
   if (!hasMeasured() && !(judged && contents.source)) {
     return [`A fitted model of ${lobesText(page.base)}. Drop its measurement here (MERL or CSV) to see where they differ.`];
   }
-  parts.push(edited() ? 'The model has been changed since. Beside what was measured, it: ' : 'Beside what was measured, the fit: ');
-  if (!judged) return [...parts.slice(0, -1), edited() ? 'The model has been changed since, and is being compared.' : 'Being compared with what was measured.'];
+  const beside = isModelBeside() ? `Beside ${page.measuredFile.name}` : 'Beside what was measured', what = isModelBeside() ? page.modelFile.name : 'the fit';
+  parts.push(edited() ? `The model has been changed since. ${beside}, it: ` : `${beside}, ${what}: `);
+  if (!judged) return [edited() ? 'The model has been changed since, and is being compared.' : isModelBeside() ? 'The two models are being compared.' : 'Being compared with what was measured.'];
   parts.push(element('b', {className: judged.name, textContent: judged.words}),
              `. Colours are ΔE ${shortDeltaE(judged.mean)} apart in the mean, and 95 % of ${judged.of} stay below ` +
              `${shortDeltaE(judged.at95)}; up to 1 and 2.3 they cannot be told apart.`);
@@ -73,7 +74,8 @@ export function showFacts() {
   row('fitted to', fit.source);
   row('samples', fit.valid_samples ? grouped(fit.valid_samples) : '');
   row('up to', fit.max_angle ? `${fit.max_angle}° from the normal` : '');
-  if (hasMeasured()) row('shown beside', `${measuredFile.name}, ${counted(page.measured.count, 'sample', 'samples')}`);
+  if (hasMeasured()) row('shown beside', `${measuredFile.name}, ${besideText()}`);
+  if (page.lightFile) row('light', page.lightFile.name);
   if (asItCame() && contents.verdict) row('measured', `${short(100 * contents.measured_share)} % of what a renderer reads`);
   row('form', `${base.anisotropic ? 'anisotropic' : 'isotropic'}, ${formText()}`);
   row('solver', fit.solver ? `${fit.solver}${fit.iterations ? `, ${fit.iterations} iterations` : ''}` : '');
@@ -88,6 +90,8 @@ export function showFacts() {
   byId('disc-figure').hidden = !(base.lobes > 0 && base.axes.D.phis > 1);
 }
 
+const besideText = () => (isModelBeside() ? lobesText(page.measured.model) : counted(page.measured.count, 'sample', 'samples'));
+
 function formText() {
   const numbers = page.modelFile.dropped || !contents.parameters ? '' : `, ${grouped(contents.parameters)} numbers`;
   return lobesText(page.base) + numbers;
@@ -96,9 +100,10 @@ function formText() {
 // Of a panel: [title, text].
 export function captionOf(mode) {
   const changed = edited() ? ', edited' : '';
-  if (mode === 'measured') return ['Measured', counted(page.measured.count, 'sample', 'samples')];
-  if (mode === 'fitted') return [`Fitted${changed}`, formText()];
-  if (mode === 'wipe') return [`Measured | Fitted${changed}`, 'move the line below the picture, or drag it'];
+  const title = isModelBeside() ? page.modelFile.name : 'Fitted';
+  if (mode === 'measured') return [referenceTitle(), besideText()];
+  if (mode === 'fitted') return [`${title}${changed}`, formText()];
+  if (mode === 'wipe') return [`${referenceTitle()} | ${title}${changed}`, 'move the line below the picture, or drag it'];
   const mean = asJudged() ? contents.mean_delta_e : page.seen?.mean;
   if (!Number.isFinite(mean)) return ['Where they differ', 'to the eye'];
   return ['Where they differ', `ΔE ${shortDeltaE(mean)} in the mean${asJudged() ? '' : ', as shown'}`];
@@ -106,9 +111,11 @@ export function captionOf(mode) {
 
 // The canvas in words.
 export function pictureLabel() {
-  const what = {side: 'measured, fitted and their difference', wipe: 'measured on the left, fitted on the right', difference: 'the difference of measured and fitted',
-                measured: 'measured', fitted: 'fitted'}[state.view];
+  const light = page.lightFile ? ` by ${page.lightFile.name}` : '';
+  const [own, other] = isModelBeside() ? [page.modelFile.name, referenceTitle()] : ['fitted', 'measured'];
+  const what = {side: `${other}, ${own} and their difference`, wipe: `${other} on the left, ${own} on the right`, difference: `the difference of ${other} and ${own}`,
+                measured: other, fitted: own}[state.view];
   const judged = isPictured() ? judgement() : null;
   return `${heading()} on a ${state.object === 'flat' ? 'flat sample' : state.object}: ${what}` +
-    `${state.light === 'lamp' ? ', by one lamp' : ', lit all around'}${judged ? `. ΔE ${shortDeltaE(judged.mean)} in the mean: ${judged.words}` : ''}`;
+    `${state.light === 'lamp' ? ', by one lamp' : `, lit all around${light}`}${judged ? `. ΔE ${shortDeltaE(judged.mean)} in the mean: ${judged.words}` : ''}`;
 }

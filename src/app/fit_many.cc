@@ -141,7 +141,7 @@ int RunFitOfMany(std::span<const std::string> arguments, FitSettings settings) {
   if (FLAGS_shard.empty()) {
     WriteFile(summary.PathOf(kTableName), [&](std::ostream& out) { out << FitsCsv(outcomes); });
     WriteFile(summary.PathOf(kPageName),
-              [&](std::ostream& out) { out << FitsPage(outcomes, kTableName); });
+              [&](std::ostream& page) { page << FitsPage(outcomes, out, kTableName); });
     written += std::string(", ") + kTableName + ", " + kPageName;
   }
   const auto failed = std::ranges::count(outcomes, FitOutcome::State::kFailed, &FitOutcome::state);

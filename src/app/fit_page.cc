@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <locale>
@@ -21,6 +22,23 @@ namespace trilobe {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Tables need no more digits for a picture.
+void RoundNumbers(Json* value) {
+  if (value->is_number_float()) *value = std::stod(Text(value->get<double>(), 5));
+  if (!value->is_structured()) return;
+  for (Json& inner : *value) RoundNumbers(&inner);
+}
+
+// What a picture needs of a model file, null if there is none.
+Json ModelToDraw(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  Json model = Json::parse(file, nullptr, false);
+  if (!model.is_object()) return nullptr;
+  for (const char* unseen : {"fit", "unobserved", "dead"}) model.erase(unseen);
+  RoundNumbers(&model);
+  return model;
+}
 
 std::string FormatFigure(const FitOutcome& outcome) {
   const std::string folder = EncodeAddress(outcome.name);
@@ -81,7 +99,8 @@ std::string FitsCsv(std::span<const FitOutcome> outcomes) {
   return csv.str();
 }
 
-std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& table) {
+std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& folder,
+                     const std::string& table) {
   std::vector<FitOutcome> fits;
   std::ranges::copy_if(outcomes, std::back_inserter(fits), &FitOutcome::has_picture);
   std::ranges::stable_sort(fits, {}, &FitOutcome::psnr_db);
@@ -92,7 +111,8 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& ta
                     {"delta_e", outcome.mean_delta_e},
                     {"parameters", outcome.num_parameters},
                     {"seconds", outcome.seconds},
-                    {"anisotropic", outcome.anisotropic ? 1 : 0}});
+                    {"anisotropic", outcome.anisotropic ? 1 : 0},
+                    {"model", ModelToDraw(folder + "/" + outcome.name + "/model.json")}});
   }
   std::ostringstream body;
   body << "<h1>" << fits.size() << " of " << outcomes.size()

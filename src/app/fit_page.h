@@ -34,8 +34,10 @@ std::string StateName(FitOutcome::State state);
 std::string FitsCsv(std::span<const FitOutcome> outcomes);
 
 // HTML page that lists failures and shows the picture of each fit, lowest PSNR first. It sorts,
-// filters, and compares up to four fits side by side. `table`: link to the CSV, or empty.
-std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& table);
+// filters, and compares up to four fits side by side: their models under one light, which it holds.
+// `folder` has the folders of the fits; `table`: link to the CSV, or empty.
+std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& folder,
+                     const std::string& table);
 
 // Files beside the folders of several fits.
 inline constexpr const char* kTableName = "fits.csv";

@@ -49,7 +49,7 @@ int ViewFolder(const std::string& folder) {
   const std::vector<FitOutcome> fits = ReadFitsIn(folder);
   Inputs().CheckOutput(path);
   const bool table = std::filesystem::exists(folder + "/fits.csv", ignored);
-  Write(path, FitsPage(fits, table ? "fits.csv" : ""),
+  Write(path, FitsPage(fits, folder, table ? "fits.csv" : ""),
         "a page of " + std::to_string(fits.size()) + (fits.size() == 1 ? " fit," : " fits,"));
   return 0;
 }

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from conftest import run
+from conftest import run, wait_for
 
 
 @pytest.fixture
@@ -65,5 +65,37 @@ def test_two_hundred_fits_are_sorted_filtered_and_compared(folder: Path, browser
         page.locator("main figure input").nth(k).check()
     assert page.locator("#compared figure").count() == 4
     assert page.locator("main figure input").nth(5).is_disabled()
+    # Cards of a row are of one height.
+    heights = page.evaluate("Array.from(document.querySelectorAll('main figure:not([hidden])'), f => f.offsetHeight)")
+    assert len(set(heights[:3])) == 1
+    page.close()
+    assert [text for text in complaints if "GPU stall due to ReadPixels" not in text] == []
+
+
+def test_models_are_compared_under_one_light(folder: Path, browser: Any) -> None:
+    for fit in folder.iterdir():
+        if fit.name not in ("plastic_000", "plastic_002", "shot_silk_001"):
+            shutil.rmtree(fit)
+    run("view", folder)
+    page = browser.new_page()
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(f"file://{folder}/index.html")
+    page.select_option("select", label="name")
+    for k in (0, 1, 2):
+        page.locator("main figure input").nth(k).check()
+    wait_for(page, "document.querySelectorAll('#compared canvas').length === 3", 180)
+    said = page.evaluate("Array.from(document.querySelectorAll('#compared .common'), p => p.textContent)")
+    assert said[0].endswith("the first")
+    # Two of the same model, and another material.
+    assert said[1].startswith("ΔE 0 from plastic_000: cannot be told apart")
+    assert float(said[2].split()[1]) > 3 and "plainly visible" in said[2]
+    spheres = page.evaluate(
+        "Array.from(document.querySelectorAll('#compared canvas'), c =>"
+        " Array.from(c.getContext('2d').getImageData(96, 60, 1, 1).data))")
+    assert spheres[0] == spheres[1] != spheres[2]
+    page.locator("main figure input").nth(1).uncheck()
+    page.locator("main figure input").nth(2).uncheck()
+    assert page.locator("#compared canvas").count() == 0
     page.close()
     assert complaints == []

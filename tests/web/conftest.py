@@ -153,8 +153,8 @@ def open_page(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
     assert own == []
 
 
-def finished(page: Any) -> None:
-    wait_for(page, "window.trilobe?.renderer?.shown && !trilobe.renderer.pending")
+def finished(page: Any, seconds: float = 60) -> None:
+    wait_for(page, "window.trilobe?.renderer?.shown && !trilobe.renderer.pending", seconds)
 
 
 def picture(page: Any, side: int) -> npt.NDArray[np.float64]:

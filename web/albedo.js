@@ -1,0 +1,44 @@
+// Albedo: the share of light from all around that goes to an eye, or by reciprocity of light from there that is reflected.
+
+import {halfCells} from './environment.js';
+import {hasSamples, hasMeasured, page} from './page_state.js';
+
+const albedoCells = halfCells();
+const MOST_MISSING = 0.2;  // of the light, in directions that were not measured
+
+// At theta from the normal [rad], {fitted: [3], measured: [3] or null}. What was not measured is the fit's in both, so that
+// they differ by what is measured alone.
+function albedosAt(theta, measured) {
+  const wo = [Math.sin(theta), 0, Math.cos(theta)], fitted = [0, 0, 0], seen = [0, 0, 0];
+  let known = 0, all = 0;
+  for (let k = 0; k < albedoCells.length; k += 4) {
+    const h = [albedoCells[k], albedoCells[k + 1], albedoCells[k + 2]], along = wo[0] * h[0] + wo[2] * h[2];
+    const wi = h.map((x, a) => 2 * along * x - wo[a]);
+    if (!(along > 0 && wi[2] > 0)) continue;
+    const weight = wi[2] * 4 * along * albedoCells[k + 3], {rho} = page.evaluate(wi, wo), other = measured?.(wi, wo);
+    const light = weight * (rho[0] + rho[1] + rho[2]);
+    all += light;
+    if (other) known += light;
+    for (let c = 0; c < 3; ++c) {
+      fitted[c] += rho[c] * weight;
+      seen[c] += (other ?? rho)[c] * weight;
+    }
+  }
+  return {fitted, measured: all > 0 && known >= (1 - MOST_MISSING) * all ? seen : null};
+}
+
+export const albedo = theta => albedosAt(theta, null).fitted;
+
+// ---- Over all angles, one at a time ------------------------------------------------------------------------------
+
+const ALBEDO_DEGREES = [...Array.from({length: 18}, (_, k) => 5 * k), 88];
+
+// True once page.albedo has all: [{degrees, fitted, measured}...].
+export function continueAlbedo() {
+  page.albedo ??= [];
+  const done = page.albedo.length;
+  if (done === ALBEDO_DEGREES.length) return false;
+  const degrees = ALBEDO_DEGREES[done], rho = hasMeasured() && !hasSamples() ? page.measured.rho : null;
+  page.albedo.push({degrees, ...albedosAt((degrees * Math.PI) / 180, rho)});
+  return done + 1 === ALBEDO_DEGREES.length;
+}

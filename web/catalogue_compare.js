@@ -1,0 +1,54 @@
+// Models side by side under one light and exposure, and how far each is from the first.
+
+import {element, shortDeltaE} from './dom.js';
+import {studioEnvironment} from './environment.js';
+import {compareImages, visibilityOf} from './judge.js';
+import {parseModel} from './model.js';
+import {Renderer} from './renderer.js';
+
+const SPHERE = 192;  // pixels
+
+let drawer = null;
+function theRenderer() {
+  if (!drawer) {
+    const shaders = JSON.parse(document.getElementById('shaders').textContent);
+    drawer = new Renderer(element('canvas', {width: 2 * SPHERE, height: SPHERE}), file => shaders[file]);
+    drawer.setEnvironment(studioEnvironment());
+    drawer.setSize(SPHERE);
+  }
+  return drawer;
+}
+
+// Until nothing is left to draw, or `stale` is true.
+function finish(renderer, stale) {
+  return new Promise(done => {
+    const step = () => {
+      renderer.work(false);
+      if (stale() || !renderer.pending) done();
+      else requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  });
+}
+
+let turns = 0;
+// entries: [{name, model, figure}...]: into each figure, its sphere and the difference of that to the first's.
+export async function drawCompared(entries) {
+  const turn = ++turns, stale = () => turn !== turns, drawn = entries.filter(({model}) => model);
+  if (drawn.length < 2) return;
+  const renderer = theRenderer(), first = drawn[0], reference = {kind: 'model', model: parseModel(JSON.stringify(first.model))};
+  for (const {name, model, figure} of drawn) {
+    renderer.setModel(parseModel(JSON.stringify(model)));
+    renderer.setMeasured(reference);  // whose exposure all have
+    await finish(renderer, stale);
+    if (stale()) return;
+    renderer.show([{mode: 'fitted', x: 0, y: 0, size: SPHERE}, {mode: 'difference', x: SPHERE, y: 0, size: SPHERE}], {wipe: 0, stops: 0, mark: null});
+    const seen = compareImages(renderer.numbersOf(renderer.shown, 0), renderer.numbersOf(renderer.shown, 1), renderer.exposure);
+    const words = name === first.name ? 'under the light of all; the first' : `ΔE ${shortDeltaE(seen.mean)} from ${first.name}: ${visibilityOf(seen).words}`;
+    const canvas = element('canvas', {width: 2 * SPHERE, height: SPHERE, role: 'img', ariaLabel: `${name}: ${words}`});
+    canvas.getContext('2d').drawImage(renderer.canvas, 0, 0);
+    figure.querySelector('canvas')?.remove();
+    figure.querySelector('.common')?.remove();
+    figure.querySelector('figcaption').before(canvas, element('p', {className: 'common', textContent: words}));
+  }
+}
