@@ -6,7 +6,7 @@ import {compareImages, visibilityOf} from './judge.js';
 import {parseModel} from './model.js';
 import {Renderer} from './renderer.js';
 
-const SPHERE = 192;  // pixels
+const SPHERE = 128;  // pixels
 
 let drawer = null;
 function theRenderer() {
@@ -19,11 +19,11 @@ function theRenderer() {
   return drawer;
 }
 
-// Until nothing is left to draw, or `stale` is true.
-function finish(renderer, stale) {
+// Until nothing is left to draw, or `stale` is true; `draw` is called with each finer picture.
+function finish(renderer, stale, draw) {
   return new Promise(done => {
     const step = () => {
-      renderer.work(false);
+      if (renderer.work(false)) draw();
       if (stale() || !renderer.pending) done();
       else requestAnimationFrame(step);
     };
@@ -37,18 +37,23 @@ export async function drawCompared(entries) {
   const turn = ++turns, stale = () => turn !== turns, drawn = entries.filter(({model}) => model);
   if (drawn.length < 2) return;
   const renderer = theRenderer(), first = drawn[0], reference = {kind: 'model', model: parseModel(JSON.stringify(first.model))};
-  for (const {name, model, figure} of drawn) {
+  const places = drawn.map(({figure}) => {
+    const canvas = element('canvas', {width: 2 * SPHERE, height: SPHERE, role: 'img'}), said = element('p', {className: 'common'});
+    figure.querySelector('figcaption').before(canvas, said);
+    return {canvas, said};
+  });
+  for (const [k, {name, model}] of drawn.entries()) {
+    const {canvas, said} = places[k], draw = () => {
+      renderer.show([{mode: 'fitted', x: 0, y: 0, size: SPHERE}, {mode: 'difference', x: SPHERE, y: 0, size: SPHERE}], {wipe: 0, stops: 0, mark: null});
+      canvas.getContext('2d').clearRect(0, 0, 2 * SPHERE, SPHERE);
+      canvas.getContext('2d').drawImage(renderer.canvas, 0, 0);
+    };
     renderer.setModel(parseModel(JSON.stringify(model)));
     renderer.setMeasured(reference);  // whose exposure all have
-    await finish(renderer, stale);
+    await finish(renderer, stale, draw);
     if (stale()) return;
-    renderer.show([{mode: 'fitted', x: 0, y: 0, size: SPHERE}, {mode: 'difference', x: SPHERE, y: 0, size: SPHERE}], {wipe: 0, stops: 0, mark: null});
-    const seen = compareImages(renderer.numbersOf(renderer.shown, 0), renderer.numbersOf(renderer.shown, 1), renderer.exposure);
-    const words = name === first.name ? 'under the light of all; the first' : `ΔE ${shortDeltaE(seen.mean)} from ${first.name}: ${visibilityOf(seen).words}`;
-    const canvas = element('canvas', {width: 2 * SPHERE, height: SPHERE, role: 'img', ariaLabel: `${name}: ${words}`});
-    canvas.getContext('2d').drawImage(renderer.canvas, 0, 0);
-    figure.querySelector('canvas')?.remove();
-    figure.querySelector('.common')?.remove();
-    figure.querySelector('figcaption').before(canvas, element('p', {className: 'common', textContent: words}));
+    const {mean, at95} = compareImages(renderer.numbersOf(renderer.shown, 0), renderer.numbersOf(renderer.shown, 1), renderer.exposure);
+    said.textContent = name === first.name ? 'under the light of all; the first' : `ΔE ${shortDeltaE(mean)} from ${first.name}: ${visibilityOf({mean, at95}).words}`;
+    canvas.ariaLabel = `${name}: ${said.textContent}`;
   }
 }
