@@ -6,7 +6,7 @@ import {compareImages, visibilityOf} from './judge.js';
 import {parseModel} from './model.js';
 import {Renderer} from './renderer.js';
 
-const SPHERE = 128;  // pixels
+const SPHERE = 192;  // pixels; a half of them are drawn without a graphics card
 
 let drawer = null;
 function theRenderer() {
@@ -14,7 +14,7 @@ function theRenderer() {
     const shaders = JSON.parse(document.getElementById('shaders').textContent);
     drawer = new Renderer(element('canvas', {width: 2 * SPHERE, height: SPHERE}), file => shaders[file]);
     drawer.setEnvironment(studioEnvironment());
-    drawer.setSize(SPHERE);
+    drawer.slice = 150;
   }
   return drawer;
 }
@@ -37,6 +37,7 @@ export async function drawCompared(entries) {
   const turn = ++turns, stale = () => turn !== turns, drawn = entries.filter(({model}) => model);
   if (drawn.length < 2) return;
   const renderer = theRenderer(), first = drawn[0], reference = {kind: 'model', model: parseModel(JSON.stringify(first.model))};
+  renderer.setSize(renderer.rate > 5e7 ? SPHERE : SPHERE / 2);
   const places = drawn.map(({figure}) => {
     const canvas = element('canvas', {width: 2 * SPHERE, height: SPHERE, role: 'img'}), said = element('p', {className: 'common'});
     figure.querySelector('figcaption').before(canvas, said);

@@ -53,7 +53,7 @@ function slider(label, get, set, [min, max, step], from = x => x, to = x => x) {
     input.setAttribute('aria-valuetext', text());
   });
   const word = label.split(': ').at(-1);
-  return [word === 'rise of F' || label === 'Lobe 1: roughness' ? element('span', {}, word, ' ', help(word === 'roughness' ? word : 'rise')) : word, input, output];
+  return [word === 'rise of F' || label === 'Lobe 1: roughness' ? element('span', {}, word, help(word === 'roughness' ? word : 'rise')) : word, input, output];
 }
 function logSlider(label, get, set, range) {
   return slider(label, get, set, range, x => Math.log2(Math.max(x, 2 ** range[0])), x => 2 ** x);

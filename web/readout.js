@@ -42,7 +42,7 @@ const HELP = {angles: 'angles', '1/sr': 'rho', 'albedo at θo': 'albedo', 'pdf o
 
 function headOf(title) {
   const head = element('th', {scope: 'row'}, title);
-  if (HELP[title]) head.append(' ', help(HELP[title]));
+  if (HELP[title]) head.append(help(HELP[title]));
   return head;
 }
 

@@ -18,7 +18,7 @@ const WORDS = {
 // Opens on a click or a key; another click, or Escape, closes it.
 export function help(word) {
   const text = element('span', {className: 'word', textContent: WORDS[word]});
-  const made = element('details', {className: 'help'}, element('summary', {textContent: '?', ariaLabel: `What is this: ${word}`, title: WORDS[word]}), text);
+  const made = element('details', {className: 'help'}, element('summary', {ariaLabel: `What is this: ${word}`, title: WORDS[word]}), text);
   made.addEventListener('toggle', () => {
     if (!made.open) return;
     // Within the window.
