@@ -86,7 +86,8 @@ def test_models_are_compared_under_one_light(folder: Path, browser: Any) -> None
     page.select_option("select", label="name")
     for k in (0, 1, 2):
         page.locator("main figure input").nth(k).check()
-    wait_for(page, "[...document.querySelectorAll('#compared .common')].filter(p => p.textContent !== '').length === 3", 180)
+    drawn = "[...document.querySelectorAll('#compared .common')].filter(p => p.textContent !== '').length"
+    wait_for(page, f"{drawn} === 3", 180)
     said = page.evaluate("Array.from(document.querySelectorAll('#compared .common'), p => p.textContent)")
     assert said[0].endswith("the first")
     # Two of the same model, and another.
