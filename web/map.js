@@ -29,7 +29,7 @@ export function drawMap(at) {
   byId('unmeasured-key').hidden = !heat.ratio?.some(Number.isNaN);
   byId('map-of').textContent = `${hasSamples() ? 'each sample a point' : 'for all directions'}${state.phiD === null ? '' : `, φd ${state.phiD}°`}:`;
   byId('phi-d').textContent = state.phiD === null ? 'all' : `${state.phiD}°`;
-  byId('heat').ariaLabel = `Fitted over measured, over θh and θd. ${words}`;
+  byId('heat').ariaLabel = `${byId('map-what').textContent}, over θh and θd. ${words}`;
 }
 
 // Rows of theta_h, theta_d [degrees] and fitted over measured, at the middles of bins or at samples.

@@ -35,6 +35,7 @@ def test_two_models_are_beside_each_other(open_page: Open, fits: Path, tmp_path:
     assert "cannot be told apart" in page.inner_text("#verdict")
     wait_for(page, "trilobe.page.heat !== null")
     assert page.evaluate("trilobe.page.heat.typical") < 1e-6
+    assert page.inner_text("#difference .hint").startswith("other.json over other.json")
     assert "measured" not in page.inner_text("#numbers") and "measured" not in page.inner_text("#verdict")
 
 
