@@ -98,6 +98,7 @@ def _summary(rows):
 def _figure(rows):
     """Estimated against true Delta E."""
     from lab import plots
+    ticker = plots.matplotlib.ticker
     figure, axes = plots.plt.subplots(figsize=(5.5, 5))
     told = [row for row in rows if row["estimated_delta_e"] and row["delta_e"] > 0]
     for (given, of), colour in zip(tables.groups(told, "given").items(), plots.SERIES * 3):
@@ -107,6 +108,10 @@ def _figure(rows):
     for factor in (1 / FACTOR, 1, FACTOR):
         axes.loglog(ends, [factor * end for end in ends], color=plots.GREY, linewidth=2 if factor == 1 else 1)
     axes.set(xlabel="ΔE of the whole sphere", ylabel="ΔE that the fit estimates")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+        axis.set_minor_formatter(ticker.NullFormatter())
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3)
     return figure
 
