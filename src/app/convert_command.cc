@@ -14,6 +14,7 @@
 #include "app/result_folder.h"
 #include "core/files/file.h"
 #include "fit/reports/print.h"
+#include "io/formats/csv_file.h"
 #include "io/formats/utia_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/fit/as_measurement.h"
@@ -21,6 +22,7 @@
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/model/corruption/corruption.h"
+#include "trilobe/model/lobes/reconstruct.h"
 #include "trilobe/model/measurement/measurement_stats.h"
 
 DEFINE_double(error, 0,
@@ -31,6 +33,9 @@ DEFINE_double(error, 0,
 DEFINE_bool(spectral, false,
             "of a .bsdf file: spectra in place of RGB, for spectral renderers (Mitsuba's spectral "
             "variants, pbrt-v4); the others cannot read it");
+DEFINE_string(at, "",
+              "of a model and a .csv file: a measurement, at the directions of which the values of "
+              "both are written, side by side");
 DEFINE_bool(picture, false,
             "of a .mtlx or .principled.json file: draws the model and what the file has, side by "
             "side, beside it, as .png");
@@ -115,6 +120,21 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
   return measurement;
 }
 
+// Writes the values of a model beside those of the measurement --at to --out.
+void WriteAt(const std::string& source) {
+  if (!IsModelFile(source)) throw Error(source + ": --at goes with a model");
+  if (EndingOf(FLAGS_out) != ".csv") throw Error("--at goes with an --out that ends in .csv");
+  Inputs({source, FLAGS_at}).CheckOutput(FLAGS_out);
+  const SourceOptions options = SourceOptionsFromFlags();
+  const FactorModel model = ModelOfSource(source).model;
+  const Measurement measurement = MeasurementOfSource(FLAGS_at, options);
+  PrintNotes(measurement);
+  const BrdfSamples samples = SamplesOf(measurement);
+  WriteBesideCsv(samples, EvaluateSamples(model, samples, options.num_threads), FLAGS_out);
+  PrintLine("wrote " + FLAGS_out + ": " + std::to_string(samples.size()) +
+            " samples, measured and fitted");
+}
+
 std::string ListOfCorruptions() {
   std::string text;
   for (const CorruptionKind& kind : CorruptionKinds()) {
@@ -126,6 +146,11 @@ std::string ListOfCorruptions() {
 
 int RunConvert(std::span<const std::string> arguments) {
   const std::string& source = arguments[0];
+  if (!FLAGS_at.empty()) {
+    CheckRendererFlags(FLAGS_out);
+    WriteAt(source);
+    return 0;
+  }
   if (IsForRenderer(FLAGS_out)) {
     WriteForRenderer(source);
     return 0;
@@ -169,11 +194,14 @@ Command ConvertCommand() {
           "those measured, and the model's where nothing was. Of a model, to a FILE that ends in "
           ".glsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the nearest "
           "OpenPBR of MaterialX, and in\n.principled.json that of Blender's Principled BSDF, with "
-          "how near it is. A FILE with another ending is an error.\n\nkinds of corruption "
+          "how near it is. A FILE with another ending is an error.\nWith "
+          "--at=MEASUREMENT it writes a row per sample of that, with theta_i, phi_i, theta_o and "
+          "phi_o [degrees] and the\nmeasured and the model's values [1/sr], to a FILE that ends in "
+          ".csv.\n\nkinds of corruption "
           "(--corrupt=KIND:STRENGTH,...), x the strength, rho the BRDF, b = rho cos "
           "theta_i the signal:" +
           ListOfCorruptions(),
-      .flags = WithSourceFlags({"out", "error", "spectral", "picture", "probe"}),
+      .flags = WithSourceFlags({"out", "at", "error", "spectral", "picture", "probe"}),
       .run = RunConvert};
 }
 

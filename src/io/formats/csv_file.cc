@@ -1,6 +1,9 @@
+#include "io/formats/csv_file.h"
+
 #include <array>
 #include <charconv>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/files/file.h"
@@ -12,7 +15,7 @@
 namespace trilobe {
 namespace {
 
-constexpr size_t kColumns = 7;
+constexpr size_t kColumns = 10;
 
 // With phi_i = 0 and phi_o from 0 to 360 degrees.
 SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
@@ -23,37 +26,45 @@ SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
   return at;
 }
 
-// Writes the valid samples, as many digits as read back to the same numbers, row by row. Those of a
-// table stand at the centres of its bins, with phi_i = 0. Throws Error where there is none.
-std::string WriteCsv(const Measurement& measurement, const std::string& path, int /*num_threads*/) {
-  const std::optional<BrdfSamples> of_table =
-      measurement.table ? std::optional(SamplesOf(measurement)) : std::nullopt;
-  const BrdfSamples& samples = of_table ? *of_table : measurement.samples;
-  if (samples.size() == 0) SamplesOf(measurement);  // throws
+// Writes a row per sample, with as many digits as read back to the same numbers: its directions,
+// its values and, unless empty, other values. Samples on a grid stand at the centres of its bins,
+// with phi_i = 0.
+void WriteRows(const std::string& path, const std::string& head, const BrdfSamples& samples,
+               std::span<const Rgb> others) {
   WriteFile(path, [&](std::ostream& out) {
-    out << "# BRDF [1/sr] of " << samples.size() << " pairs of directions [degrees]\n"
-        << kUsualColumns << '\n';
+    out << head << '\n';
     std::array<char, kColumns * 32> row;  // the longest double has 24 characters
     for (int j = 0; j < samples.size(); ++j) {
-      const SphericalAngles at =
-          of_table ? FromIncidentPlane(samples.Angles(j)) : samples.directions[j];
-      const double numbers[kColumns] = {RadiansToDegrees(at.theta_i),
-                                        RadiansToDegrees(at.phi_i),
-                                        RadiansToDegrees(at.theta_o),
-                                        RadiansToDegrees(at.phi_o),
-                                        samples.rho[j][0],
-                                        samples.rho[j][1],
-                                        samples.rho[j][2]};
       char* end = row.data();
-      for (const double number : numbers) {
+      const auto add = [&](double number) {
         end = std::to_chars(end, row.data() + row.size(), number).ptr;
         *end++ = ',';
+      };
+      const SphericalAngles at =
+          samples.directions.empty() ? FromIncidentPlane(samples.Angles(j)) : samples.directions[j];
+      for (const double angle : {at.theta_i, at.phi_i, at.theta_o, at.phi_o}) {
+        add(RadiansToDegrees(angle));
+      }
+      for (const double value : samples.rho[j]) add(value);
+      if (!others.empty()) {
+        for (const double value : others[j]) add(value);
       }
       end[-1] = '\n';
       out.write(row.data(), end - row.data());
     }
   });
-  return std::to_string(samples.size()) + " samples";
+}
+
+// Writes the valid samples. Throws Error where there is none.
+std::string WriteCsv(const Measurement& measurement, const std::string& path, int /*num_threads*/) {
+  const std::optional<BrdfSamples> of_table =
+      measurement.table ? std::optional(SamplesOf(measurement)) : std::nullopt;
+  const BrdfSamples& samples = of_table ? *of_table : measurement.samples;
+  if (samples.size() == 0) SamplesOf(measurement);  // throws
+  const std::string count = std::to_string(samples.size());
+  WriteRows(path, "# BRDF [1/sr] of " + count + " pairs of directions [degrees]\n" + kUsualColumns,
+            samples, {});
+  return count + " samples";
 }
 
 // A header that names an angle and another column, within the first lines.
@@ -63,6 +74,14 @@ bool LooksLikeCsv(std::string_view text) {
 }
 
 }  // namespace
+
+void WriteBesideCsv(const BrdfSamples& measured, std::span<const Rgb> fitted,
+                    const std::string& path) {
+  WriteRows(path,
+            "theta_i,phi_i,theta_o,phi_o,measured_r,measured_g,measured_b,fitted_r,fitted_g,"
+            "fitted_b",
+            measured, fitted);
+}
 
 MeasurementFormat CsvFormat() {
   return {.name = "csv",

@@ -27,6 +27,9 @@
   X(Merl)                          \
   X(Rgl)                           \
   X(Mbsdf)                         \
+  X(Radiance)                      \
+  X(Fred)                          \
+  X(Alta)                          \
   X(Csv)                           \
   X(LightTools)                    \
   X(Zemax)                         \

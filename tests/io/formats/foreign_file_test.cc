@@ -57,12 +57,6 @@ TEST(ForeignFile, IsNamedWithWhatToDo) {
        "of directions"},
       {"f.brdf", "OPTIS - brdf surface file v8.0\n0\n",
        "an OPTIS/Speos text file, which is not read" + kAsCsv},
-      {"f.txt", "type bsdf_data\nformat angles=deg\n10 0\n0 0 0.03\n",
-       "a FRED table, which is not read" + kAsCsv},
-      {"f.alta", "#ALTA_BEGIN_HEADER\n#DIM 3 1\n#ALTA_END_HEADER\n0.2 0.3 3.1 0.1\n",
-       "an ALTA file, which is not read" + kAsCsv},
-      {"f.xml", "<?xml version=\"1.0\"?>\n<WindowElement>\n",
-       "a Radiance BSDF .xml file, which is not read" + kAsCsv},
       {"f.xml", "<?xml version=\"1.0\"?>\n<a/>\n", "an XML file, which is not read" + kAsCsv},
       {"f.mdl", "// a paint\n/* by me */\nmdl 1.7;\nimport ::df::*;\n",
        "an MDL module, which describes a material and is no measurement; give the .mbsdf file that "

@@ -185,6 +185,10 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       {"mbsdf", "NVIDIA ARC MBSDF V1\n"},
       {"utia", std::string(1990656, '\0')},
       {"zemax", "Source\tMeasured\n"},
+      {"lighttools", "Symmetry Asymmetric\n"},
+      {"alta", "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n"},
+      {"fred", "type bsdf_data\n"},
+      {"radiance", "<?xml version=\"1.0\"?>\n<WindowElement>\n"},
       {"cornell", "31\n400 410\n"},
       {"astm", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n"},
       {"csv", kCsv}};
