@@ -94,11 +94,12 @@ TEST(AltaFile, ReadsBackAKnownMaterial) {
   };
   for (const auto& [input, dim, anisotropic, numbers] : cases) {
     SCOPED_TRACE(input);
-    const std::string text = Head(std::string(dim) + " 3", input, "RGB_COLOR") +
-                             Rows(numbers, anisotropic, [&](const SphericalAngles& at) {
-                               const Rgb rho = TruthAt(at, anisotropic);
-                               return std::vector(rho.begin(), rho.end());
-                             });
+    const std::string text =
+        Head(std::string(dim) + " 3", input, "RGB_COLOR") +
+        Rows(numbers, anisotropic, [anisotropic = anisotropic](const SphericalAngles& at) {
+          const Rgb rho = TruthAt(at, anisotropic);
+          return std::vector(rho.begin(), rho.end());
+        });
     const Measurement measurement = Source("any", text).Read({.min_theta_d_deg = 0});
     EXPECT_EQ(measurement.kind, "ALTA file of scattered samples");
     EXPECT_EQ(measurement.counts.valid, anisotropic ? 16 : 8);
