@@ -97,7 +97,7 @@ export function drawScale(canvas, percents, dark) {
   context.textBaseline = 'top';
   context.textAlign = 'center';
   percents.forEach((percent, k) => {
-    if (width < 360 && k > 0 && k < percents.length - 1 && percent % 25 !== 0) return;
+    if (width < 360 && k > 0 && k < percents.length - 1 && percent !== 0) return;
     const ends = k === 0 ? '≤ ' : k === percents.length - 1 ? '≥ ' : '', sign = percent < 0 ? '−' : percent > 0 ? '+' : '';
     const x = Math.min(Math.max(Math.log(1 + percent / 100) / most, -1), 1);
     context.textAlign = k === 0 ? 'left' : k === percents.length - 1 ? 'right' : 'center';
