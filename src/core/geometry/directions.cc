@@ -12,6 +12,11 @@ Direction ToDirection(const PolarAngles& angles) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
+Direction TurnedAboutNormal(const Direction& w, double phi) {
+  const double c = std::cos(phi), s = std::sin(phi);
+  return {c * w[0] - s * w[1], s * w[0] + c * w[1], w[2]};
+}
+
 PolarAngles ToPolarAngles(const Direction& w) {
   return {std::atan2(std::hypot(w[0], w[1]), w[2]), std::atan2(w[1], w[0])};
 }

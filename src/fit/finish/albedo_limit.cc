@@ -7,13 +7,13 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/math/robust_line.h"
+#include "fit/finish/lower_g.h"
 #include "fit/prior/dim_highlights.h"
 #include "model/lobes/beyond_data.h"
 #include "trilobe/core/geometry/directions.h"
@@ -28,8 +28,7 @@
 namespace trilobe {
 namespace {
 
-constexpr double kTolerance = 1e-3;  // of DirectionalAlbedo
-constexpr int kPasses = 40, kPassesBeyond = 10;
+constexpr int kPassesBeyond = 10;
 
 // Where albedos are computed [rad]: denser where they rise steeply.
 std::vector<double> Angles() {
@@ -200,54 +199,45 @@ double LastWellCovered(std::span<const double> coverage, const FactorModel& mode
 
 // How much lower G is to be at a stored node, from what the albedo at each angle asks for.
 using FactorAtNode =
-    std::function<double(std::span<const int> nodes, size_t i, const std::vector<double>& factor)>;
+    std::function<double(std::span<const int> nodes, size_t i, const std::vector<double>& factors)>;
 
-// Lowers G until the albedo exceeds no limit; whether anything changed. An angle that is within its
-// limit stays so, as G only falls.
+// Lowers G until the albedo exceeds no limit; whether anything changed.
 bool LowerG(const AlbedoLimits& limits, const FactorAtNode& at_node, const TableLayout& layout,
             int num_threads, const StopCheck& stop, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   const std::vector<double>& angles = limits.theta_i;
   const size_t first_beyond =
       std::ranges::upper_bound(angles, limits.beyond_theta) - angles.begin();
-  std::vector<size_t> all(angles.size());
-  std::iota(all.begin(), all.end(), 0);
-  bool changed = false;
+  const auto factors_at = [&](std::span<const size_t> numbers) {
+    std::vector<double> theta_i, factors;
+    for (const size_t k : numbers) theta_i.push_back(angles[k]);
+    const std::vector<Rgb> albedos = AlbedosOf(*model, theta_i, num_threads);
+    for (size_t j = 0; j < numbers.size(); ++j) {
+      const bool is_beyond = numbers[j] >= first_beyond;
+      const Rgb& limit = is_beyond ? limits.beyond[numbers[j]] : limits.everywhere;
+      factors.push_back(FactorOfG(albedos[j], limit, model->d()));
+    }
+    return factors;
+  };
+  const auto lower_from = [&](double theta, const std::vector<double>& factors) {
+    for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
+      const std::span<double> G = model->table(Factor::kG, t);
+      const std::span<const int> nodes = layout.of(Factor::kG, t);
+      for (size_t i = 0; i < nodes.size(); ++i) {
+        if (spec.g_axis.Theta(nodes[i]) > theta) G[nodes[i]] *= at_node(nodes, i, factors);
+      }
+    }
+    ExpandStored(layout, model);
+  };
   // First what lies beyond the data: its light may come from angles that are within, too, and then
   // it does not help.
-  for (const bool beyond : {true, false}) {
-    std::vector<size_t> exceeding(all.begin() + (beyond ? first_beyond : 0), all.end());
-    for (int pass = 0; pass < (beyond ? kPassesBeyond : kPasses) && !stop(); ++pass) {
-      std::vector<double> looked_at;
-      for (const size_t k : exceeding) looked_at.push_back(angles[k]);
-      const std::vector<Rgb> albedos = AlbedosOf(*model, looked_at, num_threads);
-      std::vector<double> factor(angles.size(), 1.0);
-      std::vector<size_t> left;
-      for (size_t j = 0; j < exceeding.size(); ++j) {
-        const size_t k = exceeding[j];
-        const Rgb& limit = k >= first_beyond ? limits.beyond[k] : limits.everywhere;
-        for (int c = 0; c < kChannels; ++c) {
-          const double diffuse = kPi * model->d()[c], albedo = albedos[j][c];
-          if (!(albedo > (1 + kTolerance) * limit[c]) || !(limit[c] > diffuse)) continue;
-          factor[k] = std::min(factor[k], std::sqrt((limit[c] - diffuse) / (albedo - diffuse)));
-        }
-        if (factor[k] < 1) left.push_back(k);
-      }
-      if (left.empty()) break;
-      exceeding = std::move(left);
-      changed = true;
-      for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-        const std::span<double> G = model->table(Factor::kG, t);
-        const std::span<const int> nodes = layout.of(Factor::kG, t);
-        for (size_t i = 0; i < nodes.size(); ++i) {
-          if (beyond && !(spec.g_axis.Theta(nodes[i]) > limits.beyond_theta)) continue;
-          G[nodes[i]] *= at_node(nodes, i, factor);
-        }
-      }
-      ExpandStored(layout, model);
-    }
-  }
-  return changed;
+  const bool beyond = LowerWhileExceeding(
+      first_beyond, angles.size(), kPassesBeyond, stop, factors_at,
+      [&](const std::vector<double>& factors) { lower_from(limits.beyond_theta, factors); });
+  const bool all =
+      LowerWhileExceeding(0, angles.size(), kPassesOfG, stop, factors_at,
+                          [&](const std::vector<double>& factors) { lower_from(-1, factors); });
+  return beyond || all;
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/math/quantile.h"
+#include "fit/finish/lower_g.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/core/system/parallel.h"
@@ -18,17 +18,11 @@
 namespace trilobe {
 namespace {
 
-constexpr double kAlbedoTolerance = 1e-3;  // of DirectionalAlbedo
-constexpr int kMostPasses = 40, kAzimuths = 12;
+constexpr int kAzimuths = 12;
 constexpr int kThetas = 9;  // of a G without azimuths
 constexpr double kFarthest = DegreesToRadians(89.5);
 
 double Azimuth(int b) { return 2 * kPi * b / kAzimuths; }
-
-Direction Turned(const Direction& w, double phi) {
-  const double c = std::cos(phi), s = std::sin(phi);
-  return {c * w[0] - s * w[1], s * w[0] + c * w[1], w[2]};
-}
 
 std::vector<Rgb> AlbedosAt(const FactorModel& model, std::span<const PolarAngles> incidences,
                            int num_threads) {
@@ -38,7 +32,7 @@ std::vector<Rgb> AlbedosAt(const FactorModel& model, std::span<const PolarAngles
     const double phi = incidences[k].phi;
     albedos[k] = DirectionalAlbedo(
         [&](const DirectionPair& pair) {
-          return prepared.Value(Turned(pair.wi, phi), Turned(pair.wo, phi));
+          return prepared.Value(TurnedAboutNormal(pair.wi, phi), TurnedAboutNormal(pair.wo, phi));
         },
         incidences[k].theta);
   });
@@ -110,41 +104,29 @@ bool LimitAnisotropicAlbedo(const Rgb& limit, const TableLayout& layout, int num
   const ModelSpec& spec = model->spec();
   const Axis& axis = spec.g_axis;
   const Incidences incidences(axis);
-  // A lower G raises no albedo, so that those within the limit stay there.
-  std::vector<size_t> looked_at(incidences.all().size());
-  std::iota(looked_at.begin(), looked_at.end(), 0);
-  bool changed = false;
-  for (int pass = 0; pass < kMostPasses && !stop(); ++pass) {
+  const auto factors_at = [&](std::span<const size_t> numbers) {
     std::vector<PolarAngles> at;
-    for (const size_t k : looked_at) at.push_back(incidences.all()[k]);
-    const std::vector<Rgb> albedos = AlbedosAt(*model, at, num_threads);
-    std::vector<double> factor(incidences.all().size(), 1.0);
-    std::vector<size_t> exceeding;
-    for (size_t j = 0; j < looked_at.size(); ++j) {
-      double& lower = factor[looked_at[j]];
-      for (int c = 0; c < kChannels; ++c) {
-        const double diffuse = kPi * model->d()[c], albedo = albedos[j][c];
-        if (!(albedo > (1 + kAlbedoTolerance) * limit[c]) || !(limit[c] > diffuse)) continue;
-        lower = std::min(lower, std::sqrt((limit[c] - diffuse) / (albedo - diffuse)));
-      }
-      if (lower < 1) exceeding.push_back(looked_at[j]);
+    std::vector<double> factors;
+    for (const size_t k : numbers) at.push_back(incidences.all()[k]);
+    for (const Rgb& albedo : AlbedosAt(*model, at, num_threads)) {
+      factors.push_back(FactorOfG(albedo, limit, model->d()));
     }
-    if (exceeding.empty()) break;
-    looked_at = std::move(exceeding);
-    changed = true;
+    return factors;
+  };
+  const auto lower_by = [&](const std::vector<double>& factors) {
     for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
       for (const int k : layout.of(Factor::kG, t)) {
         double least = 1;
         for (int b = 0; b < (axis.polar() ? 1 : kAzimuths); ++b) {
           const double phi = axis.polar() ? axis.Phi(k) : Azimuth(b);
-          least = std::min(least, incidences.LeastAround(axis, k, phi, factor));
+          least = std::min(least, incidences.LeastAround(axis, k, phi, factors));
         }
         model->table(Factor::kG, t)[k] *= least;
       }
     }
     ExpandStored(layout, model);
-  }
-  return changed;
+  };
+  return LowerWhileExceeding(0, incidences.all().size(), kPassesOfG, stop, factors_at, lower_by);
 }
 
 PeakAlbedo PeakAnisotropicAlbedo(const FactorModel& model, int num_threads) {

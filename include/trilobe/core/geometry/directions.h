@@ -59,6 +59,7 @@ struct PolarAngles {
 };
 Direction ToDirection(const PolarAngles& angles);
 PolarAngles ToPolarAngles(const Direction& w);  // w of any length; phi in [-pi, pi]
+Direction TurnedAboutNormal(const Direction& w, double phi);
 // The half vector of two directions above the surface. Its phi is 0 within 1e-9 of the normal.
 PolarAngles HalfVector(const DirectionPair& pair);
 

@@ -1,0 +1,34 @@
+#ifndef TRILOBE_FIT_FINISH_LOWER_G_H_
+#define TRILOBE_FIT_FINISH_LOWER_G_H_
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "trilobe/core/base/stop_check.h"
+#include "trilobe/core/geometry/channels.h"
+
+namespace trilobe {
+
+// What lowers G of isotropic and of anisotropic models that reflect too much light.
+constexpr int kPassesOfG = 40;
+
+// How much lower G is to be where an albedo exceeds its limit by more than a thousandth: by the
+// root of the excess over what is diffuse, since both G(theta_i) and G(theta_o) make a highlight. 1
+// where it does not.
+double FactorOfG(const Rgb& albedo, const Rgb& limit, std::span<const double> d);
+
+// The factor that each of these angles asks for. [angles.size()]
+using FactorsAt = std::function<std::vector<double>(std::span<const size_t> angles)>;
+// Lowers G, by the factors that all angles ask for. [end]
+using LowerBy = std::function<void(const std::vector<double>& factors)>;
+
+// Lowers G until no angle from `begin` to below `end` asks for it, in at most so many passes;
+// whether anything changed. An angle that is within its limit stays so, as G only falls.
+bool LowerWhileExceeding(size_t begin, size_t end, int passes, const StopCheck& stop,
+                         const FactorsAt& factors_at, const LowerBy& lower_by);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_FINISH_LOWER_G_H_
