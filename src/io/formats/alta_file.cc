@@ -20,12 +20,6 @@ constexpr std::string_view kStream = "#BEGIN_STREAM";
 
 // --- What the numbers of a sample are ------------------------------------------------------------
 
-// Turned about the normal.
-Direction Turned(const Direction& w, double phi) {
-  const double c = std::cos(phi), s = std::sin(phi);
-  return {c * w[0] - s * w[1], s * w[0] + c * w[1], w[2]};
-}
-
 // The first numbers of a sample: what they are called, whether they tell azimuths apart, and the
 // directions of the light (L) and of the view (V) that they stand for. Angles in radians.
 struct AltaInput {
@@ -67,7 +61,7 @@ const std::vector<AltaInput>& AltaInputs() {
        true,
        [](const double* x) {
          const auto [wi, wo] = ToDirections(HalfDiffAngles{x[0], x[2], x[3]});
-         return DirectionPair{Turned(wi, x[1]), Turned(wo, x[1])};
+         return DirectionPair{TurnedAboutNormal(wi, x[1]), TurnedAboutNormal(wo, x[1])};
        }},
       {"CARTESIAN",
        {"V.x", "V.y", "V.z", "L.x", "L.y", "L.z"},
@@ -266,7 +260,7 @@ Measurement ParseAlta(std::string_view bytes, const std::string& source) {
   if (header.output == "INV_STERADIAN_COSINE_FACTOR") {
     measurement.notes.emplace_back("read as: f cos theta_o, divided by cos theta_o");
   } else if (header.output == "XYZ_COLOR") {
-    measurement.notes.emplace_back("read as: X, Y, Z relative to white, which is taken for D65");
+    measurement.notes.emplace_back(std::string("read as: ").append(kTristimulusNote));
   }
   return measurement;
 }

@@ -227,7 +227,7 @@ Measurement ParseLightTools(std::string_view text, const std::string& source) {
   measurement.anisotropic = blocks.read.begin()->first.first != blocks.read.rbegin()->first.first;
   std::ostringstream note;
   note << "read as: front reflection";
-  if (header.tristimulus) note << ", X, Y, Z relative to white, which is taken for D65";
+  if (header.tristimulus) note << ", " << kTristimulusNote;
   if (color) note << ", " << bands.size() << " wavelengths to RGB by CIE 1931";
   if (blocks.left_out > 0) {
     note << "; " << blocks.left_out << " blocks of transmission or the back are left out";

@@ -47,10 +47,7 @@ class RadianceXml {
 
   // Without the white space around it.
   std::string_view Text(const pugi::xml_node& node, const char* name) const {
-    std::string_view text = Child(node, name).child_value();
-    constexpr std::string_view kSpace = " \t\r\n";
-    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-    return text.substr(0, text.find_last_not_of(kSpace) + 1);
+    return Trimmed(Child(node, name).child_value());
   }
 
   double Number(const pugi::xml_node& node, const char* name) const {
@@ -285,9 +282,7 @@ Measurement ParseRadiance(std::string_view bytes, const std::string& source) {
 
 bool LooksLikeRadiance(std::string_view text) {
   constexpr size_t kLongestProlog = 1 << 12;
-  const std::string_view begin = text.substr(0, kLongestProlog);
-  const size_t first = begin.find('<');
-  return first != std::string_view::npos && begin.find("<WindowElement") != std::string_view::npos;
+  return text.substr(0, kLongestProlog).find("<WindowElement") != std::string_view::npos;
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ class SpectralColor {
 void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
                  const SpectralColor& color, SampleCollector* collector);
 
+inline constexpr const char* kTristimulusNote = "X, Y, Z relative to white, which is taken for D65";
 // The same for CIE 1931 tristimulus values, each relative to that of white: a grey has X = Y = Z.
 // Their white is taken for D65.
 void AddTristimulus(const SphericalAngles& angles, const std::array<double, 3>& xyz,

@@ -213,7 +213,7 @@ Measurement ParseZemax(std::string_view text, const std::string& source) {
   Measurement measurement = collector.Take();
   measurement.anisotropic = Distinct(rotations) > 1;
   if (header.content == "XYZ") {
-    measurement.notes.emplace_back("read as: X, Y, Z relative to white, which is taken for D65");
+    measurement.notes.emplace_back(std::string("read as: ").append(kTristimulusNote));
   }
   return measurement;
 }
