@@ -47,8 +47,9 @@ function compare() {
     return copy;
   });
   const common = element('p', {className: 'hint', textContent: 'Below each pair, its model under one light, with the exposure of the first, and how far it is from the first (white: not seen).'});
-  compared.replaceChildren(...(chosen.length > 1 ? [common] : []), ...copies);
-  drawCompared(chosen.map((figure, k) => ({...fits[figures.indexOf(figure)], figure: copies[k]}))).catch(error => (common.textContent = error.message));
+  const entries = chosen.map((figure, k) => ({...fits[figures.indexOf(figure)], figure: copies[k]})).filter(({model}) => model);
+  compared.replaceChildren(...(entries.length > 1 ? [common] : []), ...copies);
+  if (entries.length > 1) drawCompared(entries).catch(error => (common.textContent = error.message));
   for (const figure of figures) {
     const box = figure.querySelector('input');
     box.disabled = chosen.length >= 4 && !box.checked;

@@ -32,18 +32,17 @@ function finish(renderer, stale, draw) {
 }
 
 let turns = 0;
-// entries: [{name, model, figure}...]: into each figure, its sphere and the difference of that to the first's.
+// entries: [{name, model, figure}...], two or more: into each figure, its sphere and the difference of that to the first's.
 export async function drawCompared(entries) {
-  const turn = ++turns, stale = () => turn !== turns, drawn = entries.filter(({model}) => model);
-  if (drawn.length < 2) return;
-  const renderer = theRenderer(), first = drawn[0], reference = {kind: 'model', model: parseModel(JSON.stringify(first.model))};
+  const turn = ++turns, stale = () => turn !== turns;
+  const renderer = theRenderer(), first = entries[0], reference = {kind: 'model', model: parseModel(JSON.stringify(first.model))};
   renderer.setSize(renderer.rate > 5e7 ? SPHERE : SPHERE / 2);
-  const places = drawn.map(({figure}) => {
+  const places = entries.map(({figure}) => {
     const canvas = element('canvas', {width: 2 * SPHERE, height: SPHERE, role: 'img'}), said = element('p', {className: 'common'});
     figure.querySelector('figcaption').before(canvas, said);
     return {canvas, said};
   });
-  for (const [k, {name, model}] of drawn.entries()) {
+  for (const [k, {name, model}] of entries.entries()) {
     const {canvas, said} = places[k], draw = () => {
       renderer.show([{mode: 'fitted', x: 0, y: 0, size: SPHERE}, {mode: 'difference', x: SPHERE, y: 0, size: SPHERE}], {wipe: 0, stops: 0, mark: null});
       canvas.getContext('2d').clearRect(0, 0, 2 * SPHERE, SPHERE);

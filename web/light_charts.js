@@ -19,6 +19,15 @@ function outgoingDegrees() {
 }
 const outgoing = degrees => [Math.sin(degrees / DEGREES), 0, Math.cos(degrees / DEGREES)];
 
+// Curves of a channel each, fitted and measured: of rows [[degrees, rgb]...].
+function channelSeries(fitted, measured) {
+  const ofChannel = (rows, c) => ({color: CHANNEL_COLORS[c], points: rows.map(([degrees, rgb]) => [degrees, rgb[c]])});
+  return [0, 1, 2].flatMap(c => [
+    {label: CHANNEL_NAMES[c], ...ofChannel(fitted, c)},
+    ...(measured.length > 0 ? [{label: `${referenceWord()}, ${CHANNEL_NAMES[c]}`, dots: true, key: c === 0 ? referenceWord() : null, ...ofChannel(measured, c)}] : []),
+  ]);
+}
+
 // {fitted: [[degrees, {rho, lobes}]...], measured: [[degrees, rho]...], known: whether a direction was measured}.
 function inPlane() {
   const {measured} = page, theta = state.thetaI / DEGREES, wi = [-Math.sin(theta), 0, Math.cos(theta)];
@@ -34,11 +43,7 @@ function inPlane() {
 
 function drawSlice({fitted, measured}) {
   slice ??= chartOf('slice', 'slice', 'slice', ['theta_o_deg', 'rho_per_sr'], 'θo');
-  const series = [0, 1, 2].flatMap(c => [
-    {label: CHANNEL_NAMES[c], color: CHANNEL_COLORS[c], points: fitted.map(([degrees, {rho}]) => [degrees, rho[c]])},
-    ...(measured.length > 0 ? [{label: `${referenceWord()}, ${CHANNEL_NAMES[c]}`, color: CHANNEL_COLORS[c], dots: true, key: c === 0 ? referenceWord() : null,
-                                points: measured.map(([degrees, rho]) => [degrees, rho[c]])}] : []),
-  ]);
+  const series = channelSeries(fitted.map(([degrees, {rho}]) => [degrees, rho]), measured);
   const log = state.log.slice, known = hasMeasured() && !hasSamples() ? Infinity : maxAngle();
   slice.draw({series, x: {min: -90, max: 90, ticks: PLANE_TICKS}, y: log ? {log, decades: 6} : {min: 0}, known: known < 90 ? known : Infinity,
               marks: [{x: state.thetaI, text: 'mirror'}]});
@@ -66,11 +71,7 @@ export function drawAlbedo() {
   albedoChart ??= chartOf('albedo', 'albedo', 'albedo', ['theta_deg', 'albedo'], 'θ');
   const rows = page.albedo ?? [], measured = rows.filter(row => row.measured);
   if (rows.length < 2) return;
-  const series = [0, 1, 2].flatMap(c => [
-    {label: CHANNEL_NAMES[c], color: CHANNEL_COLORS[c], points: rows.map(({degrees, fitted}) => [degrees, fitted[c]])},
-    ...(measured.length > 0 ? [{label: `${referenceWord()}, ${CHANNEL_NAMES[c]}`, color: CHANNEL_COLORS[c], dots: true, key: c === 0 ? referenceWord() : null,
-                                points: measured.map(row => [row.degrees, row.measured[c]])}] : []),
-  ]);
+  const series = channelSeries(rows.map(row => [row.degrees, row.fitted]), measured.map(row => [row.degrees, row.measured]));
   const high = Math.max(1.02, ...series.flatMap(s => s.points.map(p => p[1]))), log = state.log.albedo;
   albedoChart.draw({series, x: {min: 0, max: 90, ticks: [0, 30, 60, 90].map(v => [v, `${v}°`])}, y: log ? {log, max: high} : {min: 0, max: high},
                     known: maxAngle(), lines: [{y: 1}], marks: page.point?.angles ? [{x: page.point.angles.theta_o * DEGREES, text: 'θo'}] : []});

@@ -23,6 +23,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// That a page holds, some 30 kB each; one of more fits compares their pictures alone.
+constexpr size_t kMostModels = 200;
+
 // Tables need no more digits for a picture.
 void RoundNumbers(Json* value) {
   if (value->is_number_float()) *value = std::stod(Text(value->get<double>(), 5));
@@ -104,15 +107,17 @@ std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& fo
   std::vector<FitOutcome> fits;
   std::ranges::copy_if(outcomes, std::back_inserter(fits), &FitOutcome::has_picture);
   std::ranges::stable_sort(fits, {}, &FitOutcome::psnr_db);
+  const bool has_models = fits.size() <= kMostModels;
   Json json = Json::array();
   for (const FitOutcome& outcome : fits) {
+    const std::string model = folder + "/" + outcome.name + "/model.json";
     json.push_back({{"name", Printable(outcome.name)},
                     {"psnr_db", std::min(outcome.psnr_db, 1e3)},
                     {"delta_e", outcome.mean_delta_e},
                     {"parameters", outcome.num_parameters},
                     {"seconds", outcome.seconds},
                     {"anisotropic", outcome.anisotropic ? 1 : 0},
-                    {"model", ModelToDraw(folder + "/" + outcome.name + "/model.json")}});
+                    {"model", has_models ? ModelToDraw(model) : Json()}});
   }
   std::ostringstream body;
   body << "<h1>" << fits.size() << " of " << outcomes.size()

@@ -34,7 +34,8 @@ std::string StateName(FitOutcome::State state);
 std::string FitsCsv(std::span<const FitOutcome> outcomes);
 
 // HTML page that lists failures and shows the picture of each fit, lowest PSNR first. It sorts,
-// filters, and compares up to four fits side by side: their models under one light, which it holds.
+// filters, and compares up to four fits side by side: their models under one light, which it
+// holds of up to 200 fits.
 // `folder` has the folders of the fits; `table`: link to the CSV, or empty.
 std::string FitsPage(std::span<const FitOutcome> outcomes, const std::string& folder,
                      const std::string& table);
