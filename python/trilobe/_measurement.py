@@ -127,10 +127,7 @@ class Measurement:
                 coords={**angles, "channel": channels},
                 attrs={"source": self.source},
             )
-        half = (self.wi + self.wo).reshape(*self.grid, 3)
-        half = half / np.linalg.norm(half, axis=-1, keepdims=True)
-        theta_h = np.arctan2(np.hypot(half[..., 0], half[..., 1]), half[..., 2])[:, 0, 0]
-        theta_d = np.arccos(np.clip((self.wi.reshape(half.shape) * half).sum(axis=-1), -1, 1))[0, :, 0]
+        theta_h, theta_d = (angle.reshape(self.grid) for angle in half_angles(self.wi, self.wo))
         phi_d = (np.arange(self.grid[2]) + 0.5) * np.pi / self.grid[2]
         dims = ("theta_h", "theta_d", "phi_d")
         return xarray.Dataset(
@@ -138,7 +135,7 @@ class Measurement:
                 "rho": ((*dims, "channel"), self.rho.reshape(*self.grid, 3)),
                 "reason": (dims, self.reason.reshape(self.grid), told),
             },
-            coords={"theta_h": theta_h, "theta_d": theta_d, "phi_d": phi_d, "channel": channels},
+            coords={"theta_h": theta_h[:, 0, 0], "theta_d": theta_d[0, :, 0], "phi_d": phi_d, "channel": channels},
             attrs={"source": self.source},
         )
 
@@ -241,6 +238,14 @@ class Measurement:
         """What it is, in short."""
         counts = self.counts
         return f"<trilobe.Measurement {self.source}: {self.kind}, {counts['valid']} of {counts['total']} valid>"
+
+
+def half_angles(wi: NDArray[np.float64], wo: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """theta_h and theta_d of directions (n, 3) of length 1 [rad]."""
+    half = wi + wo
+    half /= np.linalg.norm(half, axis=-1, keepdims=True)
+    theta_h = np.arctan2(np.hypot(half[:, 0], half[:, 1]), half[:, 2])
+    return theta_h, np.arccos(np.clip((wi * half).sum(axis=-1), -1, 1))
 
 
 def read(

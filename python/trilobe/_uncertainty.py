@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trilobe._brdf import Brdf
 from trilobe._core import Error
+from trilobe._measurement import half_angles
 from trilobe._objective import Objective
 from trilobe._result import Problem
 from trilobe._table import Table
@@ -141,11 +142,7 @@ def _drawn(problem: Problem, blocks: int, replicates: int, seed: int) -> Any:
     """How often each valid sample is drawn, replicate by replicate: blocks are cells of theta_h and theta_d."""
     data = problem.measurement
     assert data is not None
-    wi, wo = data.wi[data.valid], data.wo[data.valid]
-    half = wi + wo
-    half /= np.linalg.norm(half, axis=1, keepdims=True)
-    theta_h = np.arctan2(np.hypot(half[:, 0], half[:, 1]), half[:, 2])
-    theta_d = np.arccos(np.clip((wi * half).sum(axis=1), -1, 1))
+    theta_h, theta_d = half_angles(data.wi[data.valid], data.wo[data.valid])
     row = np.minimum((np.sqrt(theta_h / (np.pi / 2)) * blocks).astype(np.int64), blocks - 1)
     column = np.minimum((theta_d / (np.pi / 2) * blocks).astype(np.int64), blocks - 1)
     _, block = np.unique(row * blocks + column, return_inverse=True)

@@ -1,5 +1,13 @@
-"""Skips what needs the package where it has not been built."""
+"""Skips what needs the package where it has not been built; what tests share."""
 
 import pytest
 
-pytest.importorskip("trilobe")
+trilobe = pytest.importorskip("trilobe")
+
+from models import SMALL  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def plastic():
+    """A measurement."""
+    return trilobe.read(SMALL, noise=0.02)

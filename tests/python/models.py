@@ -4,6 +4,8 @@ import numpy as np
 
 import trilobe
 
+SMALL = "synth:plastic@24x24x48"  # a measurement that is fitted soon
+
 
 def directions(count, seed):
     """Distributed by their cosines."""

@@ -14,18 +14,12 @@ import pytest
 
 import trilobe
 
-from models import anisotropic, directions, isotropic
+from models import SMALL, anisotropic, directions, isotropic
 
 pytest.importorskip("trilobe._fit")
 
 PROGRAM = pathlib.Path(os.environ.get("TRILOBE_PROGRAM", "build/release/bin/trilobe")).resolve()
 needs_program = pytest.mark.skipif(not PROGRAM.exists(), reason=f"{PROGRAM} is not built")
-SMALL = "synth:plastic@24x24x48"
-
-
-@pytest.fixture(scope="module")
-def plastic():
-    return trilobe.read(SMALL, noise=0.02)
 
 
 @pytest.fixture(scope="module")

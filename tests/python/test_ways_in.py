@@ -16,13 +16,6 @@ from models import directions, isotropic
 
 pytest.importorskip("trilobe._fit")
 
-SMALL = "synth:plastic@24x24x48"
-
-
-@pytest.fixture(scope="module")
-def plastic():
-    return trilobe.read(SMALL, noise=0.02)
-
 
 @pytest.fixture(scope="module")
 def fitted(plastic):
