@@ -95,7 +95,6 @@ export function drawScale(canvas, percents, dark) {
   }
   context.fillStyle = styleOf(canvas).text;
   context.textBaseline = 'top';
-  context.textAlign = 'center';
   percents.forEach((percent, k) => {
     if (width < 360 && k > 0 && k < percents.length - 1 && percent !== 0) return;
     const ends = k === 0 ? '≤ ' : k === percents.length - 1 ? '≥ ' : '', sign = percent < 0 ? '−' : percent > 0 ? '+' : '';
