@@ -12,8 +12,8 @@ SAMPLES = "samples.csv"
 
 
 def _measured(setting, source):
-    """What each fit is given: [(what is hidden or kept, the file, flags)]."""
-    given = [(name, source.path, corruptions.flags(name))
+    """What each fit is given: [(what is hidden or kept, seed of the noise, the file, flags)]."""
+    given = [(name, 1, source.path, corruptions.flags(name))
              for name in corruptions.of_kinds(setting.manifest["hidden"])]
     for pattern, counts in setting.manifest["kept"].items():
         for count in counts:
@@ -21,7 +21,9 @@ def _measured(setting, source):
                            pathlib.Path(__file__).with_name("sample_directions"),
                            (str(setting.program()), source.path, pattern, str(count), f"{FOLDER}/{SAMPLES}"), SAMPLES,
                            labels={"material": source.name, "given": "samples"})
-            given.append((f"{pattern}:{count}", Product(sampled, SAMPLES), {}))
+            given += [(f"{pattern}:{count}", seed, Product(sampled, SAMPLES),
+                       {"corrupt": f"noise:{setting.manifest['noise']}", "data_seed": seed})
+                      for seed in range(1, setting.manifest["data_seeds"] + 1)]
     return given
 
 
@@ -29,11 +31,11 @@ def units(setting):
     """Fits to a part of each table, and the score of each on all of it."""
     made = []
     for source in setting.every(setting.manifest["every"]):
-        for name, file, flags in _measured(setting, source):
+        for name, seed, file, flags in _measured(setting, source):
             for way, own in setting.manifest["ways"].items():
-                labels = {"material": source.name, "given": name, "way": way}
+                labels = {"material": source.name, "given": name, "data_seed": seed, "way": way}
                 words = fits.words({**setting.manifest["flags"], **flags, **own})
-                place = f"beyond/{source.name}/{fits.file_name(name)}-{fits.file_name(way)}"
+                place = f"beyond/{source.name}/{fits.file_name(name)}-{seed}-{fits.file_name(way)}"
                 fitted = Unit(place, setting.program(),
                               ("fit", file, f"--out={FOLDER}", "--noplots", *words), "report.json", labels=labels)
                 model = Product(fitted, "model.json")
@@ -52,16 +54,18 @@ def tabulate(setting, results):
     for result in results:
         if result.folder and "way" in result.labels:
             labels = result.labels
-            of.setdefault((labels["material"], labels["given"], labels["way"]), {})[labels.get("of", "fit")] = result
+            key = (labels["material"], labels["given"], labels["data_seed"], labels["way"])
+            of.setdefault(key, {})[labels.get("of", "fit")] = result
     rows = []
-    for (material, given, way), parts in of.items():
+    for (material, given, seed, way), parts in of.items():
         if set(parts) != {"fit", "whole", "light"}:
             continue
         verdict = json.loads((parts["fit"].folder / "report.json").read_text())["verdict"]
         looks = json.loads((parts["whole"].folder / "stdout.txt").read_text())["appearance"]
         albedo = json.loads((parts["light"].folder / "stdout.txt").read_text())["albedo"]
         estimate = verdict["whole"] or {}
-        rows.append({"material": material, "given": given, "way": way, "measured_share": verdict["measured_share"],
+        rows.append({"material": material, "given": given, "data_seed": seed, "way": way,
+                     "measured_share": verdict["measured_share"],
                      "psnr_db": looks["psnr_db"], "delta_e": looks["mean_delta_e"],
                      "estimated_delta_e": estimate.get("mean_delta_e"), "estimated_psnr_db": estimate.get("psnr_db"),
                      "praised": int(verdict["visibility"] == "none" and not estimate),
@@ -91,7 +95,7 @@ def _summary(rows):
                       f"{right} of {len(known)}" if known else "",
                       str(sum(row["praised"] and row["delta_e"] > SEEN for row in of)),
                       f"{max(row['largest_albedo'] for row in of):.2f}"])
-    return tables.markdown(["given", "way", "materials", "measured, %", "PSNR of the whole, dB", "least", "ΔE",
+    return tables.markdown(["given", "way", "fits", "measured, %", "PSNR of the whole, dB", "least", "ΔE",
                             "estimate within a factor of 2", "praised above ΔE 2", "largest albedo"], lines)
 
 
