@@ -16,6 +16,7 @@ First comes the source, then FIGURE = WHERE. The source is one of
 A figure in % is a share of 1, but as it is where a command prints it. `seven` is 7, `none` 0.
 
 Pages of tables that were not made by this version of the program say so at their top; --write puts or takes that line.
+Commits of experiments/same_fits.txt make no other version.
 "nightly" marks a command that takes long. Measured files that it names are looked for in the folder of --data; without
 them its figures are not checked, and a line says so.
 """
@@ -233,6 +234,19 @@ def git(root: pathlib.Path, *arguments: str) -> Optional[str]:
 
 
 @functools.cache
+def same_fits(root: pathlib.Path) -> set[str]:
+    """Commits that are known to leave fits as they were."""
+    lines = (root / "experiments/same_fits.txt").read_text().splitlines()
+    return {git(root, "rev-parse", line.split()[0]) or line for line in lines if not line.startswith("#")}
+
+
+def has_changed(root: pathlib.Path, revision: str, paths: list[str]) -> bool:
+    """Whether a commit since the revision may have changed fits, which depend on the paths."""
+    commits = (git(root, "log", "--format=%H", f"{revision}..HEAD", "--", *paths) or "").split()
+    return not same_fits(root).issuperset(commits) or git(root, "diff", "--quiet", "HEAD", "--", *paths) is None
+
+
+@functools.cache
 def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     """Why results are not those of this version of the program; empty if they are."""
     if not (results / "manifest.json").exists():
@@ -246,7 +260,7 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     reasons = []
     if unknown:
         reasons.append(f"by sources that are not in this repository ({', '.join(unknown)})")
-    elif any(git(root, "diff", "--quiet", revision, "--", *paths) is None
+    elif any(has_changed(root, revision, paths)
              for paths in (fits, ALSO.get(results.parent.name)) if paths for revision in revisions):
         reasons.append(f"before changes of fits ({', '.join(revisions)})")
     settings = load(results.parent / "manifest.json", made["form"])

@@ -29,6 +29,7 @@ class CheckFigures(unittest.TestCase):
         self.results.mkdir(parents=True)
         (self.root / "src/fit").mkdir(parents=True)
         (self.root / "src/fit/fit.cc").write_text("1\n")
+        (self.root / "experiments/same_fits.txt").write_text("# none\n")
         (self.root / "experiments/x/manifest.json").write_text('{"flags": {"raw": true}, "quick": {}}')
         (self.results / "table.csv").write_text(TABLE)
         self.git("init", "--quiet")
@@ -157,6 +158,10 @@ class CheckFigures(unittest.TestCase):
         (self.root / "src/fit/fit.cc").write_text("2\n")
         self.assertFalse(self.check())
         self.assertIn("before changes of fits", self.output)
+        self.commit()
+        self.assertFalse(self.check())
+        (self.root / "experiments/same_fits.txt").write_text(f"{self.git('rev-parse', '--short', 'HEAD')} looked at\n")
+        self.assertTrue(self.check(), self.output)
 
     def test_another_page_names_the_stale_experiments(self):
         self.manifest("0123abc")
