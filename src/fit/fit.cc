@@ -8,6 +8,7 @@
 
 #include "core/system/process.h"
 #include "fit/choose_form.h"
+#include "fit/finish/limit_light.h"
 #include "fit/guess_error.h"
 #include "fit/held_out.h"
 #include "model/appearance/node_appearance.h"
@@ -353,8 +354,24 @@ class Fitting {
     if (measurement_.table && fit->appearance) {
       fit->whole = EstimateWholeSphere(fit->objective, fit->model(), fit->measured_share,
                                        fit->appearance->sphere, Appearance());
+    } else if (fit->samples_seen) {
+      fit->whole = EstimateWholeOfSamples(
+          fit->objective.samples(), fit->model(), fit->stored_parameters, fit->measured_share,
+          *fit->samples_seen, [&](const BrdfSamples& part) { return FitTo(part, fit->model()); },
+          Appearance());
+      if (options_.stop()) fit->whole.reset();  // a half was not fitted
     }
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
+  }
+
+  // As all samples were fitted, from that fit, in few steps.
+  FactorModel FitTo(const BrdfSamples& part, FactorModel model) const {
+    const Objective data(part, model.spec(), options_.weighting, options_.num_threads);
+    const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, data);
+    const Objective solved = prior ? Objective(data, prior->JoinTo(data)) : data;
+    model = FitToPart(solved, std::move(model), options_.stop);
+    LightLimit(data, model).Apply(TableLayout::Full(model.spec()), options_.stop, &model);
+    return model;
   }
 
   const Measurement& measurement_;

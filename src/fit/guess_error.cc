@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -51,12 +53,46 @@ double SumInDecibels(double a, double b) {
   return -10 * std::log10(std::pow(10, -a / 10) + std::pow(10, -b / 10));
 }
 
+constexpr double kNextToAll = 0.98;  // of what a renderer reads
+
+// The incidences of samples, from 0 in ascending order of theta_i. [n]
+std::vector<int> IncidencesOf(const BrdfSamples& samples) {
+  constexpr double kSame = DegreesToRadians(1), kWide = DegreesToRadians(10);
+  constexpr int kFew = 8;  // samples of an incidence, which then is none
+  const auto numbers = [&](double step) {
+    std::vector<int> number;
+    for (const SphericalAngles& at : samples.directions) {
+      number.push_back(static_cast<int>(std::lround(at.theta_i / step)));
+    }
+    return number;
+  };
+  std::vector<int> number = numbers(kSame);
+  std::set<int> different(number.begin(), number.end());
+  if (different.size() * kFew > number.size()) {
+    number = numbers(kWide);
+    different = {number.begin(), number.end()};
+  }
+  for (int& at : number) {
+    at = static_cast<int>(std::distance(different.begin(), different.find(at)));
+  }
+  return number;
+}
+
+// The samples of the first or of the second of each two incidences.
+BrdfSamples EveryOther(const BrdfSamples& samples, const std::vector<int>& incidences, int which) {
+  std::vector<int> kept;
+  for (int j = 0; j < samples.size(); ++j) {
+    if (incidences[j] % 2 == which) kept.push_back(j);
+  }
+  return Selected(samples, kept);
+}
+
 }  // namespace
 
 std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const FactorModel& model,
                                                double measured_share, const SeenError& seen,
                                                const AppearanceOptions& options) {
-  constexpr double kNextToAll = 0.98, kHidden = 1.0 / 3;
+  constexpr double kHidden = 1.0 / 3;
   if (!(measured_share < kNextToAll) || model.spec().anisotropic()) return std::nullopt;
   const double end = std::asin(std::pow(measured_share, 0.25));
   const double width = kHidden * (kPi / 2 - end);
@@ -68,6 +104,32 @@ std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const Fact
   const SphereError guess = CompareWhole(model, rehearsed, options);
   return WholeSphere{.mean_delta_e = std::hypot(seen.mean_delta_e, guess.mean_delta_e),
                      .psnr_db = SumInDecibels(seen.psnr_db, guess.psnr_db)};
+}
+
+std::optional<WholeSphere> EstimateWholeOfSamples(const BrdfSamples& samples,
+                                                  const FactorModel& model, int parameters,
+                                                  double measured_share, const SeenError& seen,
+                                                  const FitTo& fit_to,
+                                                  const AppearanceOptions& options) {
+  const bool next_to_all = samples.size() >= parameters && !(measured_share < kNextToAll);
+  constexpr int kLeast = 32;  // samples, of which halves tell something
+  if (next_to_all || samples.size() < kLeast || samples.directions.empty() ||
+      model.spec().anisotropic()) {
+    return std::nullopt;
+  }
+  const std::vector<int> incidences = IncidencesOf(samples);
+  if (std::ranges::max(incidences) == 0) return std::nullopt;
+  constexpr double kHalvesOff = 1.5;  // over what all samples are off by
+  double squares = 0, errors = 0;     // of the colours, of the encoded values; means of the halves
+  for (const int which : {0, 1}) {
+    const FactorModel half = fit_to(EveryOther(samples, incidences, which));
+    const SphereError guess = CompareWhole(model, half, options);
+    squares += std::pow(guess.mean_delta_e, 2) / 2;
+    errors += std::pow(10, -guess.psnr_db / 10) / 2;
+  }
+  return WholeSphere{
+      .mean_delta_e = std::hypot(seen.mean_delta_e, std::sqrt(squares) / kHalvesOff),
+      .psnr_db = SumInDecibels(seen.psnr_db, -10 * std::log10(errors / std::pow(kHalvesOff, 2)))};
 }
 
 }  // namespace trilobe

@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "tests/test_util.h"
+#include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/fit/fit.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
+#include "trilobe/model/measurement/tabulated_brdf.h"
 
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
@@ -61,6 +63,39 @@ TEST(GuessError, IsOfWhatWasNotMeasured) {
   EXPECT_GT(estimate(0.2, 1)->mean_delta_e, fit.whole->mean_delta_e);
   EXPECT_GT(fit.whole->mean_delta_e, fit.appearance->sphere.mean_delta_e);
   EXPECT_LT(fit.whole->psnr_db, fit.appearance->sphere.psnr_db);
+}
+
+// What a table holds of the plane of incidence.
+Measurement ScansOf(const BrdfTable& table, const std::vector<double>& incidences) {
+  SampleCollector collector("scans", "test");
+  const TabulatedBrdf brdf(table);
+  for (const double theta_i : incidences) {
+    for (int theta_o = -80; theta_o <= 80; theta_o += 4) {
+      const SphericalAngles at = {DegreesToRadians(theta_i), 0, DegreesToRadians(std::abs(theta_o)),
+                                  theta_o < 0 ? 0 : kPi};
+      collector.Add(at, brdf(ToDirections(at)));
+    }
+  }
+  return collector.Take();
+}
+
+TEST(GuessError, OfScansIsNearTheTruth) {
+  const Measurement whole = LoadMeasurement("synth:plastic@30x30x60");
+  const auto fit_to = [&](const std::vector<double>& incidences) {
+    FitOptions options;
+    options.appearance = kSmall;
+    return Fit(ScansOf(*whole.table, incidences), options);
+  };
+  const FitResult fit = fit_to({10, 30, 50, 70});
+  ASSERT_TRUE(fit.whole.has_value());
+  const SphereError truth =
+      SphereJudge::OfAllDirections(*whole.table, kSmall)(MaterialOf(fit.model()).angular);
+  EXPECT_NEAR(std::log2(fit.whole->mean_delta_e / truth.mean_delta_e), 0, 1.3)
+      << fit.whole->mean_delta_e << " for " << truth.mean_delta_e;
+  EXPECT_NEAR(fit.whole->psnr_db, truth.psnr_db, 9);
+  EXPECT_GT(fit.whole->mean_delta_e, fit.samples_seen->mean_delta_e);
+  // Of one incidence there is no half.
+  EXPECT_FALSE(fit_to({40}).whole.has_value());
 }
 
 }  // namespace

@@ -126,8 +126,8 @@ struct FitResult {
   std::optional<double> left_out = {};
   std::optional<Reach> reach = {};  // for scattered samples
   double measured_share = 1;        // of what a renderer reads (MeasuredShare)
-  // For an isotropic fit to a table that was not measured everywhere: what is expected of all
-  // directions (EstimateWholeSphere).
+  // For an isotropic fit to what was not measured everywhere: what is expected of all directions
+  // (EstimateWholeSphere, EstimateWholeOfSamples).
   std::optional<WholeSphere> whole = {};
   LobeLight light = {};
   struct Seconds {

@@ -105,12 +105,11 @@ std::string SeenWords(const Verdict& verdict) {
   return words + (verdict.place == SeenPlace::kRest ? what : ", most " + place + what);
 }
 
-// Of what was not measured.
-std::string GuessWords(const std::optional<WholeSphere>& whole) {
-  if (!whole) return "; the rest is a guess";
+// "", or what is expected of all directions.
+std::string WholeWords(const std::optional<WholeSphere>& whole) {
+  if (!whole) return "";
   char text[80];
-  std::snprintf(text, sizeof(text),
-                "; the rest is a guess, and the whole off by about Delta E %.2g, %.0f dB",
+  std::snprintf(text, sizeof(text), "the whole off by about Delta E %.2g, %.0f dB",
                 whole->mean_delta_e, whole->psnr_db);
   return text;
 }
@@ -137,23 +136,26 @@ Verdict VerdictOf(const SeenError& error, const Basis& basis) {
 std::string Words(const Verdict& verdict) {
   constexpr double kNearlyAll = 0.95;
   const Basis& basis = verdict.basis;
+  const std::string of_whole = WholeWords(basis.whole);
   const std::string percent =
       std::to_string(static_cast<int>(std::lround(100 * basis.measured_share))) + " %";
   if (basis.black) return "no verdict: what was measured reflects nothing";
   if (basis.samples < basis.parameters) {
     return "no verdict: " + std::to_string(basis.samples) + " samples are fewer than " +
-           std::to_string(basis.parameters) + " parameters; at the samples " + SeenWords(verdict);
+           std::to_string(basis.parameters) + " parameters; at the samples " + SeenWords(verdict) +
+           (basis.whole ? ", " + of_whole : "");
   }
   if (!verdict.of_the_whole()) {
     return "no verdict: only " + percent + " of what a renderer reads was measured; there " +
-           SeenWords(verdict);
+           SeenWords(verdict) + (basis.whole ? ", " + of_whole : "");
   }
-  const Visibility of_whole = verdict.visibility_of_whole();
-  const bool bounded = of_whole != verdict.visibility;
+  const Visibility visibility = verdict.visibility_of_whole();
+  const bool bounded = visibility != verdict.visibility;
   if (basis.measured_share >= kNearlyAll && !bounded) return SeenWords(verdict);
-  return (bounded ? HowVisible(of_whole) + " as a whole: " : "") + SeenWords(verdict) +
-         " where it was measured, at " + percent + " of what a renderer reads" +
-         GuessWords(basis.whole);
+  return (bounded ? HowVisible(visibility) + " as a whole: " : "") + SeenWords(verdict) +
+         " where it was measured, at " + percent +
+         " of what a renderer reads; the rest is a guess" +
+         (basis.whole ? ", and " + of_whole : "");
 }
 
 std::string VisibilityName(const Verdict& verdict) {
