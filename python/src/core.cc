@@ -240,6 +240,24 @@ void Albedo(const Material& material, const Input<Real>& wi, const Output<Real>&
   }
 }
 
+// Bsdf::half_vectors(): what it draws by, for renderers that draw by tables of their own.
+nb::dict HalfVectorsOf(const Material& material) {
+  const auto& bsdf = [&]() -> const Bsdf<double>& {
+    const nb::gil_scoped_release released;
+    return material.Of<double>();
+  }();
+  const HalfVectorTable<double>& table = bsdf.half_vectors();
+  const size_t rings = table.theta_i().size(), phis = table.num_phi_i(), rows = table.y().size();
+  const size_t columns = table.num_s();
+  nb::dict dict;
+  dict["theta_i"] = OwnedArray(std::vector<double>(table.theta_i()), {rings});
+  dict["y"] = OwnedArray(std::vector<double>(table.y()), {rows});
+  dict["values"] = OwnedArray(std::vector<float>(table.values()), {rings, phis, rows, columns});
+  dict["of_row"] = OwnedArray(std::vector<double>(table.of_row()), {rings, phis, rows});
+  dict["cumulated"] = OwnedArray(std::vector<double>(table.cumulated()), {rings, phis, rows});
+  return dict;
+}
+
 Factor FactorOf(const std::string& name) {
   for (const Factor factor : kFactors) {
     if (name == FactorName(factor)) return factor;
@@ -327,6 +345,7 @@ NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param):
       "Bad input or an impossible request. Its text is one line: what is wrong, where, what to do.";
   nb::class_<Material> material(m, "Material", "A model file, prepared for evaluation.");
   material.def(nb::init<const nb::bytes&, const std::string&>(), nb::arg("text"), nb::arg("source"))
+      .def("half_vectors", &HalfVectorsOf)
       .def_prop_ro("lobes", [](const Material& self) { return self.spec().lobes; })
       .def_prop_ro("anisotropic", [](const Material& self) { return self.spec().anisotropic(); })
       .def("d",

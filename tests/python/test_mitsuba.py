@@ -140,6 +140,33 @@ def test_chi2_over_half_vectors(make):
     assert min(p) > 0.01 / len(tests), dict(zip(tests, p))
 
 
+@needs_compiled
+@pytest.mark.parametrize("make", [isotropic, anisotropic, independent, stretched])
+def test_density_is_that_of_the_library(make):
+    mi.set_variant(COMPILED)
+    bsdf = mi.load_dict(plugin.bsdf(make()))
+    wi, wo = directions(20000, 6), directions(20000, 7)
+    # Near the mirror direction, too.
+    wo[::2] = wi[::2] * [-1, -1, 1] + 0.05 * (wo[::2] - wi[::2])
+    wo /= np.linalg.norm(wo, axis=1, keepdims=True)
+    pdf = np.array(bsdf.pdf(mi.BSDFContext(), at(wi), vectors(wo)))
+    np.testing.assert_allclose(pdf, make().pdf(wi, wo), rtol=5e-3, atol=1e-5)
+
+
+@needs_compiled
+@pytest.mark.parametrize("name", ["cc_nothern_aurora", "vch_dragon_eye_red", "charmeuse"])
+def test_weights_of_bundled_materials_are_bounded(name):
+    """A sample with a weight of 60 is a bright pixel for long."""
+    mi.set_variant(COMPILED)
+    bsdf = mi.load_dict({"type": "trilobe", "filename": f"material:{name}"})
+    random = np.random.default_rng(8).random((3, 20000)).astype(np.float32)
+    for degrees in (0, 30, 60, 75, 80, 82, 85):
+        wi = np.array([math.sin(math.radians(degrees)), 0, math.cos(math.radians(degrees))])
+        arriving = at(np.tile(wi, (random.shape[1], 1)))
+        _, weight = bsdf.sample(mi.BSDFContext(), arriving, mi.Float(random[0]), mi.Point2f(random[1:]))
+        assert np.array(weight).mean(axis=0).max() < 4, degrees
+
+
 # Tables of bins, and of nodes; an error of the fit, so that what is interpolated is not 1.
 MEASURED = {"table": ("synth:copper@20x20x40", isotropic), "nodes": ("synth:shot_silk@5x12", anisotropic)}
 
