@@ -350,13 +350,14 @@ def convert(
     """Writes a model or a measurement in another format, which the ending of the path says.
 
     ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples. ".bsdf" is an RGL tensor file for renderers as
-    Mitsuba's `measured`, ".mtlx" and ".principled.json" are the nearest material of MaterialX and of Blender; for a
-    measurement a model is fitted for that, which takes seconds. ".glsl" is a shader, of models alone.
+    Mitsuba's `measured`, ".zemax.bsdf" a table for OpticStudio, ".xml" Klems matrices for Radiance and WINDOW, ".mtlx"
+    and ".principled.json" are the nearest material of MaterialX and of Blender; for a measurement a model is fitted for
+    that, which takes seconds. ".glsl" is a shader, of models alone.
 
     Args:
         what: a model or a measurement, or the file of one, "material:NAME" or "synth:NAME".
         path: the file to write.
-        error: of a ".bsdf" file, by how much it may be off in the median, 0 to 1; 0 for 0.005, of an anisotropic
+        error: of a ".bsdf" or ".zemax.bsdf" file, by how much it may be off in the median, 0 to 1; 0 for 0.005, of an anisotropic
             model 0.02, and of a measurement as near as files of usual size come.
         spectral: of a ".bsdf" file, spectra in place of RGB.
         threads: 0 for all cores.

@@ -26,7 +26,8 @@
 #include "trilobe/model/measurement/measurement_stats.h"
 
 DEFINE_double(error, 0,
-              "of a .bsdf file: how far it may be off the model or the measurement, relative, in "
+              "of a .bsdf or .zemax.bsdf file: how far it may be off the model or the measurement, "
+              "relative, in "
               "the median over directions; finer tables are taken until it is met. 0: 0.005, of an "
               "anisotropic model 0.02, or as near as files come, and of a measurement as files of "
               "usual size come");
@@ -71,10 +72,11 @@ ConvertOptions OptionsFromFlags(const std::string& source) {
 
 // Throws Error where a flag is given that is for other files than `path`.
 void CheckRendererFlags(const std::string& path) {
-  const bool tensor = EndingOf(path) == ".bsdf";
-  for (const char* const flag : {"error", "spectral"}) {
-    if (tensor || IsDefault(flag)) continue;
-    throw Error("--" + std::string(flag) + " goes with an --out that ends in .bsdf");
+  if (!TakesError(path) && !IsDefault("error")) {
+    throw Error("--error goes with an --out that ends in .bsdf");
+  }
+  if (!IsTensorFile(path) && !IsDefault("spectral")) {
+    throw Error("--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf");
   }
   for (const char* const flag : {"picture", "probe"}) {
     if (IsStandardMaterial(path) || IsDefault(flag)) continue;
@@ -191,7 +193,9 @@ Command ConvertCommand() {
           "must stand at them.\nTo a FILE that ends in .bsdf it writes an RGL tensor file, which "
           "Mitsuba 3 renders (`measured`), and with\n--spectral pbrt-v4: of a model, or of a "
           "measurement, to which a model is fitted for that, which takes\nseconds; its values are "
-          "those measured, and the model's where nothing was. Of a model, to a FILE that ends in "
+          "those measured, and the model's where nothing was. To a FILE that ends in .zemax.bsdf "
+          "it writes the\nsame as a table for OpticStudio, and in .xml as Klems matrices for "
+          "Radiance and WINDOW. Of a model, to a FILE that ends in "
           ".glsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the nearest "
           "OpenPBR of MaterialX, and in\n.principled.json that of Blender's Principled BSDF, with "
           "how near it is. A FILE with another ending is an error.\nWith "

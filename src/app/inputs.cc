@@ -53,7 +53,8 @@ std::string RequiredMeasurementOut(const std::string& command) {
   } catch (const Error& error) {
     throw Error("--out=" + std::string(error.what()) +
                 (command == "convert"
-                     ? ", or in .bsdf, .glsl, .mtlx or .principled.json for renderers"
+                     ? ", or in .bsdf, .zemax.bsdf, .xml, .glsl, .mtlx or .principled.json for "
+                       "renderers and optical design"
                      : ""));
   }
   return out;

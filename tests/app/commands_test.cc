@@ -390,6 +390,35 @@ TEST(ConvertTest, WritesStandardMaterials) {
       "--error goes with an --out that ends in .bsdf");
 }
 
+TEST(ConvertTest, WritesFilesOfOpticalDesign) {
+  const TemporaryFolder folder;
+  Write(folder / "model.json", kLambertianModel);
+  const auto convert = [&](const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"convert", folder / "model.json", "--out=" + (folder / out)};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunProgram(words);
+  };
+  const ProgramResult zemax = convert("x.zemax.bsdf");
+  EXPECT_EQ(zemax.status, 0) << zemax.err;
+  EXPECT_THAT(zemax.out,
+              ContainsRegex("Zemax BSDF of 11 incidences, 19 x 41 directions, .* MB, off "
+                            "the model by .* in the median"));
+  const ProgramResult klems = convert("x.xml");
+  EXPECT_EQ(klems.status, 0) << klems.err;
+  EXPECT_THAT(klems.out, ContainsRegex("pairs of patches of the full Klems basis, .* MB, off the "
+                                       "model by"));
+  for (const std::string name : {"x.zemax.bsdf", "x.xml"}) {
+    EXPECT_EQ(RunProgram({"info", folder / name}).status, 0) << name;
+  }
+  const ProgramResult measured = RunProgram(
+      {"convert", "synth:plastic@20x20x40", "--out=" + (folder / "y.zemax.bsdf"), "--error=0.5"});
+  EXPECT_THAT(measured.out,
+              ContainsRegex("fitted synth:plastic.*\nwrote .*off the measurement by"));
+  ExpectError(convert("y.xml", {"--error=0.1"}), "--error goes with an --out that ends in .bsdf");
+  ExpectError(convert("y.zemax.bsdf", {"--spectral"}),
+              "--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf");
+}
+
 // What info prints of scattered samples, and convert makes of them, is the same for each format.
 const char kCsv[] =
     "theta_i,phi_i,theta_o,phi_o,r,g,b\n# a comment\n"

@@ -150,6 +150,9 @@ def test_converts(fitted, plastic, tmp_path):
     told = trilobe.convert(plastic, tmp_path / "d.bsdf", error=0.2)
     assert told[0].startswith("fitted ") and told[1].endswith("for one of a hundred directions")
     assert trilobe.read(tmp_path / "d.bsdf").kind.startswith("RGL")
+    for name, kind in (("e.zemax.bsdf", "Zemax"), ("e.xml", "Radiance")):
+        trilobe.convert(fitted.model, tmp_path / name)
+        assert trilobe.read(tmp_path / name).kind.startswith(kind)
     trilobe.convert("material:linen", tmp_path / "c.bin")
     assert trilobe.read(tmp_path / "c.bin").anisotropic
 

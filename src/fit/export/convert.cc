@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 
 #include "core/base/file_names.h"
@@ -12,8 +13,11 @@
 #include "fit/open_pbr/open_pbr.h"
 #include "fit/reports/print.h"
 #include "io/formats/completed_measurement.h"
+#include "io/formats/exported_brdf.h"
+#include "io/formats/klems_export.h"
 #include "io/formats/rgl_export.h"
 #include "io/formats/utia_file.h"
+#include "io/formats/zemax_export.h"
 #include "io/page/glsl_file.h"
 #include "io/pictures/plots.h"
 #include "model/appearance/picture_data.h"
@@ -30,6 +34,8 @@ namespace trilobe {
 namespace {
 
 constexpr const char* kTensorEnding = ".bsdf";
+constexpr const char* kZemaxEnding = ".zemax.bsdf";
+constexpr const char* kKlemsEnding = ".xml";
 constexpr const char* kShaderEnding = ".glsl";
 constexpr const char* kMaterialXEnding = ".mtlx";
 constexpr const char* kPrincipledEnding = ".principled.json";
@@ -41,27 +47,41 @@ bool EndsIn(const std::string& path, const std::string& ending) {
   return last == ending;
 }
 
-RglExportOptions RglOptionsOf(const ConvertOptions& options) {
+std::optional<double> MaxErrorOf(const ConvertOptions& options) {
   if (!(options.error >= 0 && options.error <= 1)) throw Error("error must be from 0 to 1");
-  RglExportOptions rgl{.spectral = options.spectral};
-  if (options.error > 0) rgl.max_error = options.error;
-  return rgl;
+  if (options.error == 0) return std::nullopt;
+  return options.error;
+}
+
+RglExportOptions RglOptionsOf(const ConvertOptions& options) {
+  return {.max_error = MaxErrorOf(options), .spectral = options.spectral};
 }
 
 double MaxAngleOf(const ModelFile& file) {  // [degrees]
   return file.fit.max_angle > 0 ? file.fit.max_angle : 90;
 }
 
-// `than`: what the file may be off, "the model".
+// ", off the model by 0.4 % in the median and 3 % for one of a hundred directions". `than`: what
+// the file may be off, "the model".
+std::string HowFarOff(const std::string& than, double median_error, double high_error,
+                      double max_angle) {
+  std::string text = ", off " + than + " by " + Text(100 * median_error, 2) +
+                     " % in the median and " + Text(100 * high_error, 2) +
+                     " % for one of a hundred directions";
+  if (max_angle < 90) text += ", within the " + Text(max_angle) + " deg that were measured";
+  return text;
+}
+
+std::string InMegabytes(const std::string& bytes) {
+  return Text(static_cast<double>(bytes.size()) / 1e6, 2) + " MB";
+}
+
 std::string WriteTensorFile(const RglExport& file, const std::string& than, double max_angle,
                             bool spectral, const std::string& path) {
   WriteFile(path, [&](std::ostream& out) { out << file.bytes; });
   std::string line = "wrote " + path + ": RGL tensor file of " +
-                     (spectral ? "spectra, " : "RGB, ") +
-                     Text(static_cast<double>(file.bytes.size()) / 1e6, 2) + " MB, off " + than +
-                     " by " + Text(100 * file.median_error, 2) + " % in the median and " +
-                     Text(100 * file.high_error, 2) + " % for one of a hundred directions";
-  if (max_angle < 90) line += ", within the " + Text(max_angle) + " deg that were measured";
+                     (spectral ? "spectra, " : "RGB, ") + InMegabytes(file.bytes) +
+                     HowFarOff(than, file.median_error, file.high_error, max_angle);
   if (spectral) {
     line += "; colours of spectra off by " + Text(100 * file.color_error, 2) + " % at most";
     if (file.colors_off > 0) {
@@ -70,6 +90,28 @@ std::string WriteTensorFile(const RglExport& file, const std::string& than, doub
     }
   }
   return line;
+}
+
+// As Klems matrices or as OpticStudio's table, by the ending.
+std::string WriteExported(const ExportedBrdf& brdf, const std::string& than, double max_angle,
+                          const ConvertOptions& options, const std::string& path) {
+  const auto write = [&](const auto& file, const std::string& what) {
+    WriteFile(path, [&](std::ostream& out) { out << file.bytes; });
+    return "wrote " + path + ": " + what + (file.colored ? ", XYZ, " : ", one channel, ") +
+           InMegabytes(file.bytes) + HowFarOff(than, file.median_error, file.high_error, max_angle);
+  };
+  if (EndingOf(path) == kKlemsEnding) {
+    const std::string name = std::filesystem::path(path).stem().string();
+    return write(ExportKlems(brdf, name, options.num_threads),
+                 "means over pairs of patches of the full Klems basis");
+  }
+  const ZemaxExport file =
+      ExportZemax(brdf, {.max_error = MaxErrorOf(options), .num_threads = options.num_threads});
+  std::string angles = std::to_string(file.incidences) + " incidences, " +
+                       std::to_string(file.azimuths) + " x " + std::to_string(file.radials) +
+                       " directions";
+  if (file.rotations > 1) angles = std::to_string(file.rotations) + " rotations, " + angles;
+  return write(file, "Zemax BSDF of " + angles);
 }
 
 // The two, side by side.
@@ -147,8 +189,15 @@ FitResult FitToHelp(const Measurement& measurement, int num_threads) {
 
 bool IsForRenderer(const std::string& path) {
   const std::string ending = EndingOf(path);
-  return ending == kTensorEnding || ending == kShaderEnding || IsStandardMaterial(path);
+  return ending == kTensorEnding || ending == kShaderEnding || ending == kKlemsEnding ||
+         IsStandardMaterial(path);
 }
+
+bool IsTensorFile(const std::string& path) {
+  return EndingOf(path) == kTensorEnding && !EndsIn(path, kZemaxEnding);
+}
+
+bool TakesError(const std::string& path) { return EndingOf(path) == kTensorEnding; }
 
 bool IsStandardMaterial(const std::string& path) {
   return EndsIn(path, kMaterialXEnding) || EndsIn(path, kPrincipledEnding);
@@ -164,10 +213,15 @@ std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::stri
             " x " + std::to_string(shader.height) + ", " +
             Text(static_cast<double>(shader.text.size()) / 1e6, 2) + " MB"};
   }
+  const double max_angle = MaxAngleOf(file), max_theta = DegreesToRadians(max_angle);
+  if (!IsTensorFile(path)) {
+    return {
+        WriteExported(ExportedModel(file.model, max_theta), "the model", max_angle, options, path)};
+  }
   RglExportOptions rgl = RglOptionsOf(options);
-  rgl.max_theta = DegreesToRadians(MaxAngleOf(file));
-  return {WriteTensorFile(ExportRgl(file.model, rgl), "the model", MaxAngleOf(file),
-                          options.spectral, path)};
+  rgl.max_theta = max_theta;
+  return {
+      WriteTensorFile(ExportRgl(file.model, rgl), "the model", max_angle, options.spectral, path)};
 }
 
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
@@ -189,14 +243,21 @@ std::vector<std::string> WriteForRenderer(const Measurement& measurement, const 
   }
   const CompletedMeasurement completed = Complete(measurement, fit.model(), options.num_threads);
   const double measured = MaxAngleDegrees(measurement);
-  rgl.max_theta = DegreesToRadians(measured);
-  return {fitted + ", for where nothing was measured",
-          WriteTensorFile(
-              ExportRgl(fit.model(), completed, rgl),
-              completed.interpolated
-                  ? "the measurement"
-                  : "the measurement (whose samples stand at no grid: it is the fitted model)",
-              measured, options.spectral, path)};
+  const std::string than =
+      completed.interpolated
+          ? "the measurement"
+          : "the measurement (whose samples stand at no grid: it is the fitted model)";
+  std::vector<std::string> lines = {fitted + ", for where nothing was measured"};
+  if (IsTensorFile(path)) {
+    rgl.max_theta = DegreesToRadians(measured);
+    lines.push_back(WriteTensorFile(ExportRgl(fit.model(), completed, rgl), than, measured,
+                                    options.spectral, path));
+  } else {
+    lines.push_back(
+        WriteExported({completed.value, fit.model().spec().anisotropic(), completed.places}, than,
+                      measured, options, path));
+  }
+  return lines;
 }
 
 }  // namespace trilobe

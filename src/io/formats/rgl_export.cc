@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 #include <span>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "io/formats/bilinear_warp.h"
+#include "io/formats/exported_brdf.h"
 #include "io/formats/rgl_file.h"
 #include "io/formats/spectrum.h"
 #include "io/formats/tensor_file.h"
-#include "model/measurement/counter_random.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/evaluate/bsdf.h"
 
@@ -302,89 +300,42 @@ RglExport FileOf(const Tables& tables, const Size& size, const std::string& desc
   return result;
 }
 
-std::vector<CompletedMeasurement::Place> PlacesOf(const PairBrdf& brdf, double max_theta) {
-  constexpr int kPairs = 20000;
-  std::vector<CompletedMeasurement::Place> places;
-  const auto direction = [&](uint64_t k) {
-    const double r = std::sqrt(UniformAt(1, 2 * k)), phi = 2 * kPi * UniformAt(1, 2 * k + 1);
-    return Direction{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
-  };
-  for (uint64_t k = 0; k < kPairs; ++k) {
-    const DirectionPair pair = {direction(2 * k), direction(2 * k + 1)};
-    if (std::min(pair.wi[2], pair.wo[2]) < std::cos(max_theta)) continue;
-    const Rgb expected = brdf(pair);
-    if (Mean(expected) > 0) places.push_back({pair, expected});
-  }
-  return places;
-}
-
-// Relative errors of rho cos theta_o.
-void MeasureErrors(const std::vector<CompletedMeasurement::Place>& places, RglExport* result) {
-  const RglBrdf file = RglBrdf::Parse(result->bytes, "the file to be written");
-  std::vector<double> errors;
-  for (const CompletedMeasurement::Place& place : places) {
-    errors.push_back(RelativeDistance(file.Evaluate(place.at), place.measured));
-  }
-  std::ranges::sort(errors);
-  result->median_error = errors[errors.size() / 2];
-  result->high_error = errors[errors.size() * 99 / 100];
-}
-
-// The first file that is exact enough, or else of all of them the smallest that is hardly worse
-// than the best.
-RglExport ChooseSmallest(const Tables& tables, std::span<const Size> sizes,
-                         const std::vector<CompletedMeasurement::Place>& places, double max_error,
-                         const std::string& description, bool spectral) {
-  if (places.empty()) throw Error("there is no light to write");
-  constexpr double kHardlyWorse = 1.1;
-  std::vector<RglExport> files;
-  for (const Size& size : sizes) {
-    files.push_back(FileOf(tables, size, description, spectral));
-    MeasureErrors(places, &files.back());
-    if (files.back().median_error <= max_error) return files.back();
-  }
-  const auto error = [](const RglExport& file) { return file.median_error; };
-  const double best = std::ranges::min_element(files, {}, error)->median_error;
-  return *std::ranges::find_if(
-      files, [&](const RglExport& file) { return file.median_error <= kHardlyWorse * best; });
-}
-
-RglExport Export(const FactorModel& model, const PairBrdf& value,
-                 const std::vector<CompletedMeasurement::Place>& places,
-                 const std::string& description, bool any_error, const RglExportOptions& options) {
-  const bool anisotropic = model.spec().anisotropic();
+RglExport Export(const FactorModel& model, const ExportedBrdf& brdf, const std::string& description,
+                 bool any_error, const RglExportOptions& options) {
   std::span<const Size> sizes =
-      anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
+      brdf.anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
   if (any_error) sizes = sizes.first(kUsual);
-  const double max_error = options.max_error.value_or(anisotropic ? 0.02 : 0.005);
-  const Tables tables(model, value, options.max_theta);
-  RglExport result =
-      ChooseSmallest(tables, sizes, places, max_error, description, options.spectral);
-  if (any_error || !options.max_error || result.median_error <= max_error) return result;
-  std::ostringstream message;
-  message.precision(3);
-  message << "no file is exact enough: one of " << static_cast<double>(result.bytes.size()) / 1e6
-          << " MB is off by " << 100 * result.median_error << " % in the median, where "
-          << 100 * max_error << " % is asked for; allow a larger error";
-  throw Error(message.str());
+  const double max_error = options.max_error.value_or(brdf.anisotropic ? 0.02 : 0.005);
+  const Tables tables(model, brdf.value, options.max_theta);
+  auto result = ChooseSmallest<RglExport>(
+      static_cast<int>(sizes.size()),
+      [&](int k) {
+        RglExport made = FileOf(tables, sizes[k], description, options.spectral);
+        const RglBrdf file = RglBrdf::Parse(made.bytes, "the file to be written");
+        const ExportError error = MeasureError(
+            [&](const DirectionPair& pair) { return file.Evaluate(pair); }, brdf.places);
+        made.median_error = error.median;
+        made.high_error = error.high;
+        return made;
+      },
+      max_error);
+  if (!any_error && options.max_error) {
+    RequireExact(result.bytes.size(), result.median_error, max_error);
+  }
+  return result;
 }
 
 }  // namespace
 
 RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options) {
-  CheckParameters(model);
-  const PreparedModel<double> prepared(model);
-  const PairBrdf value = [&](const DirectionPair& pair) {
-    return prepared.Value(pair.wi, pair.wo);
-  };
-  return Export(model, value, PlacesOf(value, options.max_theta),
+  return Export(model, ExportedModel(model, options.max_theta),
                 "a microfacet model, fitted by Trilobe", false, options);
 }
 
 RglExport ExportRgl(const FactorModel& model, const CompletedMeasurement& measured,
                     const RglExportOptions& options) {
   CheckParameters(model);
-  return Export(model, measured.value, measured.places,
+  return Export(model, {measured.value, model.spec().anisotropic(), measured.places},
                 "measured values, between which a model stands that Trilobe fitted to them",
                 !options.max_error, options);
 }

@@ -171,6 +171,26 @@ Rgb SpectralColor::operator()(std::span<const double> spectrum) const {
 
 namespace {
 
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+double Determinant(const Matrix& m) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+// x of m x = b, by Cramer's rule.
+std::array<double, 3> SolveByCramer(const Matrix& m, const std::array<double, 3>& b) {
+  const double whole = Determinant(m);
+  std::array<double, 3> x{};
+  for (int k = 0; k < 3; ++k) {
+    Matrix replaced = m;
+    for (int row = 0; row < 3; ++row) replaced[row][k] = b[row];
+    x[k] = Determinant(replaced) / whole;
+  }
+  return x;
+}
+
 // Adds the colour of values that are all valid; else a sample that counts by what they are.
 template <typename Color>
 void AddColorOf(const SphericalAngles& angles, std::span<const double> values, const Color& color,
@@ -204,29 +224,17 @@ void AddTristimulus(const SphericalAngles& angles, const std::array<double, 3>& 
   AddColorOf(angles, xyz, color, collector);
 }
 
+std::array<double, 3> TristimulusOf(const Rgb& rgb) {
+  Matrix to_rgb{};
+  for (int c = 0; c < kChannels; ++c) {
+    for (int k = 0; k < 3; ++k) to_rgb[c][k] = kToSrgb[c][k] * kWhite[k];
+  }
+  return SolveByCramer(to_rgb, rgb);
+}
+
 // --- Smooth spectra ------------------------------------------------------------------------------
 
 namespace {
-
-using Matrix = std::array<std::array<double, 3>, 3>;
-
-double Determinant(const Matrix& m) {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
-
-// x of m x = b (Cramer's rule); m is positive definite.
-std::array<double, 3> SolveByCramer(const Matrix& m, const std::array<double, 3>& b) {
-  const double whole = Determinant(m);
-  std::array<double, 3> x{};
-  for (int k = 0; k < 3; ++k) {
-    Matrix replaced = m;
-    for (int row = 0; row < 3; ++row) replaced[row][k] = b[row];
-    x[k] = Determinant(replaced) / whole;
-  }
-  return x;
-}
 
 double SquaredDistance(const Rgb& a, const Rgb& b) {
   double sum = 0;

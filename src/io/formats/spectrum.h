@@ -37,6 +37,8 @@ inline constexpr const char* kTristimulusNote = "X, Y, Z relative to white, whic
 // Their white is taken for D65.
 void AddTristimulus(const SphericalAngles& angles, const std::array<double, 3>& xyz,
                     SampleCollector* collector);
+// Such values of a colour in linear sRGB.
+std::array<double, 3> TristimulusOf(const Rgb& rgb);
 
 // Smooth spectra of colours (Jakob and Hanika, "A Low-Dimensional Function Space for Efficient
 // Spectral Upsampling", 2019). With wavelengths mapped to t in [-1, 1],

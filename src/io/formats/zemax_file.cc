@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <vector>
 
 #include "core/files/text_lines.h"
 #include "io/formats/angle_list.h"
 #include "io/formats/spectrum.h"
+#include "io/formats/zemax_angles.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -151,26 +151,6 @@ std::vector<std::vector<double>> ReadZemaxBlocks(const ZemaxHeader& header, Text
   return blocks;
 }
 
-// The light comes from theta = `incidence`, phi = 180 degrees - `rotation`. Seen from the mirror
-// direction, azimuth 0 is towards the normal, and azimuths run counterclockwise about that
-// direction as it leaves the sample. All in radians.
-SphericalAngles AnglesOf(double rotation, double incidence, double azimuth, double radial) {
-  const double s = std::sin(incidence), c = std::cos(incidence);
-  // In the frame in which the mirror direction is (s, 0, c): towards the normal (-c, 0, s), and
-  // across (0, -1, 0).
-  const double along = std::sin(radial) * std::cos(azimuth);
-  const double across = std::sin(radial) * std::sin(azimuth);
-  const double x = std::cos(radial) * s - along * c;
-  const double y = -across;
-  const double z = std::cos(radial) * c + along * s;
-  const auto turned = [](double phi) {
-    const double turns = phi / (2 * kPi);
-    return 2 * kPi * (turns - std::floor(turns));
-  };
-  return {incidence, turned(kPi - rotation), std::atan2(std::hypot(x, y), z),
-          turned(std::atan2(y, x) - rotation)};
-}
-
 // A BRDF in the tabular text format of Zemax OpticStudio (`.bsdf`, docs/file-formats.md), by sample
 // rotation, angle of incidence, and azimuth and distance about the direction of mirror reflection
 // [degrees]; a block of one channel, which counts for all three, or three blocks. A value of
@@ -187,8 +167,9 @@ Measurement ParseZemax(std::string_view text, const std::string& source) {
     const size_t k = next++;
     const auto value = [&](size_t c) { return blocks[blocks.size() == 1 ? 0 : c][k]; };
     const Rgb values = {value(0), value(1), value(2)};
-    const SphericalAngles at = AnglesOf(DegreesToRadians(rotation), DegreesToRadians(incidence),
-                                        DegreesToRadians(azimuth), DegreesToRadians(radial));
+    const SphericalAngles at =
+        ToSphericalAngles(ZemaxAngles{DegreesToRadians(rotation), DegreesToRadians(incidence),
+                                      DegreesToRadians(azimuth), DegreesToRadians(radial)});
     if (values == Rgb{} && std::max(at.theta_i, at.theta_o) < kPi / 2) {
       collector.LeaveOut(&BinCounts::missing);
     } else if (header.content == "XYZ") {

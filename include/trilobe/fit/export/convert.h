@@ -12,7 +12,7 @@ namespace trilobe {
 
 // Options of WriteForRenderer.
 struct ConvertOptions {
-  double error = 0;          // for .bsdf: RglExportOptions::max_error, 0 to 1; 0 for its default
+  double error = 0;          // for .bsdf: largest median error, 0 to 1; 0 for the default
   bool spectral = false;     // for .bsdf: spectra instead of RGB
   std::string program = {};  // program named in the file, "trilobe 0.1.0"
   std::string picture = {};  // for standard materials: PNG of both side by side; empty: none
@@ -20,17 +20,22 @@ struct ConvertOptions {
   int num_threads = 1;
 };
 
-// Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .glsl, .mtlx
-// (MaterialX) or .principled.json (Blender's Principled BSDF).
+// Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .zemax.bsdf
+// (OpticStudio's table), .xml (Klems matrices of Radiance and WINDOW), .glsl, .mtlx (MaterialX) or
+// .principled.json (Blender's Principled BSDF).
 bool IsForRenderer(const std::string& path);
+// Whether it is .bsdf and not .zemax.bsdf.
+bool IsTensorFile(const std::string& path);
+// Whether ConvertOptions::error counts: .bsdf and .zemax.bsdf.
+bool TakesError(const std::string& path);
 // Whether the extension is .mtlx or .principled.json, which hold the nearest OpenPBR material.
 bool IsStandardMaterial(const std::string& path);
 
 // Writes a model or a measurement in the format of the path's extension. Returns lines that say
-// what was written and its error. A measurement is fitted first, which takes seconds: .bsdf files
-// hold the measured values, and the model's where nothing was measured; .mtlx and .principled.json
-// are nearest to the model. `source` names the model in messages. Throws Error, also for a
-// measurement to .glsl and if the file cannot be written.
+// what was written and its error. A measurement is fitted first, which takes seconds: .bsdf and
+// .xml files hold the measured values, and the model's where nothing was measured; .mtlx and
+// .principled.json are nearest to the model. `source` names the model in messages. Throws Error,
+// also for a measurement to .glsl and if the file cannot be written.
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options);
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
