@@ -8,6 +8,7 @@
 
 #include "core/system/process.h"
 #include "fit/choose_form.h"
+#include "fit/finish/albedo_ripple.h"
 #include "fit/finish/limit_light.h"
 #include "fit/guess_error.h"
 #include "fit/held_out.h"
@@ -361,6 +362,8 @@ class Fitting {
           Appearance());
       if (options_.stop()) fit->whole.reset();  // a half was not fitted
     }
+    const AlbedoRipple ripple = RippleOf(fit->model(), options_.num_threads);
+    fit->ripple = {.share = ripple.share, .theta_i = ripple.theta_i};
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
   }
 

@@ -130,6 +130,10 @@ struct FitResult {
   // (EstimateWholeSphere, EstimateWholeOfSamples).
   std::optional<WholeSphere> whole = {};
   LobeLight light = {};
+  // The largest jump of the directional albedo from one entry of G to the next (RippleOf).
+  struct Ripple {
+    double share = 0, theta_i = 0;  // [rad]
+  } ripple = {};
   struct Seconds {
     double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
   } seconds = {};

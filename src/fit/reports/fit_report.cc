@@ -96,6 +96,7 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->measured_share = fit.measured_share;
   report->whole = fit.whole;
   report->light = fit.light;
+  report->ripple = fit.ripple;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
 }
 
@@ -143,7 +144,9 @@ ReportedVerdict VerdictOn(const FitReport& report) {
        .left_out = report.left_out,
        .reach_beyond = report.reach ? report.reach->beyond : 0,
        .glow = report.finished.glow ? report.finished.glow->albedo : 0,
-       .glow_theta_i = report.finished.glow ? report.finished.glow->theta_i : 0});
+       .glow_theta_i = report.finished.glow ? report.finished.glow->theta_i : 0,
+       .ripple = report.ripple.share,
+       .ripple_theta_i = report.ripple.theta_i});
 }
 
 void PrintSummary(const FitReport& report) {

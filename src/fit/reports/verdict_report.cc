@@ -39,6 +39,10 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
       return "it reflects " + Text(facts.glow, 3) + " times the light from " +
              Text(RadiansToDegrees(facts.glow_theta_i), 3) +
              " deg, as the samples leave it no other way; a renderer shows a glow there";
+    case Advice::kRings:
+      return "under even light a renderer shows rings: the reflected share jumps by " +
+             Text(100 * facts.ripple, 2) + " % near " +
+             Text(RadiansToDegrees(facts.ripple_theta_i), 3) + " deg; try another --model";
   }
   return "";
 }

@@ -78,6 +78,9 @@ struct FitFacts {
   double reach_beyond = 0;
   // The largest directional albedo, and its theta_i [rad], of a model that makes light.
   double glow = 0, glow_theta_i = 0;
+  // The largest jump of the directional albedo between entries of G, as a share, and its theta_i
+  // [rad].
+  double ripple = 0, ripple_theta_i = 0;
 };
 
 // What to do or know, most urgent first.
@@ -90,6 +93,7 @@ enum class Advice {
   kDataDiffer,    // the remaining error is largely noise or not reciprocal
   kKeepWithin,    // it is unusable beyond the measured directions
   kGlows,         // it reflects more light than it receives
+  kRings,         // what it reflects jumps with the angle
 };
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts);
 std::string NameOf(Advice advice);  // "go_on", "iterate", ...
