@@ -357,8 +357,8 @@ def convert(
     Args:
         what: a model or a measurement, or the file of one, "material:NAME" or "synth:NAME".
         path: the file to write.
-        error: of a ".bsdf" or ".zemax.bsdf" file, by how much it may be off in the median, 0 to 1; 0 for 0.005, of an anisotropic
-            model 0.02, and of a measurement as near as files of usual size come.
+        error: of a ".bsdf" or ".zemax.bsdf" file, by how much it may be off in the median, 0 to 1; 0 for 0.005, of an
+            anisotropic model 0.02, and of a measurement as near as files of usual size come.
         spectral: of a ".bsdf" file, spectra in place of RGB.
         threads: 0 for all cores.
 

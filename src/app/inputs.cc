@@ -15,7 +15,9 @@ namespace trilobe {
 
 bool IsModelFile(const std::string& path) {
   if (IsMaterial(path)) return true;
-  return RecogniseContent(BeginningOf(path)).kind == Content::Kind::kJson;
+  const std::string beginning = BeginningOf(path);
+  return RecogniseContent(beginning).kind == Content::Kind::kJson &&
+         RecogniseFormat(beginning) == nullptr && EndingOf(path) != ".xompt";
 }
 
 ModelFile ModelOfSource(const std::string& path) {

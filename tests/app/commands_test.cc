@@ -390,6 +390,16 @@ TEST(ConvertTest, WritesStandardMaterials) {
       "--error goes with an --out that ends in .bsdf");
 }
 
+// JSON that is a measurement is none of the model files, however long what it says of itself is.
+TEST(InfoTest, ATableInJsonIsAMeasurement) {
+  const TemporaryFolder folder;
+  Write(folder / "x.xompt", R"({"metadata": {"description": ")" + std::string(300, 'x') +
+                                R"("}, "brdf": {"lookupTable": [[9e-7, 0.1, 0.2, 0, 0.3]]}})");
+  const ProgramResult result = RunProgram({"info", folder / "x.xompt"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("OpenMATERIAL 3D table of scattered samples"));
+}
+
 TEST(ConvertTest, WritesFilesOfOpticalDesign) {
   const TemporaryFolder folder;
   Write(folder / "model.json", kLambertianModel);

@@ -33,8 +33,10 @@ FredOptions ReadFredFormat(const TextLines& lines) {
       if (!(format.scale > 0 && format.scale < 1e12)) lines.FailAt(k, key, "expected a scale");
     } else if (key != "bsdf" || value != "value") {
       lines.FailAt(k, "format",
-                   "'" + std::string(words[k].substr(0, 40)) +
-                       "' cannot be read; only angles=deg, angles=rad, bsdf=value and scale= can");
+                   std::string("'")
+                       .append(words[k].substr(0, 40))
+                       .append("' cannot be read; only angles=deg, angles=rad, bsdf=value and "
+                               "scale= can"));
     }
   }
   return format;

@@ -61,7 +61,7 @@ LightToolsHeader ReadLightToolsHeader(TextLines* lines) {
     } else if (words[0] == "Symmetry") {
       if (words[1] != "Asymmetric") FailAtLightToolsWord(*lines, words[0], words[1], "Asymmetric");
     } else if (words[0] != "Source") {
-      lines->Fail("'" + std::string(words[0].substr(0, 40)) + "' is no key of this format");
+      lines->Fail(std::string("'").append(words[0].substr(0, 40)) + "' is no key of this format");
     }
   }
   lines->Fail("the file ends before DataBegin");
@@ -103,7 +103,7 @@ void SetLightToolsKey(const TextLines& lines, size_t column, std::string_view ke
     const double value = number();
     if (key == "Wavelength") block->band = value;
   } else {
-    lines.Fail("'" + std::string(key.substr(0, 40)) + "' is no key of a block of data");
+    lines.Fail(std::string("'").append(key.substr(0, 40)) + "' is no key of a block of data");
   }
 }
 

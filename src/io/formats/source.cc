@@ -30,6 +30,9 @@
   X(Radiance)                      \
   X(Fred)                          \
   X(Alta)                          \
+  X(Speos)                         \
+  X(Pab)                           \
+  X(OpenMaterial)                  \
   X(Csv)                           \
   X(LightTools)                    \
   X(Zemax)                         \
@@ -201,10 +204,11 @@ const std::vector<MeasurementFormat>& MeasurementFormats() {
 
 const MeasurementFormat* RecogniseFormat(std::string_view bytes) {
   const Content::Kind kind = RecogniseContent(bytes).kind;
-  if (kind == Content::Kind::kJson || kind == Content::Kind::kForeign) return nullptr;
+  if (kind == Content::Kind::kForeign) return nullptr;
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
-  const auto found = std::ranges::find_if(
-      formats, [&](const MeasurementFormat& format) { return format.recognise(bytes); });
+  const auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
+    return format.is_json == (kind == Content::Kind::kJson) && format.recognise(bytes);
+  });
   return found == formats.end() ? nullptr : &*found;
 }
 

@@ -102,7 +102,7 @@ ZemaxHeader ReadZemaxHeader(TextLines* lines) {
       }
       if (key == "SpectralContent") header.content = words[1];
     } else {
-      lines->Fail("'" + std::string(words[0].substr(0, 40)) + "' is no key of this format");
+      lines->Fail(std::string("'").append(words[0].substr(0, 40)) + "' is no key of this format");
     }
   }
   lines->Fail("the file ends before DataBegin");

@@ -55,7 +55,7 @@ TEST(ForeignFile, IsNamedWithWhatToDo) {
       {"f.brdf", "analytic\n\n::begin parameters\n",
        "a BRDF Explorer .brdf script, which is a formula and no measurement; evaluate it at pairs "
        "of directions"},
-      {"f.brdf", "OPTIS - brdf surface file v8.0\n0\n",
+      {"f.coated", "OPTIS - coated surface file v2.0\n",
        "an OPTIS/Speos text file, which is not read" + kAsCsv},
       {"f.xml", "<?xml version=\"1.0\"?>\n<a/>\n", "an XML file, which is not read" + kAsCsv},
       {"f.mdl", "// a paint\n/* by me */\nmdl 1.7;\nimport ::df::*;\n",

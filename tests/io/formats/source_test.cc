@@ -191,6 +191,9 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       {"radiance", "<?xml version=\"1.0\"?>\n<WindowElement>\n"},
       {"cornell", "31\n400 410\n"},
       {"astm", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n"},
+      {"speos", "OPTIS - brdf surface file v9.0\n"},
+      {"pab", "#sample_name \"x\"\n#intheta 30\n"},
+      {"openmaterial", "{\"brdf\": {\"lookupTable\": []}}"},
       {"csv", kCsv}};
   ASSERT_EQ(MeasurementFormats().size(), begins.size());
   for (const MeasurementFormat& format : MeasurementFormats()) {

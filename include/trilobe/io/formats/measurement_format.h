@@ -50,8 +50,9 @@ struct MeasurementFormat {
   std::string description;  // "a MERL .binary file"
   std::string ending;       // file extension, ".binary"
   bool is_text = false;
-  // Whether the bytes look like such a file or its beginning. Not called for JSON and foreign
-  // content (a picture, an archive).
+  bool is_json = false;  // an object of JSON
+  // Whether the bytes look like such a file or its beginning. Called for JSON only if the format is
+  // that, and not for foreign content (a picture, an archive).
   bool (*recognise)(std::string_view bytes) = nullptr;
   // Parses a file named `source`. Throws Error for invalid bytes.
   Measurement (*read)(std::string_view bytes, const std::string& source,

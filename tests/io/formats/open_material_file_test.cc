@@ -1,0 +1,88 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/io/formats/known_truth.h"
+#include "tests/io/formats/read_as.h"
+#include "tests/test_directory.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Document(const std::string& rows) {
+  return R"({"metadata": {"name": "plastic"}, "brdf": {"wavelengths": [9.05e-07], "lookupTable": [)" +
+         rows + "]}}";
+}
+
+// The azimuth of the light is 0.
+std::string Rows(const std::string& wavelength, int channel) {
+  std::string text;
+  for (const double theta_i : {0.0, 20.0, 60.0}) {
+    for (const double theta_o : {0.0, 30.0, 60.0}) {
+      for (const double phi : {0.0, 70.0, 180.0}) {
+        text += (text.empty() ? "[" : ", [") + wavelength;
+        for (const double degrees : {theta_i, theta_o, phi}) {
+          text += ", " + Text(DegreesToRadians(degrees));
+        }
+        text += ", " + Text(TrueValue(theta_i, 0, theta_o, phi)[channel]) + "]";
+      }
+    }
+  }
+  return text;
+}
+
+Measurement Parse(const std::string& text) { return ReadAs("openmaterial", text, "x.xompt"); }
+std::string ParseError(const std::string& text) {
+  return ErrorOf([&] { Parse(text); });
+}
+
+TEST(OpenMaterialFile, OneWavelengthIsOneChannel) {
+  const Measurement measurement = Source("any", Document(Rows("9.05e-07", 1))).Read();
+  EXPECT_EQ(measurement.kind, "OpenMATERIAL 3D table of scattered samples");
+  EXPECT_EQ(measurement.counts.valid, 27);
+  EXPECT_FALSE(measurement.anisotropic);
+  EXPECT_THAT(measurement.notes[0], HasSubstr("--azimuth=from_mirror takes them from"));
+  ExpectTruth(measurement, /*grey=*/true);
+}
+
+TEST(OpenMaterialFile, SeveralWavelengthsAreASpectrum) {
+  std::string rows;
+  for (int nanometers = 400; nanometers <= 700; nanometers += 50) {
+    rows += (rows.empty() ? "" : ", ") + Rows(std::to_string(nanometers) + "e-9", 1);
+  }
+  const Measurement measurement = Parse(Document(rows));
+  EXPECT_EQ(measurement.counts.total, 27);
+  ExpectTruth(measurement, /*grey=*/true);
+}
+
+TEST(OpenMaterialFile, NoValueIsAGap) {
+  const Measurement measurement =
+      Parse(Document("[9e-7, 0.1, 0.2, 0, null], [9e-7, 0.1, 0.3, 0, 0.25]"));
+  EXPECT_EQ(measurement.counts.missing, 1);
+  EXPECT_EQ(measurement.counts.valid, 1);
+}
+
+TEST(OpenMaterialFile, ErrorsSayWhereAndWhatIsExpected) {
+  EXPECT_THAT(ParseError("{"), HasSubstr("line 1"));
+  EXPECT_THAT(ParseError("{}"), HasSubstr("expected 'brdf', as the schema material_brdf"));
+  EXPECT_THAT(ParseError(R"({"brdf": {}})"), HasSubstr("expected 'lookupTable'"));
+  EXPECT_THAT(ParseError(Document("")), HasSubstr("lookupTable has no rows"));
+  const std::string good = "[9e-7, 0.1, 0.2, 0, 1], ";
+  const auto second = [&](const std::string& row) { return ParseError(Document(good + row)); };
+  EXPECT_THAT(second("[1]"), HasSubstr("row 2: expected wavelength, incident zenith"));
+  EXPECT_THAT(second("[9e-7, \"x\", 0, 0, 1]"), HasSubstr("expected a number, not string"));
+  EXPECT_THAT(second("[9e-7, null, 0, 0, 1]"), HasSubstr("expected a number, not null"));
+  EXPECT_THAT(second("[905, 0.1, 0.2, 0, 1]"), HasSubstr("no wavelength in m"));
+  EXPECT_THAT(second("[9e-7, 30, 0.2, 0, 1]"), HasSubstr("not from 0 to pi/2 rad"));
+  EXPECT_THAT(second("[9e-7, 0.1, 0.2, 180, 1]"), HasSubstr("not from 0 to 2 pi rad"));
+  EXPECT_THAT(second("[5e-7, 0.3, 0.2, 0, 1]"),
+              HasSubstr("other directions at 500 nm than at 900 nm; give a file of each"));
+  EXPECT_THAT(second("[9.5e-7, 0.1, 0.2, 0, 1]"), HasSubstr("which a colour needs"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
