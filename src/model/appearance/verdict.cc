@@ -143,11 +143,11 @@ std::string Words(const Verdict& verdict) {
   if (basis.samples < basis.parameters) {
     return "no verdict: " + std::to_string(basis.samples) + " samples are fewer than " +
            std::to_string(basis.parameters) + " parameters; at the samples " + SeenWords(verdict) +
-           (basis.whole ? ", " + of_whole : "");
+           (basis.whole ? "; " + of_whole : "");
   }
   if (!verdict.of_the_whole()) {
     return "no verdict: only " + percent + " of what a renderer reads was measured; there " +
-           SeenWords(verdict) + (basis.whole ? ", " + of_whole : "");
+           SeenWords(verdict) + (basis.whole ? "; " + of_whole : "");
   }
   const Visibility visibility = verdict.visibility_of_whole();
   const bool bounded = visibility != verdict.visibility;

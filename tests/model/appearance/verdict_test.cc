@@ -170,7 +170,7 @@ TEST(Verdict, SaysWhatItRestsOn) {
   const Basis rehearsed{.measured_share = 0.3, .whole = WholeSphere{3.14, 26.4}};
   EXPECT_EQ(words(rehearsed),
             "no verdict: only 30 % of what a renderer reads was measured; there cannot be told "
-            "apart, the whole off by about Delta E 3.1, 26 dB");
+            "apart; the whole off by about Delta E 3.1, 26 dB");
   EXPECT_EQ(visibility(rehearsed), "unknown");
   const Basis black{.black = true};
   EXPECT_EQ(words(black), "no verdict: what was measured reflects nothing");
