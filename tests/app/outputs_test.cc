@@ -270,7 +270,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   EXPECT_THAT(page, HasSubstr("<b>a &amp; b</b>"));
   const std::string words = Json(out + "/felt/report.json")["verdict"]["words"];
   EXPECT_THAT(result.out, HasSubstr("] felt: fitted, " + words + ", sphere "));
-  EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt@30x30x60,fitted," + words + ","));
+  EXPECT_THAT(table, HasSubstr("\nfelt,synth:felt@30x30x60,fitted,\"" + words + "\","));
   EXPECT_THAT(page, HasSubstr("<b>felt</b><span class=\"unknown\">" + words + "</span><br>PSNR "));
   EXPECT_THAT(result.out, HasSubstr(" of 2 cannot be told apart; sphere "));
 
