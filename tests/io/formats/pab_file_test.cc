@@ -70,7 +70,8 @@ TEST(PabFile, ErrorsSayWhereAndWhatIsExpected) {
   EXPECT_THAT(ParseError(format + "1 2 3\n"), HasSubstr("line 2: expected lines '#intheta'"));
   EXPECT_THAT(ParseError("#format: theta phi BTDF\n"), HasSubstr("these are transmitted light"));
   EXPECT_THAT(ParseError("#format: theta phi X\n"), HasSubstr("the format is unknown"));
-  EXPECT_THAT(ParseError("#colorimetry: RGB\n"), HasSubstr("the colorimetry is unknown; only CIE-Y"));
+  EXPECT_THAT(ParseError("#colorimetry: RGB\n"),
+              HasSubstr("the colorimetry is unknown; only CIE-Y"));
   const std::string head = "#intheta 10\n#inphi 0\n" + format;
   EXPECT_THAT(ParseError(head + "1 2\n"), HasSubstr("line 4"));
   EXPECT_THAT(ParseError(head + "1 2 x\n"), HasSubstr("'x'"));
