@@ -13,16 +13,16 @@ install() {
   local TIMEFORMAT="pip install of $name: %0R s, %0U s of processor time"
   shift
   /usr/bin/python3 -m venv "$folder/$name"
-  time "$folder/$name/bin/pip" install --quiet --disable-pip-version-check . "$@"
+  time "$folder/$name/bin/pip" install --quiet --disable-pip-version-check "$@"
 }
 
-install evaluates --config-settings=cmake.define.TRILOBE_BUILD_LIBRARY=OFF
-install all
+install evaluates ./python/evaluate
+install all . ./python/evaluate
 awk '/^```/ { inside = ($0 == "```python"); next } inside' README.md >"$folder/example.py"
 cd "$folder"
 all/bin/python example.py
 all/bin/trilobe help >all.txt
-evaluates/bin/python -c 'import trilobe; print(trilobe.load("brighter.json").eval([0, 0, 1], [0, 0, 1]))'
+evaluates/bin/python -c 'import trilobe; print(trilobe.load("material:linen").eval([0, 0, 1], [0, 0, 1]))'
 if evaluates/bin/python -c 'import trilobe; trilobe.solvers()' 2>evaluates.txt; then exit 1; fi
 grep -q "this package only evaluates models" evaluates.txt
 if all/bin/trilobe-need scene.xml --out=need 2>need.txt; then exit 1; fi

@@ -69,6 +69,9 @@ step "Testing the Python package, with some hundred thousand calls by arguments 
 TRILOBE_LONG_TESTS=1 TRILOBE_FUZZ_CALLS=20000 scripts/check_python.sh
 scripts/check_pip.sh
 
+step "Building wheels of it, and installing them where there is nothing but Python"
+scripts/wheels.sh --check
+
 step "Comparing the figures of the pages with their commands and tables"
 scripts/check_figures.py ${3:+--data="$3"}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -392,6 +391,8 @@ def _printable(path: Path) -> str:
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Writes a file beside its place and moves it there."""
+    import tempfile  # a third of the time that the package takes to import beyond numpy
+
     name = _path_of(path)
     temporary = None
     try:

@@ -27,8 +27,7 @@ def fits() -> Any:
                 f"what fits cannot be loaded ({error}); install the packages of the group run in dependencies.txt"
             ) from None
         raise Error(
-            "this package only evaluates models; install it without TRILOBE_BUILD_LIBRARY=OFF to read and fit "
-            "measurements"
+            "this package only evaluates models; pip install trilobe adds what reads and fits measurements"
         ) from None
     return _fit
 

@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Installs wheels where there is nothing but Python, bash and coreutils: a root made of this machine's own files of
+# these. There it times pip and the import, fits, evaluates, and takes what fits away again.
+#   scripts/check_wheels.sh PYTHON FOLDER      FOLDER has the wheels (scripts/wheels.sh); needs root, and PyPI
+# The limits are of processor time, as others may use the machine: 20 s for pip, 0.2 s for the import.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source scripts/setup.sh
+python=$(realpath "$1") wheels=$2
+root=$(mktemp -d)
+trap 'rm -rf "$root"' EXIT
+
+# copy FILE...: to the same path below the root.
+copy() { cp --recursive --parents --dereference --target-directory="$root" "$@"; }
+
+# Debian's lib is a link to usr/lib, and so on.
+for link in /bin /sbin /lib /lib64; do [[ ! -L $link ]] || cp --no-dereference "$link" "$root"; done
+mkdir -p "$root"/{usr/{bin,sbin,lib,lib64},dev,tmp,wheels}
+cp -a /dev/null /dev/urandom "$root/dev"
+programs=(/usr/bin/{bash,env,ls} "$python")
+mapfile -t standard_library < <("$python" -c 'import sysconfig
+print(sysconfig.get_path("stdlib"), getattr(__import__("ensurepip"), "_WHEEL_PKG_DIR", None) or "", sep="\n")')
+for folder in "${standard_library[@]}"; do
+  [[ -z $folder ]] || tar -C / --exclude={dist-packages,site-packages,test,'config-*'} -c "${folder#/}" | tar -C "$root" -x
+done
+copy "${programs[@]}" /etc/ld.so.conf /etc/ld.so.conf.d
+# What these load; all of glibc, and of C++ what a manylinux wheel takes from the system.
+libc=$(ldconfig -p | awk '$1 == "libc.so.6" && !n++ { print $NF }')
+cxx=$(ldconfig -p | awk '$1 == "libstdc++.so.6" && !n++ { print $NF }')
+mapfile -t libraries < <({
+  printf '%s\n' "${libc%/*}"/lib{c,m,mvec,pthread,dl,rt,util}.so.* "$cxx"
+  ldd "${programs[@]}" "${standard_library[0]}"/lib-dynload/*.so "$cxx" | grep -oP '/\S+\.so\S*(?= \()'
+} | sort -u)
+copy "${libraries[@]}"
+ldconfig -r "$root"
+
+"$python" -m pip download --quiet --disable-pip-version-check --only-binary=:all: --dest="$root/wheels" 'numpy>=1.22'
+cp "$wheels"/*.whl "$root/wheels"
+unneeded=$(find "$root" -regextype posix-extended -regex \
+  '.*/(lib(gsl|ceres|glog|gflags|blas|lapack|openblas|cholmod|pugixml|gfortran|gomp)[^/]*|(gcc|g\+\+|cc1|cc|ld|clang|cmake)[-0-9.]*)')
+[[ -z $unneeded ]] || die "the bare root is not bare: $unneeded"
+echo "The root has $(du -sm "$root" | cut -f1) MB, and no compiler, GSL, Ceres Solver, glog, gflags or BLAS."
+
+bare() { chroot "$root" /usr/bin/env -i HOME=/tmp PATH=/usr/bin "$@"; }
+
+# processor_seconds FILE: the sum of what `time -p` wrote there of user and system.
+processor_seconds() { awk '/^(user|sys)/ { sum += $2 } END { print sum }' "$1"; }
+at_most() { awk -v is="$1" -v limit="$2" 'BEGIN { exit !(is <= limit) }' || die "$3 took $1 s, more than $2 s"; }
+
+# install NAME PACKAGE: into an environment of that name.
+install() {
+  bare "$python" -m venv "/$1"
+  { time -p bare "/$1/bin/pip" install --quiet --disable-pip-version-check --no-index --find-links=/wheels "$2"; } 2>"$root/time"
+  cat "$root/time" >&2
+  seconds=$(processor_seconds "$root/time")
+  echo "pip install $2: $seconds s of processor time"
+  at_most "$seconds" 20 "pip install $2"
+  bare "/$1/bin/pip" show "$2" | grep -E '^(Name|License):'
+}
+
+cat >"$root/import.py" <<'END'
+import resource, subprocess, sys
+
+def seconds(statement):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, "-c", statement], check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+python, numpy, trilobe = (min(seconds(s) for _ in range(20)) for s in ("", "import numpy", "import trilobe"))
+print(f"{trilobe - python:.3f} s, of which numpy {numpy - python:.3f} s")
+END
+cat >"$root/evaluate.py" <<'END'
+import trilobe
+
+print("trilobe.load:", trilobe.load("material:linen").eval([0, 0, 1], [0, 0.6, 0.8]))
+try:
+    trilobe.solvers()
+except trilobe.Error as error:
+    print("trilobe.solvers:", error)
+END
+awk '/^```/ { inside = ($0 == "```python"); next } inside' README.md >"$root/example.py"
+
+install evaluates trilobe-evaluate
+bare /evaluates/bin/python /evaluate.py | tee "$root/said"
+grep -q "pip install trilobe adds" "$root/said"
+
+install all trilobe
+imported=$(bare /all/bin/python /import.py)
+echo "import trilobe: $imported"
+at_most "${imported%% *}" 0.2 "import trilobe"
+echo "README.md's example: $(bare /all/bin/python /example.py)"
+bare /all/bin/trilobe fit synth:copper@24x24x48 --noplots --out=/tmp/copper | grep -m 1 verdict
+bare /all/bin/pip uninstall --quiet --yes trilobe
+bare /all/bin/python /evaluate.py | cmp - "$root/said"
+echo "Without trilobe, trilobe-evaluate goes on."

@@ -1,0 +1,22 @@
+"""What pip installs: trilobe, and the trilobe-evaluate that it stands on."""
+
+from pathlib import Path
+
+import pytest
+
+import trilobe
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize(
+    "name, text",
+    [
+        ("CMakeLists.txt", "project(trilobe VERSION {} "),
+        ("pyproject.toml", '\nversion = "{}"\n'),
+        ("pyproject.toml", '\ndependencies = ["trilobe-evaluate=={}"]\n'),
+        ("python/evaluate/pyproject.toml", '\nversion = "{}"\n'),
+    ],
+)
+def test_both_packages_and_the_program_are_of_one_version(name, text):
+    assert text.format(trilobe.__version__) in (ROOT / name).read_text()
