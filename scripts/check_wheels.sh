@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Installs wheels where there is nothing but Python, bash and coreutils: a root made of this machine's own files of
 # these. There it times pip and the import, fits, evaluates, and takes what fits away again.
-#   scripts/check_wheels.sh PYTHON FOLDER      FOLDER has the wheels (scripts/wheels.sh); needs root, and PyPI
+#   scripts/check_wheels.sh PYTHON FOLDER      FOLDER is that of scripts/wheels.sh; needs root, and PyPI
 # The limits are of processor time, as others may use the machine: 20 s for pip, 0.2 s for the import.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/setup.sh
-python=$(realpath "$1") wheels=$2
+python=$(realpath "$1") folder=$2
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 
@@ -16,13 +16,13 @@ copy() { cp --recursive --parents --dereference --target-directory="$root" "$@";
 
 # Debian's lib is a link to usr/lib, and so on.
 for link in /bin /sbin /lib /lib64; do [[ ! -L $link ]] || cp --no-dereference "$link" "$root"; done
-mkdir -p "$root"/{usr/{bin,sbin,lib,lib64},dev,tmp,wheels}
+mkdir -p "$root"/{usr/{bin,sbin,lib,lib64},dev,proc,tmp,wheels}
 cp -a /dev/null /dev/urandom "$root/dev"
 programs=(/usr/bin/{bash,env,ls} "$python")
 mapfile -t standard_library < <("$python" -c 'import sysconfig
 print(sysconfig.get_path("stdlib"), getattr(__import__("ensurepip"), "_WHEEL_PKG_DIR", None) or "", sep="\n")')
-for folder in "${standard_library[@]}"; do
-  [[ -z $folder ]] || tar -C / --exclude={dist-packages,site-packages,test,'config-*'} -c "${folder#/}" | tar -C "$root" -x
+for place in "${standard_library[@]}"; do
+  [[ -z $place ]] || tar -C / --exclude={dist-packages,site-packages,test,'config-*'} -c "${place#/}" | tar -C "$root" -x
 done
 copy "${programs[@]}" /etc/ld.so.conf /etc/ld.so.conf.d
 # What these load; all of glibc, and of C++ what a manylinux wheel takes from the system.
@@ -36,26 +36,25 @@ copy "${libraries[@]}"
 ldconfig -r "$root"
 
 "$python" -m pip download --quiet --disable-pip-version-check --only-binary=:all: --dest="$root/wheels" 'numpy>=1.22'
-cp "$wheels"/*.whl "$root/wheels"
+cp "$folder"/*.whl "$root/wheels"
 unneeded=$(find "$root" -regextype posix-extended -regex \
   '.*/(lib(gsl|ceres|glog|gflags|blas|lapack|openblas|cholmod|pugixml|gfortran|gomp)[^/]*|(gcc|g\+\+|cc1|cc|ld|clang|cmake)[-0-9.]*)')
 [[ -z $unneeded ]] || die "the bare root is not bare: $unneeded"
 echo "The root has $(du -sm "$root" | cut -f1) MB, and no compiler, GSL, Ceres Solver, glog, gflags or BLAS."
 
-bare() { chroot "$root" /usr/bin/env -i HOME=/tmp PATH=/usr/bin "$@"; }
+# The program finds the libraries of its wheel by /proc.
+bare() { unshare --mount --pid --fork --root="$root" --mount-proc /usr/bin/env -i HOME=/tmp PATH=/usr/bin "$@"; }
 
-# processor_seconds FILE: the sum of what `time -p` wrote there of user and system.
-processor_seconds() { awk '/^(user|sys)/ { sum += $2 } END { print sum }' "$1"; }
 at_most() { awk -v is="$1" -v limit="$2" 'BEGIN { exit !(is <= limit) }' || die "$3 took $1 s, more than $2 s"; }
 
 # install NAME PACKAGE: into an environment of that name.
 install() {
+  local TIMEFORMAT='%R %U %S' elapsed user system
   bare "$python" -m venv "/$1"
-  { time -p bare "/$1/bin/pip" install --quiet --disable-pip-version-check --no-index --find-links=/wheels "$2"; } 2>"$root/time"
-  cat "$root/time" >&2
-  seconds=$(processor_seconds "$root/time")
-  echo "pip install $2: $seconds s of processor time"
-  at_most "$seconds" 20 "pip install $2"
+  { time bare "/$1/bin/pip" install --quiet --disable-pip-version-check --no-index --find-links=/wheels "$2"; } 2>"$root/time"
+  read -r elapsed user system < <(tail -n 1 "$root/time")
+  echo "pip install $2: $elapsed s, $user s + $system s of processor time"
+  at_most "$(awk '{ print $1 + $2 }' <<<"$user $system")" 20 "pip install $2"
   bare "/$1/bin/pip" show "$2" | grep -E '^(Name|License):'
 }
 
@@ -90,8 +89,13 @@ install all trilobe
 imported=$(bare /all/bin/python /import.py)
 echo "import trilobe: $imported"
 at_most "${imported%% *}" 0.2 "import trilobe"
-echo "README.md's example: $(bare /all/bin/python /example.py)"
-bare /all/bin/trilobe fit synth:copper@24x24x48 --noplots --out=/tmp/copper | grep -m 1 verdict
+bare /all/bin/python /example.py | sed "s/^/README.md's example: /"
+# To the bit what the program fits that was built for the wheel.
+fit=(fit synth:copper@24x24x48 --noplots)
+bare /all/bin/trilobe "${fit[@]}" --out=/tmp/copper 2>"$root/notes" | grep ^verdict
+"$folder/build/trilobe/bin/trilobe" "${fit[@]}" --out="$root/tmp/here" >"$root/report" 2>&1
+untimed() { grep -vE '"(seconds|date|run)":' "$root/tmp/$1/model.json"; }
+diff <(untimed copper) <(untimed here)
 bare /all/bin/pip uninstall --quiet --yes trilobe
 bare /all/bin/python /evaluate.py | cmp - "$root/said"
 echo "Without trilobe, trilobe-evaluate goes on."

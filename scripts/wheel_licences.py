@@ -3,12 +3,11 @@
 
     scripts/wheel_licences.py WHEEL [PACKAGE...]
 
-The libraries are those that auditwheel lists in the wheel; each PACKAGE is one of Debian's whose headers are compiled
-in. Needs auditwheel and nanobind beside its Python.
+The libraries are those that auditwheel has put into it; each PACKAGE is one of Debian's that is compiled in. Needs
+auditwheel and nanobind beside its Python.
 """
 
 import importlib.metadata
-import json
 import re
 import subprocess
 import sys
@@ -24,20 +23,19 @@ a Debian package is that of this version at https://snapshot.debian.org.
 """
 
 
-def version_of(package):
-    """The version of an installed package of Debian."""
-    query = ["dpkg-query", "--show", "--showformat=${Version}", package]
-    return subprocess.run(query, check=True, capture_output=True, text=True).stdout
+def output_of(*command):
+    """What a command prints."""
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
-def bundled_packages(info, libraries):
-    """Debian's packages of the libraries; auditwheel leaves out those that it does not know."""
-    if not libraries:
-        return []
-    components = json.loads((info / "sboms" / "auditwheel.cdx.json").read_text())["components"][1:]
-    if len(components) != len(libraries):
-        sys.exit(f"auditwheel knows the packages of {len(components)} of {len(libraries)} libraries")
-    return [component["name"] for component in components]
+def packages_of(libraries):
+    """Debian's packages of libraries, whose names auditwheel has made longer by a hash."""
+    paths = {Path(path).resolve() for path in re.findall("=> (/.*)", output_of("ldconfig", "-p"))}
+    path_of = {path.name: path for path in paths}
+    for library in libraries:
+        path = path_of[re.sub(r"-[0-9a-f]{8}(?=\.)", "", library)]
+        # A package may have it below /lib, which has become a link to /usr/lib.
+        yield output_of("dpkg-query", "--search", "*" + str(path).removeprefix("/usr")).partition(":")[0]
 
 
 def main(wheel, compiled_in):
@@ -48,7 +46,7 @@ def main(wheel, compiled_in):
         (info,) = root.glob("*.dist-info")
         licences = info / "licenses"
         libraries = sorted(path.name for path in root.glob("*.libs/*"))
-        packages = sorted({*bundled_packages(info, libraries), *compiled_in})
+        packages = sorted({*packages_of(libraries), *compiled_in})
         common = set()
         for package in packages:
             text = Path("/usr/share/doc", package, "copyright").read_text()
@@ -60,7 +58,7 @@ def main(wheel, compiled_in):
         for name, source in (("nanobind", "LICENSE"), ("robin-map", "robin_map.h")):
             (file,) = (file for file in nanobind.files if file.name == source)
             (licences / name).write_text(file.read_text().partition("*/")[0])  # of code, its first comment
-        contents = [f"{package} {version_of(package)}" for package in packages]
+        contents = [output_of("dpkg-query", "--show", "--showformat=${Package} ${Version}", name) for name in packages]
         contents.append(f"nanobind {nanobind.version}, with robin-map, of PyPI")
         (licences / "CONTENTS").write_text(HEAD + "\n".join(contents) + "\n")
         unpacked = sum(path.stat().st_size for path in root.rglob("*") if path.is_file())

