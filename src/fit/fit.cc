@@ -55,6 +55,10 @@ std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitO
   return SyntheticPrior(data, prior);
 }
 
+Objective JoinPrior(const Objective& data, const std::optional<SyntheticPrior>& prior) {
+  return prior ? Objective(data, prior->JoinTo(data)) : data;
+}
+
 FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
                const Objective& objective, const SolverSummary& summary) {
   return {.solver = options.solver,
@@ -225,7 +229,7 @@ class Fitting {
 
   SolvedForm SolveForm(Objective data, const std::optional<SyntheticPrior>& prior,
                        FactorModel model, bool is_first) const {
-    Objective solved = prior ? Objective(data, prior->JoinTo(data)) : data;
+    Objective solved = JoinPrior(data, prior);
     SolverOptions solver = options_.solver_options(solved.spec());
     solver.on_iteration = [this, is_first](const IterationRecord& record,
                                            const FactorModel& current) {
@@ -371,8 +375,7 @@ class Fitting {
   FactorModel FitTo(const BrdfSamples& part, FactorModel model) const {
     const Objective data(part, model.spec(), options_.weighting, options_.num_threads);
     const std::optional<SyntheticPrior> prior = PriorOf(measurement_, options_, data);
-    const Objective solved = prior ? Objective(data, prior->JoinTo(data)) : data;
-    model = FitToPart(solved, std::move(model), options_.stop);
+    model = FitToPart(JoinPrior(data, prior), std::move(model), options_.stop);
     LightLimit(data, model).Apply(TableLayout::Full(model.spec()), options_.stop, &model);
     return model;
   }

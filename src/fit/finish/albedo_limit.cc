@@ -14,6 +14,7 @@
 
 #include "core/math/robust_line.h"
 #include "fit/finish/lower_g.h"
+#include "fit/prior/albedos_of.h"
 #include "fit/prior/dim_highlights.h"
 #include "model/lobes/beyond_data.h"
 #include "trilobe/core/geometry/directions.h"
@@ -49,14 +50,6 @@ std::vector<double> NodesOf(const Axis& g_axis) {
     angles.push_back(std::min(theta, kLast));
   }
   return angles;
-}
-
-std::vector<Rgb> AlbedosOf(const FactorModel& model, std::span<const double> angles,
-                           int num_threads) {
-  const PreparedModel<double> prepared(model);
-  return DirectionalAlbedos(
-      [&prepared](const DirectionPair& pair) { return prepared.Value(pair.wi, pair.wo); }, angles,
-      num_threads);
 }
 
 // Linear between the angles.

@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "core/math/robust_line.h"
+#include "fit/prior/albedos_of.h"
 #include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/axis.h"
-#include "trilobe/model/evaluate/prepared_model.h"
-#include "trilobe/model/measurement/albedo.h"
 
 namespace trilobe {
 
@@ -23,12 +21,9 @@ AlbedoRipple RippleOf(const FactorModel& model, int num_threads) {
   for (int k = 0; k < axis.size && axis.Theta(k) <= kLast + kAround; ++k) {
     theta_i.push_back(axis.Theta(k));
   }
-  const PreparedModel<double> prepared(model);
-  const std::vector<Rgb> albedos = DirectionalAlbedos(
-      [&](const DirectionPair& pair) { return prepared.Value(pair.wi, pair.wo); }, theta_i,
-      num_threads);
   std::vector<double> logs;
-  for (const Rgb& albedo : albedos) logs.push_back(std::log(albedo[0] + albedo[1] + albedo[2]));
+  for (const Rgb& albedo : AlbedosOf(model, theta_i, num_threads))
+    logs.push_back(std::log(albedo[0] + albedo[1] + albedo[2]));
   for (size_t k = 0; k < logs.size() && theta_i[k] <= kLast; ++k) {
     std::vector<double> x, y;
     for (size_t j = 0; j < logs.size(); ++j) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/quantile.h"
+#include "fit/prior/albedos_of.h"
 #include "fit/prior/join_samples.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
@@ -91,10 +92,7 @@ Rgb MedianAlbedoAtIncidences(const BrdfSamples& samples, const FactorModel& mode
   const std::vector<double> angles = IncidencesOf(samples);
   Rgb median{};
   if (angles.empty()) return median;
-  const PreparedModel<double> prepared(model);
-  const std::vector<Rgb> albedos = DirectionalAlbedos(
-      [&prepared](const DirectionPair& pair) { return prepared.Value(pair.wi, pair.wo); }, angles,
-      num_threads);
+  const std::vector<Rgb> albedos = AlbedosOf(model, angles, num_threads);
   for (int c = 0; c < kChannels; ++c) {
     std::vector<double> of_channel;
     for (const Rgb& albedo : albedos) of_channel.push_back(albedo[c]);

@@ -52,6 +52,13 @@ ExportError MeasureError(const PairBrdf& file,
   return {.median = errors[errors.size() / 2], .high = errors[errors.size() * 99 / 100]};
 }
 
+bool AreGrey(const std::vector<Rgb>& values) {
+  return std::ranges::all_of(values, [](const Rgb& value) {
+    const auto [least, most] = std::minmax({value[0], value[1], value[2]});
+    return most - least <= 1e-9 * most;
+  });
+}
+
 void RequireExact(size_t bytes, double median_error, double max_error) {
   if (median_error <= max_error) return;
   std::ostringstream message;

@@ -30,6 +30,9 @@ struct ExportError {
 ExportError MeasureError(const PairBrdf& file,
                          const std::vector<CompletedMeasurement::Place>& places);
 
+// Whether the channels of each value are equal, but for rounding.
+bool AreGrey(const std::vector<Rgb>& values);
+
 // The first of `count` ever finer files whose median_error is at most max_error, or else of all of
 // them the first that is hardly worse than the best.
 template <typename File>

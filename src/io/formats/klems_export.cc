@@ -262,10 +262,7 @@ KlemsExport ExportKlems(const ExportedBrdf& brdf, const std::string& name, int n
   std::vector<Rgb> means = KlemsMeans(brdf, num_threads);
   const ExportError error =
       MeasureError([&](const DirectionPair& pair) { return ValueAt(means, pair); }, brdf.places);
-  const bool grey = std::ranges::all_of(means, [](const Rgb& mean) {
-    const auto [least, most] = std::minmax({mean[0], mean[1], mean[2]});
-    return most - least <= 1e-9 * most;
-  });
+  const bool grey = AreGrey(means);
   KlemsExport result = {
       .bytes = {}, .colored = !grey, .median_error = error.median, .high_error = error.high};
   result.bytes =

@@ -215,10 +215,8 @@ Measurement ParseLightTools(std::string_view text, const std::string& source) {
                                     DegreesToRadians(radial), DegreesToRadians(header.azimuths[a])};
         if (header.tristimulus) {
           AddTristimulus(at, {values[0], values[1], values[2]}, &collector);
-        } else if (color) {
-          AddSpectrum(at, values, *color, &collector);
         } else {
-          collector.Add(at, {values[0], values[0], values[0]});
+          AddSpectrum(at, values, color, &collector);
         }
       }
     }

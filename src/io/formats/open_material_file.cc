@@ -122,10 +122,8 @@ Measurement ParseOpenMaterial(std::string_view text, const std::string& source) 
     const SphericalAngles& at = bands[0].rows[k].at;
     if (std::ranges::any_of(spectrum, [](double value) { return std::isnan(value); })) {
       collector.LeaveOut(&BinCounts::missing);
-    } else if (color) {
-      AddSpectrum(at, spectrum, *color, &collector);
     } else {
-      collector.Add(at, {spectrum[0], spectrum[0], spectrum[0]});
+      AddSpectrum(at, spectrum, color, &collector);
     }
   }
   Measurement measurement = collector.Take();

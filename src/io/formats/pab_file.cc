@@ -1,23 +1,17 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/files/text_lines.h"
+#include "io/formats/same_name.h"
 #include "io/formats/spectrum.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
 namespace trilobe {
 namespace {
-
-std::string Upper(std::string_view word) {
-  std::string upper(word);
-  std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
-  return upper;
-}
 
 // What the comments before a value say.
 struct PabHeader {
@@ -39,21 +33,20 @@ void ReadPabComment(const TextLines& lines, PabHeader* header) {
     header->phi = number(2);
   }
   if (words[0] == "colorimetry:" && words.size() > 1) {
-    const std::string name = Upper(words[1]);
-    if (name != "CIE-XYZ" && name != "CIE-Y") {
+    header->is_xyz = SameName(words[1], "CIE-XYZ");
+    if (!header->is_xyz && !SameName(words[1], "CIE-Y")) {
       lines.Fail("the colorimetry is unknown; only CIE-Y and CIE-XYZ can be read");
     }
-    header->is_xyz = name == "CIE-XYZ";
   }
   if (words[0] == "format:" && words.size() == 4) {
-    const std::string name = Upper(words[3]);
+    const auto is = [&](const char* name) { return SameName(words[3], name); };
     if (words[1] != "theta" || words[2] != "phi" ||
-        (name != "DSF" && name != "BSDF" && name != "BRDF" && name != "BTDF")) {
+        !(is("DSF") || is("BSDF") || is("BRDF") || is("BTDF"))) {
       lines.Fail("the format is unknown; only theta phi BSDF, BRDF and DSF can be read");
     }
-    if (name == "BTDF") lines.Fail("these are transmitted light; only reflection can be read");
+    if (is("BTDF")) lines.Fail("these are transmitted light; only reflection can be read");
     header->is_known = true;
-    header->has_cosine = name == "DSF";
+    header->has_cosine = is("DSF");
   }
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
 #include "io/formats/klems_basis.h"
+#include "io/formats/same_name.h"
 #include "io/formats/spectrum.h"
 #include "io/formats/tensor_tree.h"
 #include "trilobe/core/base/error.h"
@@ -18,11 +18,6 @@
 
 namespace trilobe {
 namespace {
-
-bool SameName(std::string_view a, std::string_view b) {
-  return std::ranges::equal(
-      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 // A document, with the line of what is wrong in it.
 class RadianceXml {

@@ -212,6 +212,15 @@ void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum
   AddColorOf(angles, spectrum, color, collector);
 }
 
+void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
+                 const std::optional<SpectralColor>& color, SampleCollector* collector) {
+  if (color) {
+    AddSpectrum(angles, spectrum, *color, collector);
+  } else {
+    collector->Add(angles, {spectrum[0], spectrum[0], spectrum[0]});
+  }
+}
+
 void AddTristimulus(const SphericalAngles& angles, const std::array<double, 3>& xyz,
                     SampleCollector* collector) {
   const auto color = [](std::span<const double> values) {

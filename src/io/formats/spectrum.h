@@ -2,6 +2,7 @@
 #define TRILOBE_IO_FORMATS_SPECTRUM_H_
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,10 @@ class SpectralColor {
 // below 0 (out of gamut) become 0.
 void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
                  const SpectralColor& color, SampleCollector* collector);
+
+// The same of one wavelength, without a `color`, whose value is that of all channels.
+void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
+                 const std::optional<SpectralColor>& color, SampleCollector* collector);
 
 inline constexpr const char* kTristimulusNote = "X, Y, Z relative to white, which is taken for D65";
 // The same for CIE 1931 tristimulus values, each relative to that of white: a grey has X = Y = Z.

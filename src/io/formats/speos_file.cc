@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
 #include "io/formats/angle_list.h"
+#include "io/formats/same_name.h"
 #include "io/formats/spectrum.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
@@ -20,11 +20,8 @@ namespace {
 constexpr std::string_view kSpeosSpectral = "optis - brdf surface file";
 constexpr std::string_view kSpeosAnisotropic = "optis - anisotropic bsdf surface file";
 
-bool BeginsWith(std::string_view text, std::string_view lower) {
-  return text.size() >= lower.size() &&
-         std::ranges::equal(text.substr(0, lower.size()), lower, [](unsigned char a, char b) {
-           return std::tolower(a) == static_cast<unsigned char>(b);
-         });
+bool BeginsWith(std::string_view text, std::string_view name) {
+  return SameName(text.substr(0, name.size()), name);
 }
 
 // Lines as they are, blank ones too, and numbers one after the other, wherever lines end.
@@ -237,11 +234,7 @@ Measurement ReadSpectral(SpeosText* text, bool is_bsdf, const std::string& sourc
       for (size_t l = 0; l < tables.size(); ++l) {
         spectrum[l] = SpeosValue(tables[l].values[k], at, scales[l], is_bsdf);
       }
-      if (color) {
-        AddSpectrum(at, spectrum, *color, &collector);
-      } else {
-        collector.Add(at, {spectrum[0], spectrum[0], spectrum[0]});
-      }
+      AddSpectrum(at, spectrum, color, &collector);
     });
   }
   return collector.Take();

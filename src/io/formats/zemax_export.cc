@@ -81,12 +81,7 @@ class ZemaxTable {
     high_error = error.high;
   }
 
-  bool IsGrey() const {
-    return std::ranges::all_of(values_, [](const Rgb& value) {
-      const auto [least, most] = std::minmax({value[0], value[1], value[2]});
-      return most - least <= 1e-9 * most;
-    });
-  }
+  bool IsGrey() const { return AreGrey(values_); }
 
   // Of a rotation and an incidence, those of an azimuth.
   std::span<const Rgb> Row(size_t rotation, size_t incidence, size_t azimuth) const {
