@@ -1,5 +1,6 @@
 #include "io/formats/angle_list.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -40,6 +41,14 @@ std::vector<double> ReadAngleList(const AngleList& list, std::string_view count_
 
 size_t Distinct(const std::vector<double>& degrees) {
   return degrees.size() - (degrees.size() > 1 && degrees.back() - degrees.front() == 360 ? 1 : 0);
+}
+
+BetweenNodes FindBetween(const std::vector<double>& nodes, double x) {
+  if (nodes.size() == 1) return {};
+  const auto above = std::ranges::upper_bound(nodes, x) - nodes.begin();
+  const size_t lower = std::clamp<ptrdiff_t>(above, 1, std::ssize(nodes) - 1) - 1;
+  const double t = (x - nodes[lower]) / (nodes[lower + 1] - nodes[lower]);
+  return {lower, std::clamp(t, 0.0, 1.0)};
 }
 
 }  // namespace trilobe

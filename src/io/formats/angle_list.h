@@ -1,6 +1,7 @@
 #ifndef TRILOBE_IO_FORMATS_ANGLE_LIST_H_
 #define TRILOBE_IO_FORMATS_ANGLE_LIST_H_
 
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,14 @@ std::vector<double> ReadNumbersOfLine(const TextLines& lines, size_t count, cons
 
 // How many entries there are without a last one that repeats the first a whole turn later.
 size_t Distinct(const std::vector<double>& degrees);
+
+// Where x stands among ascending nodes: `t` of the way from `lower` to the next; at an end beyond
+// it, and at a single node.
+struct BetweenNodes {
+  size_t lower = 0;
+  double t = 0;
+};
+BetweenNodes FindBetween(const std::vector<double>& nodes, double x);
 
 }  // namespace trilobe
 

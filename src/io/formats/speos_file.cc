@@ -270,11 +270,9 @@ struct SpeosSpectrum {
     }
     std::vector<double> dense, spectrum;
     for (double at = 380; at <= 780; at += 5) {
-      const auto above = std::ranges::upper_bound(wavelengths, at) - wavelengths.begin();
-      const size_t k = std::clamp<ptrdiff_t>(above, 1, std::ssize(wavelengths) - 1);
-      const double t = (at - wavelengths[k - 1]) / (wavelengths[k] - wavelengths[k - 1]);
+      const auto [lower, t] = FindBetween(wavelengths, at);
       dense.push_back(at);
-      spectrum.push_back(std::lerp(values[k - 1], values[k], std::clamp(t, 0.0, 1.0)));
+      spectrum.push_back(std::lerp(values[lower], values[lower + 1], t));
     }
     return SpectralColor(dense, source)(spectrum);
   }
@@ -316,11 +314,8 @@ double ScaleAt(const SpeosSpectrum& spectrum, const std::vector<Rotation>& rotat
   }
   const std::vector<double>& theta_i = rotations[nearest].theta_i;
   const auto scale = [&](size_t k) { return ScaleOf(tables[first + k], 1, is_bsdf, text); };
-  const auto above = std::ranges::upper_bound(theta_i, spectrum.theta) - theta_i.begin();
-  if (above == 0) return scale(0);
-  if (above == std::ssize(theta_i)) return scale(above - 1);
-  const double t = (spectrum.theta - theta_i[above - 1]) / (theta_i[above] - theta_i[above - 1]);
-  return std::lerp(scale(above - 1), scale(above), t);
+  const auto [lower, t] = FindBetween(theta_i, spectrum.theta);
+  return t > 0 ? std::lerp(scale(lower), scale(lower + 1), t) : scale(lower);
 }
 
 // `.anisotropicbsdf`: a table of each anisotropy angle and incidence, and one spectrum for all.

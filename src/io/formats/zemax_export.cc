@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "io/formats/angle_list.h"
 #include "io/formats/spectrum.h"
 #include "io/formats/zemax_angles.h"
 #include "trilobe/core/system/parallel.h"
@@ -35,21 +36,6 @@ std::vector<double> Angles(int count, double last, double power) {
     angles.push_back(std::round(angle * 1e3) / 1e3);
   }
   return angles;
-}
-
-// Where an angle stands among ascending ones: between `lower` and the next, `t` of the way.
-struct Between {
-  size_t lower = 0;
-  double t = 0;
-};
-Between Find(const std::vector<double>& angles, double angle) {
-  if (angles.size() == 1) return {};
-  const auto above = std::ranges::upper_bound(angles, angle);
-  const auto begin = angles.begin();
-  const size_t lower =
-      std::min<size_t>(std::max<ptrdiff_t>(above - begin - 1, 0), angles.size() - 2);
-  const double t = (angle - angles[lower]) / (angles[lower + 1] - angles[lower]);
-  return {lower, std::clamp(t, 0.0, 1.0)};
 }
 
 class ZemaxTable {
@@ -101,11 +87,11 @@ class ZemaxTable {
   Rgb Interpolated(const DirectionPair& pair) const {
     const ZemaxAngles at = ToZemaxAngles(pair);
     const double azimuth = RadiansToDegrees(at.azimuth);
-    const Between axes[] = {
-        Find(rotations, RadiansToDegrees(at.rotation)),
-        Find(incidences, RadiansToDegrees(at.incidence)),
-        Find(azimuths, azimuths.back() == 180 ? std::min(azimuth, 360 - azimuth) : azimuth),
-        Find(radials, RadiansToDegrees(at.radial))};
+    const BetweenNodes axes[] = {
+        FindBetween(rotations, RadiansToDegrees(at.rotation)),
+        FindBetween(incidences, RadiansToDegrees(at.incidence)),
+        FindBetween(azimuths, azimuths.back() == 180 ? std::min(azimuth, 360 - azimuth) : azimuth),
+        FindBetween(radials, RadiansToDegrees(at.radial))};
     Rgb sum{};
     for (unsigned corner = 0; corner < 16; ++corner) {
       double weight = 1;
