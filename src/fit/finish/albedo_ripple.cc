@@ -22,8 +22,9 @@ AlbedoRipple RippleOf(const FactorModel& model, int num_threads) {
     theta_i.push_back(axis.Theta(k));
   }
   std::vector<double> logs;
-  for (const Rgb& albedo : AlbedosOf(model, theta_i, num_threads))
+  for (const Rgb& albedo : AlbedosOf(model, theta_i, num_threads)) {
     logs.push_back(std::log(albedo[0] + albedo[1] + albedo[2]));
+  }
   for (size_t k = 0; k < logs.size() && theta_i[k] <= kLast; ++k) {
     std::vector<double> x, y;
     for (size_t j = 0; j < logs.size(); ++j) {
