@@ -155,6 +155,14 @@ BrdfSamples ValidSamples(const BrdfTable& table) {
 BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers) {
   BrdfSamples selected{samples.source, samples.grid, {}, {}, {}};
   CheckSizes(samples);
+  const auto reserve = [&](const auto& all, auto* chosen) {
+    if (!all.empty()) chosen->reserve(numbers.size());
+  };
+  reserve(samples.bins, &selected.bins);
+  reserve(samples.angles, &selected.angles);
+  reserve(samples.rho, &selected.rho);
+  reserve(samples.directions, &selected.directions);
+  reserve(samples.multiplicity, &selected.multiplicity);
   for (const int j : numbers) {
     if (j < 0 || j >= samples.size()) {
       Fail(samples,

@@ -245,7 +245,9 @@ void LeaveOutOutliers(int num_threads, Measurement* measurement) {
   constexpr int kFewest = 10;
   constexpr double kLeastLight = 2e-5;
   const int least = measurement->table ? kFewest : std::max(kFewest, valid / 500);
-  const BrdfSamples samples = SamplesOf(*measurement);
+  const std::optional<BrdfSamples> of_table =
+      measurement->table ? std::optional(SamplesOf(*measurement)) : std::nullopt;
+  const BrdfSamples& samples = of_table ? *of_table : measurement->samples;
   std::vector<Outlier> outliers =
       measurement->anisotropic ? DeadReadings(*measurement) : FindOutliers(samples, num_threads);
   const auto is_near = [](const Outlier& outlier) { return !outlier.far; };
@@ -338,7 +340,7 @@ void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
   // The horizon counts as below the surface, too; users of the samples test cosines computed from
   // the half and difference angles.
   const bool above = std::max(angles.theta_i, angles.theta_o) < kPi / 2;
-  const HalfDiffAngles half_diff = above ? ToHalfDiff(ToDirections(angles)) : HalfDiffAngles{};
+  const HalfDiffAngles half_diff = above ? ToHalfDiff(DirectionsOf(angles)) : HalfDiffAngles{};
   const Cosines cosines = ToCosines(half_diff);
   if (!above || !(cosines.i > 0 && cosines.o > 0)) {
     LeaveOut(&BinCounts::below_surface);
@@ -356,6 +358,13 @@ void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
   }
 }
 
+DirectionPair SampleCollector::DirectionsOf(const SphericalAngles& angles) {
+  const PolarAngles at_i = {angles.theta_i, angles.phi_i}, at_o = {angles.theta_o, angles.phi_o};
+  if (at_i != last_i_) last_.wi = ToDirection(last_i_ = at_i);
+  if (at_o != last_o_) last_.wo = ToDirection(last_o_ = at_o);
+  return last_;
+}
+
 void SampleCollector::AddColor(const SphericalAngles& angles, const Rgb& rho) {
   Rgb clipped = rho;
   for (double& x : clipped) x = x < 0 ? 0 : x;
@@ -370,7 +379,13 @@ void SampleCollector::LeaveOut(int BinCounts::*reason) {
   ++(measurement_.counts.*reason);
 }
 
-Measurement SampleCollector::Take() { return std::move(measurement_); }
+Measurement SampleCollector::Take() {
+  BrdfSamples& samples = measurement_.samples;
+  samples.angles.shrink_to_fit();
+  samples.rho.shrink_to_fit();
+  samples.directions.shrink_to_fit();
+  return std::move(measurement_);
+}
 
 Measurement SampleCollector::TakeByAzimuths() {
   constexpr double kSame = 1e-6;  // [rad]

@@ -1,13 +1,13 @@
 #include "model/measurement/unmeasured_samples.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "core/math/quantile.h"
@@ -97,76 +97,114 @@ std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
 
 namespace {
 
-// The angle that may have been filled in, and the two others.
-struct GridSample {
-  int64_t others[2];
-  int64_t angle;
-  int sample;
-  auto Key() const { return std::array{others[0], others[1], angle}; }
+// One of the angles of all samples, in whole steps of kSameAngle from -2^19 on, and how many of the
+// angles that occur are smaller than each.
+class SteppedAngles {
+ public:
+  static constexpr int kBits = 20;  // of a number of steps
+
+  void Add(double angle) {
+    constexpr int64_t kMost = 1 << (kBits - 1);
+    steps_.push_back(
+        static_cast<int>(std::clamp(Rounded(angle) + kMost, int64_t{0}, 2 * kMost - 1)));
+  }
+  void Rank() {
+    rank_.resize(1 << kBits);
+    for (const int steps : steps_) rank_[steps] = 1;
+    std::exclusive_scan(rank_.begin(), rank_.end(), rank_.begin(), 0);
+    size_ = 1 + rank_[std::ranges::max(steps_)];
+  }
+
+  int size() const { return size_; }  // of those that occur
+  int Steps(int sample) const { return steps_[sample]; }
+  int RankOf(int steps) const { return rank_[steps]; }
+
+ private:
+  std::vector<int> steps_, rank_;
+  int size_ = 0;
 };
 
-// The angles of one kind that repeat the one before.
-std::set<int64_t> RepeatedAngles(const BrdfSamples& samples, std::vector<GridSample> places,
-                                 int* all_angles) {
+// Another angle and that which may have been filled in, in one number, and the sample.
+using GridSample = std::pair<uint64_t, int>;
+
+// Which of the angles of a kind, in ascending order, repeat the one before; empty if none does.
+std::vector<bool> RepeatedAngles(const BrdfSamples& samples, const SteppedAngles& angle,
+                                 const SteppedAngles& other, const SteppedAngles& another) {
   constexpr int kFewestAngles = 5, kFewestPlaces = 20;
   constexpr double kShare = 0.9;
-  std::set<int64_t> angles;
-  for (const GridSample& place : places) angles.insert(place.angle);
-  *all_angles = static_cast<int>(angles.size());
-  if (*all_angles < kFewestAngles) return {};
-  std::map<int64_t, int64_t> before;  // each angle's
-  for (auto at = std::next(angles.begin()); at != angles.end(); ++at) before[*at] = *std::prev(at);
-  std::ranges::sort(places, {}, &GridSample::Key);
+  const int size = angle.size();
+  if (size < kFewestAngles) return {};
+  constexpr int kBits = SteppedAngles::kBits;
+  std::vector<int> begin((1 << kBits) + 1, 0);  // of the samples at each step of `other`
+  for (int j = 0; j < samples.size(); ++j) ++begin[other.Steps(j) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<GridSample> places(samples.size());
+  std::vector<int> next = begin;
+  for (int j = 0; j < samples.size(); ++j) {
+    const uint64_t at = static_cast<uint64_t>(another.Steps(j)) << kBits | angle.Steps(j);
+    places[next[other.Steps(j)]++] = {at, j};
+  }
+  const auto rank_of = [&](const GridSample& place) {
+    return angle.RankOf(static_cast<int>(place.first % (1 << kBits)));
+  };
   struct Count {
     int places = 0, equal = 0;
     std::set<Rgb> values;  // where they are equal
   };
-  std::map<int64_t, Count> counts;
-  for (size_t k = 1; k < places.size(); ++k) {
-    const GridSample &first = places[k - 1], &second = places[k];
-    if (!std::ranges::equal(first.others, second.others) || first.angle == second.angle ||
-        before.at(second.angle) != first.angle || IsZero(samples.rho[second.sample])) {
-      continue;
-    }
-    Count& count = counts[second.angle];
-    ++count.places;
-    if (samples.rho[first.sample] != samples.rho[second.sample]) continue;
-    ++count.equal;
-    count.values.insert(samples.rho[second.sample]);
+  std::vector<Count> counts(size);
+  const auto look_at = [&](const GridSample& first, const GridSample& second) {
+    if (first.first >> kBits != second.first >> kBits) return;
+    const int rank = rank_of(second);
+    const Rgb& rho = samples.rho[second.second];
+    if (rank != rank_of(first) + 1 || IsZero(rho)) return;
+    ++counts[rank].places;
+    if (samples.rho[first.second] != rho) return;
+    ++counts[rank].equal;
+    counts[rank].values.insert(rho);
+  };
+  for (size_t steps = 0; steps + 1 < begin.size(); ++steps) {
+    const std::span<GridSample> alike{places.begin() + begin[steps],
+                                      places.begin() + begin[steps + 1]};
+    std::ranges::sort(alike);
+    for (size_t k = 1; k < alike.size(); ++k) look_at(alike[k - 1], alike[k]);
   }
-  std::set<int64_t> repeated;
-  for (const auto& [angle, count] : counts) {
+  std::vector<bool> repeated(size);
+  for (int k = 0; k < size; ++k) {
     // Few values are those of a material that reflects alike in all of these directions.
-    if (count.places >= kFewestPlaces && count.equal > kShare * count.places &&
-        4 * count.values.size() >= static_cast<size_t>(count.equal)) {
-      repeated.insert(angle);
-    }
+    const Count& count = counts[k];
+    repeated[k] = count.places >= kFewestPlaces && count.equal > kShare * count.places &&
+                  4 * count.values.size() >= static_cast<size_t>(count.equal);
   }
-  return 2 * repeated.size() < angles.size() ? repeated : std::set<int64_t>();
+  const auto total = std::ranges::count(repeated, true);
+  return total > 0 && 2 * total < size ? repeated : std::vector<bool>();
+}
+
+bool Contains(const std::vector<bool>& repeated, const SteppedAngles& angle, int sample) {
+  return !repeated.empty() && repeated[angle.RankOf(angle.Steps(sample))];
 }
 
 }  // namespace
 
 FilledSamples FindFilled(const BrdfSamples& samples) {
-  std::vector<GridSample> by_theta_i, by_theta_o;
-  for (int j = 0; j < samples.size(); ++j) {
-    const SphericalAngles& at = samples.directions[j];
-    const int64_t theta_i = Rounded(at.theta_i), theta_o = Rounded(at.theta_o);
-    const int64_t phi = Rounded(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
-    by_theta_i.push_back({{theta_o, phi}, theta_i, j});
-    by_theta_o.push_back({{theta_i, phi}, theta_o, j});
+  if (samples.size() == 0) return {};
+  SteppedAngles theta_i, theta_o, phi;
+  for (const SphericalAngles& at : samples.directions) {
+    theta_i.Add(at.theta_i);
+    theta_o.Add(at.theta_o);
+    phi.Add(std::remainder(at.phi_o - at.phi_i, 2 * kPi));
   }
-  FilledSamples filled;
-  const std::set<int64_t> theta_i =
-      RepeatedAngles(samples, std::move(by_theta_i), &filled.all_theta_i);
-  const std::set<int64_t> theta_o =
-      RepeatedAngles(samples, std::move(by_theta_o), &filled.all_theta_o);
-  filled.theta_i = static_cast<int>(theta_i.size());
-  filled.theta_o = static_cast<int>(theta_o.size());
-  if (theta_i.empty() && theta_o.empty()) return filled;
+  theta_i.Rank();
+  theta_o.Rank();
+  const std::vector<bool> of_theta_i = RepeatedAngles(samples, theta_i, theta_o, phi);
+  const std::vector<bool> of_theta_o = RepeatedAngles(samples, theta_o, theta_i, phi);
+  FilledSamples filled = {.samples = {},
+                          .theta_i = static_cast<int>(std::ranges::count(of_theta_i, true)),
+                          .theta_o = static_cast<int>(std::ranges::count(of_theta_o, true)),
+                          .all_theta_i = theta_i.size(),
+                          .all_theta_o = theta_o.size()};
+  if (of_theta_i.empty() && of_theta_o.empty()) return filled;
   for (int j = 0; j < samples.size(); ++j) {
-    const SphericalAngles& at = samples.directions[j];
-    if (theta_i.contains(Rounded(at.theta_i)) || theta_o.contains(Rounded(at.theta_o))) {
+    if (Contains(of_theta_i, theta_i, j) || Contains(of_theta_o, theta_o, j)) {
       filled.samples.push_back(j);
     }
   }

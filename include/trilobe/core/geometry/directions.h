@@ -56,6 +56,8 @@ SphericalAngles ToSphericalAngles(const DirectionPair& pair);  // phi in [-pi, p
 struct PolarAngles {
   double theta = 0;
   double phi = 0;
+
+  bool operator==(const PolarAngles&) const = default;
 };
 Direction ToDirection(const PolarAngles& angles);
 PolarAngles ToPolarAngles(const Direction& w);  // w of any length; phi in [-pi, pi]

@@ -117,7 +117,12 @@ class SampleCollector {
   Measurement TakeByAzimuths();
 
  private:
+  // Directions at the same angles as before are not computed anew: most readers go on by one angle.
+  DirectionPair DirectionsOf(const SphericalAngles& angles);
+
   Measurement measurement_;
+  PolarAngles last_i_, last_o_;
+  DirectionPair last_{{0, 0, 1}, {0, 0, 1}};
 };
 
 }  // namespace trilobe
