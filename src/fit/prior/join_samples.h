@@ -7,9 +7,12 @@ namespace trilobe {
 
 // Both, the latter of this weight each.
 inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, double weight) {
+  const size_t size = samples.rho.size() + added.rho.size();
+  samples.multiplicity.reserve(size);
   samples.multiplicity.resize(samples.rho.size(), 1);
-  samples.multiplicity.resize(samples.rho.size() + added.rho.size(), weight);
-  const auto append = [](const auto& from, auto* target) {
+  samples.multiplicity.resize(size, weight);
+  const auto append = [&](const auto& from, auto* target) {
+    if (!from.empty()) target->reserve(size);
     target->insert(target->end(), from.begin(), from.end());
   };
   append(added.angles, &samples.angles);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "trilobe/core/system/parallel.h"
 
 namespace trilobe {
 namespace {
@@ -63,9 +66,10 @@ static_assert(4 * kMaxTableSize <= std::numeric_limits<uint16_t>::max());
 // A sample to be sorted.
 struct Item {
   std::array<uint16_t, LookupOrder::kMost> cell{};  // G first: theta_i, theta_o, D, F
-  uint64_t hash = 0;                                // of the weights, rounded
-  int sample = 0;
+  bool smaller_i = false;  // the weights of theta_i are smaller than those of theta_o
   bool exchanged = false;  // theta_i and theta_o
+  int sample = 0;
+  uint64_t hash = 0, hash_exchanged = 0;  // of the weights, rounded
 
   auto Key() const { return std::tie(cell, hash, sample); }
 };
@@ -117,21 +121,44 @@ bool ReadAlike(const WeightedSample& a, bool a_exchanged, const WeightedSample& 
   return std::abs(cosines - b.stencils.inverse_cosines) <= kRounding * cosines;
 }
 
-std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSamples* folded) {
+// Calls use(k, sample number(k)) for k from 0 to `count`, in this order. The samples are made in
+// parallel, a block at a time.
+template <typename Number, typename Use>
+void ForSamples(int count, const SampleMaker& make, int num_threads, const Number& number,
+                const Use& use) {
+  constexpr int kChunk = 1024, kBlock = 16 * kChunk;
+  std::vector<WeightedSample> block(std::min(count, kBlock));
+  for (int first = 0; first < count; first += kBlock) {
+    const int size = std::min(kBlock, count - first);
+    ParallelFor((size + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+      for (int k = chunk * kChunk; k < std::min((chunk + 1) * kChunk, size); ++k) {
+        block[k] = make(number(first + k));
+      }
+    });
+    for (int k = 0; k < size; ++k) use(first + k, block[k]);
+  }
+}
+
+std::vector<Item> Sorted(int count, const SampleMaker& make, int num_threads,
+                         FoldedSamples* folded) {
   std::array<CellIndex, 3> index;
   const auto find = [&](Factor factor, const Stencil& stencil) {
     return static_cast<uint16_t>(index[static_cast<int>(factor)].Find(stencil));
   };
   const LookupOrder& order = folded->order;
-  std::vector<Item> items(samples.size());
-  for (size_t j = 0; j < samples.size(); ++j) {
-    const SampleStencils& at = samples[j].stencils;
+  std::vector<Item> items(count);
+  ForSamples(count, make, num_threads, std::identity(), [&](int j, const WeightedSample& sample) {
+    const SampleStencils& at = sample.stencils;
+    Item& item = items[j];
     for (int r = 0; r < order.count(); ++r) {
-      items[j].cell[PlaceInItem(order, r)] =
+      item.cell[PlaceInItem(order, r)] =
           find(order.factor(r), StencilOf(at, order, r, /*exchanged=*/false));
     }
-    items[j].sample = static_cast<int>(j);
-  }
+    item.smaller_i = at.G_i.weight < at.G_o.weight;
+    item.sample = j;
+    item.hash = RoundedHash(at, /*exchanged=*/false);
+    item.hash_exchanged = RoundedHash(at, /*exchanged=*/true);
+  });
   std::array<std::vector<int>, 3> rank;
   for (int f = 0; f < 3; ++f) {
     rank[f] = index[f].Sort();
@@ -142,29 +169,79 @@ std::vector<Item> Sorted(const std::vector<WeightedSample>& samples, FoldedSampl
       uint16_t& cell = item.cell[PlaceInItem(order, r)];
       cell = static_cast<uint16_t>(rank[static_cast<int>(order.factor(r))][cell]);
     }
-    const SampleStencils& at = samples[item.sample].stencils;
-    item.exchanged = std::tie(item.cell[0], at.G_i.weight) < std::tie(item.cell[1], at.G_o.weight);
-    if (item.exchanged) std::swap(item.cell[0], item.cell[1]);
-    item.hash = RoundedHash(at, item.exchanged);
+    item.exchanged =
+        item.cell[0] < item.cell[1] || (item.cell[0] == item.cell[1] && item.smaller_i);
+    if (!item.exchanged) continue;
+    std::swap(item.cell[0], item.cell[1]);
+    item.hash = item.hash_exchanged;
   }
   std::ranges::sort(items, [](const Item& a, const Item& b) { return a.Key() < b.Key(); });
   return items;
 }
 
+// What sample n reads, sorted as this item.
+void SetReads(const Item& item, const SampleStencils& at, size_t n, FoldedSamples* folded) {
+  const LookupOrder& order = folded->order;
+  folded->inverse_cosines[n] = at.inverse_cosines;
+  for (int r = 0; r < order.count(); ++r) {
+    FoldedSamples::Lookup& lookup = folded->lookups[r];
+    const Stencil& stencil = StencilOf(at, order, r, item.exchanged);
+    lookup.cell[n] = item.cell[PlaceInItem(order, r)];
+    for (int k = 0; k < stencil.size; ++k) lookup.weight[k][n] = stencil.weight[k];
+  }
+  const int j = static_cast<int>(n);
+  std::vector<FoldedSamples::Pair>& pairs = folded->pairs;
+  if (n == 0 || pairs.back().cell_i != item.cell[0] || pairs.back().cell_o != item.cell[1]) {
+    pairs.push_back({item.cell[0], item.cell[1], j, j});
+  }
+  ++pairs.back().end;
+}
+
+// Weights and values of the samples of a run, which become one.
+struct Run {
+  std::vector<std::pair<Rgb, Rgb>> samples;
+
+  // Sets sample n, and empties the run.
+  void MergeInto(size_t n, FoldedSamples* folded) {
+    for (int c = 0; c < kChannels; ++c) {
+      double w = 0, rho = 0;
+      for (size_t k = 0; k < samples.size(); ++k) {
+        const double more = samples[k].first[c], own = samples[k].second[c];
+        folded->measured_energy += more * own * own;
+        // The old mean plus a fraction of the difference: exact if both are equal.
+        const double share = k == 0 ? 1 : w + more > 0 ? more / (w + more) : 0;
+        const double difference = own - rho;
+        folded->constant += w * share * difference * difference;
+        rho += share * difference;
+        w += more;
+      }
+      folded->weight[c][n] = w;
+      folded->rho[c][n] = rho;
+    }
+    samples.clear();
+  }
+};
+
 }  // namespace
 
 FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
+  return Fold(
+      static_cast<int>(samples.size()), [&](int j) { return samples[j]; },
+      /*num_threads=*/1);
+}
+
+FoldedSamples Fold(int count, const SampleMaker& make, int num_threads) {
   FoldedSamples folded;
-  if (!samples.empty()) folded.order = OrderOf(samples.front().stencils);
+  if (count > 0) folded.order = OrderOf(make(0).stencils);
   const LookupOrder& order = folded.order;
-  const std::vector<Item> items = Sorted(samples, &folded);
+  const std::vector<Item> items = Sorted(count, make, num_threads, &folded);
   // Start of each run of samples that read alike.
   std::vector<int> begin;
   for (size_t n = 0; n < items.size(); ++n) {
     if (n > 0) {
       const Item &item = items[n], &first = items[begin.back()];
       if (item.cell == first.cell && item.hash == first.hash &&
-          ReadAlike(samples[first.sample], first.exchanged, samples[item.sample], item.exchanged)) {
+          ReadAlike(make(first.sample), first.exchanged, make(item.sample), item.exchanged)) {
         continue;
       }
     }
@@ -186,39 +263,14 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
     folded.weight[c].resize(size);
     folded.rho[c].resize(size);
   }
-  for (size_t n = 0; n < size; ++n) {
-    const Item& first = items[begin[n]];
-    const SampleStencils& at = samples[first.sample].stencils;
-    folded.inverse_cosines[n] = at.inverse_cosines;
-    for (int r = 0; r < order.count(); ++r) {
-      FoldedSamples::Lookup& lookup = folded.lookups[r];
-      const Stencil& stencil = StencilOf(at, order, r, first.exchanged);
-      lookup.cell[n] = first.cell[PlaceInItem(order, r)];
-      for (int k = 0; k < stencil.size; ++k) lookup.weight[k][n] = stencil.weight[k];
-    }
-    for (int c = 0; c < kChannels; ++c) {
-      double w = 0, rho = 0;
-      for (int i = begin[n]; i < begin[n + 1]; ++i) {
-        const WeightedSample& sample = samples[items[i].sample];
-        const double more = sample.weight[c];
-        folded.measured_energy += more * sample.rho[c] * sample.rho[c];
-        // The old mean plus a fraction of the difference: exact if both are equal.
-        const double share = i == begin[n] ? 1 : w + more > 0 ? more / (w + more) : 0;
-        const double difference = sample.rho[c] - rho;
-        folded.constant += w * share * difference * difference;
-        rho += share * difference;
-        w += more;
-      }
-      folded.weight[c][n] = w;
-      folded.rho[c][n] = rho;
-    }
-    const int j = static_cast<int>(n);
-    if (n == 0 || folded.pairs.back().cell_i != first.cell[0] ||
-        folded.pairs.back().cell_o != first.cell[1]) {
-      folded.pairs.push_back({first.cell[0], first.cell[1], j, j});
-    }
-    ++folded.pairs.back().end;
-  }
+  Run run;
+  size_t n = 0;
+  const auto number = [&](int i) { return items[i].sample; };
+  ForSamples(count, make, num_threads, number, [&](int i, const WeightedSample& sample) {
+    if (i == begin[n]) SetReads(items[i], sample.stencils, n, &folded);
+    run.samples.emplace_back(sample.weight, sample.rho);
+    if (i + 1 == begin[n + 1]) run.MergeInto(n++, &folded);
+  });
   return folded;
 }
 

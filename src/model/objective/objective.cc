@@ -1,6 +1,7 @@
 #include "trilobe/model/objective/objective.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -162,11 +163,14 @@ struct Objective::Prepared {
         nonnegative = nonnegative && AllNonnegative(w);
       }
     } else {
-      const std::vector<WeightedSample> weighted = AllSamples(num_threads);
-      for (const WeightedSample& sample : weighted) {
-        nonnegative = nonnegative && AllNonnegative(sample.weight);
-      }
-      folded_samples = std::make_unique<FoldedSamples>(Fold(weighted));
+      std::atomic<bool> negative = false;
+      const auto make = [&](int j) {
+        WeightedSample sample = Sample(j);
+        if (!AllNonnegative(sample.weight)) negative = true;
+        return sample;
+      };
+      folded_samples = std::make_unique<FoldedSamples>(Fold(samples.size(), make, num_threads));
+      nonnegative = !negative;
       measured_energy = folded_samples->measured_energy;
       coverage = ScatteredCoverage(*folded_samples, spec);
     }
@@ -229,6 +233,13 @@ Objective::Objective(const Objective& other, const ModelSpec& spec)
   }
   coverage_ = CoverageOfParameters(prepared_->coverage, spec);
   if (other.has_prior()) data_ = std::make_shared<const Objective>(other.data(), spec);
+}
+
+Objective Objective::Alone(int num_threads) const {
+  Objective alone = *this;
+  alone.num_threads_ = num_threads;
+  alone.data_ = nullptr;
+  return alone;
 }
 
 Objective::Objective(const Objective& data, BrdfSamples with_prior)

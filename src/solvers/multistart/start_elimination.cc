@@ -133,11 +133,21 @@ StartElimination::StartElimination(const Objective& objective, const Thinning& t
 }
 
 void StartElimination::Thin() {
+  if (stride_ == 1) {
+    thinned_ =
+        std::make_unique<Objective>(objective_.Alone(TakesTurns() ? objective_.num_threads() : 1));
+    return;
+  }
   const BrdfSamples& samples = objective_.samples();
-  const bool by_rows = samples.on_grid() && stride_ > 1;
+  const bool by_rows = samples.on_grid();
   thinned_ = std::make_unique<Objective>(
       by_rows ? InEveryOtherRow(Thinned(samples, stride_ / 2)) : Thinned(samples, stride_),
       objective_.spec(), objective_.weighting(), /*num_threads=*/1);
+}
+
+bool StartElimination::TakesTurns() const {
+  constexpr int kMany = 200'000;
+  return stride_ == 1 && !objective_.samples().on_grid() && objective_.samples().size() >= kMany;
 }
 
 void StartElimination::ThinLess() {
@@ -167,7 +177,7 @@ void StartElimination::Advance(int tries, const std::function<void(int, int)>& o
   const int count = static_cast<int>(active.size());
   std::mutex mutex;
   int ended = 0;
-  ParallelJobs(count, objective_.num_threads(), [&](int k) {
+  ParallelJobs(count, TakesTurns() ? 1 : objective_.num_threads(), [&](int k) {
     active[k]->Advance(tries, stop_);
     const std::lock_guard<std::mutex> lock(mutex);
     on_ended(++ended, count);

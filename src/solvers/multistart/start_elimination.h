@@ -45,7 +45,7 @@ class StartElimination {
   // Continues with about twice as many samples, if these are not all.
   void ThinLess();
 
-  // The thinned objective, with one thread.
+  // The thinned objective, with one thread unless starts take turns.
   const Objective& thinned() const { return *thinned_; }
 
   // Sweeps of AWLS before the first joint step of a start, which correct its magnitudes.
@@ -88,6 +88,9 @@ class StartElimination {
   // Sets thinned_: one in stride_ of the samples; on a grid, one in stride_ / 2 of phi_d of every
   // other (theta_h, theta_d), since a row of few samples takes as long as one of eight.
   void Thin();
+  // Whether starts take turns, each on all threads: what a step keeps of so many samples takes much
+  // memory.
+  bool TakesTurns() const;
   std::vector<Candidate*> Ranked() const;
 
   const Objective& objective_;

@@ -2,6 +2,7 @@
 #define TRILOBE_MODEL_OBJECTIVE_FOLDED_SAMPLES_H_
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "trilobe/core/geometry/channels.h"
@@ -74,6 +75,10 @@ struct FoldedSamples {
 };
 
 FoldedSamples Fold(const std::vector<WeightedSample>& samples);
+
+// The same without all samples in memory: each is made twice or more, by its number, in parallel.
+using SampleMaker = std::function<WeightedSample(int)>;
+FoldedSamples Fold(int count, const SampleMaker& make, int num_threads);
 
 }  // namespace trilobe
 

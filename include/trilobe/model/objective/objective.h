@@ -35,6 +35,10 @@ class Objective {
   // that constrain the model between them (WithPrior). Weights keep the level of the data.
   Objective(const Objective& data, BrdfSamples with_prior);
 
+  // The same samples, those of a prior as if they were measured, for another number of threads.
+  // Shares all preparations.
+  Objective Alone(int num_threads) const;
+
   // The objective of the measured samples alone, by which models are judged; *this without a prior.
   const Objective& data() const { return data_ == nullptr ? *this : *data_; }
   bool has_prior() const { return data_ != nullptr; }
