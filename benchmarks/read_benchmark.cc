@@ -65,8 +65,8 @@ const std::string& OnGrid() {
     std::string rows = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
     constexpr int kThetas = 40, kPhis = kSamples / kThetas / kThetas;
     for (int j = 0; j < kSamples; ++j) {
-      AppendRow(2.0 * (j / kPhis / kThetas), 2.0 * (j / kPhis % kThetas),
-                360.0 / kPhis * (j % kPhis), &random, &rows);
+      const int row = j / kPhis, i = row / kThetas, o = row % kThetas;
+      AppendRow(2.0 * i, 2.0 * o, 360.0 / kPhis * (j % kPhis), &random, &rows);
     }
     return rows;
   }();

@@ -1,14 +1,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/grid_cosines.h"
 #include "core/math/quantile.h"
+#include "model/measurement/sample_symptoms.h"
 #include "model/measurement/symptoms.h"
 #include "trilobe/core/geometry/channels.h"
 #include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/angles.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/measurement/tabulated_brdf.h"
 
@@ -196,6 +201,108 @@ TiltSymptom TiltOf(const BrdfTable& table) {
   return {.highlight = true,
           .degrees = Quantile(&middles, 0.5),
           .spread = Quantile(&middles, 0.75) - Quantile(&middles, 0.25)};
+}
+
+namespace {
+
+double LogarithmicSpread(std::vector<double>* logarithms) {
+  return Quantile(logarithms, 0.9) - Quantile(logarithms, 0.1);
+}
+
+}  // namespace
+
+AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
+  struct Rings {
+    std::vector<double> inner, outer;  // logarithms of values
+  };
+  constexpr size_t kFewest = 6;  // values in a ring
+  std::map<int, Rings> incidences;
+  for (int j = 0; j < samples.size(); ++j) {
+    constexpr double kStep = 10, kRounding = 0.01;
+    const double theta_i = RadiansToDegrees(samples.directions[j].theta_i);
+    const double theta_o = RadiansToDegrees(samples.directions[j].theta_o);
+    const double mean = Mean(samples.rho[j]);
+    if (!(theta_i > 30 - kRounding && theta_i < 60 + kRounding && mean > 0)) continue;
+    Rings& rings = incidences[static_cast<int>((theta_i + kRounding) / kStep)];
+    if (theta_o < 25 + kRounding) rings.inner.push_back(std::log(mean));
+    if (theta_o > 65 - kRounding) rings.outer.push_back(std::log(mean));
+  }
+  std::vector<double> inner, outer;
+  for (auto& [step, rings] : incidences) {
+    if (rings.inner.size() < kFewest || rings.outer.size() < kFewest) continue;
+    inner.push_back(LogarithmicSpread(&rings.inner));
+    outer.push_back(LogarithmicSpread(&rings.outer));
+  }
+  if (inner.empty()) return {};
+  return {.near_normal = Median(inner), .near_horizon = Median(outer)};
+}
+
+namespace {
+
+// A scan of the plane of incidence: mean values by angle from the normal [rad], above 0 on the side
+// of the mirror direction.
+class PlaneScan {
+ public:
+  explicit PlaneScan(double theta_i) : theta_i_(theta_i) {}
+
+  void Add(double theta, double value) { values_.emplace_back(theta, value); }
+
+  // Where both sides were scanned; else 0.
+  double Albedo() {
+    constexpr size_t kFewestSamples = 8;
+    std::ranges::sort(values_);
+    if (values_.size() < kFewestSamples || !(values_.front().first < 0)) return 0;
+    if (!(values_.back().first > 0)) return 0;
+    return std::max(AlbedoAbout(0), std::cos(theta_i_) * AlbedoAbout(theta_i_));
+  }
+
+ private:
+  double AlbedoAbout(double centre) const {
+    std::vector<double> steps;
+    for (size_t k = 1; k < values_.size(); ++k) {
+      steps.push_back(values_[k].first - values_[k - 1].first);
+    }
+    const double step = std::max(Median(std::move(steps)), DegreesToRadians(0.1));
+    double sum = 0;
+    for (double ring = step; centre + ring < kPi / 2; ring += step) {
+      sum += std::min(At(centre - ring), At(centre + ring)) * std::cos(centre + ring) * 2 * kPi *
+             (std::cos(ring - step) - std::cos(ring));
+    }
+    return sum;
+  }
+
+  // Between samples linearly; 0 beyond them.
+  double At(double theta) const {
+    const auto next = std::ranges::lower_bound(values_, std::pair(theta, 0.0));
+    if (next == values_.end() || (next == values_.begin() && next->first > theta)) return 0;
+    if (next == values_.begin()) return next->second;
+    const auto& [low, at_low] = *std::prev(next);
+    const auto& [high, at_high] = *next;
+    return at_low + (theta - low) / (high - low) * (at_high - at_low);
+  }
+
+  double theta_i_;
+  std::vector<std::pair<double, double>> values_;
+};
+
+}  // namespace
+
+double ReflectedLightOfScans(const BrdfSamples& samples) {
+  constexpr double kInPlane = 0.02, kSame = 1e-5;          // [rad]
+  std::map<std::pair<int64_t, int64_t>, PlaneScan> scans;  // by the direction of light
+  for (int j = 0; j < samples.size(); ++j) {
+    const SphericalAngles& at = samples.directions[j];
+    const double azimuth = at.phi_o - at.phi_i;
+    if (at.theta_o > kSame && std::abs(std::sin(azimuth)) > kInPlane) continue;
+    const std::pair light(std::llround(at.theta_i / kSame), std::llround(at.phi_i / kSame));
+    const auto [scan, is_new] = scans.try_emplace(light, at.theta_i);
+    scan->second.Add(std::copysign(at.theta_o, -std::cos(azimuth)), Mean(samples.rho[j]));
+  }
+  std::vector<double> albedos;
+  for (auto& [light, scan] : scans) {
+    if (const double albedo = scan.Albedo(); albedo > 0) albedos.push_back(albedo);
+  }
+  return albedos.empty() ? 0 : Median(std::move(albedos));
 }
 
 }  // namespace trilobe

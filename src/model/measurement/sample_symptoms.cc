@@ -20,7 +20,7 @@
 namespace trilobe {
 namespace {
 
-constexpr double kSameValue = 1e-9;  // relative
+constexpr double kSameValue = 1e-6;  // relative
 constexpr int kMostSamples = 20000;  // that a symptom looks at
 
 // From -pi to pi; 0 on the side of the light.
@@ -151,6 +151,13 @@ double ReflectedAlbedo(const BrdfSamples& samples, const std::vector<int>& numbe
   return kPi * sum / kPoints;
 }
 
+// 999, 9999, ...
+bool IsNines(double value) {
+  constexpr int kFewest = 3;
+  const double digits = std::log10(value + 1);
+  return digits >= kFewest && digits == std::round(digits);
+}
+
 // --- sentences ---
 
 template <typename... Parts>
@@ -165,7 +172,9 @@ int WholePercent(double share) { return static_cast<int>(std::lround(100 * share
 
 std::string TellCosine(const BrdfSamples& samples) {
   const CosineSymptom cosine = CosineOf(samples);
+  constexpr double kMostLeft = 0.25;  // else something else is wrong with the directions
   if (!cosine.IsOneTooMany() && !cosine.IsOneTooFew()) return "";
+  if (cosine.error_without > kMostLeft) return "";
   const std::string begin =
       Sentence("exchanged directions differ by ", WholePercent(cosine.error),
                " % in the median, and by ", WholePercent(cosine.error_without), " % ");
@@ -185,8 +194,8 @@ std::string TellHighlight(const BrdfSamples& samples) {
         "comes from, for which the model has no lobe");
   }
   if (highlight.IsAtNormal()) {
-    return Sentence("the brightest samples stand at theta_o = 0 at ", highlight.at_normal, " of ",
-                    highlight.incidences,
+    return Sentence("the brightest samples stand about theta_o = 0 at ", highlight.at_normal,
+                    " of ", highlight.incidences,
                     " incidences, whatever theta_i: theta_o seems to be counted from the mirror "
                     "direction; add theta_i to it");
   }
@@ -196,15 +205,16 @@ std::string TellHighlight(const BrdfSamples& samples) {
 std::string TellReflected(const BrdfSamples& samples) {
   std::vector<double> albedos;
   for (const ReflectedAtLeast& one : ReflectedLightOf(samples)) albedos.push_back(one.albedo);
-  if (albedos.empty()) return "";
-  const double albedo = Quantile(&albedos, 0.5);
+  const double of_all = albedos.empty() ? 0 : Quantile(&albedos, 0.5);
+  const double albedo = std::max(of_all, ReflectedLightOfScans(samples));
   if (!(albedo > 1.1)) return "";
   const std::string more = Sentence(
       "at least ", albedo, " times as much light comes back as fell (median of the incidences), ");
   // pi f is the reflectance factor: f of a perfect white is 1 / pi.
+  const std::string factors = Sentence("--scale=", 1 / kPi, " corrects that");
   if (albedo < kPi) {
-    return more + Sentence("as where values are reflectance factors, pi f; --scale=", 1 / kPi,
-                           " corrects that");
+    return more + "as where values are reflectance factors, pi f; " + factors +
+           "; or percents; --scale=0.01 corrects that";
   }
   return more + Sentence("as where values are percents; --scale=0.01 corrects that, and --scale=",
                          0.01 / kPi, " percents of the reflectance factor, pi f");
@@ -218,7 +228,7 @@ std::string TellRepeated(const BrdfSamples& samples, bool anisotropic) {
       " samples stand at directions that are there more than once, with values that differ "
       "by up to ",
       WholePercent(repeated.apart),
-      " % (nine of ten): as where the sign of an angle was dropped, which tells one side "
+      " % (95 of 100): as where the sign of an angle was dropped, which tells one side "
       "of a scan from the other; "
       "write the angles with their signs, or phi_o = 180 on the mirror's side");
 }
@@ -248,6 +258,17 @@ std::string TellAngles(const BrdfSamples& samples) {
   if (samples.size() < kFewest || !(largest > 0 && largest < DegreesToRadians(kPi / 2))) return "";
   return Sentence("no polar angle is above ", RadiansToDegrees(largest),
                   " degrees: angles seem to be in radians; name the columns so, as theta_i_rad");
+}
+
+std::string TellElevation(const BrdfSamples& samples) {
+  const AzimuthSymptom azimuths = AzimuthsOf(samples);
+  if (!azimuths.IsElevation()) return "";
+  return Sentence(
+      "values change with the azimuth by a factor of ", std::exp(azimuths.near_normal),
+      " near theta_o = 0, where azimuths are close to one another, and of ",
+      std::exp(azimuths.near_horizon),
+      " near 90: angles seem to be elevations, counted from the horizon; write 90 minus "
+      "them");
 }
 
 std::string TellNegative(const BinCounts& counts) {
@@ -288,8 +309,7 @@ HighlightSymptom HighlightOf(const BrdfSamples& samples) {
       continue;
     }
     ++symptom.incidences;
-    const bool at_normal = at.theta_o < DegreesToRadians(3);
-    symptom.at_normal += at_normal ? 1 : 0;
+    symptom.at_normal += at.theta_o < at.theta_i / 2 ? 1 : 0;
     symptom.at_light +=
         at.theta_o > DegreesToRadians(10) && std::abs(AzimuthFromLight(at)) < DegreesToRadians(30)
             ? 1
@@ -338,7 +358,7 @@ RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotr
     }
     if (end - begin > 1) repeated.samples += static_cast<int>(end - begin);
   }
-  if (!apart.empty()) repeated.apart = Quantile(&apart, 0.9);
+  if (!apart.empty()) repeated.apart = Quantile(&apart, 0.95);
   return repeated;
 }
 
@@ -353,7 +373,7 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
       for (int j = 0; j < samples.size(); ++j) largest = std::max(largest, value(j));
       if (!(largest > 0)) continue;
       int count = 0;
-      std::set<int64_t> theta_h;
+      std::set<int64_t> theta_h, theta_i;
       constexpr double kStep = 1e-4;  // [rad]
       for (int j = 0; j < samples.size(); ++j) {
         if (value(j) <= largest * (1 - kSameValue)) {
@@ -362,12 +382,14 @@ LargestValueSymptom LargestValueOf(const BrdfSamples& samples) {
         }
         ++count;
         theta_h.insert(std::llround(samples.angles[j].theta_h / kStep));
+        if (of_signal) theta_i.insert(std::llround(samples.directions[j].theta_i / kStep));
       }
       if (count <= found.samples) continue;
       found = {.value = largest,
                .samples = count,
-               .theta_h = static_cast<int>(theta_h.size()),
-               .over_next = next > 0 ? largest / next : std::numeric_limits<double>::infinity()};
+               .angles = static_cast<int>(std::max(theta_h.size(), theta_i.size())),
+               .over_next = next > 0 ? largest / next : std::numeric_limits<double>::infinity(),
+               .is_nines = !of_signal && IsNines(largest)};
     }
   }
   return found;
@@ -384,8 +406,12 @@ std::vector<std::string> SymptomsOfSamples(const Measurement& scattered) {
     told.push_back(TellRepeated(scattered.samples, scattered.anisotropic));
     // Where directions lack a sign, no other sentence about directions is right.
     if (!scattered.anisotropic && told.back().empty()) {
-      told.push_back(TellCosine(some));
       told.push_back(TellHighlight(some));
+      // Nor where the highlight is out of place.
+      if (told.back().empty()) {
+        told.push_back(TellCosine(some));
+        told.push_back(TellElevation(some));
+      }
     }
   }
   std::erase(told, "");

@@ -22,7 +22,7 @@ struct HighlightSymptom {
   int incidences = 0;  // with a highlight
   int at_light = 0;    // of these, with it within 30 degrees of the azimuth of the light, and not
                        // within 10 degrees of the normal
-  int at_normal = 0;   // within 3 degrees of the normal
+  int at_normal = 0;   // nearer to the normal than half of theta_i
   bool IsAtLight() const { return IsMost(at_light); }
   bool IsAtNormal() const { return IsMost(at_normal); }
 
@@ -30,6 +30,16 @@ struct HighlightSymptom {
   bool IsMost(int count) const { return count >= 2 && 5 * count >= 4 * incidences; }
 };
 HighlightSymptom HighlightOf(const BrdfSamples& samples);
+
+// How much values change with the azimuth near the normal, where azimuths are close to one another,
+// and near the horizon: medians over incidences from 30 to 60 degrees of log(90th / 10th
+// percentile) at theta_o up to 25 and from 65 degrees on, where no mirror direction is. Angles from
+// the horizon in the place of those from the normal exchange the two.
+struct AzimuthSymptom {
+  double near_normal = 0, near_horizon = 0;
+  bool IsElevation() const { return near_normal > 0.1 && near_normal > 1.35 * near_horizon; }
+};
+AzimuthSymptom AzimuthsOf(const BrdfSamples& samples);
 
 // The least that comes back of the light of each incidence that was measured: the sum of rho cos
 // theta_o over the directions that lie within one and a half spacings of a sample of that
@@ -40,24 +50,34 @@ struct ReflectedAtLeast {
 };
 std::vector<ReflectedAtLeast> ReflectedLightOf(const BrdfSamples& samples);
 
+// The same where the plane of incidence was scanned on both sides: in rings about the normal or, if
+// that is more, about the mirror direction, as bright as the darker of the two places where the
+// scan leaves a ring. Rings about the mirror direction are narrower across the plane, by cos
+// theta_i. Median over the incidences; 0 without scans.
+double ReflectedLightOfScans(const BrdfSamples& samples);
+
 // Directions that are there more than once, at equal azimuths of an anisotropic measurement, and
-// how far apart their values are: the 90th percentile of |a - b| / ((a + b) / 2) over neighbours.
+// how far apart their values are: the 95th percentile of |a - b| / ((a + b) / 2) over neighbours.
 struct RepeatedDirections {
   int samples = 0;  // at such directions
   double apart = 0;
 };
 RepeatedDirections RepeatedDirectionsOf(const BrdfSamples& samples, bool anisotropic);
 
-// The largest value of a channel, or the largest signal, rho cos theta_i, to 1e-9: how often it is
-// there, at how many theta_h, and how many times as large as the next it is. The same value at one
-// theta_h is what a BRDF of theta_h has.
+// The largest value of a channel, or the largest signal, rho cos theta_i, to 1e-6: how often it is
+// there, at how many theta_h (of signals: or theta_i, if these are more), and how many times as
+// large as the next it is. The same value at one theta_h is what a BRDF of theta_h has. A value of
+// nines, as 9999, is a mark whatever the next is.
 struct LargestValueSymptom {
   double value = 0;
-  int samples = 0, theta_h = 0;
+  int samples = 0, angles = 0;
   double over_next = 1;
-  bool IsMark(int valid) const { return samples >= 2 && samples <= valid / 2 && over_next >= 20; }
+  bool is_nines = false;
+  bool IsMark(int valid) const {
+    return samples >= 2 && samples <= valid / 2 && (over_next >= 20 || is_nines);
+  }
   bool IsPlateau(int valid) const {
-    return theta_h >= 3 && samples >= 5 && samples <= valid / 2 && !IsMark(valid);
+    return angles >= 3 && samples >= 4 && samples <= valid / 2 && !IsMark(valid);
   }
 };
 LargestValueSymptom LargestValueOf(const BrdfSamples& samples);

@@ -65,13 +65,50 @@ double LastLevel(const std::vector<double>& values) {
   return std::ranges::count(values, least) >= kRepeated ? least : 0;
 }
 
+// Zeros about the light itself, beside others that are not dark: there a detector stands in its
+// own. Unlike others they tell so where every sample has a light of its own.
+std::vector<int> ZerosInShadow(const BrdfSamples& samples) {
+  constexpr size_t kFewest = 10;
+  constexpr double kShare = 0.9;
+  const double widest = DegreesToRadians(20), beside = DegreesToRadians(10);
+  const auto from_light = [&](int j) { return 2 * samples.Angles(j).theta_d; };
+  std::vector<double> of_zeros, all;
+  for (int j = 0; j < samples.size(); ++j) {
+    if (IsZero(samples.rho[j])) {
+      of_zeros.push_back(from_light(j));
+    } else {
+      all.push_back(Mean(samples.rho[j]));
+    }
+  }
+  if (of_zeros.size() < kFewest) return {};
+  const double reach = Quantile(&of_zeros, kShare);
+  std::vector<int> zeros;
+  std::vector<double> around;
+  int dark = 0, within = 0;
+  for (int j = 0; j < samples.size(); ++j) {
+    const double angle = from_light(j);
+    const bool is_zero = IsZero(samples.rho[j]);
+    if (angle > reach + beside) continue;
+    if (is_zero) zeros.push_back(j);
+    if (angle > reach) {
+      around.push_back(Mean(samples.rho[j]));
+    } else {
+      ++within;
+      dark += is_zero ? 1 : 0;
+    }
+  }
+  if (reach > widest || dark < kShare * within || around.size() < kFewest) return {};
+  const bool is_dark = Quantile(&around, 0.5) < Quantile(&all, 0.25) / 2;
+  return is_dark ? std::vector<int>() : zeros;
+}
+
 }  // namespace
 
 std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
   constexpr int kMostOf = 5;
   const auto zeros = std::ranges::count_if(samples.rho, IsZero);
-  std::vector<int> gaps;
-  if (zeros == 0 || kMostOf * zeros > samples.size()) return gaps;
+  if (zeros == 0 || kMostOf * zeros > samples.size()) return {};
+  std::vector<int> gaps = ZerosInShadow(samples);
   for (const auto& [light, numbers] : ByLight(samples)) {
     std::vector<Lit> lit;
     std::vector<double> values;
@@ -90,6 +127,7 @@ std::vector<int> FindZeroGaps(const BrdfSamples& samples) {
     }
   }
   std::ranges::sort(gaps);
+  gaps.erase(std::unique(gaps.begin(), gaps.end()), gaps.end());
   constexpr size_t kFewestIn = 500;
   if (kFewestIn * gaps.size() < samples.rho.size()) gaps.clear();
   return gaps;

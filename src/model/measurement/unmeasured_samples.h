@@ -11,9 +11,10 @@ namespace trilobe {
 // light, that are not dark. Of the eight nearest samples above 0 within 30 degrees, at least four,
 // the median is at least half of the lower quartile of that incidence, and three times the last
 // level of the detector, the least value if that is there more than twice; and the least of them is
-// at least half of this, and not all are the same. None if fewer than one in 500
-// samples are such, or if more than a fifth of all
-// samples are 0: then 0 is what dark is. Ascending.
+// at least half of this, and not all are the same. Or, whatever
+// their light, zeros that nearly fill a cone of up to 20 degrees about it. None if fewer than one
+// in 500 samples are such, or if more than a fifth of all samples are 0: then 0 is what dark is.
+// Ascending.
 std::vector<int> FindZeroGaps(const BrdfSamples& samples);
 
 // Samples on a grid of theta_i, theta_o and phi_o - phi_i that were filled in: where a theta_i (or

@@ -98,6 +98,41 @@ TEST(SampleSymptoms, MoreLightThanFellIsTold) {
               ElementsAre(HasSubstr("--scale=0.318")));
 }
 
+// All but the plane of incidence.
+Measurement InPlane(double scale) {
+  return Goniometer(
+      [&](SphericalAngles* at, double* rho) {
+        if (std::abs(std::sin(at->phi_o)) > 0.1) at->theta_o = kPi;  // below the surface
+        *rho = scale * (Glossy(*at) - 0.045);
+      },
+      /*step_deg=*/180);
+}
+
+TEST(SampleSymptoms, ScansOfOnePlaneTellOfMoreLightThanFell) {
+  // A diffuse part of 0.0157, and a highlight beside it.
+  const double albedo = ReflectedLightOfScans(InPlane(1).samples);
+  EXPECT_GT(albedo, 0.0157);
+  EXPECT_LT(albedo, 0.2);
+  EXPECT_NEAR(ReflectedLightOfScans(InPlane(100).samples), 100 * albedo, 1e-9);
+  EXPECT_THAT(SymptomsOfSamples(InPlane(1)), IsEmpty());
+  EXPECT_THAT(SymptomsOfSamples(InPlane(100)), ElementsAre(HasSubstr("--scale=0.01")));
+  // One side alone tells nothing.
+  EXPECT_EQ(ReflectedLightOfScans(Goniometer([](SphericalAngles* at, double*) {
+                                    if (std::cos(at->phi_o) > -0.9) at->theta_o = kPi;
+                                  }).samples),
+            0);
+}
+
+TEST(SampleSymptoms, ElevationsInThePlaceOfZenithAnglesAreTold) {
+  const auto elevations = [](SphericalAngles* at, double* rho) {
+    const double theta_h = ToHalfDiff(ToDirections(*at)).theta_h;
+    *rho = 0.02 + 0.5 * std::exp(-theta_h * theta_h / 0.2);
+    at->theta_i = kPi / 2 - at->theta_i;
+    at->theta_o = kPi / 2 - at->theta_o;
+  };
+  EXPECT_THAT(Told(elevations), ElementsAre(HasSubstr("angles seem to be elevations")));
+}
+
 TEST(SampleSymptoms, ADroppedSignIsTold) {
   const Measurement scan =
       Goniometer([](SphericalAngles* at, double*) { at->phi_o = 0; }, /*step_deg=*/180);
@@ -111,6 +146,22 @@ TEST(SampleSymptoms, MarksAndPlateausAreTold) {
               }),
               testing::Contains(HasSubstr("the value 9999 is there")));
   EXPECT_THAT(Told([](SphericalAngles*, double* rho) { *rho = std::min(*rho, 0.3); }),
+              ElementsAre(HasSubstr("a detector is saturated")));
+}
+
+TEST(SampleSymptoms, NinesAreAMarkBesideValuesAsLarge) {
+  int k = 0;
+  EXPECT_THAT(Told([&](SphericalAngles*, double* rho) {
+                *rho *= 5000;
+                if (++k % 50 == 0) *rho = 9999;
+              }),
+              testing::Contains(HasSubstr("the value 9999 is there")));
+}
+
+TEST(SampleSymptoms, APlateauOfSignalsMayStandAtOneHalfAngle) {
+  EXPECT_THAT(Told([](SphericalAngles* at, double* rho) {
+                *rho = std::min(*rho, 0.15 / std::cos(at->theta_i));
+              }),
               ElementsAre(HasSubstr("a detector is saturated")));
 }
 
@@ -176,6 +227,24 @@ TEST(UnmeasuredSamples, ZerosAmidLightAreGaps) {
     *rho = std::floor(1000 * std::max(*rho - 0.0505, 0.0)) / 1000;
   });
   EXPECT_THAT(FindZeroGaps(dark.samples), IsEmpty());
+}
+
+TEST(UnmeasuredSamples, ZerosAboutTheLightAreGapsWhereEachSampleHasItsOwn) {
+  int lost = 0, k = 0;
+  const auto scattered = [&](double reach_deg) {
+    return Goniometer([&, reach_deg](SphericalAngles* at, double* rho) {
+      at->theta_i += 1e-4 * ++k;
+      const DirectionPair pair = ToDirections(*at);
+      if (Dot(pair.wi, pair.wo) < std::cos(DegreesToRadians(reach_deg))) return;
+      *rho = 0;
+      ++lost;
+    });
+  };
+  const Measurement shadow = scattered(12);
+  EXPECT_GT(lost, 20);
+  EXPECT_EQ(FindZeroGaps(shadow.samples).size(), lost);
+  // Too far from the light for a detector.
+  EXPECT_THAT(FindZeroGaps(scattered(35).samples), IsEmpty());
 }
 
 TEST(UnmeasuredSamples, AnglesThatRepeatTheOneBeforeWereFilledIn) {
