@@ -35,10 +35,10 @@ void AppendUtf8(uint32_t code, std::string* text) {
   }
 }
 
-void CheckSize(size_t bytes, const std::string& what) {
-  if (bytes > kMaxJsonBytes) {
+void CheckSize(size_t bytes, size_t most, const std::string& what) {
+  if (bytes > most) {
     throw Error(what + ": it has " + std::to_string(bytes) + " bytes; at most " +
-                std::to_string(kMaxJsonBytes) + " can be read");
+                std::to_string(most) + " can be read");
   }
 }
 
@@ -230,16 +230,17 @@ class JsonParser {
   size_t at_ = 0;
 };
 
-JsonValue JsonValue::Parse(std::string_view text, const std::string& what) {
-  CheckSize(text.size(), what);
+JsonValue JsonValue::Parse(std::string_view text, const std::string& what,
+                           const JsonLimits& limits) {
+  CheckSize(text.size(), limits.bytes, what);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   // Each value but the first comes after one of these.
   const auto values = 1 + std::ranges::count_if(text, [](char c) {
                         return c == ',' || c == ':' || c == '[' || c == '{';
                       });
-  if (static_cast<size_t>(values) > kMaxJsonValues) {
+  if (static_cast<size_t>(values) > limits.values) {
     throw Error(what + ": it has about " + std::to_string(values) + " values; at most " +
-                std::to_string(kMaxJsonValues) + " can be read");
+                std::to_string(limits.values) + " can be read");
   }
   return JsonParser(text, what).ParseText();
 }
@@ -267,7 +268,7 @@ const JsonValue* JsonValue::Find(std::string_view key) const {
 std::string ReadJsonText(const std::string& path, const std::string& what) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error) CheckSize(size, what);
+  if (!error) CheckSize(size, kMaxJsonBytes, what);
   return ReadFile(path);
 }
 

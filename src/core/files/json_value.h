@@ -14,6 +14,11 @@ namespace trilobe {
 inline constexpr size_t kMaxJsonBytes = size_t{1} << 24;
 inline constexpr size_t kMaxJsonValues = size_t{1} << 20;  // keys count, too
 
+// Of files that hold long tables; a value takes 56 bytes of memory.
+struct JsonLimits {
+  size_t bytes = kMaxJsonBytes, values = kMaxJsonValues;
+};
+
 // A value of a JSON text (RFC 8259), read with nothing but the standard library, so that a library
 // that only evaluates models needs no other. Strict: no comments, no trailing commas, no repeated
 // keys, no numbers that a double cannot hold, UTF-8 only (a byte order mark may stand before it),
@@ -25,7 +30,8 @@ class JsonValue {
   // The one value that the text holds. It keeps views of `text`, which must outlive it.
   // Throws Error "WHAT: line 3, column 7: ..." if the text is not JSON, and "WHAT: ..." before
   // anything is allocated if it is beyond the limits above.
-  static JsonValue Parse(std::string_view text, const std::string& what);
+  static JsonValue Parse(std::string_view text, const std::string& what,
+                         const JsonLimits& limits = {});
 
   Type type() const { return type_; }
   const char* type_name() const;  // "null", "boolean", "number", "string", "array", "object"

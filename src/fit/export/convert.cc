@@ -15,6 +15,7 @@
 #include "io/formats/completed_measurement.h"
 #include "io/formats/exported_brdf.h"
 #include "io/formats/klems_export.h"
+#include "io/formats/open_material_export.h"
 #include "io/formats/rgl_export.h"
 #include "io/formats/utia_file.h"
 #include "io/formats/zemax_export.h"
@@ -36,6 +37,7 @@ namespace {
 constexpr const char* kTensorEnding = ".bsdf";
 constexpr const char* kZemaxEnding = ".zemax.bsdf";
 constexpr const char* kKlemsEnding = ".xml";
+constexpr const char* kOpenMaterialEnding = ".xompt";
 constexpr const char* kShaderEnding = ".glsl";
 constexpr const char* kMaterialXEnding = ".mtlx";
 constexpr const char* kPrincipledEnding = ".principled.json";
@@ -92,18 +94,26 @@ std::string WriteTensorFile(const RglExport& file, const std::string& than, doub
   return line;
 }
 
-// As Klems matrices or as OpticStudio's table, by the ending.
+// As Klems matrices, OpenMATERIAL's or OpticStudio's table, by the ending.
 std::string WriteExported(const ExportedBrdf& brdf, const std::string& than, double max_angle,
                           const ConvertOptions& options, const std::string& path) {
-  const auto write = [&](const auto& file, const std::string& what) {
+  const auto write = [&](const auto& file, const std::string& what, const std::string& colors) {
     WriteFile(path, [&](std::ostream& out) { out << file.bytes; });
-    return "wrote " + path + ": " + what + (file.colored ? ", XYZ, " : ", one channel, ") +
+    return "wrote " + path + ": " + what + ", " + (file.colored ? colors : "one channel") + ", " +
            InMegabytes(file.bytes) + HowFarOff(than, file.median_error, file.high_error, max_angle);
   };
+  const std::string name = std::filesystem::path(path).stem().string();
+  if (EndingOf(path) == kOpenMaterialEnding) {
+    const OpenMaterialExport file = ExportOpenMaterial(brdf, name, options.num_threads);
+    return write(file,
+                 "OpenMATERIAL 3D table of " + std::to_string(file.incidences) + " incidences, " +
+                     std::to_string(file.zeniths) + " x " + std::to_string(file.azimuths) +
+                     " directions",
+                 "7 wavelengths");
+  }
   if (EndingOf(path) == kKlemsEnding) {
-    const std::string name = std::filesystem::path(path).stem().string();
     return write(ExportKlems(brdf, name, options.num_threads),
-                 "means over pairs of patches of the full Klems basis");
+                 "means over pairs of patches of the full Klems basis", "XYZ");
   }
   const ZemaxExport file =
       ExportZemax(brdf, {.max_error = MaxErrorOf(options), .num_threads = options.num_threads});
@@ -111,7 +121,7 @@ std::string WriteExported(const ExportedBrdf& brdf, const std::string& than, dou
                        std::to_string(file.azimuths) + " x " + std::to_string(file.radials) +
                        " directions";
   if (file.rotations > 1) angles = std::to_string(file.rotations) + " rotations, " + angles;
-  return write(file, "Zemax BSDF of " + angles);
+  return write(file, "Zemax BSDF of " + angles, "XYZ");
 }
 
 // The two, side by side.
@@ -190,7 +200,7 @@ FitResult FitToHelp(const Measurement& measurement, int num_threads) {
 bool IsForRenderer(const std::string& path) {
   const std::string ending = EndingOf(path);
   return ending == kTensorEnding || ending == kShaderEnding || ending == kKlemsEnding ||
-         IsStandardMaterial(path);
+         ending == kOpenMaterialEnding || IsStandardMaterial(path);
 }
 
 bool IsTensorFile(const std::string& path) {

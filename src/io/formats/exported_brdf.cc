@@ -1,5 +1,7 @@
 #include "io/formats/exported_brdf.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -57,6 +59,17 @@ bool AreGrey(const std::vector<Rgb>& values) {
     const auto [least, most] = std::minmax({value[0], value[1], value[2]});
     return most - least <= 1e-9 * most;
   });
+}
+
+void AppendNumber(double number, std::string* text) {
+  if (number == 0) {
+    *text += '0';
+    return;
+  }
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number,
+                                 std::chars_format::scientific, 5);
+  text->append(buffer.data(), end.ptr);
 }
 
 void RequireExact(size_t bytes, double median_error, double max_error) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "io/formats/completed_measurement.h"
@@ -48,6 +49,9 @@ File ChooseSmallest(int count, const std::function<File(int)>& make, double max_
   return *std::ranges::find_if(
       files, [&](const File& file) { return file.median_error <= kHardlyWorse * best; });
 }
+
+// Appends a number of six digits, "1.23457e-02" or "0".
+void AppendNumber(double number, std::string* text);
 
 // Throws Error, with the size in bytes and the error, for a file that is not as exact as asked for.
 void RequireExact(size_t bytes, double median_error, double max_error);

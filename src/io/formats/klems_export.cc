@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <pugixml.hpp>
+#include <sstream>
 
 #include "core/base/text.h"
 #include "io/formats/klems_basis.h"
@@ -216,44 +218,75 @@ Rgb ValueAt(const std::vector<Rgb>& means, const DirectionPair& pair) {
 
 // --- XML -----------------------------------------------------------------------------------------
 
-std::string FormatBasis() {
-  std::string text = "<AngleBasis>\n<AngleBasisName>" + Full().name + "</AngleBasisName>\n";
+using Xml = pugi::xml_node;
+
+void AppendText(const char* name, const std::string& text, Xml* parent) {
+  parent->append_child(name).text().set(text.c_str());
+}
+
+void AppendBasis(Xml* parent) {
+  Xml basis = parent->append_child("AngleBasis");
+  AppendText("AngleBasisName", Full().name, &basis);
   for (const KlemsRing& ring : Full().rings) {
-    text += "<AngleBasisBlock><Theta>" + Text(MiddleOf(ring)) + "</Theta><nPhis>" +
-            std::to_string(ring.patches) + "</nPhis><ThetaBounds><LowerTheta>" + Text(ring.begin) +
-            "</LowerTheta><UpperTheta>" + Text(ring.end) +
-            "</UpperTheta></ThetaBounds></AngleBasisBlock>\n";
+    Xml block = basis.append_child("AngleBasisBlock");
+    AppendText("Theta", Text(MiddleOf(ring)), &block);
+    AppendText("nPhis", std::to_string(ring.patches), &block);
+    Xml bounds = block.append_child("ThetaBounds");
+    AppendText("LowerTheta", Text(ring.begin), &bounds);
+    AppendText("UpperTheta", Text(ring.end), &bounds);
   }
-  return text + "</AngleBasis>\n";
 }
 
 // `channel` of `means`.
-std::string FormatMatrix(const std::vector<Rgb>& means, int channel, const char* side) {
+void AppendMatrix(const std::vector<Rgb>& means, int channel, const char* side, Xml* parent) {
   const size_t size = PatchesOf(Full()).size();
-  std::string text = std::string("<WavelengthDataBlock>\n<WavelengthDataDirection>") + side +
-                     "</WavelengthDataDirection>\n<ColumnAngleBasis>" + Full().name +
-                     "</ColumnAngleBasis>\n<RowAngleBasis>" + Full().name +
-                     "</RowAngleBasis>\n<ScatteringDataType>BRDF</ScatteringDataType>\n"
-                     "<ScatteringData>\n";
+  std::string numbers = "\n";
   for (size_t k = 0; k < means.size(); ++k) {
-    text += Text(means[k][channel], 6) + (k % size == size - 1 ? ",\n" : ", ");
+    numbers += Text(means[k][channel], 6) + (k % size == size - 1 ? ",\n" : ", ");
   }
-  return text + "</ScatteringData>\n</WavelengthDataBlock>\n";
+  Xml block = parent->append_child("WavelengthDataBlock");
+  AppendText("WavelengthDataDirection", side, &block);
+  AppendText("ColumnAngleBasis", Full().name, &block);
+  AppendText("RowAngleBasis", Full().name, &block);
+  AppendText("ScatteringDataType", "BRDF", &block);
+  AppendText("ScatteringData", numbers, &block);
 }
 
-std::string FormatWavelength(const std::vector<Rgb>& means, int channel, const char* name,
-                             char detector) {
-  std::string text = std::string(
-                         "<WavelengthData>\n<LayerNumber>System</LayerNumber>\n"
-                         "<Wavelength unit=\"Integral\">") +
-                     name +
-                     "</Wavelength>\n<SourceSpectrum>CIE Illuminant D65 1nm.ssp</SourceSpectrum>\n"
-                     "<DetectorSpectrum>ASTM E308 1931 " +
-                     detector + ".dsp</DetectorSpectrum>\n";
+void AppendWavelength(const std::vector<Rgb>& means, int channel, const char* name, char detector,
+                      Xml* layer) {
+  Xml data = layer->append_child("WavelengthData");
+  AppendText("LayerNumber", "System", &data);
+  AppendText("Wavelength", name, &data);
+  data.child("Wavelength").append_attribute("unit") = "Integral";
+  AppendText("SourceSpectrum", "CIE Illuminant D65 1nm.ssp", &data);
+  AppendText("DetectorSpectrum", std::string("ASTM E308 1931 ") + detector + ".dsp", &data);
   for (const char* const side : {"Reflection Front", "Reflection Back"}) {
-    text += FormatMatrix(means, channel, side);
+    AppendMatrix(means, channel, side, &data);
   }
-  return text + "</WavelengthData>\n";
+}
+
+std::string FormatXml(const std::vector<Rgb>& means, bool grey, const std::string& name) {
+  pugi::xml_document document;
+  Xml element = document.append_child("WindowElement");
+  element.append_attribute("xmlns") = "http://windows.lbl.gov";
+  AppendText("WindowElementType", "System", &element);
+  AppendText("FileType", "BSDF", &element);
+  Xml layer = element.append_child("Optical").append_child("Layer");
+  Xml material = layer.append_child("Material");
+  AppendText("Name", ValidUtf8(name), &material);
+  AppendText("Manufacturer", "Trilobe", &material);
+  AppendText("DeviceType", "Other", &material);
+  Xml definition = layer.append_child("DataDefinition");
+  AppendText("IncidentDataStructure", "Columns", &definition);
+  AppendBasis(&definition);
+  AppendWavelength(means, grey ? 0 : 1, "Visible", 'Y', &layer);
+  if (!grey) {
+    AppendWavelength(means, 0, "CIE-X", 'X', &layer);
+    AppendWavelength(means, 2, "CIE-Z", 'Z', &layer);
+  }
+  std::ostringstream text;
+  document.save(text, "", pugi::format_indent, pugi::encoding_utf8);
+  return text.str();
 }
 
 }  // namespace
@@ -265,25 +298,10 @@ KlemsExport ExportKlems(const ExportedBrdf& brdf, const std::string& name, int n
   const bool grey = AreGrey(means);
   KlemsExport result = {
       .bytes = {}, .colored = !grey, .median_error = error.median, .high_error = error.high};
-  result.bytes =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<WindowElement xmlns=\"http://windows.lbl.gov\">\n"
-      "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Optical>\n"
-      "<Layer>\n<Material>\n<Name>" +
-      EscapedMarkup(name) +
-      "</Name>\n<Manufacturer>Trilobe</Manufacturer>\n"
-      "<DeviceType>Other</DeviceType>\n</Material>\n<DataDefinition>\n"
-      "<IncidentDataStructure>Columns</IncidentDataStructure>\n" +
-      FormatBasis() + "</DataDefinition>\n";
-  if (grey) {
-    result.bytes += FormatWavelength(means, 0, "Visible", 'Y');
-  } else {
+  if (!grey) {
     for (Rgb& mean : means) mean = TristimulusOf(mean);
-    result.bytes += FormatWavelength(means, 1, "Visible", 'Y');
-    result.bytes += FormatWavelength(means, 0, "CIE-X", 'X');
-    result.bytes += FormatWavelength(means, 2, "CIE-Z", 'Z');
   }
-  result.bytes += "</Layer>\n</Optical>\n</WindowElement>\n";
+  result.bytes = FormatXml(means, grey, name);
   return result;
 }
 

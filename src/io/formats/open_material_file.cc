@@ -14,6 +14,9 @@
 namespace trilobe {
 namespace {
 
+// 700,000 rows.
+constexpr JsonLimits kTableLimits = {.bytes = size_t{1} << 26, .values = size_t{1} << 22};
+
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 struct OpenMaterialRow {
@@ -30,7 +33,7 @@ struct OpenMaterialBand {
 class OpenMaterialTable {
  public:
   OpenMaterialTable(std::string_view text, const std::string& source) : source_(source) {
-    const JsonValue file = JsonValue::Parse(text, source);
+    const JsonValue file = JsonValue::Parse(text, source, kTableLimits);
     const JsonValue* const brdf = Member(file, "brdf", JsonValue::Type::kObject);
     const JsonValue* const table = Member(*brdf, "lookupTable", JsonValue::Type::kArray);
     for (size_t k = 0; k < table->size(); ++k) AddRow((*table)[k], k);

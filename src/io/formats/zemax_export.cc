@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <memory>
@@ -112,17 +111,6 @@ class ZemaxTable {
 };
 
 // --- Text ----------------------------------------------------------------------------------------
-
-void AppendNumber(double number, std::string* text) {
-  if (number == 0) {
-    *text += '0';
-    return;
-  }
-  std::array<char, 32> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number,
-                                 std::chars_format::scientific, 5);
-  text->append(buffer.data(), end.ptr);
-}
 
 void AppendAngles(const char* key, const std::vector<double>& angles, std::string* text) {
   text->append(key).append("\t").append(std::to_string(angles.size())).append("\n");

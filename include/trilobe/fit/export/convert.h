@@ -21,8 +21,8 @@ struct ConvertOptions {
 };
 
 // Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .zemax.bsdf
-// (OpticStudio's table), .xml (Klems matrices of Radiance and WINDOW), .glsl, .mtlx (MaterialX) or
-// .principled.json (Blender's Principled BSDF).
+// (OpticStudio's table), .xml (Klems matrices of Radiance and WINDOW), .xompt (OpenMATERIAL 3D),
+// .glsl, .mtlx (MaterialX) or .principled.json (Blender's Principled BSDF).
 bool IsForRenderer(const std::string& path);
 // Whether it is .bsdf and not .zemax.bsdf.
 bool IsTensorFile(const std::string& path);
@@ -32,10 +32,11 @@ bool TakesError(const std::string& path);
 bool IsStandardMaterial(const std::string& path);
 
 // Writes a model or a measurement in the format of the path's extension. Returns lines that say
-// what was written and its error. A measurement is fitted first, which takes seconds: .bsdf and
-// .xml files hold the measured values, and the model's where nothing was measured; .mtlx and
-// .principled.json are nearest to the model. `source` names the model in messages. Throws Error,
-// also for a measurement to .glsl and if the file cannot be written.
+// what was written and its error. A measurement is fitted first, which takes seconds: .bsdf,
+// .xml and .xompt files hold the measured values, and the model's where nothing was measured; .mtlx
+// and .principled.json are nearest to the model. `source` names the model in messages. Throws
+// Error, also for a measurement to .glsl, for an anisotropic one to .xompt, and if the file cannot
+// be written.
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options);
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
