@@ -11,6 +11,7 @@
 #include "fit/finish/limit_light.h"
 #include "fit/finish/reflectance.h"
 #include "fit/finish/smoothest.h"
+#include "fit/finish/without_rings.h"
 #include "fit/held_out.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
@@ -68,18 +69,21 @@ class SphereScores {
 // Whether one model is as good as another in all but E.
 class NoHarm {
  public:
-  NoHarm(const Objective& objective, const FactorModel& before, SphereScores* scores)
+  // `may_lose`: of the sphere where it was measured [dB].
+  NoHarm(const Objective& objective, const FactorModel& before, SphereScores* scores,
+         double may_lose = 0.2)
       : samples_(EvenlySpread(objective.samples(), kSamples)),
         num_threads_(objective.num_threads()),
         scores_(*scores),
+        may_lose_(may_lose),
         measured_(scores->ScoreMeasured(before)),
         beyond_(scores->has_beyond() ? scores->ScoreBeyond(before) : 0),
         log_error_(LogError(before)) {}
 
   bool operator()(const FactorModel& after) const {
-    constexpr double kMayLose = 0.2, kMayLoseBeyond = 1;  // [dB]
+    constexpr double kMayLoseBeyond = 1;  // [dB]
     constexpr double kMayGrow = 0.1;
-    return scores_.ScoreMeasured(after) >= measured_ - kMayLose &&
+    return scores_.ScoreMeasured(after) >= measured_ - may_lose_ &&
            (!scores_.has_beyond() || scores_.ScoreBeyond(after) >= beyond_ - kMayLoseBeyond) &&
            LogError(after) <= (1 + kMayGrow) * log_error_;
   }
@@ -93,6 +97,7 @@ class NoHarm {
   const BrdfSamples samples_;
   const int num_threads_;
   SphereScores& scores_;
+  const double may_lose_;
   double measured_, beyond_, log_error_;
 };
 
@@ -122,6 +127,8 @@ void MatchReflectanceOf(const Objective& solved, const StopCheck& stop, SphereSc
     }
     if (!no_harm) no_harm.emplace(fit->objective, model, scores);
     if (!(*no_harm)(matched->model)) continue;
+    // Only tables in full are smoothed after this.
+    if (thinned && HasRings(matched->model, solved.num_threads())) continue;
     fit->matched = {.error_before = matched->error_before, .error_after = matched->error_after};
     fit->model = std::move(matched->model);
     return;
@@ -156,6 +163,19 @@ void SmoothOut(const Objective& solved, const FinishOptions& options, SphereScor
       Smoothest(solved, fit->model, options.smoothness, is_harmless, options.stop);
   if (!smoothest) return;
   fit->model = std::move(smoothest->model);
+}
+
+// If the sphere hardly suffers.
+void EvenOut(const Objective& solved, const StopCheck& stop, SphereScores* scores,
+             FinishedFit* fit) {
+  constexpr double kMayLose = 0.5;  // [dB]; rings are seen sooner
+  std::optional<NoHarm> no_harm;
+  const auto is_harmless = [&](const FactorModel& even) {
+    if (!no_harm) no_harm.emplace(fit->objective, fit->model, scores, kMayLose);
+    return (*no_harm)(even);
+  };
+  std::optional<FactorModel> even = WithoutRings(solved, fit->model, is_harmless, stop);
+  if (even) fit->model = *std::move(even);
 }
 
 // Notes what a change of the model does to E of the data, and how long it takes.
@@ -257,6 +277,10 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   // Tables of a form that was chosen are thinned.
   if (options.smoothness > 0 && (options.max_parameters == 0 || !fit.layout) && !options.stop()) {
     NoteStep("smoothness", &fit, [&] { SmoothOut(solved, options, scores, &fit); });
+  }
+  const bool is_full = !fit.layout || *fit.layout == TableLayout::Full(fit.model.spec());
+  if (options.smoothness > 0 && is_full && scores != nullptr && !options.stop()) {
+    NoteStep("evenness", &fit, [&] { EvenOut(solved, options.stop, scores, &fit); });
   }
   if (objective.has_prior() && !fit.layout) {
     Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model);  // by the data alone

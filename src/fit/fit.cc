@@ -367,7 +367,8 @@ class Fitting {
       if (options_.stop()) fit->whole.reset();  // a half was not fitted
     }
     const AlbedoRipple ripple = RippleOf(fit->model(), options_.num_threads);
-    fit->ripple = {.share = ripple.share, .theta_i = ripple.theta_i};
+    if (ripple.share > kSeenRipple)
+      fit->ripple = {.share = ripple.share, .theta_i = ripple.theta_i};
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
   }
 

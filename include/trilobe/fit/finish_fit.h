@@ -40,7 +40,7 @@ struct FinishOptions {
 struct FinishingStep {
   // In this order: "robust", "between_samples" (CorrectOvershoot), "data_edge"
   // (TieEntriesAtDataEdge), "form" (ChooseModel), "reflected_light" (MatchReflectance),
-  // "smoothness" (Smoothest), "energy" (LimitAlbedo).
+  // "smoothness" (Smoothest), "evenness" (WithoutRings), "energy" (LimitAlbedo).
   std::string name;
   double objective_before = 0, objective_after = 0;  // E of the data
   double seconds = 0;

@@ -1,39 +1,40 @@
 #include "fit/finish/albedo_ripple.h"
 
 #include <cmath>
-#include <cstddef>
+#include <cstdlib>
 #include <vector>
 
-#include "core/math/robust_line.h"
 #include "fit/prior/albedos_of.h"
 #include "trilobe/core/geometry/channels.h"
 #include "trilobe/core/math/angles.h"
-#include "trilobe/model/axis.h"
 
 namespace trilobe {
+namespace {
+
+// Of the value at place j, from -m to m, in the middle of the parabola that is nearest to these.
+double WeightInParabola(int j, int m) {
+  return 3.0 * (3 * m * m + 3 * m - 1 - 5 * j * j) / ((2 * m - 1) * (2 * m + 1) * (2 * m + 3));
+}
+
+}  // namespace
 
 AlbedoRipple RippleOf(const FactorModel& model, int num_threads) {
-  constexpr double kLast = DegreesToRadians(65), kAround = DegreesToRadians(5);
+  constexpr int kPerDegree = 2, kLast = 65 * kPerDegree, kAround = 2 * kPerDegree;
   AlbedoRipple ripple;
   if (model.spec().anisotropic()) return ripple;
-  const Axis& axis = model.spec().g_axis;
   std::vector<double> theta_i;
-  for (int k = 0; k < axis.size && axis.Theta(k) <= kLast + kAround; ++k) {
-    theta_i.push_back(axis.Theta(k));
+  for (int k = 0; k <= kLast + kAround; ++k) {
+    theta_i.push_back(DegreesToRadians(static_cast<double>(k) / kPerDegree));
   }
   std::vector<double> logs;
   for (const Rgb& albedo : AlbedosOf(model, theta_i, num_threads)) {
     logs.push_back(std::log(albedo[0] + albedo[1] + albedo[2]));
   }
-  for (size_t k = 0; k < logs.size() && theta_i[k] <= kLast; ++k) {
-    std::vector<double> x, y;
-    for (size_t j = 0; j < logs.size(); ++j) {
-      if (!(std::abs(theta_i[j] - theta_i[k]) <= kAround) || !std::isfinite(logs[j])) continue;
-      x.push_back(theta_i[j]);
-      y.push_back(logs[j]);
-    }
-    if (x.size() < 5 || !std::isfinite(logs[k])) continue;  // no line, or black
-    const double off = std::abs(std::expm1(logs[k] - FitRobustLine(x, y)(theta_i[k])));
+  for (int k = 0; k <= kLast; ++k) {
+    double course = 0;  // an albedo is even in theta_i
+    for (int j = -kAround; j <= kAround; ++j)
+      course += WeightInParabola(j, kAround) * logs[std::abs(k + j)];
+    const double off = std::abs(std::expm1(logs[k] - course));  // NaN where it is black
     if (off > ripple.share) ripple = {.share = off, .theta_i = theta_i[k]};
   }
   return ripple;

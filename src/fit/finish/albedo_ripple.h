@@ -9,10 +9,14 @@ struct AlbedoRipple {
   double share = 0, theta_i = 0;  // [rad]
 };
 
-// How much the directional albedo of an isotropic model jumps from entry to entry of G up to 65
-// degrees, of which even light makes rings: the largest relative distance from a robust line over
-// the entries within 5 degrees. Beyond, Fresnel factors rise in a curve. Zero for an anisotropic
-// model. The same bits for any number of threads.
+// What even light shows as rings, to one side of the course.
+inline constexpr double kSeenRipple = 0.01;
+
+// How much the directional albedo of an isotropic model leaves the course that it has around: at
+// each half degree up to 65 degrees, the largest relative distance from the parabola through what
+// is within 2 degrees, by least squares of the logarithms (Savitzky and Golay, Analytical Chemistry
+// 36, 1964). Values at bins' centers hardly show tables that alternate from entry to entry, which
+// cause this. Zero for an anisotropic model. The same bits for any number of threads.
 AlbedoRipple RippleOf(const FactorModel& model, int num_threads);
 
 }  // namespace trilobe

@@ -11,7 +11,9 @@
 
 #include "core/system/process.h"
 #include "fit/finish/data_edge.h"
+#include "fit/finish/reflectance.h"
 #include "fit/finish/stretch_search.h"
+#include "fit/finish/without_rings.h"
 #include "fit/prune/model_forms.h"
 #include "fit/prune/prune.h"
 #include "fit/prune/thinned_objective.h"
@@ -138,6 +140,8 @@ class ModelSearch {
     ModelCandidate& last = best_.candidates.back();
     if (last.num_parameters > options_.max_parameters) return;
     if (best_.chosen >= 0 && !(last.score > best_.candidates[best_.chosen].score)) return;
+    if (best_.chosen >= 0) last.has_rings = HasRings(model, objective_.num_threads());
+    if (last.has_rings) return;
     if (options_.judge_beyond && best_.chosen >= 0) {
       constexpr double kMayLose = 3, kOfGain = 0.5;  // [dB]
       const double gain = last.score - best_.candidates.front().score;
@@ -186,6 +190,8 @@ class ModelSearch {
     const Objective refitted = prior.JoinTo(some_.ObjectiveFor(pruned.model.spec(), weighting));
     const Reduction stored(refitted.spec(), pruned.layout);
     pruned.model = ContinueFit(refitted, pruned.model, options_.stop, &stored);
+    // Nodes that were chosen by E, with the values of the form.
+    if (!of_fit && HasRings(pruned.model, objective_.num_threads())) pruned.model = model;
     // By what was measured, without the prior.
     const Objective measured = some_.ObjectiveFor(pruned.model.spec(), weighting);
     SetCanonicalScale(measured.coverage(), &pruned.model, measured.num_threads());
@@ -327,16 +333,36 @@ class ModelSearch {
       if (layout.num_parameters(model.spec()) > options_.max_parameters) {
         model = TieUnlessSeen(some_.ObjectiveFor(model.spec(), weighting), model, fitted_form.score,
                               TieRefit::kUntilBack);
+        model = EvenOut(some_.ObjectiveFor(model.spec(), weighting),
+                        some_with_prior_.ObjectiveFor(model.spec(), weighting), model);
         Thin(name, weighting, model);
       } else {
         const Objective all = all_.ObjectiveFor(model.spec(), weighting);
         model = ContinueFit(all, model, options_.stop);
         Canonicalize(all, &model);
         model = TieUnlessSeen(all, model, options_.judge(model), TieRefit::kUntilSettled);
+        model = EvenOut(all, all, model);
         Judge(name + ", finished", model, layout, ValueOf(model));
         Choose(model, layout, weighting);
       }
     }
+  }
+
+  // The model, without rings if the picture hardly suffers. Its light is matched before, as that
+  // would bring new rings.
+  FactorModel EvenOut(const Objective& measured, const Objective& minimised,
+                      const FactorModel& model) const {
+    constexpr double kMayLose = 0.5;  // [dB]; rings are seen sooner
+    constexpr double kPriceOfLight = 10;
+    if (!HasRings(model, objective_.num_threads())) return model;
+    const double score = options_.judge(model);
+    const auto is_harmless = [&](const FactorModel& even) {
+      return options_.judge(even) >= score - kMayLose;
+    };
+    const std::optional<MatchedModel> matched = MatchReflectance(
+        measured, minimised, model, TableLayout::Full(model.spec()), kPriceOfLight, options_.stop);
+    return WithoutRings(minimised, matched ? matched->model : model, is_harmless, options_.stop)
+        .value_or(model);
   }
 
   // The model, in canonical form and of this score, with entries at the edge of the data tied,

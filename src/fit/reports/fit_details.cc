@@ -54,6 +54,7 @@ Json ToJson(const std::vector<ModelCandidate>& candidates) {
                      {"objective", candidate.E},
                      {"psnr_db", candidate.score},
                      {"fails_beyond_data", candidate.fails_beyond},
+                     {"has_rings", candidate.has_rings},
                      {"seconds", candidate.seconds}});
   }
   return array;
@@ -145,6 +146,7 @@ std::string Describe(const FitReport::Finished& finished) {
             Text(candidate.score) + " dB, " + std::to_string(candidate.num_parameters) +
             " parameters, E " + Text(candidate.E) +
             (candidate.fails_beyond ? ", but fails beyond the data" : "") +
+            (candidate.has_rings ? ", but has rings under even light" : "") +
             (static_cast<int>(k) == finished.chosen ? "   <- chosen\n" : "\n");
   }
   if (finished.matched) {

@@ -192,12 +192,11 @@ std::string NameOf(Fault fault) {
 
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts) {
   constexpr double kMuchLeftOut = 0.01, kMuchIrreducible = 0.3, kMuchReach = 10;
-  constexpr double kMuchRipple = 0.05;  // Delta E about 2
   std::vector<Advice> advice;
   if (facts.interrupted) advice.push_back(Advice::kGoOn);
   if (facts.reach_beyond > kMuchReach) advice.push_back(Advice::kKeepWithin);
   if (facts.glow > 0) advice.push_back(Advice::kGlows);
-  if (facts.ripple > kMuchRipple) advice.push_back(Advice::kRings);
+  if (facts.ripple > 0) advice.push_back(Advice::kRings);
   if (verdict.visibility == Visibility::kNone) return advice;
   if (!facts.ended) {
     if (!facts.interrupted) advice.push_back(Advice::kIterate);

@@ -78,8 +78,8 @@ struct FitFacts {
   double reach_beyond = 0;
   // The largest directional albedo, and its theta_i [rad], of a model that makes light.
   double glow = 0, glow_theta_i = 0;
-  // The largest jump of the directional albedo between entries of G, as a share, and its theta_i
-  // [rad].
+  // By how much the directional albedo leaves the course that it has around, as a share, if even
+  // light shows that; and at which theta_i [rad].
   double ripple = 0, ripple_theta_i = 0;
 };
 

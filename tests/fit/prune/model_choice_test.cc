@@ -279,6 +279,26 @@ TEST(ModelChoice, WhatRunsWildBeyondTheDataIsNotTaken) {
   }
 }
 
+// Whatever else speaks for it. Here the data have the ring, so no smoother form is a fit of them.
+TEST(ModelChoice, WhatHasRingsUnderEvenLightIsNotTaken) {
+  constexpr MerlGrid kFine{.theta_h = 8, .theta_d = 30, .phi_d = 8};
+  FactorModel material(ModelSpec::SharedFactors(1, kFine));
+  std::ranges::fill(material.parameters(), 1.0);
+  std::ranges::fill(material.d(), 0.01);
+  for (int k = 0; k < 8; ++k) material.table(Factor::kD, 0)[k] = std::exp(-k);
+  for (const double share : {1.0, 2.0}) {
+    material.table(Factor::kG, 0)[15] = share;
+    const Fit fit(TableOf(material, kFine), material.spec());
+    const auto by_channel = [](const FactorModel& model) {
+      return model.spec().D.per_channel ? 20.0 : 0.0;
+    };
+    const ChosenModel result =
+        ChooseModel(fit.objective, fit.model, {.max_parameters = kPlenty, .judge = by_channel});
+    EXPECT_EQ(result.candidates.back().has_rings, share > 1);
+    EXPECT_EQ(result.model.spec().D.per_channel, share == 1);
+  }
+}
+
 // What no sample reads is next to what some read, and a picture reads between the two.
 TEST(ModelChoice, JudgesFormsWithWhatNoSampleReadsContinued) {
   BrdfTable measured = Noisy(TableOf(Material(FByLobe()), kGrid), 0.01);

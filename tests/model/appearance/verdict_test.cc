@@ -139,8 +139,8 @@ TEST(Advice, TellsWhatNoModelFollows) {
   EXPECT_THAT(AdviceOn(seen, {.ended = false, .irreducible = 0.45}), ElementsAre(Advice::kIterate));
   EXPECT_THAT(AdviceOn(seen, {.left_out = 0.12}), ElementsAre(Advice::kAnisotropic));
   EXPECT_THAT(AdviceOn(seen, {.left_out = 0.001}), IsEmpty());
-  EXPECT_THAT(AdviceOn({}, {.ripple = 0.06}), ElementsAre(Advice::kRings));
-  EXPECT_THAT(AdviceOn({}, {.ripple = 0.04}), IsEmpty());
+  EXPECT_THAT(AdviceOn({}, {.ripple = 0.012}), ElementsAre(Advice::kRings));
+  EXPECT_THAT(AdviceOn({}, {.ripple = 0}), IsEmpty());
 }
 
 // A renderer asks for all directions, and a verdict is of what was measured.
