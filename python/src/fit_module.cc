@@ -94,6 +94,7 @@ NB_MODULE(_fit, m) {  // NOLINT(performance-unnecessary-value-param): nanobind's
   BindFit(&m);
   BindObjective(&m);
   BindScore(&m);
+  BindTexels(&m);
 }
 
 }  // namespace trilobe::python

@@ -54,6 +54,7 @@ void BindMeasurement(nanobind::module_* module);
 void BindFit(nanobind::module_* module);
 void BindObjective(nanobind::module_* module);
 void BindScore(nanobind::module_* module);
+void BindTexels(nanobind::module_* module);
 
 }  // namespace trilobe::python
 

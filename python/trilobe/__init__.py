@@ -16,6 +16,7 @@ from typing import Any
 
 from trilobe._brdf import Brdf, Sample, load, materials
 from trilobe._core import Error
+from trilobe._fit_texels import fit_texels
 from trilobe._fitting import (
     Solver,
     fit,
@@ -30,6 +31,7 @@ from trilobe._measurement import Measurement, convert, read
 from trilobe._objective import Objective
 from trilobe._result import Record, Result
 from trilobe._table import Table
+from trilobe._texels import Texels, load_texels
 from trilobe._uncertainty import Uncertainty
 
 __all__ = [
@@ -42,12 +44,15 @@ __all__ = [
     "Sample",
     "Solver",
     "Table",
+    "Texels",
     "Uncertainty",
     "convert",
     "fit",
     "fit_many",
+    "fit_texels",
     "initial_models",
     "load",
+    "load_texels",
     "materials",
     "read",
     "score",

@@ -389,18 +389,33 @@ def _printable(path: Path) -> str:
     return repr(str(path).encode("utf-8", "replace").decode("utf-8"))
 
 
+def make_folder(path: Path) -> None:
+    """Makes a folder, and those above it, if need be."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise Error(f"cannot make the folder '{path}': {getattr(error, 'strerror', None) or error}") from None
+
+
 def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Writes a file beside its place and moves it there."""
+    try:
+        content = text.encode("utf-8")
+    except ValueError as error:
+        raise Error(f"cannot write {_printable(_path_of(path))}: {error}") from None
+    write_bytes(path, content)
+
+
+def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
+    """The same of bytes."""
     import tempfile  # a third of the time that the package takes to import beyond numpy
 
     name = _path_of(path)
     temporary = None
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=name.parent, prefix=".trilobe-", delete=False
-        ) as file:
+        with tempfile.NamedTemporaryFile(dir=name.parent, prefix=".trilobe-", delete=False) as file:
             temporary = file.name
-            file.write(text)
+            file.write(content)
         umask = os.umask(0)
         os.umask(umask)
         os.chmod(temporary, 0o666 & ~umask)

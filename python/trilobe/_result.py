@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trilobe._brdf import Brdf, text_of_path, write_text
+from trilobe._brdf import Brdf, make_folder, text_of_path, write_text
 from trilobe._core import Error
 from trilobe._measurement import Measurement, measurement_of
 
@@ -173,10 +173,7 @@ class Result:
         Another model that is there stays as model.previous.json, as `trilobe fit` has it.
         """
         name = Path(text_of_path(folder))
-        try:
-            name.mkdir(parents=True, exist_ok=True)
-        except (OSError, ValueError) as error:
-            raise Error(f"cannot make the folder '{name}': {getattr(error, 'strerror', None) or error}") from None
+        make_folder(name)
         _keep_earlier(name / "model.json", self._texts["model.json"])
         for file, text in self._texts.items():
             write_text(name / file, text)

@@ -1,0 +1,128 @@
+"""Finds the materials that a surface consists of."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trilobe._brdf import Brdf
+from trilobe._fitting import fit
+from trilobe._measurement import Measurement, fits
+
+Vector = NDArray[np.float64]
+
+_ALIKE = 64  # texels of which the first guess of a material is the mean
+_MOST_ROUNDS = 100
+_LITTLE = 1e-3  # by which share the error falls in a round that is worth another one
+
+
+class Solved(NamedTuple):
+    """Of texels d (n, 3), s (n, materials, 3), E (n,) and that of the black texel (n,)."""
+
+    d: Vector
+    s: Vector
+    objective: Vector
+    energy: Vector
+
+    @property
+    def error(self) -> Vector:
+        """The root of E over that of the black texel, (n,)."""
+        error: Vector = np.sqrt(self.objective / np.maximum(self.energy, 1e-300))
+        return error
+
+
+class Problem(NamedTuple):
+    """What texels have in common, but for their materials."""
+
+    wi: Vector
+    wo: Vector
+    options: dict[str, Any]
+    """weighting, coloured and threads, as C++ takes them."""
+    anisotropic: bool
+
+    def lobes(self, material: Brdf) -> Vector:
+        """Its values without its diffuse term, (samples, 3)."""
+        return np.asarray(material.replace(d=0).eval(self.wi, self.wo), np.float64)
+
+    def solve(self, lobes: Vector, rho: Vector) -> Solved:
+        """Texels (n, samples, 3) of materials (materials, samples, 3)."""
+        rows = fits().SharedTexels(lobes, self.wi, self.wo, self.options).solve(rho)
+        return Solved(rows[:, :3], rows[:, 3:-2].reshape(len(rows), len(lobes), 3), rows[:, -2], rows[:, -1])
+
+    def weigh(self, rho: Vector) -> Vector:
+        """The weights of texels (n, samples, 3) in E."""
+        weights: Vector = fits().SharedTexels(self.none, self.wi, self.wo, self.options).weigh(rho)
+        return weights
+
+    @property
+    def none(self) -> Vector:
+        """Lobes of no material."""
+        return np.empty((0, len(self.wi), 3))
+
+
+def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> list[Brdf]:
+    """So many materials of texels (n, samples, 3), by their values alone; in the end a model is fitted to each.
+
+    The first guess of each is the mean of texels that those before explain least. Then, in turn, each becomes what
+    fits best what the others and the diffuse terms leave of all texels.
+    """
+    weights = problem.weigh(rho)
+    rho = np.where(weights > 0, rho, 0)
+    energy = np.maximum(problem.solve(problem.none, rho).energy, 1e-300)
+    weights /= energy[:, None, None]  # so that texels count alike, bright or dark
+    lobes = problem.none
+    while len(lobes) < count:
+        alike = _alike(rho, weights, problem.solve(lobes, rho), lobes)
+        scale = 1 / np.sqrt(energy[alike])[:, None]
+        lobes = np.concatenate([lobes, _mean(rho[alike], weights[alike], scale)[0][None]])
+    least, counts = np.inf, np.ones_like(lobes)
+    for _ in range(_MOST_ROUNDS):
+        for k in range(count):
+            solved = problem.solve(lobes, rho)
+            others = solved.s.copy()
+            others[:, k] = 0
+            if solved.s[:, k].any():
+                lobes[k], counts[k] = _mean(rho - _values(solved.d, others, lobes), weights, solved.s[:, k])
+        error = float(np.mean(solved.objective / energy))
+        if not error < (1 - _LITTLE) * least:
+            break
+        least = error
+    return [_fitted(problem, *pair, options) for pair in zip(lobes, counts)]
+
+
+def _values(d: Vector, s: Vector, lobes: Vector) -> Vector:
+    """Of texels, (n, samples, 3)."""
+    values: Vector = d[:, None] + np.einsum("nbc,bjc->njc", s, lobes)
+    return values
+
+
+def _alike(rho: Vector, weights: Vector, solved: Solved, lobes: Vector) -> NDArray[np.intp]:
+    """The texel that is explained least, and those whose error looks most like its own."""
+    errors = (np.sqrt(weights) * (rho - _values(solved.d, solved.s, lobes))).reshape(len(rho), -1)
+    errors /= np.maximum(np.linalg.norm(errors, axis=1, keepdims=True), 1e-300)
+    likeness = errors @ errors[solved.error.argmax()]
+    return np.argsort(-likeness, kind="stable")[:_ALIKE]
+
+
+def _mean(rho: Vector, weights: Vector, s: Vector) -> tuple[Vector, Vector]:
+    """What, times s (n, 3), comes nearest to the values (n, samples, 3), and what it weighs."""
+    whole = (weights * s[:, None] ** 2).sum(axis=0)
+    mean = (weights * s[:, None] * rho).sum(axis=0) / np.maximum(whole, 1e-300)
+    # What all directions have in common is for the diffuse terms of texels, of which none is below 0.
+    return mean - mean.min(axis=0), whole
+
+
+def _fitted(problem: Problem, lobes: Vector, counts: Vector, options: dict[str, Any]) -> Brdf:
+    """A model of values (samples, 3) that weigh so much (samples, 3)."""
+    measurement = Measurement(
+        problem.wi, problem.wo, lobes, anisotropic=problem.anisotropic, source="the mean of texels", min_theta_d=0)
+    # In the weighting of the fit, so that the prior between samples counts as ever.
+    weights = counts.mean(axis=-1) / np.maximum(problem.weigh(lobes[None])[0].mean(axis=-1), 1e-300)
+    result = fit(
+        measurement, weighting=problem.options["weighting"], weights=weights / max(weights.mean(), 1e-300),
+        threads=problem.options["threads"], **options)
+    if result.interrupted:
+        raise KeyboardInterrupt
+    return result.model
