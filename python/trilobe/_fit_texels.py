@@ -123,7 +123,7 @@ class _Fit:
         """Those of a shard, or all and their pictures."""
         import shutil
 
-        tiles, about = self._source.tiles(), self._about()
+        tiles, about = self._source.tiles(), self._about(self._hash())
         share = _share(shard, len(tiles))
         there = About.load(folder)
         if there is None:
@@ -134,7 +134,7 @@ class _Fit:
         if not about.finished(folder):
             lobes = self._lobes(self._kept_materials(folder / "materials"))
             make_folder(folder / "tiles")
-            paths = [folder / "tiles" / f"{number}.npy" for number in range(len(tiles))]
+            paths = [folder / "tiles" / f"{begin}-{end}.npy" for begin, end in tiles]
             for number in self._shown(share):
                 if not paths[number].exists():
                     content = io.BytesIO()
@@ -146,18 +146,21 @@ class _Fit:
             shutil.rmtree(folder / "tiles", ignore_errors=True)
         return None if shard is not None else load_texels(folder)
 
-    def _about(self) -> About:
+    def _about(self, of: str = "") -> About:
+        count = self._shared if isinstance(self._shared, int) else len(self._shared)
+        return About(self._source.shape, count, self._problem.options["coloured"], of)
+
+    def _hash(self) -> str:
+        """Of all that results depend on; of the values a few."""
         import hashlib
 
         shared, problem = self._shared, self._problem
         given = shared if isinstance(shared, int) else [material.to_json() for material in shared]
         options = {**problem.options, **self._options, "anisotropic": problem.anisotropic, "threads": 0}
-        told = (given, sorted(options.items()))
-        of = hashlib.blake2b(repr(told).encode("utf-8", "surrogatepass"), digest_size=16)
-        for array in (problem.wi, problem.wo, self._source.spread(_HASHED)):
-            of.update(array.tobytes())
-        count = shared if isinstance(shared, int) else len(shared)
-        return About(self._source.shape, count, options["coloured"], of.hexdigest())
+        told = repr((given, sorted(options.items())))
+        parts = (problem.wi, problem.wo, self._source.spread(_HASHED))
+        content = told.encode("utf-8", "surrogatepass") + b"".join(part.tobytes() for part in parts)
+        return hashlib.blake2b(content, digest_size=16).hexdigest()
 
     def _materials(self) -> list[Brdf]:
         if not isinstance(self._shared, int):
@@ -182,8 +185,7 @@ class _Fit:
                 shutil.rmtree(made, ignore_errors=True)
                 if not folder.exists():
                     raise Error(f"cannot make the folder '{folder}': {error.strerror}") from None
-        count = self._shared if isinstance(self._shared, int) else len(self._shared)
-        return [load(folder / f"{k}.json") for k in range(count)]
+        return [load(folder / f"{k}.json") for k in range(self._about().materials)]
 
     def _lobes(self, materials: list[Brdf]) -> Vector:
         return np.stack([self._problem.lobes(material) for material in materials])

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trilobe._brdf import Brdf
+from trilobe._core import Error
 from trilobe._fitting import fit
 from trilobe._measurement import Measurement, fits
+from trilobe._texels import lobes_of
 
 Vector = NDArray[np.float64]
 
@@ -44,7 +46,7 @@ class Problem(NamedTuple):
 
     def lobes(self, material: Brdf) -> Vector:
         """Its values without its diffuse term, (samples, 3)."""
-        return np.asarray(material.replace(d=0).eval(self.wi, self.wo), np.float64)
+        return lobes_of(material, self.wi, self.wo).astype(np.float64)
 
     def solve(self, lobes: Vector, rho: Vector) -> Solved:
         """Texels (n, samples, 3) of materials (materials, samples, 3)."""
@@ -69,6 +71,8 @@ def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> 
     fits best what the others and the diffuse terms leave of all texels.
     """
     weights = problem.weigh(rho)
+    if not weights.any():
+        raise Error("no sample of the texels is valid")
     rho = np.where(weights > 0, rho, 0)
     energy = np.maximum(problem.solve(problem.none, rho).energy, 1e-300)
     weights /= energy[:, None, None]  # so that texels count alike, bright or dark

@@ -69,7 +69,7 @@ class Texels:
         above: Any = (wi[..., 2:] > 0) & (wo[..., 2:] > 0)
         f = np.where(above, self.d, np.zeros((), wi.dtype))
         for material, strength in zip(self.materials, self.s):
-            f += strength * material.replace(d=0).eval(wi, wo)
+            f += strength * lobes_of(material, wi, wo)
         return f.astype(wi.dtype, copy=False)
 
     def save(self, folder: str | os.PathLike[str]) -> None:
@@ -81,7 +81,7 @@ class Texels:
         name = Path(text_of_path(folder))
         make_folder(name / "materials")
         for k, material in enumerate(self.materials):
-            material.save(name / "materials" / f"{k}.json")
+            write_text(name / "materials" / f"{k}.json", material.to_json())
         about = About(self.shape, len(self.materials), coloured)
         strengths = self.s if coloured else [s[..., :1] for s in self.s]
         write_pictures(name, about, [[self.d, self.error[..., None], *strengths]])
@@ -90,6 +90,12 @@ class Texels:
     def __repr__(self) -> str:
         """How many there are, of how many materials."""
         return f"<trilobe.Texels: {' x '.join(map(str, self.shape))}, {len(self.materials)} materials>"
+
+
+def lobes_of(material: Brdf, wi: Any, wo: Any) -> Floats:
+    """f without the diffuse term, (..., 3)."""
+    lobes: Floats = material.eval(wi, wo, components=True)[..., 1:, :].sum(axis=-2)
+    return np.maximum(lobes, 0)
 
 
 def load_texels(folder: str | os.PathLike[str]) -> Texels:
