@@ -17,6 +17,7 @@ FILES = {
     "compare_solvers": ["trace.png"],
     "other_optimisers": ["optimisers.csv", "synth_copper@12x12x24.png"],
     "stability": ["starts.png"],
+    "texels": ["texels.png"],
     "batch_table": ["table.csv"],
     "edit_material": ["edited.png", "edited.json"],
     "mitsuba_scene": ["mitsuba_scene.png"],
