@@ -194,7 +194,8 @@ class _Fit:
         """Of each texel d, error and strengths."""
         solved = self._problem.solve(lobes, self._source.read(*rows))
         s = solved.s if self._problem.options["coloured"] else solved.s[..., :1]
-        return np.column_stack([solved.d, solved.error, s.reshape(len(s), -1)]).astype(np.float32)
+        strengths = [s[:, k] for k in range(s.shape[1])]
+        return np.column_stack([solved.d, solved.error, *strengths]).astype(np.float32)
 
     def _shown(self, work: Sequence[Any]) -> Iterator[Any]:
         """The same, with a bar."""

@@ -329,10 +329,13 @@ def test_says_what_is_wrong(pair, change, told, tmp_path, monkeypatch):
     assert told in str(error.value) and "\n" not in str(error.value)
 
 
-def test_no_texel_is_none(pair):
-    texels = trilobe.fit_texels(pair, np.empty((0, 7, 64, 3)), materials(), **QUIET)
-    assert texels.shape == (0, 7) and texels.s[0].shape == (0, 7, 3)
-    assert texels.eval([0, 0, 1], [0, 0, 1]).shape == (0, 7, 3)
+@pytest.mark.parametrize("shape", [(0, 7), (7, 0), (0,)])
+def test_no_texel_is_none(pair, tmp_path, shape):
+    texels = trilobe.fit_texels(pair, np.empty((*shape, 64, 3)), materials(), **QUIET)
+    assert texels.shape == shape and texels.s[0].shape == (*shape, 3)
+    assert texels.eval([0, 0, 1], [0, 0, 1]).shape == (*shape, 3)
+    with pytest.raises(trilobe.Error, match="there is no texel"):
+        texels.save(tmp_path)
 
 
 def test_any_order_in_memory(pair):
