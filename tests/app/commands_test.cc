@@ -419,9 +419,10 @@ TEST(ConvertTest, WritesFilesOfOpticalDesign) {
                                        "model by"));
   const ProgramResult open_material = convert("x.xompt");
   EXPECT_EQ(open_material.status, 0) << open_material.err;
-  EXPECT_THAT(open_material.out,
-              ContainsRegex("OpenMATERIAL 3D table of 10 incidences, 19 x 24 directions, one "
-                            "channel, .* MB, off the model by"));
+  EXPECT_THAT(
+      open_material.out,
+      ContainsRegex("OpenMATERIAL 3D table of 10 incidences, 19 x 24 directions, .* MB, off "
+                    "the model by"));
   for (const std::string name : {"x.zemax.bsdf", "x.xml", "x.xompt"}) {
     EXPECT_EQ(RunProgram({"info", folder / name}).status, 0) << name;
   }

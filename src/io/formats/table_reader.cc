@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "core/base/text.h"
@@ -144,7 +146,24 @@ class TableReader {
     }
   }
 
+  // Takes a row of numbers with a separator after each but the last, as nearly all rows are,
+  // without looking for its cells.
+  bool TakeNumbers(std::string_view line) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    row_.resize(layout_.columns.size());
+    for (size_t k = 0; k < row_.size(); ++k) {
+      if (k > 0 && (at == end || *at++ != head_.separator)) return false;
+      const auto [after, error] = std::from_chars(at, end, row_[k]);
+      if (error != std::errc()) return false;
+      at = after;
+    }
+    return at == end;
+  }
+
   void Split(const TextLines& lines) {
+    is_numbers_ = TakeNumbers(lines.line());
+    if (is_numbers_) return;
     SplitRow(lines.line(), head_.separator, &cells_);
     const std::vector<TableColumn>& columns = layout_.columns;
     if (cells_.size() == columns.size() + 1 && cells_.back().empty()) cells_.pop_back();
@@ -155,6 +174,7 @@ class TableReader {
   }
 
   double Number(const TextLines& lines, size_t column) {
+    if (is_numbers_) return row_[column];
     if (const auto number = ToNumber(cells_[column])) return *number;
     if (const auto number = DecimalCommaNumber(cells_[column])) {
       decimal_commas_ = true;
@@ -197,7 +217,7 @@ class TableReader {
 
   // Takes the values of the row; false where none was measured.
   bool Values(const TextLines& lines) {
-    const auto is_gap = [&](size_t column) { return IsGap(cells_[column]); };
+    const auto is_gap = [&](size_t column) { return !is_numbers_ && IsGap(cells_[column]); };
     if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
     for (size_t k = 0; k < numbers_.size(); ++k) numbers_[k] = Number(lines, layout_.values[k]);
     return true;
@@ -227,6 +247,8 @@ class TableReader {
   TableHead head_;
   ColumnLayout layout_;
   std::vector<std::string_view> cells_;
+  std::vector<double> row_;  // in the place of cells, where a row is but numbers
+  bool is_numbers_ = false;
   std::vector<double> numbers_;               // the values of a row
   double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
   std::optional<double> phi_i_, wavelength_;  // of the first row

@@ -76,18 +76,21 @@ bool StandsOut(double own, std::vector<double>* values) {
 class Surroundings {
  public:
   Surroundings(const BrdfSamples& samples, int num_threads)
-      : grid_(samples.grid),
-        on_grid_(samples.on_grid()),
-        begin_(grid_.size() + 1, 0),
-        bins_(samples.size()) {
+      : grid_(samples.grid), on_grid_(samples.on_grid()), begin_(grid_.size() + 1, 0) {
+    std::vector<int> bins(samples.size());
     for (int j = 0; j < samples.size(); ++j) {
-      bins_[j] = samples.on_grid() ? samples.bins[j] : grid_.Bin(samples.angles[j]);
-      ++begin_[bins_[j] + 1];
+      bins[j] = samples.on_grid() ? samples.bins[j] : grid_.Bin(samples.angles[j]);
+      ++begin_[bins[j] + 1];
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     values_.resize(samples.size());
+    samples_.resize(samples.size());
     std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for (int j = 0; j < samples.size(); ++j) values_[next[bins_[j]]++] = Mean(samples.rho[j]);
+    for (int j = 0; j < samples.size(); ++j) {
+      const int k = next[bins[j]]++;
+      values_[k] = Mean(samples.rho[j]);
+      samples_[k] = j;
+    }
     lines_.resize(grid_.size());
     ParallelFor(grid_.theta_h, num_threads, [&](int h) {
       for (int bin = grid_.Index(h, 0, 0); bin < grid_.Index(h + 1, 0, 0); ++bin) {
@@ -101,9 +104,20 @@ class Surroundings {
     });
   }
 
-  // The outlier if this value is far off the median around it.
-  std::optional<Outlier> FarOff(int sample, double own) const {
-    const int row = bins_[sample] / grid_.phi_d, p = bins_[sample] % grid_.phi_d;
+  // Adds the outliers of a theta_h. In the order of bins neighbours are in the cache.
+  void AddOutliers(int h, std::vector<Outlier>* outliers) const {
+    for (int bin = grid_.Index(h, 0, 0); bin < grid_.Index(h + 1, 0, 0); ++bin) {
+      for (int k = begin_[bin]; k < begin_[bin + 1]; ++k) {
+        const std::optional<Outlier> outlier = FarOff(bin, samples_[k], values_[k]);
+        if (outlier) outliers->push_back(*outlier);
+      }
+    }
+  }
+
+ private:
+  // The outlier if this value of a bin is far off the median around it.
+  std::optional<Outlier> FarOff(int bin, int sample, double own) const {
+    const int row = bin / grid_.phi_d, p = bin % grid_.phi_d;
     const int h = row / grid_.theta_d, d = row % grid_.theta_d;
     if (IsLikeAllAround(h, d, p, own)) return std::nullopt;
     for (int reach = 1; reach <= kWidestReach; reach *= 2) {
@@ -126,7 +140,6 @@ class Surroundings {
     return std::nullopt;
   }
 
- private:
   // Looks at the five bins around it in its row.
   struct Line {
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -182,7 +195,7 @@ class Surroundings {
   const MerlGrid grid_;
   const bool on_grid_;
   std::vector<int> begin_;      // of the samples of a bin, among the values
-  std::vector<int> bins_;       // of the samples
+  std::vector<int> samples_;    // their numbers, by bins
   std::vector<double> values_;  // means over the channels, by bins
   std::vector<Line> lines_;     // by bins
 };
@@ -289,13 +302,14 @@ DarkNoise DarkNoiseOf(const BrdfTable& table, const std::vector<bool>& valid, in
 
 std::vector<Outlier> FindOutliers(const BrdfSamples& samples, int num_threads) {
   const Surroundings surroundings(samples, num_threads);
-  std::vector<std::optional<Outlier>> told(samples.size());
-  ParallelForShort(samples.size(), num_threads,
-                   [&](int j) { told[j] = surroundings.FarOff(j, Mean(samples.rho[j])); });
+  std::vector<std::vector<Outlier>> by_theta_h(samples.grid.theta_h);
+  ParallelFor(samples.grid.theta_h, num_threads,
+              [&](int h) { surroundings.AddOutliers(h, &by_theta_h[h]); });
   std::vector<Outlier> found;
-  for (const std::optional<Outlier>& outlier : told) {
-    if (outlier) found.push_back(*outlier);
+  for (const std::vector<Outlier>& some : by_theta_h) {
+    found.insert(found.end(), some.begin(), some.end());
   }
+  std::ranges::sort(found, {}, &Outlier::sample);
   return found;
 }
 

@@ -338,11 +338,16 @@ SampleCollector::SampleCollector(const std::string& source, const std::string& k
 
 void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
   // The horizon counts as below the surface, too; users of the samples test cosines computed from
-  // the half and difference angles.
-  const bool above = std::max(angles.theta_i, angles.theta_o) < kPi / 2;
-  const HalfDiffAngles half_diff = above ? ToHalfDiff(DirectionsOf(angles)) : HalfDiffAngles{};
-  const Cosines cosines = ToCosines(half_diff);
-  if (!above || !(cosines.i > 0 && cosines.o > 0)) {
+  // the half and difference angles, which are no others far from it.
+  constexpr double kFarFromHorizon = kPi / 2 - 1e-6;
+  const double larger = std::max(angles.theta_i, angles.theta_o);
+  const HalfDiffAngles half_diff =
+      larger < kPi / 2 ? ToHalfDiff(DirectionsOf(angles)) : HalfDiffAngles{};
+  const auto is_above = [&] {
+    const Cosines cosines = ToCosines(half_diff);
+    return larger < kPi / 2 && cosines.i > 0 && cosines.o > 0;
+  };
+  if (!(larger < kFarFromHorizon && IsAboveSurface(angles)) && !is_above()) {
     LeaveOut(&BinCounts::below_surface);
   } else if (!std::ranges::all_of(rho, [](double x) { return std::isfinite(x); })) {
     LeaveOut(&BinCounts::non_finite);
