@@ -234,16 +234,24 @@ def git(root: pathlib.Path, *arguments: str) -> Optional[str]:
 
 
 @functools.cache
-def same_fits(root: pathlib.Path) -> set[str]:
-    """Commits that are known to leave fits as they were."""
+def same_fits(root: pathlib.Path) -> dict[str, set[str]]:
+    """Commits that are known to leave fits as they were, but for those of some experiments."""
     lines = (root / "experiments/same_fits.txt").read_text().splitlines()
-    return {git(root, "rev-parse", line.split()[0]) or line for line in lines if not line.startswith("#")}
+    same = {}
+    for line in lines:
+        if line.startswith("#"):
+            continue
+        commit, *words = line.split()
+        changed = line.split(":")[0].split()[2:] if words[0] == "but" else []
+        same[git(root, "rev-parse", commit) or line] = set(changed)
+    return same
 
 
-def has_changed(root: pathlib.Path, revision: str, paths: list[str]) -> bool:
-    """Whether a commit since the revision may have changed fits, which depend on the paths."""
+def has_changed(root: pathlib.Path, revision: str, paths: list[str], experiment: str) -> bool:
+    """Whether a commit since the revision may have changed fits of the experiment, which depend on the paths."""
     commits = (git(root, "log", "--format=%H", f"{revision}..HEAD", "--", *paths) or "").split()
-    return not same_fits(root).issuperset(commits) or git(root, "diff", "--quiet", "HEAD", "--", *paths) is None
+    same = {commit for commit, changed in same_fits(root).items() if experiment not in changed}
+    return not same.issuperset(commits) or git(root, "diff", "--quiet", "HEAD", "--", *paths) is None
 
 
 @functools.cache
@@ -260,7 +268,7 @@ def staleness(results: pathlib.Path, root: pathlib.Path) -> str:
     reasons = []
     if unknown:
         reasons.append(f"by sources that are not in this repository ({', '.join(unknown)})")
-    elif any(has_changed(root, revision, paths)
+    elif any(has_changed(root, revision, paths, results.parent.name)
              for paths in (fits, ALSO.get(results.parent.name)) if paths for revision in revisions):
         reasons.append(f"before changes of fits ({', '.join(revisions)})")
     settings = load(results.parent / "manifest.json", made["form"])

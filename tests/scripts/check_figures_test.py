@@ -160,8 +160,11 @@ class CheckFigures(unittest.TestCase):
         self.assertIn("before changes of fits", self.output)
         self.commit()
         self.assertFalse(self.check())
-        (self.root / "experiments/same_fits.txt").write_text(f"{self.git('rev-parse', '--short', 'HEAD')} looked at\n")
-        self.assertTrue(self.check(), self.output)
+        same = self.root / "experiments/same_fits.txt"
+        head = self.git("rev-parse", "--short", "HEAD")
+        for line, is_same in [("looked at", True), ("but y x: looked at", False), ("but y: looked at x", True)]:
+            same.write_text(f"{head} {line}\n")
+            self.assertEqual(self.check(), is_same, self.output)
 
     def test_another_page_names_the_stale_experiments(self):
         self.manifest("0123abc")
