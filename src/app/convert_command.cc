@@ -1,8 +1,11 @@
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <ostream>
+#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -31,9 +34,12 @@ DEFINE_double(error, 0,
               "the median over directions; finer tables are taken until it is met. 0: 0.005, of an "
               "anisotropic model 0.02, or as near as files come, and of a measurement as files of "
               "usual size come");
-DEFINE_bool(spectral, false,
-            "of a .bsdf file: spectra in place of RGB, for spectral renderers (Mitsuba's spectral "
-            "variants, pbrt-v4); the others cannot read it");
+DEFINE_bool(
+    spectral, false,
+    "what is spectral: of `fit`, also write DIR/spectral.json, a model of all wavelengths that "
+    "were measured; of a .bsdf file, spectra in place of RGB, for spectral renderers "
+    "(Mitsuba's spectral variants, pbrt-v4; the others cannot read it); of a .csv file, a "
+    "column a wavelength");
 DEFINE_string(at, "",
               "of a model and a .csv file: a measurement, at the directions of which the values of "
               "both are written, side by side");
@@ -75,7 +81,7 @@ void CheckRendererFlags(const std::string& path) {
   if (!TakesError(path) && !IsDefault("error")) {
     throw Error("--error goes with an --out that ends in .bsdf");
   }
-  if (!IsTensorFile(path) && !IsDefault("spectral")) {
+  if (!IsTensorFile(path) && EndingOf(path) != ".csv" && !IsDefault("spectral")) {
     throw Error("--spectral goes with an --out that ends in .bsdf, but not in .zemax.bsdf");
   }
   for (const char* const flag : {"picture", "probe"}) {
@@ -122,16 +128,54 @@ Measurement MeasurementOf(const std::string& source, const std::string& out,
   return measurement;
 }
 
+std::string NotSpectral(const std::string& source) {
+  return "--spectral goes with an --out that ends in .bsdf, or in .csv of what has wavelengths, "
+         "and " +
+         source + " has none";
+}
+
+void WriteSpectra(const BrdfSamples& at, std::span<const double> wavelengths,
+                  const std::function<void(int, std::span<double>)>& spectrum) {
+  WriteSpectraCsv(at, wavelengths, spectrum, FLAGS_out);
+  PrintLine("wrote " + FLAGS_out + ": " + std::to_string(at.size()) + " samples of " +
+            std::to_string(wavelengths.size()) + " wavelengths");
+}
+
+// The spectra of a measurement to --out, a CSV file.
+void WriteMeasuredSpectra(const std::string& source, const SourceOptions& options) {
+  if (IsModelFile(source)) {
+    throw Error(source +
+                ": --spectral and an --out in .csv take the directions of --at=MEASUREMENT");
+  }
+  const Measurement measurement = LoadMeasurement(source, options);
+  PrintNotes(measurement);
+  const BrdfSamples& samples = measurement.samples;
+  if (samples.spectra == nullptr) throw Error(NotSpectral(source));
+  WriteSpectra(samples, samples.spectra->wavelengths, [&](int j, std::span<double> row) {
+    std::ranges::copy(samples.SpectrumOf(j), row.begin());
+  });
+}
+
 // Writes the values of a model beside those of the measurement --at to --out.
 void WriteAt(const std::string& source) {
   if (!IsModelFile(source)) throw Error(source + ": --at goes with a model");
   if (EndingOf(FLAGS_out) != ".csv") throw Error("--at goes with an --out that ends in .csv");
   Inputs({source, FLAGS_at}).CheckOutput(FLAGS_out);
   const SourceOptions options = SourceOptionsFromFlags();
-  const FactorModel model = ModelOfSource(source).model;
+  const ModelFile file = ModelOfSource(source);
+  if (FLAGS_spectral && !file.spectral) throw Error(NotSpectral(source));
+  const FactorModel& model = file.model;
   const Measurement measurement = MeasurementOfSource(FLAGS_at, options);
   PrintNotes(measurement);
   const BrdfSamples samples = SamplesOf(measurement);
+  if (FLAGS_spectral) {
+    WriteSpectra(samples, file.spectral->wavelengths(), [&](int j, std::span<double> rho) {
+      const DirectionPair pair = samples.directions.empty() ? ToDirections(samples.Angles(j))
+                                                            : ToDirections(samples.directions[j]);
+      std::ranges::copy(Evaluate(*file.spectral, pair), rho.begin());
+    });
+    return;
+  }
   WriteBesideCsv(samples, EvaluateSamples(model, samples, options.num_threads), FLAGS_out);
   PrintLine("wrote " + FLAGS_out + ": " + std::to_string(samples.size()) +
             " samples, measured and fitted");
@@ -162,6 +206,10 @@ int RunConvert(std::span<const std::string> arguments) {
   Inputs({source}).CheckOutput(out);
   SourceOptions options = SourceOptionsFromFlags();
   options.outliers = options.dark_noise = true;  // what is copied stays as it is
+  if (FLAGS_spectral) {
+    WriteMeasuredSpectra(source, options);
+    return 0;
+  }
   const Measurement measurement = MeasurementOf(source, out, options);
   PrintNotes(measurement);
   const std::string written = WriteMeasurement(measurement, out, options.num_threads);

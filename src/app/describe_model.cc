@@ -5,6 +5,7 @@
 #include "app/describe.h"
 #include "app/flags.h"
 #include "app/inputs.h"
+#include "fit/reports/bands_report.h"
 #include "fit/reports/model_report.h"
 #include "fit/reports/print.h"
 #include "io/model_files/stretch_json.h"
@@ -79,14 +80,16 @@ void DescribeModel(const std::string& path) {
   const LobeLight light = ComputeLobeLight(ObservedEntries(file.unobserved), model);
 
   if (FLAGS_json) {
-    Json json = {{"file", path},
-                 {"kind", "model"},
-                 {"anisotropic", spec.anisotropic()},
-                 {"lobes", spec.lobes},
-                 {"parameters", spec.num_parameters()},
-                 {"d", ToRgb(model.d())},
-                 {"s", Json::array()}};
+    Json json = {
+        {"file", path},
+        {"kind", "model"},
+        {"anisotropic", spec.anisotropic()},
+        {"lobes", spec.lobes},
+        {"parameters", file.spectral ? file.spectral->num_parameters() : spec.num_parameters()},
+        {"d", ToRgb(model.d())},
+        {"s", Json::array()}};
     for (int m = 0; m < spec.lobes; ++m) json["s"].push_back(ToRgb(model.s(m)));
+    json["wavelengths"] = file.spectral ? Json(file.spectral->wavelengths()) : Json();
     json["light"] = ToJson(light);
     for (const Factor factor : kFactors) {
       const TableSharing& sharing = spec.sharing(factor);
@@ -122,6 +125,12 @@ void DescribeModel(const std::string& path) {
   PrintLine("kind", std::string(spec.anisotropic() ? "anisotropic " : "") + "model, " +
                         std::to_string(spec.lobes) + " lobes, " +
                         std::to_string(spec.num_parameters()) + " parameters");
+  if (file.spectral) {
+    PrintLine("wavelengths", WavelengthsText(*file.spectral) + ", by " +
+                                 std::to_string(file.spectral->num_parameters()) +
+                                 " parameters; what follows is " +
+                                 (file.spectral->bands() > 1 ? "their colour, RGB" : "of it"));
+  }
   if (file.layout) {
     PrintLine("stored", std::to_string(file.layout->num_parameters(spec)) + " parameters, and " +
                             std::to_string(file.layout->num_places(spec)) + " places of nodes");

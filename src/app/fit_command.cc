@@ -99,10 +99,10 @@ int RunFitOfScene(std::span<const std::string> arguments) {
     throw Error("--scene names the sources in its file; leave out " + arguments[0]);
   }
   for (const char* const flag :
-       {"init",  "model",  "stretch",        "d_nodes",        "f_bins",     "g_nodes",
-        "nodes", "prior",  "max_parameters", "robust",         "smoothness", "match_reflectance",
-        "raw",   "probe",  "convergence",    "reconstruction", "plots",      "diagnose",
-        "shard", "verbose"}) {
+       {"init",  "model",   "stretch",        "d_nodes",        "f_bins",     "g_nodes",
+        "nodes", "prior",   "max_parameters", "robust",         "smoothness", "match_reflectance",
+        "raw",   "probe",   "convergence",    "reconstruction", "plots",      "diagnose",
+        "shard", "verbose", "spectral"}) {
     if (!IsDefault(flag)) {
       throw Error("--" + std::string(flag) + " is for the fit of one SOURCE, not for --scene");
     }

@@ -22,6 +22,7 @@
 #include "core/files/file.h"
 #include "core/system/content_hash.h"
 #include "core/system/process.h"
+#include "fit/reports/bands_report.h"
 #include "fit/reports/fit_details.h"
 #include "fit/reports/print.h"
 #include "io/formats/merl_file.h"
@@ -45,6 +46,8 @@ namespace trilobe {
 namespace {
 
 constexpr const char* kModelName = "model.json";
+constexpr const char* kSpectralName = "spectral.json";
+constexpr const char* kBandsName = "spectral.png";
 constexpr const char* kTraceName = "trace.csv";
 constexpr const char* kReportName = "report.json";
 constexpr const char* kConvergenceName = "convergence.csv";
@@ -122,6 +125,11 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
   const int threads = run->objective->num_threads();
   FitReport& report = run->report;
   Stopwatch stopwatch;
+  if (report.bands) {
+    ModelFile spectral = run->file;
+    spectral.spectral = report.bands->model;
+    folder->Write(kSpectralName, [&](std::ostream& out) { out << FormatModel(spectral); });
+  }
   WriteTrace(folder->PathOf(kTraceName), report.summary.trace);
   if (settings.convergence) {
     run->convergence.Write(folder->PathOf(kConvergenceName), *run->objective);
@@ -155,6 +163,15 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
       std::optional<SphereError> sphere;
       if (report.appearance) sphere = report.appearance->sphere;
       DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance, sphere);
+    });
+  }
+  if (settings.plots && report.bands) {
+    drawings.emplace_back([&] {
+      const SpectralModel& model = report.bands->model;
+      std::vector<double> errors;
+      for (int l = 0; l < model.bands(); ++l) errors.push_back(report.bands->Relative(l));
+      DrawBands(model, errors, FileNameOf(run->file.fit.source) + ": " + WavelengthsText(model),
+                folder->PathOf(kBandsName));
     });
   }
   // Who ends the program early does not wait for pictures.
@@ -209,8 +226,9 @@ void ConvergenceCurve::Write(const std::string& path, const Objective& objective
 
 const std::vector<std::string>& FitFileNames() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = {kReportName,         kModelName,   kTraceName, kConvergenceName,
-                                    kReconstructionName, kAtNodesName, kPairName,  kViewName};
+    std::vector<std::string> all = {
+        kReportName,      kModelName,          kSpectralName, kBandsName, kTraceName,
+        kConvergenceName, kReconstructionName, kAtNodesName,  kPairName,  kViewName};
     all.insert(all.end(), std::begin(kPictureNames), std::end(kPictureNames));
     return all;
   }();

@@ -39,6 +39,7 @@ DEFINE_bool(
     raw, false,
     "store the model that the solver found, as for comparing solvers: entries at the edge of "
     "the data are not tied, reflected light is not matched, tables are not smoothed");
+DECLARE_bool(spectral);
 DEFINE_bool(reconstruction, false,
             "also write DIR/reconstruction.binary, the fit in MERL layout, or of an anisotropic "
             "model DIR/reconstruction.bin, in UTIA's");
@@ -83,7 +84,7 @@ constexpr const char* kFlagsOfNoResult[] = {"threads", "out",     "scene", "shar
 std::vector<std::string> FitFlags() {
   std::vector<std::string> flags =
       WithSourceFlags({"solver", "init", "weighting", "prior", "robust", "smoothness",
-                       "match_reflectance", "raw", "max_parameters"});
+                       "match_reflectance", "raw", "max_parameters", "spectral"});
   for (const std::string& flag : ModelFlags()) flags.push_back(flag);
   for (const std::string& flag : CommonSolverFlags()) flags.push_back(flag);
   flags.insert(flags.end(), {"out", "reconstruction", "convergence", "plots", "verbose", "probe",
@@ -94,7 +95,8 @@ std::vector<std::string> FitFlags() {
 namespace {
 
 // Flags by which other files are written, but the same model.
-constexpr const char* kFlagsOfNoModel[] = {"reconstruction", "convergence", "plots", "diagnose"};
+constexpr const char* kFlagsOfNoModel[] = {"spectral", "reconstruction", "convergence", "plots",
+                                           "diagnose"};
 
 // `without`: flags that do not count.
 std::string KeyOfFlags(std::span<const char* const> without) {
@@ -145,6 +147,7 @@ FitSettings FitSettingsFromFlags() {
   if (!IsDefault("max_parameters")) fit.max_parameters = FLAGS_max_parameters;
   fit.match_reflectance = FLAGS_match_reflectance;
   fit.raw = FLAGS_raw;
+  fit.bands = FLAGS_spectral;
   fit.appearance = AppearanceOptionsFromFlags();
   fit.form = FormFromFlags();
   fit.prior = PriorFromFlags();

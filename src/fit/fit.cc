@@ -97,6 +97,10 @@ FitOptions CheckOptions(FitOptions options) {
     options.smoothness = 0;
     options.match_reflectance = false;
   }
+  if (options.bands && options.choose_form) {
+    throw Error(
+        "--spectral takes a form that is given: --model=auto may choose a D for each channel");
+  }
   const int most = options.max_parameters.value_or(1);
   CheckNumber("max_parameters", most, most >= 1, "at least 1");
   CheckNumThreads(options.num_threads);
@@ -129,6 +133,7 @@ class Fitting {
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
     PriorWeight(measurement_, options_);  // its error
+    if (options_.bands) CheckBands(samples, spec);
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
     fit.raw = options_.raw;
@@ -214,6 +219,10 @@ class Fitting {
     Finish(form.solved, prior ? &*prior : nullptr, std::move(form.model), fit);
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
+    if (options_.bands && !options_.stop()) {
+      fit->bands = FitBands(fit->objective, fit->model(), options_.stop);
+      fit->seconds.bands = stopwatch_.Lap();
+    }
     if (options_.compare) Compare(fit);
     fit->seconds.score = stopwatch_.Lap();
     fit->interrupted = options_.stop();
@@ -344,10 +353,7 @@ class Fitting {
     if (!pictured.empty()) {
       fit->appearance = CompareAppearance(pictured, MaterialOf(fit->model()), Appearance());
     } else {
-      const BrdfSamples& samples = fit->objective.samples();
-      fit->samples_seen = CompareSampledSphere(
-          samples, EvaluateSamples(fit->model(), samples, options_.num_threads),
-          MaterialOf(fit->model()).spherical, measurement_.anisotropic, Appearance());
+      fit->samples_seen = SeenOfSamples(fit->objective.samples(), fit->model());
     }
     if (measurement_.anisotropic && !fit->model().spec().anisotropic()) {
       fit->left_out = AnisotropyOf(measurement_).share;
@@ -370,6 +376,18 @@ class Fitting {
     if (ripple.share > kSeenRipple)
       fit->ripple = {.share = ripple.share, .theta_i = ripple.theta_i};
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
+    if (fit->bands) {
+      const FactorModel rgb = fit->bands->model.ToRgb();
+      fit->bands_seen = pictured.empty()
+                            ? SeenOfSamples(fit->objective.samples(), rgb)
+                            : CompareAppearance(pictured, MaterialOf(rgb), Appearance()).sphere;
+    }
+  }
+
+  SeenError SeenOfSamples(const BrdfSamples& samples, const FactorModel& model) const {
+    return CompareSampledSphere(samples, EvaluateSamples(model, samples, options_.num_threads),
+                                MaterialOf(model).spherical, measurement_.anisotropic,
+                                Appearance());
   }
 
   // As all samples were fitted, from that fit, in few steps.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
+#include "trilobe/fit/bands/fit_bands.h"
 #include "trilobe/fit/finish_fit.h"
 #include "trilobe/fit/form.h"
 #include "trilobe/fit/prior/node_choice.h"
@@ -62,6 +63,10 @@ struct FitOptions {
   // Returns the solver's model unchanged except for canonical form, which changes no value. Sets
   // smoothness to 0 and match_reflectance to false. An error with robust or choose_form.
   bool raw = false;
+  // Of a measurement with spectra: also fits d, s and F of each wavelength, with D and G of the
+  // model (FitBands). An error for one without, where D or G differ by channel, and with
+  // choose_form, which may choose such a form.
+  bool bands = false;
   bool compare = true;  // computes the result's appearance, samples_seen, left_out, reach and light
   AppearanceOptions appearance = {};  // num_threads is replaced
   uint64_t seed = 1;
@@ -130,12 +135,14 @@ struct FitResult {
   // (EstimateWholeSphere, EstimateWholeOfSamples).
   std::optional<WholeSphere> whole = {};
   LobeLight light = {};
+  std::optional<BandsFit> bands = {};        // FitOptions::bands, unless stopped before
+  std::optional<SeenError> bands_seen = {};  // their colours, as `appearance` or samples_seen
   // The largest jump of the directional albedo from one entry of G to the next (RippleOf).
   struct Ripple {
     double share = 0, theta_i = 0;  // [rad]
   } ripple = {};
   struct Seconds {
-    double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, score = 0;
+    double prepare = 0, init = 0, nodes = 0, solve = 0, finish = 0, bands = 0, score = 0;
   } seconds = {};
   bool raw = false;          // FitOptions::raw
   bool interrupted = false;  // `stop` has returned true

@@ -11,6 +11,7 @@
 #include "core/system/process.h"
 #include "fit/open_pbr/nearest_open_pbr.h"
 #include "fit/open_pbr/open_pbr.h"
+#include "fit/reports/bands_report.h"
 #include "fit/reports/print.h"
 #include "io/formats/completed_measurement.h"
 #include "io/formats/exported_brdf.h"
@@ -34,6 +35,8 @@
 namespace trilobe {
 namespace {
 
+constexpr const char* kRgb = "RGB";
+constexpr const char* kMadeSpectra = "spectra";  // made of RGB
 constexpr const char* kTensorEnding = ".bsdf";
 constexpr const char* kZemaxEnding = ".zemax.bsdf";
 constexpr const char* kKlemsEnding = ".xml";
@@ -78,13 +81,14 @@ std::string InMegabytes(const std::string& bytes) {
   return Text(static_cast<double>(bytes.size()) / 1e6, 2) + " MB";
 }
 
+// `content`: "RGB".
 std::string WriteTensorFile(const RglExport& file, const std::string& than, double max_angle,
-                            bool spectral, const std::string& path) {
+                            const std::string& content, const std::string& path) {
   WriteFile(path, [&](std::ostream& out) { out << file.bytes; });
-  std::string line = "wrote " + path + ": RGL tensor file of " +
-                     (spectral ? "spectra, " : "RGB, ") + InMegabytes(file.bytes) +
+  std::string line = "wrote " + path + ": RGL tensor file of " + content + ", " +
+                     InMegabytes(file.bytes) +
                      HowFarOff(than, file.median_error, file.high_error, max_angle);
-  if (spectral) {
+  if (content == kMadeSpectra) {
     line += "; colours of spectra off by " + Text(100 * file.color_error, 2) + " % at most";
     if (file.colors_off > 0) {
       line += ", by more than 0.1 % for " + Text(100 * file.colors_off, 2) +
@@ -230,8 +234,12 @@ std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::stri
   }
   RglExportOptions rgl = RglOptionsOf(options);
   rgl.max_theta = max_theta;
-  return {
-      WriteTensorFile(ExportRgl(file.model, rgl), "the model", max_angle, options.spectral, path)};
+  if (file.spectral && options.spectral) {
+    return {WriteTensorFile(ExportRgl(*file.spectral, rgl), "the model", max_angle,
+                            WavelengthsText(*file.spectral), path)};
+  }
+  return {WriteTensorFile(ExportRgl(file.model, rgl), "the model", max_angle,
+                          options.spectral ? kMadeSpectra : kRgb, path)};
 }
 
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
@@ -261,7 +269,7 @@ std::vector<std::string> WriteForRenderer(const Measurement& measurement, const 
   if (IsTensorFile(path)) {
     rgl.max_theta = DegreesToRadians(measured);
     lines.push_back(WriteTensorFile(ExportRgl(fit.model(), completed, rgl), than, measured,
-                                    options.spectral, path));
+                                    options.spectral ? kMadeSpectra : kRgb, path));
   } else {
     lines.push_back(
         WriteExported({completed.value, fit.model().spec().anisotropic(), completed.places}, than,

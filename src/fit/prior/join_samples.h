@@ -18,6 +18,8 @@ inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, do
   append(added.angles, &samples.angles);
   append(added.directions, &samples.directions);
   append(added.rho, &samples.rho);
+  samples.spectra = nullptr;  // those added have none
+  samples.spectrum_rows.clear();
   return samples;
 }
 

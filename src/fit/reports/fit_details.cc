@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "fit/reports/appearance_report.h"
+#include "fit/reports/bands_report.h"
 #include "fit/reports/bin_counts.h"
 #include "fit/reports/model_report.h"
 #include "fit/reports/print.h"
@@ -228,6 +229,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
                                         {"beyond_samples", report.reach->beyond}}
                                  : Json()},
           {"light", ToJson(report.light)},
+          {"spectral", report.bands ? ToJson(*report.bands, report.bands_seen) : Json()},
           {"diagnosis", summary.diagnosis ? ToJson(*summary.diagnosis) : Json()},
           {"seconds",
            {{"read", seconds.read},
@@ -236,6 +238,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
             {"nodes", seconds.nodes},
             {"solve", seconds.solve},
             {"finish", seconds.finish},
+            {"bands", seconds.bands},
             {"score", seconds.score},
             {"draw", seconds.draw}}},
           {"phases", ToJson(summary.phases)},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fit/reports/appearance_report.h"
+#include "fit/reports/bands_report.h"
 #include "fit/reports/print.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/solvers/registry/solvers.h"
@@ -96,6 +97,8 @@ void FillReport(const FitResult& fit, FitReport* report) {
   report->measured_share = fit.measured_share;
   report->whole = fit.whole;
   report->light = fit.light;
+  report->bands = fit.bands;
+  report->bands_seen = fit.bands_seen;
   report->ripple = fit.ripple;
   static_cast<FitResult::Seconds&>(report->seconds) = fit.seconds;
 }
@@ -168,6 +171,7 @@ void PrintSummary(const FitReport& report) {
               std::to_string(report.finished.too_few_to_choose) +
               " samples or more; this is the default form");
   }
+  if (report.bands) PrintLine("spectra      " + Describe(*report.bands, report.bands_seen));
   if (report.appearance) std::cout << DescribeBriefly(*report.appearance);
   if (report.reach) std::cout << ReachText(*report.reach);
 }
@@ -182,6 +186,7 @@ void PrintSeconds(const FitReport& report) {
                                    {"choosing nodes", seconds.nodes},
                                    {"solving", seconds.solve},
                                    {"finishing", seconds.finish},
+                                   {"fitting wavelengths", seconds.bands},
                                    {"comparing", seconds.score},
                                    {"drawing", seconds.draw}}) {
     // Rounded before they are summed, so that what is printed adds up.

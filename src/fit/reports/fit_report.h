@@ -57,6 +57,8 @@ struct FitReport {
   double measured_share = 1;  // MeasuredShare
   std::optional<WholeSphere> whole;
   LobeLight light;
+  std::optional<BandsFit> bands;
+  std::optional<SeenError> bands_seen;
   FitResult::Ripple ripple;
   Seconds seconds;
   std::optional<int64_t> peak_memory = std::nullopt;  // of the program [bytes]

@@ -53,9 +53,8 @@ Columns ReadVars(const TextLines& lines, std::string_view vars) {
     if (const auto wavelength = WavelengthOf(names[k])) columns.wavelengths.push_back(*wavelength);
   }
   const size_t n = columns.values.size();
-  if (n == 1) {
-    columns.wavelengths.clear();
-  } else if (columns.wavelengths.empty() && n == kChannels) {
+  if (n == 1) return columns;
+  if (columns.wavelengths.empty() && n == kChannels) {
     const char* const channels[kChannels] = {"R", "G", "B"};
     for (int c = 0; c < kChannels; ++c) columns.values[c] = find(channels[c]);
   } else if (n == 0 || columns.wavelengths.size() != n) {
@@ -94,7 +93,7 @@ Measurement ParseAstm(std::string_view text, const std::string& source) {
   TextLines lines(text, source);
   const auto [columns, points] = ReadHeader(&lines, source);
   std::optional<SpectralColor> color;
-  if (!columns.wavelengths.empty()) color.emplace(columns.wavelengths, source);
+  if (!columns.wavelengths.empty()) color = SpectralColor::OfBands(columns.wavelengths, source);
   SampleCollector collector(source, "ASTM E1392 file of scattered samples");
   std::vector<double> numbers, values;
   int read = 0;

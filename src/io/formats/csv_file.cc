@@ -1,10 +1,13 @@
 #include "io/formats/csv_file.h"
 
-#include <array>
+#include <algorithm>
 #include <charconv>
+#include <functional>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/files/file.h"
 #include "io/formats/table_columns.h"
@@ -14,8 +17,6 @@
 
 namespace trilobe {
 namespace {
-
-constexpr size_t kColumns = 10;
 
 // With phi_i = 0 and phi_o from 0 to 360 degrees.
 SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
@@ -27,13 +28,14 @@ SphericalAngles FromIncidentPlane(const HalfDiffAngles& angles) {
 }
 
 // Writes a row per sample, with as many digits as read back to the same numbers: its directions,
-// its values and, unless empty, other values. Samples on a grid stand at the centres of its bins,
+// and so many columns of values. Samples on a grid stand at the centres of its bins,
 // with phi_i = 0.
 void WriteRows(const std::string& path, const std::string& head, const BrdfSamples& samples,
-               std::span<const Rgb> others) {
+               size_t columns, const std::function<void(int, std::span<double>)>& values) {
   WriteFile(path, [&](std::ostream& out) {
     out << head << '\n';
-    std::array<char, kColumns * 32> row;  // the longest double has 24 characters
+    std::vector<double> of_row(columns);
+    std::vector<char> row((kAngles + columns) * 32);  // the longest double has 24 characters
     for (int j = 0; j < samples.size(); ++j) {
       char* end = row.data();
       const auto add = [&](double number) {
@@ -45,10 +47,8 @@ void WriteRows(const std::string& path, const std::string& head, const BrdfSampl
       for (const double angle : {at.theta_i, at.phi_i, at.theta_o, at.phi_o}) {
         add(RadiansToDegrees(angle));
       }
-      for (const double value : samples.rho[j]) add(value);
-      if (!others.empty()) {
-        for (const double value : others[j]) add(value);
-      }
+      values(j, of_row);
+      for (const double value : of_row) add(value);
       end[-1] = '\n';
       out.write(row.data(), end - row.data());
     }
@@ -63,7 +63,8 @@ std::string WriteCsv(const Measurement& measurement, const std::string& path, in
   if (samples.size() == 0) SamplesOf(measurement);  // throws
   const std::string count = std::to_string(samples.size());
   WriteRows(path, "# BRDF [1/sr] of " + count + " pairs of directions [degrees]\n" + kUsualColumns,
-            samples, {});
+            samples, kChannels,
+            [&](int j, std::span<double> row) { std::ranges::copy(samples.rho[j], row.begin()); });
   return count + " samples";
 }
 
@@ -80,7 +81,20 @@ void WriteBesideCsv(const BrdfSamples& measured, std::span<const Rgb> fitted,
   WriteRows(path,
             "theta_i,phi_i,theta_o,phi_o,measured_r,measured_g,measured_b,fitted_r,fitted_g,"
             "fitted_b",
-            measured, fitted);
+            measured, 2 * kChannels, [&](int j, std::span<double> row) {
+              std::ranges::copy(measured.rho[j], row.begin());
+              std::ranges::copy(fitted[j], row.begin() + kChannels);
+            });
+}
+
+void WriteSpectraCsv(const BrdfSamples& at, std::span<const double> wavelengths,
+                     const std::function<void(int, std::span<double>)>& spectrum,
+                     const std::string& path) {
+  std::ostringstream head;
+  head << "# BRDF [1/sr] of " << at.size() << " pairs of directions [degrees] at "
+       << wavelengths.size() << " wavelengths [nm]\ntheta_i,phi_i,theta_o,phi_o";
+  for (const double wavelength : wavelengths) head << "," << wavelength << "nm";
+  WriteRows(path, head.str(), at, wavelengths.size(), spectrum);
 }
 
 MeasurementFormat CsvFormat() {

@@ -199,7 +199,7 @@ Measurement ParseLightTools(std::string_view text, const std::string& source) {
   const LightToolsBlocks blocks = ReadLightToolsBlocks(header, &lines);
   const std::vector<double> bands = BandsOf(blocks, header.tristimulus, source);
   std::optional<SpectralColor> color;
-  if (bands.size() > 1 && !header.tristimulus) color.emplace(bands, source);
+  if (!header.tristimulus) color = SpectralColor::OfBands(bands, source);
   SampleCollector collector(source, "LightTools BSDF file of scattered samples");
   std::vector<double> values;
   for (const auto& [incidence, by_band] : blocks.read) {
@@ -216,7 +216,7 @@ Measurement ParseLightTools(std::string_view text, const std::string& source) {
         if (header.tristimulus) {
           AddTristimulus(at, {values[0], values[1], values[2]}, &collector);
         } else {
-          AddSpectrum(at, values, color, &collector);
+          AddSpectrum(at, values, *color, &collector);
         }
       }
     }
@@ -226,7 +226,7 @@ Measurement ParseLightTools(std::string_view text, const std::string& source) {
   std::ostringstream note;
   note << "read as: front reflection";
   if (header.tristimulus) note << ", " << kTristimulusNote;
-  if (color) note << ", " << bands.size() << " wavelengths to RGB by CIE 1931";
+  if (color && bands.size() > 1) note << ", " << bands.size() << " wavelengths to RGB by CIE 1931";
   if (blocks.left_out > 0) {
     note << "; " << blocks.left_out << " blocks of transmission or the back are left out";
   }

@@ -115,8 +115,7 @@ Measurement ParseOpenMaterial(std::string_view text, const std::string& source) 
                   " nm; give a file of each wavelength");
     }
   }
-  std::optional<SpectralColor> color;
-  if (bands.size() > 1) color.emplace(wavelengths, source);
+  const SpectralColor color = SpectralColor::OfBands(wavelengths, source);
   SampleCollector collector(source, "OpenMATERIAL 3D table of scattered samples");
   std::vector<double> spectrum(bands.size());
   for (size_t k = 0; k < bands[0].rows.size(); ++k) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <string_view>
@@ -43,13 +44,20 @@ Direction Reflected(const Direction& wi, const Direction& m) {
   return {twice * m[0] - wi[0], twice * m[1] - wi[1], twice * m[2] - wi[2]};
 }
 
-// The tables of a file, from a model. The file's value is
+// A BRDF of so many bands, R, G and B or wavelengths.
+struct BandsBrdf {
+  int count = kChannels;
+  std::function<void(const DirectionPair&, std::span<double> rho)> value;
+};
+
+// The tables of a file, from a model and the values that the file shall have, of which the model is
+// the colour. The file's value is
 //   rho cos theta_o = rgb(x) ndf(m) / (4 sigma(wi)),  m the half vector, x where the warp sends m.
 class Tables {
  public:
-  Tables(const FactorModel& model, PairBrdf value, double max_theta)
+  Tables(const FactorModel& model, BandsBrdf bands, double max_theta)
       : model_(model),
-        value_(std::move(value)),
+        bands_(std::move(bands)),
         bsdf_(model),
         least_cosine_(std::cos(std::min(max_theta, kGrazingTheta))) {
     MakeNdf();
@@ -61,7 +69,7 @@ class Tables {
   // 1.
   struct File {
     TensorFileWriter writer;
-    std::vector<float> rgb;  // [phi_i][theta_i][channel][n][n]
+    std::vector<float> values;  // [phi_i][theta_i][band][n][n]
   };
   File Fields(const Size& size, const std::string& description) const {
     const auto floats = [](const std::vector<double>& values) {
@@ -75,7 +83,7 @@ class Tables {
     for (int k = 0; k < p; ++k) phi_i.push_back(p == 1 ? 0 : -kPi + 2 * kPi * k / (p - 1));
     Values values = ValuesAt(phi_i, theta_i, n);
     File file;
-    file.rgb = std::move(values.rgb);
+    file.values = std::move(values.of_bands);
     file.writer.AddBytes("description", description);
     file.writer.AddBytes("jacobian", std::string_view("\1", 1));
     file.writer.AddFloat32("phi_i", {p}, floats(phi_i));
@@ -191,7 +199,7 @@ class Tables {
   }
 
   struct Values {
-    std::vector<float> rgb;        // [phi_i][theta_i][channel][n][n]
+    std::vector<float> of_bands;   // [phi_i][theta_i][band][n][n]
     std::vector<float> luminance;  // [phi_i][theta_i][n][n]
   };
   Values ValuesAt(const std::vector<double>& all_phi_i, const std::vector<double>& all_theta_i,
@@ -200,13 +208,14 @@ class Tables {
     const BilinearWarp warp(vndf_);
     const bool anisotropic = model_.spec().anisotropic();
     const double least_cosine = std::cos(kGrazingTheta);
-    std::vector<float> channel[kChannels];
+    std::vector<std::vector<float>> by_band(bands_.count);
+    std::vector<double> f(bands_.count);
     for (const double phi_i : all_phi_i) {
       for (const double theta : all_theta_i) {
         const double theta_i = std::min(theta, kGrazingTheta);
         const Direction wi = ToDirection({theta_i, phi_i});
         const double sigma = sigma_.At(0, {std::sqrt(theta_i * (2 / kPi)), 0});
-        for (std::vector<float>& of_channel : channel) of_channel.clear();
+        for (std::vector<float>& of_band : by_band) of_band.clear();
         for (int node = 0; node < n * n; ++node) {
           const int row = node / n, column = node % n;
           const SquarePoint x = {static_cast<double>(column) / (n - 1),
@@ -222,12 +231,12 @@ class Tables {
           const double length = std::sqrt(Dot(wo, wo));
           for (double& a : wo) a /= length;
           const double ndf = NdfAt(u.x, phi_m);
-          const Rgb f = value_({wi, wo});
+          bands_.value({wi, wo}, f);
           double mean = 0;
-          for (int c = 0; c < kChannels; ++c) {
-            const double value = f[c] * wo[2] * 4 * sigma / ndf;
-            channel[c].push_back(static_cast<float>(value));
-            mean += value / kChannels;
+          for (int l = 0; l < bands_.count; ++l) {
+            const double value = f[l] * wo[2] * 4 * sigma / ndf;
+            by_band[l].push_back(static_cast<float>(value));
+            mean += value / bands_.count;
           }
           // Renderers draw x by this: what is reflected, by the solid angles of x,
           //   d omega_o = 4 (wi . m) sin theta_m (2 pi^2 u) du dv, du dv = dx dy / vndf.
@@ -237,8 +246,8 @@ class Tables {
           values.luminance.push_back(
               static_cast<float>(above ? mean * ndf / (4 * sigma) * spread : 0));
         }
-        for (const std::vector<float>& of_channel : channel) {
-          values.rgb.insert(values.rgb.end(), of_channel.begin(), of_channel.end());
+        for (const std::vector<float>& of_band : by_band) {
+          values.of_bands.insert(values.of_bands.end(), of_band.begin(), of_band.end());
         }
         const auto slice = std::span(values.luminance).last(static_cast<size_t>(n) * n);
         const float largest = *std::ranges::max_element(slice);
@@ -250,7 +259,7 @@ class Tables {
   }
 
   const FactorModel& model_;
-  const PairBrdf value_;
+  const BandsBrdf bands_;
   const Bsdf<double> bsdf_;
   const double least_cosine_;  // of what was measured
   BilinearStack ndf_, sigma_, vndf_;
@@ -280,37 +289,55 @@ std::vector<float> SpectraOf(const std::vector<float>& rgb, const std::vector<do
   return spectra;
 }
 
+// What a file holds: RGB, spectra that are made of it, or spectra that there are.
+struct FileColors {
+  enum class Kind { kRgb, kMadeSpectra, kSpectra } kind = Kind::kRgb;
+  std::vector<double> wavelengths = {};  // of kSpectra
+};
+
 RglExport FileOf(const Tables& tables, const Size& size, const std::string& description,
-                 bool spectral) {
+                 const FileColors& colors) {
   RglExport result = {
       .bytes = {}, .theta_i = size.theta_i, .phi_i = size.phi_i, .resolution = size.n};
   Tables::File file = tables.Fields(size, description);
-  if (spectral) {
-    std::vector<double> wavelengths;
-    for (int l = 0; l < kWavelengths; ++l) {
-      wavelengths.push_back(kFirstWavelength + l * kWavelengthStep);
-    }
-    file.writer.AddFloat32("wavelengths", {kWavelengths}, {wavelengths.begin(), wavelengths.end()});
-    file.writer.AddFloat32("spectra", {size.phi_i, size.theta_i, kWavelengths, size.n, size.n},
-                           SpectraOf(file.rgb, wavelengths, size, &result));
+  if (colors.kind == FileColors::Kind::kRgb) {
+    file.writer.AddFloat32("rgb", {size.phi_i, size.theta_i, kChannels, size.n, size.n},
+                           file.values);
   } else {
-    file.writer.AddFloat32("rgb", {size.phi_i, size.theta_i, kChannels, size.n, size.n}, file.rgb);
+    std::vector<double> wavelengths = colors.wavelengths;
+    if (colors.kind == FileColors::Kind::kMadeSpectra) {
+      for (int l = 0; l < kWavelengths; ++l) {
+        wavelengths.push_back(kFirstWavelength + l * kWavelengthStep);
+      }
+      file.values = SpectraOf(file.values, wavelengths, size, &result);
+    }
+    const int count = static_cast<int>(wavelengths.size());
+    file.writer.AddFloat32("wavelengths", {count}, {wavelengths.begin(), wavelengths.end()});
+    file.writer.AddFloat32("spectra", {size.phi_i, size.theta_i, count, size.n, size.n},
+                           file.values);
   }
   result.bytes = file.writer.Bytes();
   return result;
 }
 
-RglExport Export(const FactorModel& model, const ExportedBrdf& brdf, const std::string& description,
-                 bool any_error, const RglExportOptions& options) {
+BandsBrdf ChannelsOf(const PairBrdf& value) {
+  return {.count = kChannels, .value = [value](const DirectionPair& pair, std::span<double> rho) {
+            std::ranges::copy(value(pair), rho.begin());
+          }};
+}
+
+RglExport Export(const FactorModel& model, const ExportedBrdf& brdf, const BandsBrdf& bands,
+                 const FileColors& colors, const std::string& description, bool any_error,
+                 const RglExportOptions& options) {
   std::span<const Size> sizes =
       brdf.anisotropic ? std::span<const Size>(kAnisotropic) : std::span<const Size>(kIsotropic);
   if (any_error) sizes = sizes.first(kUsual);
   const double max_error = options.max_error.value_or(brdf.anisotropic ? 0.02 : 0.005);
-  const Tables tables(model, brdf.value, options.max_theta);
+  const Tables tables(model, bands, options.max_theta);
   auto result = ChooseSmallest<RglExport>(
       static_cast<int>(sizes.size()),
       [&](int k) {
-        RglExport made = FileOf(tables, sizes[k], description, options.spectral);
+        RglExport made = FileOf(tables, sizes[k], description, colors);
         const RglBrdf file = RglBrdf::Parse(made.bytes, "the file to be written");
         const ExportError error = MeasureError(
             [&](const DirectionPair& pair) { return file.Evaluate(pair); }, brdf.places);
@@ -325,17 +352,40 @@ RglExport Export(const FactorModel& model, const ExportedBrdf& brdf, const std::
   return result;
 }
 
+FileColors ColorsAs(const RglExportOptions& options) {
+  return {options.spectral ? FileColors::Kind::kMadeSpectra : FileColors::Kind::kRgb};
+}
+
+constexpr const char* kOfModel = "a microfacet model, fitted by Trilobe";
+
 }  // namespace
 
 RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options) {
-  return Export(model, ExportedModel(model, options.max_theta),
-                "a microfacet model, fitted by Trilobe", false, options);
+  const ExportedBrdf brdf = ExportedModel(model, options.max_theta);
+  return Export(model, brdf, ChannelsOf(brdf.value), ColorsAs(options), kOfModel, false, options);
+}
+
+RglExport ExportRgl(const SpectralModel& model, const RglExportOptions& options) {
+  CheckParameters(model);
+  if (model.bands() < 2) {
+    throw Error(
+        "a file of spectra needs two or more wavelengths, and the model has one; leave out "
+        "--spectral for a grey one");
+  }
+  const FactorModel rgb = model.ToRgb();
+  const BandsBrdf bands = {.count = model.bands(),
+                           .value = [&model](const DirectionPair& pair, std::span<double> rho) {
+                             std::ranges::copy(Evaluate(model, pair), rho.begin());
+                           }};
+  return Export(rgb, ExportedModel(rgb, options.max_theta), bands,
+                {FileColors::Kind::kSpectra, model.wavelengths()}, kOfModel, false, options);
 }
 
 RglExport ExportRgl(const FactorModel& model, const CompletedMeasurement& measured,
                     const RglExportOptions& options) {
   CheckParameters(model);
   return Export(model, {measured.value, model.spec().anisotropic(), measured.places},
+                ChannelsOf(measured.value), ColorsAs(options),
                 "measured values, between which a model stands that Trilobe fitted to them",
                 !options.max_error, options);
 }

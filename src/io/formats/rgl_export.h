@@ -7,6 +7,7 @@
 #include "io/formats/completed_measurement.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/spectral/spectral_model.h"
 
 namespace trilobe {
 
@@ -38,6 +39,10 @@ struct RglExport {
 // Throws Error, with the last error, if no file of at most 18 MB (with `rgb`; spectra take five
 // times as much) is exact enough.
 RglExport ExportRgl(const FactorModel& model, const RglExportOptions& options = {});
+
+// The same of a spectral model, with its own wavelengths and values, and the error of its colours.
+// `options.spectral` does not count. Throws Error for a single wavelength, too.
+RglExport ExportRgl(const SpectralModel& model, const RglExportOptions& options = {});
 
 // Exports a measurement with the warp of a model fitted to it. The values, and the places where
 // the error is measured, are those of Complete. Noise limits the accuracy of finer tables, so

@@ -2,40 +2,19 @@
 #define TRILOBE_IO_FORMATS_SPECTRUM_H_
 
 #include <array>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "model/spectral/spectral_color.h"
 #include "trilobe/core/geometry/channels.h"
 #include "trilobe/model/measurement/measurement.h"
 
 namespace trilobe {
 
-// Converts reflectance spectra to linear sRGB: CIE 1931 2-degree observer under D65, the white of
-// sRGB. A constant spectrum r becomes (r, r, r) without adaptation.
-class SpectralColor {
- public:
-  // Ascending wavelengths [nm]. Spectra are linear between them and constant beyond them (ASTM
-  // E308). Throws Error, which names the source, if they do not ascend, a gap exceeds 50 nm, or
-  // more than 50 nm of 400 to 700 nm is missing at an end.
-  SpectralColor(std::span<const double> wavelengths, const std::string& source);
-
-  // spectrum: [wavelengths]. Channels are below 0 for colours outside the gamut of sRGB.
-  Rgb operator()(std::span<const double> spectrum) const;
-
- private:
-  std::vector<Rgb> weights_;  // [wavelengths]
-};
-
-// Adds a sample by its spectrum [1/sr]. It is valid if all values are finite and >= 0. Channels
-// below 0 (out of gamut) become 0.
+// Adds a sample by its spectrum [1/sr], which is kept beside its colour. It is valid if all values
+// are finite and >= 0. Channels below 0 (out of gamut) become 0.
 void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
                  const SpectralColor& color, SampleCollector* collector);
-
-// The same of one wavelength, without a `color`, whose value is that of all channels.
-void AddSpectrum(const SphericalAngles& angles, std::span<const double> spectrum,
-                 const std::optional<SpectralColor>& color, SampleCollector* collector);
 
 inline constexpr const char* kTristimulusNote = "X, Y, Z relative to white, which is taken for D65";
 // The same for CIE 1931 tristimulus values, each relative to that of white: a grey has X = Y = Z.

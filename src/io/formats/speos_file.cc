@@ -212,8 +212,7 @@ Measurement ReadSpectral(SpeosText* text, bool is_bsdf, const std::string& sourc
   const int count = text->Count("the number of wavelengths");
   const auto theta_i = text->Numbers(incidences, "incidences", 0, 90);
   const auto wavelengths = text->Numbers(count, "wavelengths", 1, kMostMicrons);
-  std::optional<SpectralColor> color;
-  if (count > 1) color.emplace(wavelengths, source);
+  const SpectralColor color = SpectralColor::OfBands(wavelengths, source);
   SampleCollector collector(source, "Speos BRDF file of scattered samples");
   for (const double incidence : theta_i) {
     std::vector<SpeosTable> tables;

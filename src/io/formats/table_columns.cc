@@ -300,6 +300,7 @@ class ColumnLayouter {
           *One(red.empty() ? green.empty() ? Role::kBlue : Role::kGreen : Role::kRed)};
     } else if (!bands.empty()) {
       layout_.values = {*One(Role::kBand)};
+      layout_.wavelengths = {layout_.columns[layout_.values[0]].wavelength};
     } else {
       FailWithout("of values",
                   std::string(", as r, g, b, or brdf, or wavelengths as 550nm; --columns=") +

@@ -139,7 +139,7 @@ class TableReader {
 
   SpectralColor ColorOfSpectra() const {
     try {
-      return {layout_.wavelengths, source_};
+      return SpectralColor::OfBands(layout_.wavelengths, source_);
     } catch (const Error& error) {
       throw Error(std::string(error.what()) +
                   "; --columns= names three of the columns r, g and b, or one f, the others -");
@@ -283,7 +283,8 @@ std::string TableReader::Note(bool turned) const {
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
   say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
   say(layout_.values.size() == 1, "one value for all channels");
-  say(!layout_.wavelengths.empty(),
+  if (layout_.wavelengths.size() == 1) say(true, Text(layout_.wavelengths[0]) + " nm");
+  say(layout_.wavelengths.size() > 1,
       std::to_string(layout_.wavelengths.size()) + " wavelengths to RGB by CIE 1931");
   say(true, "f in 1/sr");
   if (!layout_.left_out.empty()) note += "; left out: " + LeftOutColumns(layout_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -21,10 +22,11 @@ using OrderedJson = nlohmann::ordered_json;
 
 // Tables in the order of their numbers, nested as the file has them: a list a lobe, or a list of
 // lists where channels differ.
-OrderedJson Nest(const std::vector<OrderedJson>& tables, const TableSharing& sharing, int lobes) {
+OrderedJson Nest(const std::vector<OrderedJson>& tables, const TableSharing& sharing, int lobes,
+                 size_t all_channels = kChannels) {
   if (lobes == 0) return OrderedJson::array();
   OrderedJson nest = OrderedJson::array();
-  const size_t channels = sharing.per_channel ? kChannels : 1;
+  const size_t channels = sharing.per_channel ? all_channels : 1;
   for (size_t begin = 0; begin < tables.size(); begin += channels) {
     const std::vector<OrderedJson> group(tables.begin() + begin, tables.begin() + begin + channels);
     nest.push_back(sharing.per_channel ? OrderedJson(group) : group[0]);
@@ -71,10 +73,19 @@ OrderedJson TablesToJson(const FactorModel& model, const TableLayout& layout, Fa
   return Nest(tables, spec.sharing(factor), spec.lobes);
 }
 
+// A list a table; of a spectral model, a list a lobe, or one of all lobes, as bands do not differ.
 OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
   const ModelSpec& spec = file.model.spec();
+  std::vector<int> tables(spec.num_tables(factor));
+  std::iota(tables.begin(), tables.end(), 0);
+  if (file.spectral) {
+    const bool per_lobe = file.spectral->spec().sharing(factor).per_lobe;
+    tables.resize(per_lobe ? spec.lobes : std::min(spec.lobes, 1));
+    for (size_t m = 0; m < tables.size(); ++m)
+      tables[m] = spec.table(factor, static_cast<int>(m), 0);
+  }
   OrderedJson lists = OrderedJson::array();
-  for (int table = 0; table < spec.num_tables(factor); ++table) {
+  for (const int table : tables) {
     OrderedJson list = OrderedJson::array();
     for (int entry = 0; entry < spec.table_size(factor); ++entry) {
       if (file.unobserved[file.model.TableOffset(factor, table) + entry]) list.push_back(entry);
@@ -82,6 +93,25 @@ OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
     lists.push_back(std::move(list));
   }
   return lists;
+}
+
+void AddBands(const SpectralModel& model, OrderedJson* json) {
+  (*json)["wavelengths"] = FiniteNumbers(model.wavelengths(), "wavelengths");
+  (*json)["d"] = FiniteNumbers(model.d(), "d");
+  (*json)["s"] = OrderedJson::array();
+  for (int m = 0; m < model.spec().lobes; ++m) {
+    (*json)["s"].push_back(FiniteNumbers(model.s(m), "s"));
+  }
+}
+
+OrderedJson BandsOfF(const SpectralModel& model) {
+  const ModelSpec& spec = model.spec();
+  const int bands = spec.F.per_channel ? model.bands() : 1;
+  std::vector<OrderedJson> tables;
+  for (int m = 0; m < (spec.F.per_lobe ? spec.lobes : std::min(spec.lobes, 1)); ++m) {
+    for (int l = 0; l < bands; ++l) tables.push_back(FiniteNumbers(model.F(m, l), "F"));
+  }
+  return Nest(tables, spec.F, spec.lobes, bands);
 }
 
 // Indented by two, but arrays of numbers each on one line.
@@ -106,11 +136,13 @@ void Print(const OrderedJson& json, const std::string& indent, std::string* text
 }  // namespace
 
 std::string FormatModel(const ModelFile& file) {
-  const FactorModel& model = file.model;
+  const FactorModel& model = file.spectral ? file.spectral->shared() : file.model;
   const ModelSpec& spec = model.spec();
   OrderedJson json;
   json["format"] = kModelFormat;
-  json["version"] = spec.stretches.any() ? kStretchedVersion : kModelVersion;
+  json["version"] = file.spectral          ? kSpectralVersion
+                    : spec.stretches.any() ? kStretchedVersion
+                                           : kModelVersion;
   json["kind"] = spec.anisotropic() ? kAnisotropicKind : kIsotropicKind;
   json["lobes"] = spec.lobes;
   for (const Factor factor : kFactors) {
@@ -130,13 +162,21 @@ std::string FormatModel(const ModelFile& file) {
   if (spec.stretches.any()) json["stretch"] = StretchesToJson<OrderedJson>(spec);
   const TableLayout layout = file.layout.value_or(TableLayout::Full(spec));
   CheckLayout(layout, spec);
-  json["d"] = ChannelsToJson(model.d(), layout.coloured_d, "d");
-  json["s"] = OrderedJson::array();
-  for (int m = 0; m < spec.lobes; ++m) {
-    json["s"].push_back(ChannelsToJson(model.s(m), layout.coloured_s, "s"));
+  if (file.spectral) {
+    AddBands(*file.spectral, &json);
+  } else {
+    json["d"] = ChannelsToJson(model.d(), layout.coloured_d, "d");
+    json["s"] = OrderedJson::array();
+    for (int m = 0; m < spec.lobes; ++m) {
+      json["s"].push_back(ChannelsToJson(model.s(m), layout.coloured_s, "s"));
+    }
   }
   for (const Factor factor : kFactors) {
-    json[FactorName(factor)] = TablesToJson(model, layout, factor);
+    if (file.spectral && factor == Factor::kF) {
+      json["F"] = BandsOfF(*file.spectral);
+    } else {
+      json[FactorName(factor)] = TablesToJson(model, layout, factor);
+    }
   }
   if (!file.unobserved.empty()) {
     for (const Factor factor : kFactors) {

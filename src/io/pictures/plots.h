@@ -13,6 +13,7 @@
 #include "trilobe/model/measurement/brdf_table.h"
 #include "trilobe/model/measurement/measurement.h"
 #include "trilobe/model/objective/iteration_record.h"
+#include "trilobe/model/spectral/spectral_model.h"
 
 namespace trilobe {
 
@@ -84,6 +85,12 @@ void DrawDirections(const Measurement& scattered, const std::string& path);
 // Error for an empty trace.
 void DrawTrace(std::span<const IterationRecord> trace, const std::string& title,
                const std::string& path);
+
+// A spectral model: over wavelength the error of each and the albedo of the diffuse term and of
+// each lobe, and over theta_d the F of each, of lobe 1 if lobes differ. relative_error: E over that
+// of a black model, [bands].
+void DrawBands(const SpectralModel& model, std::span<const double> relative_error,
+               const std::string& title, const std::string& path);
 
 // Cost and quality of the full and the pruned model of a material.
 struct TradeOff {

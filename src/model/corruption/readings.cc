@@ -95,6 +95,19 @@ void Readings::ForEach(const std::function<void(int)>& work) const {
   ParallelForShort(size(), num_threads_, work);
 }
 
+// Spectra become as much brighter as their colours do.
+void Readings::ScaleSpectra() {
+  BrdfSamples& samples = measurement_.samples;
+  if (samples.spectra == nullptr || rho_ == samples.rho) return;
+  Spectra scaled = {samples.spectra->wavelengths, {}};
+  for (int j = 0; j < size(); ++j) {
+    const double before = Mean(samples.rho[j]);
+    const double ratio = before > 0 && !lost(j) ? Mean(rho_[j]) / before : 1;
+    for (const double value : samples.SpectrumOf(j)) scaled.values.push_back(ratio * value);
+  }
+  samples.SetSpectra(std::move(scaled));
+}
+
 void Readings::Store() {
   const auto is_valid = [](double x) { return x >= 0 && std::isfinite(x); };
   std::vector<int> kept;
@@ -116,6 +129,7 @@ void Readings::Store() {
     return;
   }
   const int lost = size() - static_cast<int>(kept.size());
+  ScaleSpectra();
   measurement_.samples.rho = std::move(rho_);
   measurement_.samples = Selected(measurement_.samples, kept);
   measurement_.max_theta = 0;

@@ -52,6 +52,8 @@ class Readings {
   void Store();
 
  private:
+  void ScaleSpectra();
+
   bool table() const { return measurement_.table.has_value(); }
 
   Measurement& measurement_;

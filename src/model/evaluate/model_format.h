@@ -9,6 +9,8 @@ inline constexpr const char* kModelFormat = "trilobe-model";
 inline constexpr int kModelVersion = 1;
 // Version for models with stretched highlights, which readers of version 1 would evaluate wrongly.
 inline constexpr int kStretchedVersion = 2;
+// Version for spectral models, with or without such highlights.
+inline constexpr int kSpectralVersion = 3;
 inline constexpr const char* kIsotropicKind = "isotropic";
 inline constexpr const char* kAnisotropicKind = "anisotropic";
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/files/json_value.h"
+#include "model/evaluate/json_node.h"
 #include "model/evaluate/model_format.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/stretch.h"
@@ -14,98 +15,7 @@
 namespace trilobe {
 namespace {
 
-// A value of the file with its path, such as `D[2][17]`, for messages.
-class Node {
- public:
-  Node(const JsonValue& json, std::string key, const std::string& source)
-      : json_(json), key_(std::move(key)), source_(source) {}
-
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(source_ + ": key '" + key_ + "' " + problem);
-  }
-
-  bool has(const std::string& key) const { return json_.Find(key) != nullptr; }
-  bool is_object() const { return json_.type() == Type::kObject; }
-  bool is_array() const { return json_.type() == Type::kArray; }
-
-  Node operator[](const std::string& key) const {
-    const std::string path = key_.empty() ? key : key_ + "." + key;
-    const JsonValue* const found = json_.Find(key);
-    if (found == nullptr) Node(json_, path, source_).Fail("is missing");
-    return {*found, path, source_};
-  }
-
-  Node operator[](size_t index) const {
-    return {json_[index], key_ + "[" + std::to_string(index) + "]", source_};
-  }
-
-  const std::string& source() const { return source_; }
-
-  const Node& CheckObject() const {
-    CheckType(Type::kObject, "an object");
-    return *this;
-  }
-
-  size_t ArraySize() const {
-    CheckType(Type::kArray, "an array");
-    return json_.size();
-  }
-
-  void CheckArraySize(size_t size) const {
-    if (ArraySize() != size) {
-      Fail("must have " + std::to_string(size) + " entries, not " + std::to_string(ArraySize()));
-    }
-  }
-
-  double Number() const {
-    CheckType(Type::kNumber, "a number");
-    if (json_.number() < 0) Fail("must be finite and >= 0, not " + NumberText());
-    return json_.number();
-  }
-
-  double Exponent() const {
-    CheckType(Type::kNumber, "a number");
-    if (!(std::abs(json_.number()) <= kMaxStretch)) {
-      Fail("must be from -2 to 2, not " + NumberText());
-    }
-    return json_.number();
-  }
-
-  int Integer(int max) const {
-    const double value = Number();
-    if (value != std::floor(value) || value > max) {
-      Fail("must be an integer from 0 to " + std::to_string(max) + ", not " + NumberText());
-    }
-    return static_cast<int>(value);
-  }
-
-  bool Bool() const {
-    CheckType(Type::kBoolean, "true or false");
-    return json_.boolean();
-  }
-
-  std::string String() const {
-    CheckType(Type::kString, "a string");
-    return json_.string();
-  }
-
-  void Numbers(std::span<double> values) const {
-    CheckArraySize(values.size());
-    for (size_t k = 0; k < values.size(); ++k) values[k] = (*this)[k].Number();
-  }
-
- private:
-  using Type = JsonValue::Type;
-
-  void CheckType(Type type, const std::string& expected) const {
-    if (json_.type() != type) Fail("must be " + expected + ", not " + json_.type_name());
-  }
-  std::string NumberText() const { return std::string(json_.number_text()); }
-
-  const JsonValue& json_;
-  std::string key_;
-  const std::string& source_;
-};
+using Node = JsonNode;
 
 TableSharing& Sharing(Factor factor, ModelSpec* spec) {
   return factor == Factor::kD ? spec->D : factor == Factor::kF ? spec->F : spec->G;
@@ -116,7 +26,8 @@ Axis& AxisOf(Factor factor, ModelSpec* spec) {
 }
 
 // The tables of a factor in order, from their nest of lobes and channels.
-std::vector<Node> TableNodes(const Node& nest, const TableSharing& sharing, int lobes) {
+std::vector<Node> TableNodes(const Node& nest, const TableSharing& sharing, int lobes,
+                             size_t channels = kChannels) {
   std::vector<Node> nodes = {nest};
   const auto unfold = [&nodes](size_t size) {
     std::vector<Node> inner;
@@ -128,7 +39,7 @@ std::vector<Node> TableNodes(const Node& nest, const TableSharing& sharing, int 
   };
   // Without lobes there are no tables, and the nest is [] at its first level.
   if (sharing.per_lobe || lobes == 0) unfold(lobes);
-  if (sharing.per_channel) unfold(kChannels);
+  if (sharing.per_channel) unfold(channels);
   return nodes;
 }
 
@@ -144,7 +55,9 @@ void ReadSharing(const Node& root, ModelSpec* spec) {
 
 // Members that readers of version 1 do not know.
 void ReadStretch(const Node& root, ModelSpec* spec) {
-  if (root["version"].Integer(kStretchedVersion) != kStretchedVersion) {
+  const int version = root["version"].Integer(kSpectralVersion);
+  if (version == kSpectralVersion && !root.has("stretch")) return;
+  if (version < kStretchedVersion) {
     if (!root.has("stretch")) return;
     root["stretch"].Fail("needs \"version\": " + std::to_string(kStretchedVersion) +
                          ", as readers of version " + std::to_string(kModelVersion) +
@@ -221,15 +134,16 @@ void CheckPolarTable(const Node& table, const Axis& axis) {
   for (size_t a = 0; a < axis.theta.size(); ++a) table[a].CheckArraySize(axis.phi_nodes);
 }
 
-// The model's spec, with limits checked before any allocation.
-ModelSpec ReadSpec(const Node& root) {
+// The model's spec, with limits checked before any allocation. `channels`: 3, or the bands of a
+// spectral model.
+ModelSpec ReadSpec(const Node& root, size_t channels = kChannels) {
   ModelSpec spec;
   spec.lobes = root["lobes"].Integer(kMaxLobes);
   ReadSharing(root, &spec);
   const bool anisotropic = root["kind"].String() == kAnisotropicKind;
   for (const Factor factor : kFactors) {
     const std::vector<Node> tables =
-        TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes);
+        TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes, channels);
     if (anisotropic && factor != Factor::kF) {
       AxisOf(factor, &spec) = ReadPolarAxis(root, factor);
       for (const Node& table : tables) CheckPolarTable(table, spec.axis(factor));
@@ -334,6 +248,71 @@ std::vector<bool> ReadUnobserved(const Node& root, const FactorModel& model) {
   return unobserved;
 }
 
+// --- Spectral models -----------------------------------------------------------------------------
+
+std::vector<double> ReadWavelengths(const Node& root) {
+  const Node list = root["wavelengths"];
+  if (list.ArraySize() < 1 || list.ArraySize() > SpectralModel::kMaxBands) {
+    list.Fail("must have 1 to " + std::to_string(SpectralModel::kMaxBands) + " entries, not " +
+              std::to_string(list.ArraySize()));
+  }
+  std::vector<double> wavelengths(list.ArraySize());
+  list.Numbers(wavelengths);
+  return wavelengths;
+}
+
+SpectralModel ReadBands(const Node& root) {
+  std::vector<double> wavelengths = ReadWavelengths(root);
+  const size_t bands = wavelengths.size();
+  const ModelSpec spec = ReadSpec(root, bands);
+  const auto read = [&] {
+    try {
+      return SpectralModel(spec, std::move(wavelengths));
+    } catch (const Error& error) {
+      throw Error(root.source() + ": " + error.what());
+    }
+  };
+  SpectralModel model = read();
+  root["d"].Numbers(model.d());
+  root["s"].CheckArraySize(spec.lobes);
+  for (int m = 0; m < spec.lobes; ++m) root["s"][m].Numbers(model.s(m));
+  for (const Factor factor : {Factor::kD, Factor::kG}) {
+    const std::vector<Node> tables =
+        TableNodes(root[FactorName(factor)], spec.sharing(factor), spec.lobes, bands);
+    for (int k = 0; k < static_cast<int>(tables.size()); ++k) {
+      ReadTable(tables[k], spec.axis(factor), model.table(factor, k));
+    }
+  }
+  const std::vector<Node> F = TableNodes(root["F"], spec.F, spec.lobes, bands);
+  const size_t per_lobe = spec.F.per_channel ? bands : 1;
+  for (size_t k = 0; k < F.size(); ++k) {
+    F[k].Numbers(model.F(static_cast<int>(k / per_lobe), static_cast<int>(k % per_lobe)));
+  }
+  return model;
+}
+
+// Entries of F that no sample reads are the same in all bands.
+std::vector<bool> ReadUnobserved(const Node& root, const ModelSpec& spec, const FactorModel& rgb) {
+  std::vector<bool> unobserved(rgb.spec().num_parameters(), false);
+  if (!root.has("unobserved")) return unobserved;
+  const Node node = root["unobserved"].CheckObject();
+  for (const Factor factor : kFactors) {
+    const Node lists = node[FactorName(factor)];
+    const int count = spec.sharing(factor).per_lobe ? spec.lobes : std::min(spec.lobes, 1);
+    lists.CheckArraySize(count);
+    for (int m = 0; m < spec.lobes; ++m) {
+      const Node list = lists[count == 1 ? 0 : m];
+      for (size_t k = 0; k < list.ArraySize(); ++k) {
+        const int entry = list[k].Integer(spec.table_size(factor) - 1);
+        for (int c = 0; c < kChannels; ++c) {
+          unobserved[rgb.TableOffset(factor, rgb.spec().table(factor, m, c)) + entry] = true;
+        }
+      }
+    }
+  }
+  return unobserved;
+}
+
 void Read(const Node& node, std::string* value) { *value = node.String(); }
 void Read(const Node& node, double* value) { *value = node.Number(); }
 void Read(const Node& node, int* value) { *value = node.Integer(std::numeric_limits<int>::max()); }
@@ -363,11 +342,10 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
     root["format"].Fail("must be \"" + std::string(kModelFormat) + "\"");
   }
   if (const int version = root["version"].Integer(std::numeric_limits<int>::max());
-      version != kModelVersion && version != kStretchedVersion) {
+      version < kModelVersion || version > kSpectralVersion) {
     root["version"].Fail("is " + std::to_string(version) + "; this program reads versions " +
-                         std::to_string(kModelVersion) + " and " +
-                         std::to_string(kStretchedVersion) +
-                         (version > kStretchedVersion ? "; update it" : ""));
+                         std::to_string(kModelVersion) + " to " + std::to_string(kSpectralVersion) +
+                         (version > kSpectralVersion ? "; update it" : ""));
   }
   const std::string kind = root["kind"].String();
   if (kind != kIsotropicKind && kind != kAnisotropicKind) {
@@ -375,8 +353,14 @@ ModelFile ParseModel(std::string_view text, const std::string& source) {
                       "\", the kinds this program reads");
   }
   ModelFile file;
-  ReadNumbers(root, &file);
-  file.unobserved = ReadUnobserved(root, file.model);
+  if (root["version"].Integer(kSpectralVersion) == kSpectralVersion) {
+    file.spectral = ReadBands(root);
+    file.model = file.spectral->ToRgb();
+    file.unobserved = ReadUnobserved(root, file.spectral->spec(), file.model);
+  } else {
+    ReadNumbers(root, &file);
+    file.unobserved = ReadUnobserved(root, file.model);
+  }
   file.fit = ReadFitInfo(root);
   return file;
 }

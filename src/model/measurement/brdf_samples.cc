@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "core/base/text.h"
 #include "core/geometry/grid_cosines.h"
@@ -37,6 +38,7 @@ void CheckSizes(const BrdfSamples& samples) {
   }
   if (!samples.multiplicity.empty()) check("multiplicities", samples.multiplicity.size());
   if (!samples.directions.empty()) check("pairs of directions", samples.directions.size());
+  if (samples.spectra != nullptr) check("spectra", samples.spectrum_rows.size());
 }
 
 // One pass over bins that ascend.
@@ -118,6 +120,20 @@ void CheckSamples(const BrdfSamples& samples) {
   }
 }
 
+void BrdfSamples::SetSpectra(Spectra new_spectra) {
+  if (new_spectra.values.size() != rho.size() * new_spectra.bands()) {
+    Fail(*this, std::to_string(rho.size()) + " samples need a spectrum each");
+  }
+  spectra = std::make_shared<const Spectra>(std::move(new_spectra));
+  spectrum_rows.resize(rho.size());
+  std::iota(spectrum_rows.begin(), spectrum_rows.end(), 0);
+}
+
+std::span<const double> BrdfSamples::SpectrumOf(int j) const {
+  CheckIndex(j, static_cast<int64_t>(spectrum_rows.size()), "the spectrum");
+  return spectra->row(spectrum_rows[j]);
+}
+
 double BrdfSamples::SolidAngle(int j) const {
   CheckIndex(j, size(), "the sample");
   if (!on_grid()) return 1;
@@ -176,7 +192,9 @@ BrdfSamples Selected(const BrdfSamples& samples, const std::vector<int>& numbers
     selected.rho.push_back(samples.rho[j]);
     if (!samples.directions.empty()) selected.directions.push_back(samples.directions[j]);
     if (!samples.multiplicity.empty()) selected.multiplicity.push_back(samples.multiplicity[j]);
+    if (samples.spectra != nullptr) selected.spectrum_rows.push_back(samples.spectrum_rows[j]);
   }
+  selected.spectra = samples.spectra;
   return selected;
 }
 

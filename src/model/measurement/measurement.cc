@@ -336,7 +336,7 @@ SampleCollector::SampleCollector(const std::string& source, const std::string& k
   measurement_.max_theta = 0;
 }
 
-void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
+bool SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
   // The horizon counts as below the surface, too; users of the samples test cosines computed from
   // the half and difference angles, which are no others far from it.
   constexpr double kFarFromHorizon = kPi / 2 - 1e-6;
@@ -360,7 +360,9 @@ void SampleCollector::Add(const SphericalAngles& angles, const Rgb& rho) {
     measurement_.samples.rho.push_back(rho);
     measurement_.samples.directions.push_back(angles);
     measurement_.max_theta = std::max({measurement_.max_theta, angles.theta_i, angles.theta_o});
+    return true;
   }
+  return false;
 }
 
 DirectionPair SampleCollector::DirectionsOf(const SphericalAngles& angles) {
@@ -370,12 +372,20 @@ DirectionPair SampleCollector::DirectionsOf(const SphericalAngles& angles) {
   return last_;
 }
 
-void SampleCollector::AddColor(const SphericalAngles& angles, const Rgb& rho) {
+bool SampleCollector::AddColor(const SphericalAngles& angles, const Rgb& rho) {
   Rgb clipped = rho;
   for (double& x : clipped) x = x < 0 ? 0 : x;
-  const int valid = measurement_.counts.valid;
-  Add(angles, clipped);
-  if (clipped != rho) measurement_.out_of_gamut += measurement_.counts.valid - valid;
+  const bool valid = Add(angles, clipped);
+  if (valid && clipped != rho) ++measurement_.out_of_gamut;
+  return valid;
+}
+
+void SampleCollector::KeepSpectrum(std::span<const double> wavelengths,
+                                   std::span<const double> spectrum) {
+  if (spectra_.wavelengths.empty()) {
+    spectra_.wavelengths.assign(wavelengths.begin(), wavelengths.end());
+  }
+  spectra_.values.insert(spectra_.values.end(), spectrum.begin(), spectrum.end());
 }
 
 void SampleCollector::LeaveOut(int BinCounts::*reason) {
@@ -389,6 +399,8 @@ Measurement SampleCollector::Take() {
   samples.angles.shrink_to_fit();
   samples.rho.shrink_to_fit();
   samples.directions.shrink_to_fit();
+  spectra_.values.shrink_to_fit();
+  if (!spectra_.values.empty()) samples.SetSpectra(std::move(spectra_));
   return std::move(measurement_);
 }
 

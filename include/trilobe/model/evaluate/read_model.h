@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trilobe/model/factor_model.h"
+#include "trilobe/model/spectral/spectral_model.h"
 #include "trilobe/model/table_layout.h"
 
 namespace trilobe {
@@ -43,6 +44,8 @@ struct ModelFile {
   // The stored parameters; all if there is no layout. The others are computed from them, also in
   // `model` (ExpandStored).
   std::optional<TableLayout> layout = std::nullopt;
+  // Of a spectral model, which is what is stored: `model` is its colour, SpectralModel::ToRgb.
+  std::optional<SpectralModel> spectral = std::nullopt;
 };
 
 // JSON with "format": "trilobe-model", "version": 1, "kind": "isotropic", "lobes", "d" [3], "s"
@@ -52,6 +55,8 @@ struct ModelFile {
 // - Compact files (with a layout): "d" and rows of "s" may be [1], and a table may be {"size",
 //   "nodes": [indices], "values": [as many]}.
 // - "unobserved" {"D": [[indices], ...] for each table, ...} lists unobserved entries.
+// - Version 3, a spectral model: "wavelengths" [B], "d" [B], "s" [M][B], and F with bands in the
+//   place of channels, none of it compact.
 // Unknown keys are ignored. All numbers must be finite and >= 0; doubles are read back bit for bit.
 // Throws Error with the file and the key.
 ModelFile ParseModel(std::string_view text, const std::string& source);

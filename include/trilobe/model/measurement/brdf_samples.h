@@ -1,6 +1,8 @@
 #ifndef TRILOBE_MODEL_MEASUREMENT_BRDF_SAMPLES_H_
 #define TRILOBE_MODEL_MEASUREMENT_BRDF_SAMPLES_H_
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,14 @@
 #include "trilobe/model/measurement/brdf_table.h"
 
 namespace trilobe {
+
+// Measured spectra. wavelengths: [nm], ascending; values: [1/sr], finite and >= 0, [rows][bands].
+struct Spectra {
+  std::vector<double> wavelengths, values;
+
+  size_t bands() const { return wavelengths.size(); }
+  std::span<const double> row(size_t k) const { return {&values[k * bands()], bands()}; }
+};
 
 // The samples of a fit: measured directions and values, all valid, from any file format. Samples
 // are either at bin centres of `grid` (`bins`, ascending), or scattered (`angles`); then the grid
@@ -26,6 +36,10 @@ struct BrdfSamples {
   // [n], or empty: directions of scattered samples, with the order of wi and wo and the azimuths,
   // which `angles` lack and anisotropic models need.
   std::vector<SphericalAngles> directions = {};
+  // Of what was measured at several wavelengths, of which rho is the colour: the spectra, and which
+  // of them is a sample's [n]. Copies share the former. Else null.
+  std::shared_ptr<const Spectra> spectra = nullptr;
+  std::vector<int> spectrum_rows = {};
 
   int size() const { return static_cast<int>(rho.size()); }
   bool on_grid() const { return angles.empty(); }
@@ -44,6 +58,10 @@ struct BrdfSamples {
   }
   // cos theta_i and cos theta_o, in the order of `directions` if known; `angles` may exchange them.
   Cosines CosinesOf(int j) const;
+  // One row of `new_spectra` for each sample, in order. Throws Error for another number.
+  void SetSpectra(Spectra new_spectra);
+  // [spectra->bands()]. Throws Error if there are none.
+  std::span<const double> SpectrumOf(int j) const;
   // The measure of the sample's direction pairs, up to a constant factor; 1 if scattered.
   double SolidAngle(int j) const;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -106,9 +107,13 @@ PairError ReciprocityError(const Measurement& scattered);
 class SampleCollector {
  public:
   SampleCollector(const std::string& source, const std::string& kind);
-  void Add(const SphericalAngles& angles, const Rgb& rho);  // [1/sr]
+  // Both return whether the sample is valid. rho: [1/sr].
+  bool Add(const SphericalAngles& angles, const Rgb& rho);
   // Clamps negative channels to 0, for colours computed from valid spectra.
-  void AddColor(const SphericalAngles& angles, const Rgb& rho);
+  bool AddColor(const SphericalAngles& angles, const Rgb& rho);
+  // The spectrum [1/sr] of the valid sample that was added last. Each has one, at the same
+  // wavelengths [nm], or none has.
+  void KeepSpectrum(std::span<const double> wavelengths, std::span<const double> spectrum);
   // Counts a sample that the file marks as invalid.
   void LeaveOut(int BinCounts::*reason);
   Measurement Take();
@@ -123,6 +128,7 @@ class SampleCollector {
   Measurement measurement_;
   PolarAngles last_i_, last_o_;
   DirectionPair last_{{0, 0, 1}, {0, 0, 1}};
+  Spectra spectra_;
 };
 
 }  // namespace trilobe

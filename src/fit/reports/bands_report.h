@@ -1,0 +1,26 @@
+#ifndef TRILOBE_FIT_REPORTS_BANDS_REPORT_H_
+#define TRILOBE_FIT_REPORTS_BANDS_REPORT_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "trilobe/fit/bands/fit_bands.h"
+#include "trilobe/model/appearance/seen_error.h"
+#include "trilobe/model/spectral/spectral_model.h"
+
+namespace trilobe {
+
+// "31 wavelengths from 400 to 700 nm", "one wavelength, 550 nm".
+std::string WavelengthsText(const SpectralModel& model);
+
+// "31 wavelengths from 400 to 700 nm by 3,495 parameters; E is 0.5 % of a black model's in the
+// mean, 0.9 % at 700 nm; ...". `seen`: the colours beside those measured.
+std::string Describe(const BandsFit& bands, const std::optional<SeenError>& seen);
+
+// "spectral" in report.json.
+nlohmann::ordered_json ToJson(const BandsFit& bands, const std::optional<SeenError>& seen);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_FIT_REPORTS_BANDS_REPORT_H_
