@@ -165,6 +165,21 @@ void Eval(const Material& material, const Input<Real>& wi, const Input<Real>& wo
   });
 }
 
+// Of a spectral model: rows of a value for each wavelength.
+void Spectrum(const Material& material, const Input<double>& wi, const Input<double>& wo,
+              const Output<double>& out) {
+  if (!material.file().spectral) throw Error("the model has no wavelengths; eval gives its colour");
+  const SpectralModel& model = *material.file().spectral;
+  const size_t count = out.shape(0);
+  CheckWidth(out, model.wavelengths().size());
+  const Directions<double> in(wi, count, "wi"), away(wo, count, "wo");
+  double* next = out.data();
+  const nb::gil_scoped_release released;
+  for (size_t k = 0; k < count; ++k) {
+    next = std::ranges::copy(Evaluate(model, {in[k], away[k]}), next).out;
+  }
+}
+
 // Rows of (1 + lobes) colours: the diffuse term, then each lobe.
 template <typename Real>
 void EvalComponents(const Material& material, const Input<Real>& wi, const Input<Real>& wo,
@@ -372,6 +387,12 @@ NB_MODULE(_core, m) {            // NOLINT(performance-unnecessary-value-param):
                      }
                      return of_lobes;
                    })
+      .def_prop_ro("wavelengths",
+                   [](const Material& self) {
+                     const auto& spectral = self.file().spectral;
+                     return spectral ? spectral->wavelengths() : std::vector<double>();
+                   })
+      .def("spectrum", &Spectrum)
       .def("axis", &AxisOf, nb::arg("factor"))
       .def("tables", &TablesOf, nb::arg("factor"))
       .def("unobserved", &UnobservedOf, nb::arg("factor"));

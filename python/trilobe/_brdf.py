@@ -145,6 +145,30 @@ class Brdf:
         self._material.eval_components(wi, wo, out)
         return out.reshape(*shape, width, 3)
 
+    @property
+    def wavelengths(self) -> NDArray[np.float64]:
+        """The wavelengths [nm] of a spectral model, whose colour `eval` and all else is; empty of others."""
+        return np.array(self._material.wavelengths)
+
+    def spectrum(self, wi: Any, wo: Any) -> NDArray[np.float64]:
+        """The BRDF [1/sr] of a spectral model at its wavelengths, as `trilobe fit --spectral` stores it.
+
+        Args:
+            wi: directions (..., 3).
+            wo: directions (..., 3).
+
+        Returns:
+            (..., wavelengths).
+
+        Raises:
+            Error: if the model has no wavelengths.
+        """
+        wi, wo, shape = _pair(wi, wo)
+        width = len(self._material.wavelengths)
+        out = np.empty((_count(shape), width))
+        self._material.spectrum(wi.astype(np.float64), wo.astype(np.float64), out)
+        return out.reshape(*shape, width)
+
     def eval_cos(self, wi: Any, wo: Any) -> Floats:
         """f cos(theta_o) [1/sr], as renderers ask for it: (..., 3)."""
         wi, wo, shape = _pair(wi, wo)
