@@ -1,6 +1,7 @@
 """Models over arrays: values, sampling, tables, files, and what is told of bad arguments."""
 
 import copy
+import json
 import pickle
 import subprocess
 import sys
@@ -47,6 +48,31 @@ def test_its_parts_agree(make, dtype):
     np.testing.assert_allclose(
         (brdf.eval_cos(wi, drawn.wo) / drawn.pdf[:, None])[there], drawn.weight[there], rtol=0.02
     )
+
+
+def test_a_spectral_model_has_the_values_of_its_wavelengths():
+    brdf, rng = isotropic(), np.random.default_rng(7)
+    text = json.loads(brdf.to_json())
+    wavelengths = [400, 450, 500, 550, 600, 650, 700]
+    d, s, F = 0.1 * rng.random(7), rng.random((3, 7)), 0.5 + rng.random((7, 90))
+    text.update(version=3, wavelengths=wavelengths, d=d.tolist(), s=s.tolist(), F=F.tolist())
+    text.pop("unobserved", None)
+    spectral = trilobe.Brdf.from_json(json.dumps(text))
+    np.testing.assert_array_equal(spectral.wavelengths, wavelengths)
+    wi, wo = directions(100, 8), directions(100, 9)
+    values = pickle.loads(pickle.dumps(spectral)).spectrum(wi, wo)
+    assert values.shape == (100, 7)
+    three = trilobe.Brdf(d[2:5], s[:, 2:5], brdf.D, F[2:5], brdf.G)
+    np.testing.assert_allclose(values[:, 2:5], three.eval(wi, wo), rtol=1e-9, atol=1e-12)
+    assert not spectral.spectrum([0, 0, -1], wo).any()
+
+    text.update(d=[0.1] * 7, s=[[0.2] * 7] * 3, F=[F[0].tolist()] * 7)  # grey
+    grey = trilobe.Brdf.from_json(json.dumps(text))
+    np.testing.assert_allclose(grey.eval(wi, wo), grey.spectrum(wi, wo)[:, :3], rtol=1e-9)
+
+    assert brdf.wavelengths.size == 0
+    with pytest.raises(trilobe.Error, match="no wavelengths"):
+        brdf.spectrum(wi, wo)
 
 
 def test_albedo_is_the_mean_weight():
