@@ -165,11 +165,11 @@ void CheckBands(const BrdfSamples& samples, const ModelSpec& spec) {
   }
 }
 
-BandsFit FitBands(const Objective& with_prior, const FactorModel& rgb, const StopCheck& stop) {
-  const Objective& objective = with_prior.data();
-  const BrdfSamples& samples = objective.samples();
+BandsFit FitBands(const Objective& objective, const FactorModel& rgb, const StopCheck& stop) {
+  const Objective& data = objective.data();  // a prior has no spectra
+  const BrdfSamples& samples = data.samples();
   CheckBands(samples, rgb.spec());
-  CheckSameSpec(rgb.spec(), objective.spec());
+  CheckSameSpec(rgb.spec(), data.spec());
   BandsFit fit = {.model = SpectralModel(rgb.spec(), samples.spectra->wavelengths),
                   .objective = {},
                   .black = {}};
@@ -179,21 +179,21 @@ BandsFit FitBands(const Objective& with_prior, const FactorModel& rgb, const Sto
       std::ranges::copy(rgb.table(factor, t), model.table(factor, t).begin());
     }
   }
-  const BandSums sums(objective, rgb);
-  ParallelFor(sums.bands(), objective.num_threads(), [&](int band) {
+  const BandSums sums(data, rgb);
+  ParallelFor(sums.bands(), data.num_threads(), [&](int band) {
     BandSolver solver(sums, rgb.spec().F.per_channel, band);
     for (int c = 0; c < kChannels && (c == 0 || !stop()); ++c) solver.From(ParametersOf(rgb, c));
     SetBand(solver.best(), band, &model);
   });
   if (rgb.spec().F.per_channel) {
-    FillUnread(objective, rgb, &model);
-    SetScale(objective, &model);
+    FillUnread(data, rgb, &model);
+    SetScale(data, &model);
   }
   fit.black = sums.energy();
   fit.objective.assign(sums.bands(), 0.0);
   std::vector<double> rho(sums.bands());
   for (int j = 0; j < samples.size(); ++j) {
-    const WeightedSample sample = objective.Sample(j);
+    const WeightedSample sample = data.Sample(j);
     UnclampedValues(model, sample.stencils, rho);
     const std::span<const double> measured = samples.SpectrumOf(j);
     for (size_t l = 0; l < rho.size(); ++l) {

@@ -81,8 +81,9 @@ OrderedJson UnobservedToJson(const ModelFile& file, Factor factor) {
   if (file.spectral) {
     const bool per_lobe = file.spectral->spec().sharing(factor).per_lobe;
     tables.resize(per_lobe ? spec.lobes : std::min(spec.lobes, 1));
-    for (size_t m = 0; m < tables.size(); ++m)
+    for (size_t m = 0; m < tables.size(); ++m) {
       tables[m] = spec.table(factor, static_cast<int>(m), 0);
+    }
   }
   OrderedJson lists = OrderedJson::array();
   for (const int table : tables) {
