@@ -180,11 +180,13 @@ BandsFit FitBands(const Objective& objective, const FactorModel& rgb, const Stop
     }
   }
   const BandSums sums(data, rgb);
+  std::vector<std::vector<double>> best(sums.bands());
   ParallelFor(sums.bands(), data.num_threads(), [&](int band) {
     BandSolver solver(sums, rgb.spec().F.per_channel, band);
     for (int c = 0; c < kChannels && (c == 0 || !stop()); ++c) solver.From(ParametersOf(rgb, c));
-    SetBand(solver.best(), band, &model);
+    best[band] = solver.best();
   });
+  for (int band = 0; band < sums.bands(); ++band) SetBand(best[band], band, &model);
   if (rgb.spec().F.per_channel) {
     FillUnread(data, rgb, &model);
     SetScale(data, &model);
