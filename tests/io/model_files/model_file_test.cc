@@ -433,7 +433,7 @@ TEST(ModelFile, RefusesOtherFormatsKindsAndVersions) {
   EXPECT_THAT(error_of("format", "other"), HasSubstr("key 'format' must be \"trilobe-model\""));
   EXPECT_THAT(error_of("kind", "bivariate"),
               HasSubstr("key 'kind' must be \"isotropic\" or \"anisotropic\""));
-  EXPECT_THAT(error_of("version", 3), AllOf(HasSubstr("key 'version' is 3"), HasSubstr("update")));
+  EXPECT_THAT(error_of("version", 4), AllOf(HasSubstr("key 'version' is 4"), HasSubstr("update")));
   EXPECT_THAT(error_of("version", 0), HasSubstr("key 'version' is 0"));
 }
 

@@ -102,8 +102,8 @@ TEST(SpectralFile, SaysWhatIsWrong) {
               HasSubstr("bad.json: key 'wavelengths' is missing"));
   EXPECT_THAT(error([](json* file) { (*file)["wavelengths"] = json::array(); }),
               HasSubstr("'wavelengths' must have 1 to 1024 entries, not 0"));
-  EXPECT_THAT(error([](json* file) { (*file)["wavelengths"][3] = 460; }),
-              HasSubstr("bad.json: the spectral model: no wavelength between 500 and 600 nm"));
+  EXPECT_THAT(error([](json* file) { (*file)["wavelengths"][3] = 560; }),
+              HasSubstr("bad.json: the spectral model: no wavelength between 500 and 560 nm"));
   EXPECT_THAT(error([](json* file) { (*file)["wavelengths"][3] = "red"; }),
               HasSubstr("'wavelengths[3]' must be a number"));
   EXPECT_THAT(error([](json* file) { (*file)["wavelengths"].push_back(750); }),
