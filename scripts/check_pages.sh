@@ -20,5 +20,5 @@ if ! "$venv/bin/python" -c 'import numpy, PIL, playwright, pytest' 2>/dev/null; 
 fi
 
 "$venv/bin/ruff" check --quiet --config python/ruff.toml tests/web scripts/page_picture.py scripts/page_speed.py scripts/gallery.py \
-  scripts/check_figures.py scripts/page_commands.py scripts/diagrams scripts/draw_diagrams.py scripts/draw_fits.py scripts/shrink.py materials/make
+  scripts/check_figures.py scripts/page_commands.py scripts/diagrams scripts/draw_diagrams.py scripts/draw_fits.py scripts/shrink.py materials/make materials/furnace
 "$venv/bin/python" -m pytest -q -p no:cacheprovider "$@" tests/web
