@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "io/formats/angle_list.h"
 #include "io/formats/bilinear_warp.h"
 #include "io/formats/rgl_mask.h"
 #include "io/formats/spectrum.h"
@@ -115,16 +116,10 @@ SquarePoint ToSquare(double theta, double phi) {
 
 // The two neighbours of x among ascending nodes with their weights; the end one beyond the ends.
 SliceBlend Neighbours(const std::vector<double>& nodes, double x) {
-  const auto above = std::ranges::upper_bound(nodes, x);
-  const int k = static_cast<int>(above - nodes.begin());
+  const auto [lower, t] = FindBetween(nodes, x);
   SliceBlend blend;
-  if (k == 0 || above == nodes.end()) {
-    blend.Add(k == 0 ? 0 : k - 1, 1.0);
-  } else {
-    const double t = (x - nodes[k - 1]) / (nodes[k] - nodes[k - 1]);
-    blend.Add(k - 1, 1 - t);
-    blend.Add(k, t);
-  }
+  if (t < 1) blend.Add(static_cast<int>(lower), 1 - t);
+  if (t > 0) blend.Add(static_cast<int>(lower) + 1, t);
   return blend;
 }
 
