@@ -147,19 +147,21 @@ class SteppedAngles {
         static_cast<int>(std::clamp(Rounded(angle) + kMost, int64_t{0}, 2 * kMost - 1)));
   }
   void Rank() {
-    rank_.resize(1 << kBits);
-    for (const int steps : steps_) rank_[steps] = 1;
+    const auto [least, most] = std::ranges::minmax(steps_);
+    first_ = least;
+    rank_.assign(most - least + 1, 0);
+    for (const int steps : steps_) rank_[steps - first_] = 1;
+    size_ = std::reduce(rank_.begin(), rank_.end());
     std::exclusive_scan(rank_.begin(), rank_.end(), rank_.begin(), 0);
-    size_ = 1 + rank_[std::ranges::max(steps_)];
   }
 
   int size() const { return size_; }  // of those that occur
   int Steps(int sample) const { return steps_[sample]; }
-  int RankOf(int steps) const { return rank_[steps]; }
+  int RankOf(int steps) const { return rank_[steps - first_]; }
 
  private:
-  std::vector<int> steps_, rank_;
-  int size_ = 0;
+  std::vector<int> steps_, rank_;  // [samples], [steps from the first one on]
+  int first_ = 0, size_ = 0;
 };
 
 // Another angle and that which may have been filled in, in one number, and the sample.
@@ -173,14 +175,14 @@ std::vector<bool> RepeatedAngles(const BrdfSamples& samples, const SteppedAngles
   const int size = angle.size();
   if (size < kFewestAngles) return {};
   constexpr int kBits = SteppedAngles::kBits;
-  std::vector<int> begin((1 << kBits) + 1, 0);  // of the samples at each step of `other`
-  for (int j = 0; j < samples.size(); ++j) ++begin[other.Steps(j) + 1];
+  std::vector<int> begin(other.size() + 1, 0);  // of the samples at each angle of `other`
+  for (int j = 0; j < samples.size(); ++j) ++begin[other.RankOf(other.Steps(j)) + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<GridSample> places(samples.size());
   std::vector<int> next = begin;
   for (int j = 0; j < samples.size(); ++j) {
     const uint64_t at = static_cast<uint64_t>(another.Steps(j)) << kBits | angle.Steps(j);
-    places[next[other.Steps(j)]++] = {at, j};
+    places[next[other.RankOf(other.Steps(j))]++] = {at, j};
   }
   const auto rank_of = [&](const GridSample& place) {
     return angle.RankOf(static_cast<int>(place.first % (1 << kBits)));
@@ -200,11 +202,10 @@ std::vector<bool> RepeatedAngles(const BrdfSamples& samples, const SteppedAngles
     ++counts[rank].equal;
     counts[rank].values.insert(rho);
   };
-  for (size_t steps = 0; steps + 1 < begin.size(); ++steps) {
-    const std::span<GridSample> alike{places.begin() + begin[steps],
-                                      places.begin() + begin[steps + 1]};
+  for (int k = 0; k < other.size(); ++k) {
+    const std::span<GridSample> alike{places.begin() + begin[k], places.begin() + begin[k + 1]};
     std::ranges::sort(alike);
-    for (size_t k = 1; k < alike.size(); ++k) look_at(alike[k - 1], alike[k]);
+    for (size_t n = 1; n < alike.size(); ++n) look_at(alike[n - 1], alike[n]);
   }
   std::vector<bool> repeated(size);
   for (int k = 0; k < size; ++k) {
