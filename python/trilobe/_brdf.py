@@ -369,11 +369,11 @@ def load(path: str | os.PathLike[str]) -> Brdf:
         content = name.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise Error(f"cannot read {_printable(name)}: {reason}") from None
+        raise Error(f"cannot read {printable(name)}: {reason}") from None
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
-        raise Error(f"{_printable(name)} is no model file: it is not UTF-8 ({error.reason})") from None
+        raise Error(f"{printable(name)} is no model file: it is not UTF-8 ({error.reason})") from None
     return Brdf.from_json(text, str(name))
 
 
@@ -409,7 +409,8 @@ def _path_of(path: Any) -> Path:
     return Path(text_of_path(path))
 
 
-def _printable(path: Path) -> str:
+def printable(path: str | Path) -> str:
+    """A path in quotes, on one line."""
     return repr(str(path).encode("utf-8", "replace").decode("utf-8"))
 
 
@@ -418,7 +419,7 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        raise Error(f"cannot make the folder '{path}': {getattr(error, 'strerror', None) or error}") from None
+        raise Error(f"cannot make the folder {printable(path)}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
@@ -426,7 +427,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     try:
         content = text.encode("utf-8")
     except ValueError as error:
-        raise Error(f"cannot write {_printable(_path_of(path))}: {error}") from None
+        raise Error(f"cannot write {printable(_path_of(path))}: {error}") from None
     write_bytes(path, content)
 
 
@@ -448,7 +449,7 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
         reason = getattr(error, "strerror", None) or str(error)
-        raise Error(f"cannot write {_printable(name)}: {reason}") from None
+        raise Error(f"cannot write {printable(name)}: {reason}") from None
 
 
 def _count(shape: tuple[int, ...]) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trilobe._arrays import as_array
-from trilobe._brdf import Brdf, load, make_folder, model_of, text_of_path, write_bytes, write_text
+from trilobe._brdf import Brdf, load, make_folder, model_of, printable, text_of_path, write_bytes, write_text
 from trilobe._core import Error
 from trilobe._measurement import fits
 from trilobe._texel_materials import Problem, find
@@ -130,7 +130,7 @@ class _Fit:
             make_folder(folder)
             about.save(folder)
         elif there != about:
-            raise Error(f"'{folder}' holds texels of other values or options; give another folder")
+            raise Error(f"{printable(folder)} holds texels of other values or options; give another folder")
         if not about.finished(folder):
             lobes = self._lobes(self._kept_materials(folder / "materials"))
             make_folder(folder / "tiles")
@@ -184,7 +184,7 @@ class _Fit:
             except OSError as error:
                 shutil.rmtree(made, ignore_errors=True)
                 if not folder.exists():
-                    raise Error(f"cannot make the folder '{folder}': {error.strerror}") from None
+                    raise Error(f"cannot make the folder {printable(folder)}: {error.strerror}") from None
         return [load(folder / f"{k}.json") for k in range(self._about().materials)]
 
     def _lobes(self, materials: list[Brdf]) -> Vector:

@@ -80,20 +80,20 @@ def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> 
     while len(lobes) < count:
         alike = _alike(rho, weights, problem.solve(lobes, rho), lobes)
         scale = 1 / np.sqrt(energy[alike])[:, None]
-        lobes = np.concatenate([lobes, _mean(rho[alike], weights[alike], scale)[0][None]])
-    least, counts = np.inf, np.ones_like(lobes)
+        lobes = np.concatenate([lobes, _mean(rho[alike], weights[alike], scale)[None]])
+    least = np.inf
     for _ in range(_MOST_ROUNDS):
         for k in range(count):
             solved = problem.solve(lobes, rho)
             others = solved.s.copy()
             others[:, k] = 0
             if solved.s[:, k].any():
-                lobes[k], counts[k] = _mean(rho - _values(solved.d, others, lobes), weights, solved.s[:, k])
+                lobes[k] = _mean(rho - _values(solved.d, others, lobes), weights, solved.s[:, k])
         error = float(np.mean(solved.objective / energy))
         if not error < (1 - _LITTLE) * least:
             break
         least = error
-    return [_fitted(problem, *pair, options) for pair in zip(lobes, counts)]
+    return [_fitted(problem, of_material, options) for of_material in lobes]
 
 
 def _values(d: Vector, s: Vector, lobes: Vector) -> Vector:
@@ -110,23 +110,21 @@ def _alike(rho: Vector, weights: Vector, solved: Solved, lobes: Vector) -> NDArr
     return np.argsort(-likeness, kind="stable")[:_ALIKE]
 
 
-def _mean(rho: Vector, weights: Vector, s: Vector) -> tuple[Vector, Vector]:
-    """What, times s (n, 3), comes nearest to the values (n, samples, 3), and what it weighs."""
-    whole = (weights * s[:, None] ** 2).sum(axis=0)
-    mean = (weights * s[:, None] * rho).sum(axis=0) / np.maximum(whole, 1e-300)
+def _mean(rho: Vector, weights: Vector, s: Vector) -> Vector:
+    """What, times s (n, 3), comes nearest to the values (n, samples, 3): (samples, 3)."""
+    counts = (weights * s[:, None] ** 2).sum(axis=0)
+    mean: Vector = (weights * s[:, None] * rho).sum(axis=0) / np.maximum(counts, 1e-300)
     # What all directions have in common is for the diffuse terms of texels, of which none is below 0.
-    return mean - mean.min(axis=0), whole
+    mean -= mean.min(axis=0)
+    return mean
 
 
-def _fitted(problem: Problem, lobes: Vector, counts: Vector, options: dict[str, Any]) -> Brdf:
-    """A model of values (samples, 3) that weigh so much (samples, 3)."""
+def _fitted(problem: Problem, lobes: Vector, options: dict[str, Any]) -> Brdf:
+    """A model of values (samples, 3)."""
     measurement = Measurement(
         problem.wi, problem.wo, lobes, anisotropic=problem.anisotropic, source="the mean of texels", min_theta_d=0)
-    # In the weighting of the fit, so that the prior between samples counts as ever.
-    weights = counts.mean(axis=-1) / np.maximum(problem.weigh(lobes[None])[0].mean(axis=-1), 1e-300)
     result = fit(
-        measurement, weighting=problem.options["weighting"], weights=weights / max(weights.mean(), 1e-300),
-        threads=problem.options["threads"], **options)
+        measurement, weighting=problem.options["weighting"], threads=problem.options["threads"], **options)
     if result.interrupted:
         raise KeyboardInterrupt
     return result.model

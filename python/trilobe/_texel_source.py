@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trilobe._arrays import as_array
-from trilobe._brdf import text_of_path
+from trilobe._brdf import printable, text_of_path
 from trilobe._core import Error
 
 _TILE = 1 << 22  # numbers in a tile, unless a row has more
@@ -75,5 +75,5 @@ def _mapped(path: str) -> Any:
     try:
         return np.load(path, mmap_mode="r", allow_pickle=False)
     except (OSError, ValueError, EOFError) as error:
-        reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise Error(f"cannot map '{path}' as a .npy file: {reason}") from None
+        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise Error(f"cannot map {printable(path)} as a .npy file: {reason}") from None

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from trilobe import _exr
 from trilobe._arrays import Floats, check_width, of_one_precision
-from trilobe._brdf import Brdf, load, make_folder, text_of_path, write_text
+from trilobe._brdf import Brdf, load, make_folder, printable, text_of_path, write_text
 from trilobe._core import Error
 
 _FORMAT = {"format": "trilobe-texels", "version": 1}
@@ -107,7 +107,7 @@ def load_texels(folder: str | os.PathLike[str]) -> Texels:
     name = Path(text_of_path(folder))
     about = About.load(name)
     if about is None:
-        raise Error(f"'{name}' has no {_ABOUT}, and is no folder of texels")
+        raise Error(f"{printable(name)} has no {_ABOUT}, and is no folder of texels")
     materials = [load(name / "materials" / f"{k}.json") for k in range(about.materials)]
     pictures = [_exr.read(name / f"{stem}.exr", *about.size, n) for stem, n in about.pictures()]
     return about.texels(materials, pictures)
@@ -162,7 +162,8 @@ class About(NamedTuple):
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
-            raise Error(f"cannot read '{folder / _ABOUT}': {getattr(error, 'strerror', None) or error}") from None
+            reason = getattr(error, "strerror", None) or error
+            raise Error(f"cannot read {printable(folder / _ABOUT)}: {reason}") from None
         try:
             said = json.loads(text)
             if {key: said.pop(key) for key in _FORMAT} != _FORMAT:
@@ -171,7 +172,8 @@ class About(NamedTuple):
             if len(about.shape) not in (1, 2) or min(*about.shape, about.materials) < 1:
                 raise ValueError("no such shape")
         except (AttributeError, KeyError, TypeError, ValueError) as error:
-            raise Error(f"'{folder / _ABOUT}' is none of trilobe.fit_texels: {error}") from None
+            reason = " ".join(str(error).split())
+            raise Error(f"{printable(folder / _ABOUT)} is none of trilobe.fit_texels: {reason}") from None
         return about
 
 
@@ -188,4 +190,4 @@ def write_pictures(folder: Path, about: About, parts: Iterable[Sequence[NDArray[
         for file in files:
             file.close()
     except OSError as error:
-        raise Error(f"cannot write pictures into '{folder}': {error.strerror}") from None
+        raise Error(f"cannot write pictures into {printable(folder)}: {error.strerror}") from None
