@@ -133,7 +133,7 @@ class Fitting {
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
     PriorWeight(measurement_, options_);  // its error
-    if (options_.bands) CheckBands(samples, spec);
+    if (options_.bands) CheckBands(measurement_.samples, spec);
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
     fit.raw = options_.raw;
@@ -220,12 +220,28 @@ class Fitting {
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.bands && !options_.stop()) {
-      fit->bands = FitBands(fit->objective, fit->model(), options_.stop);
+      fit->bands = FitBands(WithSpectra(fit->objective), fit->model(), options_.stop);
       fit->seconds.bands = stopwatch_.Lap();
     }
     if (options_.compare) Compare(fit);
     fit->seconds.score = stopwatch_.Lap();
     fit->interrupted = options_.stop();
+  }
+
+  // What wavelengths are fitted to: all samples or, of a table, those that have spectra and are
+  // fitted with the values that they were read with.
+  Objective WithSpectra(const Objective& data) const {
+    if (!measurement_.table) return data;
+    const BrdfSamples &all = data.samples(), &some = measurement_.samples;
+    std::vector<int> kept;
+    for (int j = 0; j < some.size(); ++j) {
+      const auto found = std::ranges::lower_bound(all.bins, some.bins[j]);
+      if (found == all.bins.end() || *found != some.bins[j]) continue;
+      if (all.rho[found - all.bins.begin()] == some.rho[j]) kept.push_back(j);
+    }
+    if (kept.empty())
+      throw Error(measurement_.source + ": no sample that is fitted has a spectrum");
+    return {Selected(some, kept), data.spec(), data.weighting(), data.num_threads()};
   }
 
   void ReportForm(const SolvedForm& form, FitResult* fit) const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/formats/rgl_export.h"
 #include "io/formats/rgl_file.h"
 #include "model/spectral/spectral_color.h"
 #include "tests/app/run_program.h"
@@ -102,6 +103,24 @@ TEST(Spectral, AFitOfSevenBandsIsAModelOfSeven) {
   const DirectionPair pair = {DirectionAt(0.5, 0), DirectionAt(0.6, 2.5)};
   const SpectralColor color(spectral.spectral->wavelengths(), "test");
   EXPECT_LT(RelativeDistance(read.Evaluate(pair), color(Evaluate(*spectral.spectral, pair))), 0.1);
+}
+
+// A table at MERL's bins, whose spectra are looked up.
+TEST(Spectral, AnRglFileOfSpectraIsFittedAsSuch) {
+  const TemporaryFolder folder;
+  const SpectralModel model =
+      AnalyticSpectralModel(ModelSpec::SharedFactors(2), VisibleWavelengths(7));
+  std::ofstream(folder / "red_spec.bsdf", std::ios::binary)
+      << ExportRgl(model, {.max_error = 0.1}).bytes;
+  const std::string out = folder / "red";
+  const ProgramResult fit = RunProgram({"fit", folder / "red_spec.bsdf", "--spectral", "--lobes=2",
+                                        "--max_iterations=3", "--nodiagnose", "--out=" + out});
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("spectra      7 wavelengths from 400 to 700 nm"));
+  const ModelFile fitted = ReadModel(out + "/spectral.json");
+  const DirectionPair pair = {DirectionAt(0.5, 0), DirectionAt(0.6, 2.5)};
+  const std::vector<double> rho = Evaluate(*fitted.spectral, pair), truth = Evaluate(model, pair);
+  for (int l = 0; l < 7; ++l) EXPECT_NEAR(rho[l] / truth[l], 1, 0.1);
 }
 
 TEST(Spectral, OneWavelengthIsToldAsOne) {

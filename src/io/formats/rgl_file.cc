@@ -29,7 +29,27 @@ struct RglBrdf::Tables {
   BilinearStack sigma;          // [1]: projected area of the microfacets
   BilinearWarp vndf;            // [p t]: visible normals, to uniform coordinates
   BilinearStack rgb;            // [p t 3]: values in those coordinates
-  RglMask mask;                 // [p t]: which nodes of rgb were measured
+  std::vector<double> wavelengths;  // of spectra that are kept
+  BilinearStack spectra;            // [p t wavelengths]: the same
+  RglMask mask;                     // [p t]: which nodes of rgb were measured
+};
+
+// Where a pair of directions is in the tables.
+struct RglBrdf::Place {
+  SliceBlend blend = {};  // over (phi_i, theta_i)
+  SquarePoint x = {};
+  double factor = 0;  // of the values there
+  bool seen = false;  // else nothing is reflected
+
+  // Interpolated values dip below 0 here and there. The upper limit is for absurd tables, whose
+  // product exceeds what a double holds.
+  double ValueIn(const BilinearStack& stack, int bands, int band) const {
+    double value = 0;
+    for (int k = 0; k < blend.count; ++k) {
+      value += blend.weight[k] * stack.At(blend.slice[k] * bands + band, x);
+    }
+    return value > 0 ? std::min(value * factor, std::numeric_limits<double>::max()) : 0.0;
+  }
 };
 
 namespace {
@@ -84,12 +104,17 @@ BilinearStack ReadNonNegative(const TensorFile& file, const char* name,
 
 // `rgb`, or `spectra` at `wavelengths`, as the database's *_spec.bsdf files and those for spectral
 // renderers have them, as colours: those of linear sRGB. [p][t][3]
-BilinearStack ReadColors(const TensorFile& file, int p, int t, const std::string& source) {
-  if (file.Has("rgb") || !file.Has("spectra")) return ReadStack(file, "rgb", {p, t, kChannels});
+struct Colors {
+  BilinearStack rgb;
+  std::vector<double> wavelengths = {};  // of `spectra`
+  BilinearStack spectra = {};            // [p][t][wavelengths]
+};
+Colors ReadColors(const TensorFile& file, int p, int t, const std::string& source) {
+  if (file.Has("rgb") || !file.Has("spectra")) return {ReadStack(file, "rgb", {p, t, kChannels})};
   const std::vector<double> wavelengths = file.Float32("wavelengths", 1).values;
   const SpectralColor color(wavelengths, source);
   const auto count = static_cast<int>(wavelengths.size());
-  const BilinearStack spectra = ReadStack(file, "spectra", {p, t, count});
+  BilinearStack spectra = ReadStack(file, "spectra", {p, t, count});
   const size_t nodes = static_cast<size_t>(spectra.rows) * spectra.columns;
   BilinearStack rgb = {spectra.rows, spectra.columns,
                        std::vector<double>(static_cast<size_t>(p) * t * kChannels * nodes)};
@@ -105,7 +130,7 @@ BilinearStack ReadColors(const TensorFile& file, int p, int t, const std::string
       }
     }
   }
-  return rgb;
+  return {std::move(rgb), wavelengths, std::move(spectra)};
 }
 
 // phi is taken modulo 2 pi.
@@ -186,19 +211,20 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   if (const int slice = BilinearWarp::FirstVanishing(vndf); slice >= 0) {
     file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i");
   }
-  BilinearStack rgb = ReadColors(file, p, t, source);
-  RglMask mask(file, theta_i, p * t, rgb.rows, rgb.columns);
-  return RglBrdf(std::make_unique<const Tables>(
-      Tables{phi_i, theta_i, symmetry, ReadNonNegative(file, "ndf", {}),
-             ReadNonNegative(file, "sigma", {}), BilinearWarp(std::move(vndf)), std::move(rgb),
-             std::move(mask)}));
+  Colors colors = ReadColors(file, p, t, source);
+  if (p > 1) colors = {std::move(colors.rgb)};  // spectra of all azimuths take much memory
+  RglMask mask(file, theta_i, p * t, colors.rgb.rows, colors.rgb.columns);
+  return RglBrdf(std::make_unique<const Tables>(Tables{
+      phi_i, theta_i, symmetry, ReadNonNegative(file, "ndf", {}),
+      ReadNonNegative(file, "sigma", {}), BilinearWarp(std::move(vndf)), std::move(colors.rgb),
+      std::move(colors.wavelengths), std::move(colors.spectra), std::move(mask)}));
 }
 
 bool RglBrdf::isotropic() const { return tables_->phi_i.size() == 1; }
 
 double RglBrdf::max_theta() const { return tables_->mask.max_theta(); }
 
-MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
+RglBrdf::Place RglBrdf::Locate(const DirectionPair& directions) const {
   if (!(directions.wi[2] > 0 && directions.wo[2] > 0)) return {};
   const auto signs = FoldingSigns(tables_->symmetry, directions.wi);
   const Direction wi = ApplySigns(directions.wi, signs), wo = ApplySigns(directions.wo, signs);
@@ -208,7 +234,7 @@ MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
   const SquarePoint u_i = ToSquare(theta_i, phi_i);
   const SquarePoint u_m = ToSquare(theta_m, isotropic() ? phi_m - phi_i : phi_m);
 
-  SliceBlend blend;  // over (phi_i, theta_i)
+  SliceBlend blend;
   const double around =
       tables_->symmetry > 1 ? 0 : std::floor((phi_i - tables_->phi_i.front()) / (2 * kPi));
   const SliceBlend over_phi = Neighbours(tables_->phi_i, phi_i - 2 * kPi * around);
@@ -224,19 +250,29 @@ MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
   const double divisor = 4 * tables_->sigma.At(0, u_i) * wo[2];
   if (!(divisor > 0)) return {};
   const SquarePoint x = tables_->vndf.Invert(blend, u_m);
-  const double factor = tables_->ndf.At(0, u_m) / divisor;
-  MeasuredValue looked_up{.measured = tables_->mask.Measured(blend, x)};
+  return {.blend = blend, .x = x, .factor = tables_->ndf.At(0, u_m) / divisor, .seen = true};
+}
+
+MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
+  const Place at = Locate(directions);
+  if (!at.seen) return {};
+  MeasuredValue looked_up{.measured = tables_->mask.Measured(at.blend, at.x)};
   for (int channel = 0; channel < kChannels; ++channel) {
-    double value = 0;
-    for (int k = 0; k < blend.count; ++k) {
-      value += blend.weight[k] * tables_->rgb.At(blend.slice[k] * kChannels + channel, x);
-    }
-    // Interpolated colours dip below 0 here and there. The upper limit is for absurd tables, whose
-    // product exceeds what a double holds.
-    looked_up.rho[channel] =
-        value > 0 ? std::min(value * factor, std::numeric_limits<double>::max()) : 0.0;
+    looked_up.rho[channel] = at.ValueIn(tables_->rgb, kChannels, channel);
   }
   return looked_up;
+}
+
+const std::vector<double>& RglBrdf::wavelengths() const { return tables_->wavelengths; }
+
+std::vector<double> RglBrdf::Spectrum(const DirectionPair& directions) const {
+  const auto bands = static_cast<int>(wavelengths().size());
+  std::vector<double> spectrum(bands);
+  const Place at = Locate(directions);
+  for (int l = 0; l < bands && at.seen; ++l) {
+    spectrum[l] = at.ValueIn(tables_->spectra, bands, l);
+  }
+  return spectrum;
 }
 
 Measurement RglBrdf::Sample(const std::string& source, bool extrapolated) const {
@@ -336,6 +372,20 @@ std::function<MeasuredValue(const DirectionPair&)> MakeLookUp(std::shared_ptr<co
   };
 }
 
+// Spectra at some of the bins, as all would take gigabytes; enough for d, s and F of each
+// wavelength.
+BrdfSamples SpectraOf(const RglBrdf& brdf, const BrdfTable& table) {
+  constexpr int kBins = 1 << 15;
+  BrdfSamples samples = EvenlySpread(ValidSamples(table), kBins);
+  Spectra spectra = {brdf.wavelengths(), {}};
+  for (int j = 0; j < samples.size(); ++j) {
+    const std::vector<double> rho = brdf.Spectrum(ToDirections(samples.Angles(j)));
+    spectra.values.insert(spectra.values.end(), rho.begin(), rho.end());
+  }
+  samples.SetSpectra(std::move(spectra));
+  return samples;
+}
+
 }  // namespace
 
 MeasurementFormat RglFormat() {
@@ -352,10 +402,14 @@ MeasurementFormat RglFormat() {
               measurement.look_up = MakeLookUp(rgl);
               return measurement;
             }
-            return {.source = source,
-                    .kind = "RGL measurement, at MERL bins",
-                    .table = TabulateRgl(*rgl, source, {}, options.num_threads),
-                    .look_up = MakeLookUp(rgl)};
+            Measurement measurement = {.source = source,
+                                       .kind = "RGL measurement, at MERL bins",
+                                       .table = TabulateRgl(*rgl, source, {}, options.num_threads),
+                                       .look_up = MakeLookUp(rgl)};
+            if (!rgl->wavelengths().empty() && CountsOf(measurement).valid > 0) {
+              measurement.samples = SpectraOf(*rgl, *measurement.table);
+            }
+            return measurement;
           }};
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "trilobe/core/geometry/channels.h"
 #include "trilobe/core/geometry/directions.h"
@@ -36,11 +37,18 @@ class RglBrdf {
   // BRDF [1/sr], >= 0 (docs/samples.md); 0 where a direction is below the surface.
   Rgb Evaluate(const DirectionPair& directions) const { return LookUp(directions).rho; }
 
-  // The same, and whether all nodes of `rgb` with nonzero weight were measured.
+  // Of a file of isotropic spectra: their wavelengths [nm], ascending, and the BRDF [1/sr] at
+  // these, as Evaluate. Both are empty for others.
+  const std::vector<double>& wavelengths() const;
+  std::vector<double> Spectrum(const DirectionPair& directions) const;
+
+  // The same as Evaluate, and whether all nodes of `rgb` with nonzero weight were measured.
   MeasuredValue LookUp(const DirectionPair& directions) const;
 
  private:
   struct Tables;
+  struct Place;
+  Place Locate(const DirectionPair& directions) const;
   explicit RglBrdf(std::unique_ptr<const Tables> tables);
   std::unique_ptr<const Tables> tables_;
 };

@@ -187,7 +187,8 @@ void LimitThetaD(double min_theta_d, Measurement* measurement) {
 }
 
 void LeaveOutOwnShadow(Measurement* measurement) {
-  CheckDirections(NotNull(measurement, "the measurement"));
+  if (NotNull(measurement, "the measurement").table) return;
+  CheckDirections(*measurement);
   const OwnShadow shadow = FindOwnShadow(measurement->samples);
   if (shadow.theta_d_deg == 0) return;
   LimitThetaD(DegreesToRadians(shadow.theta_d_deg), measurement);

@@ -13,6 +13,7 @@
 #include "io/formats/rgl_file.h"
 #include "io/formats/tensor_file.h"
 #include "tests/model/evaluate/materials.h"
+#include "tests/model/spectral/spectral_materials.h"
 #include "tests/paths.h"
 #include "tests/test_util.h"
 #include "trilobe/core/base/error.h"
@@ -101,6 +102,29 @@ TEST(RglExport, SpectralFilesHaveTheFieldsThatPbrtReads) {
   ExpectWhatPbrtReads(ExportRgl(Plastic(), {.max_error = 1, .spectral = true}));
   ExpectWhatPbrtReads(ExportRgl(AnalyticModel(ModelSpec::Anisotropic(1), 0.4, 0.2),
                                 {.max_error = 1, .spectral = true}));
+}
+
+// And the spectra of a file are read, as are its colours.
+TEST(RglExport, ASpectralModelKeepsItsWavelengths) {
+  const SpectralModel model =
+      AnalyticSpectralModel(ModelSpec::SharedFactors(2), VisibleWavelengths(7));
+  const RglExport file = ExportRgl(model);
+  EXPECT_LE(file.median_error, 0.005);
+  ExpectWhatPbrtReads(file);
+  const RglBrdf brdf = RglBrdf::Parse(file.bytes, "x.bsdf");
+  EXPECT_EQ(brdf.wavelengths(), model.wavelengths());
+  Random random(1);
+  std::vector<double> errors;
+  for (int k = 0; k < 300; ++k) {
+    const DirectionPair pair = {DirectionAt(random.Uniform(0, 1.2), random.Uniform(-kPi, kPi)),
+                                DirectionAt(random.Uniform(0, 1.2), random.Uniform(-kPi, kPi))};
+    const std::vector<double> read = brdf.Spectrum(pair), rho = Evaluate(model, pair);
+    for (int l = 0; l < 7; ++l) errors.push_back(std::abs(read[l] / rho[l] - 1));
+  }
+  std::ranges::sort(errors);
+  EXPECT_LT(errors[errors.size() / 2], 0.005);
+  EXPECT_TRUE(
+      RglBrdf::Parse(ExportRgl(Plastic(), {.max_error = 1}).bytes, "rgb").wavelengths().empty());
 }
 
 TEST(RglExport, SpectraHaveTheColoursOfTheModel) {
