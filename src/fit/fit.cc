@@ -136,6 +136,7 @@ class Fitting {
     if (options_.bands) CheckBands(measurement_.samples, spec);
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
+    if (options_.bands) WithSpectra(fit.objective);  // its error
     fit.raw = options_.raw;
     fit.seconds.prepare = stopwatch_.Lap();
     fit.interrupted = options_.stop();
@@ -239,8 +240,11 @@ class Fitting {
       if (found == all.bins.end() || *found != some.bins[j]) continue;
       if (all.rho[found - all.bins.begin()] == some.rho[j]) kept.push_back(j);
     }
-    if (kept.empty())
-      throw Error(measurement_.source + ": no sample that is fitted has a spectrum");
+    if (kept.empty()) {
+      throw Error(measurement_.source +
+                  ": no sample that is fitted has a spectrum with its value; leave out what "
+                  "changes values");
+    }
     return {Selected(some, kept), data.spec(), data.weighting(), data.num_threads()};
   }
 
@@ -389,8 +393,9 @@ class Fitting {
       if (options_.stop()) fit->whole.reset();  // a half was not fitted
     }
     const AlbedoRipple ripple = RippleOf(fit->model(), options_.num_threads);
-    if (ripple.share > kSeenRipple)
+    if (ripple.share > kSeenRipple) {
       fit->ripple = {.share = ripple.share, .theta_i = ripple.theta_i};
+    }
     fit->light = ComputeLobeLight(fit->objective.coverage(), fit->model(), options_.num_threads);
     if (fit->bands) {
       const FactorModel rgb = fit->bands->model.ToRgb();
