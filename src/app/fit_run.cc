@@ -165,7 +165,7 @@ std::string WriteFiles(FitRun* run, const FitSettings& settings, ResultFolder* f
       DrawPictures(run->file, pictured, report.summary.trace, folder->path(), appearance, sphere);
     });
   }
-  if (settings.plots && report.bands) {
+  if (settings.plots && report.bands && report.bands->model.bands() > 1) {
     drawings.emplace_back([&] {
       const SpectralModel& model = report.bands->model;
       std::vector<double> errors;

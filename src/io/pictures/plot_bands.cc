@@ -58,9 +58,10 @@ void DrawBands(const SpectralModel& model, std::span<const double> relative_erro
   std::string script = GnuplotData("bands", RowsOf(model, relative_error));
   if (has_F) script += GnuplotData("fresnel", FresnelRows(model));
   script += "set multiplot layout 1," + std::to_string(has_F ? 3 : 2) + " title " +
-            GnuplotTitle(title, 1800, 22) + "\nset lmargin 11\nset rmargin 3\nset xrange [" +
+            GnuplotTitle(title, 1800, 22) + "\nset lmargin 13\nset rmargin 2\nset xrange [" +
             GnuplotNumber(first - margin) + ":" + GnuplotNumber(last + margin) +
-            "]\nset yrange [0:*]\nset format y '%g'\nset key top left\n"
+            "]\nset yrange [0:*]\nset format y '%g'\nset key above horizontal\nset tmargin 5\nset "
+            "bmargin 4\n"
             "set xlabel 'wavelength [nm]'\nset ylabel 'E [% of a black model]'\n"
             "plot $bands using 1:2 with linespoints pointtype 7 pointsize 0.9 linewidth 2.5 "
             "linecolor '" +
@@ -74,10 +75,10 @@ void DrawBands(const SpectralModel& model, std::span<const double> relative_erro
   if (has_F) {
     script += "set xlabel 'θ_d [deg]'\nset xrange [0:90]\nset xtics 30\nset ylabel 'F" +
               std::string(model.spec().F.per_lobe ? " of lobe 1" : "") +
-              "'\nset cblabel 'wavelength [nm]'\nset cbrange [" + GnuplotNumber(first - margin) +
-              ":" + GnuplotNumber(last + margin) +
+              "'\nset cblabel 'wavelength [nm]' offset 1.5\nset cbrange [" +
+              GnuplotNumber(first - margin) + ":" + GnuplotNumber(last + margin) +
               "]\nset palette defined (0 '#440154', 0.25 '#3b528b', 0.5 '#21918c', "
-              "0.75 '#5ec962', 1 '#fde725')\nset lmargin 7\nset rmargin 9\nplot ";
+              "0.75 '#5ec962', 1 '#fde725')\nset lmargin 7\nset rmargin 11\nplot ";
     for (int l = 0; l < model.bands(); ++l) {
       script += (l > 0 ? ", " : "") + std::string("$fresnel using 1:") + std::to_string(2 + l) +
                 ":(" + GnuplotNumber(model.wavelengths()[l]) +
