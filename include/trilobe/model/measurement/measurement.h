@@ -41,7 +41,8 @@ struct Measurement {
   std::vector<std::string> notes = {};  // sentences about suspicious data
 
   // For scattered data:
-  BrdfSamples samples = {};    // valid samples, with directions
+  // Valid samples, with directions. Of a table made of spectra, some of its bins, with these.
+  BrdfSamples samples = {};
   BinCounts counts = {};       // samples in the file: all, valid, left out by reason
   int out_of_gamut = 0;        // samples with a channel set to 0, outside sRGB
   double max_theta = kPi / 2;  // [rad] upper bound of theta_i and theta_o of valid samples
