@@ -133,7 +133,7 @@ class Fitting {
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
     PriorWeight(measurement_, options_);  // its error
-    if (options_.bands) CheckBands(measurement_.samples, spec);
+    if (options_.bands) CheckBands(measurement_.source, measurement_.samples, spec);
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
     if (options_.bands) WithSpectra(fit.objective);  // its error

@@ -161,7 +161,7 @@ TEST(Spectral, MeasuredSpectraAreWrittenAsTheyWere) {
 TEST(Spectral, ErrorsSayWhatHasNoWavelengths) {
   const TemporaryFolder folder;
   EXPECT_THAT(RunProgram({"fit", "synth:felt@4x4x4", "--spectral"}).err,
-              HasSubstr("its samples have no spectra"));
+              HasSubstr("synth:felt@4x4x4: its samples have no spectra"));
   const std::string model = "material:" + std::string("paper_white");
   EXPECT_THAT(RunProgram({"convert", model, "--spectral", "--at=synth:felt@4x4x4",
                           "--out=" + (folder / "a.csv")})

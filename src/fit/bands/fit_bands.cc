@@ -154,9 +154,9 @@ void SetScale(const Objective& objective, SpectralModel* model) {
 
 }  // namespace
 
-void CheckBands(const BrdfSamples& samples, const ModelSpec& spec) {
+void CheckBands(const std::string& source, const BrdfSamples& samples, const ModelSpec& spec) {
   if (samples.spectra == nullptr) {
-    throw Error(samples.source +
+    throw Error(source +
                 ": its samples have no spectra, so there is no model of wavelengths; leave out "
                 "--spectral");
   }
@@ -168,7 +168,7 @@ void CheckBands(const BrdfSamples& samples, const ModelSpec& spec) {
 BandsFit FitBands(const Objective& objective, const FactorModel& rgb, const StopCheck& stop) {
   const Objective& data = objective.data();  // a prior has no spectra
   const BrdfSamples& samples = data.samples();
-  CheckBands(samples, rgb.spec());
+  CheckBands(samples.source, samples, rgb.spec());
   CheckSameSpec(rgb.spec(), data.spec());
   BandsFit fit = {.model = SpectralModel(rgb.spec(), samples.spectra->wavelengths),
                   .objective = {},

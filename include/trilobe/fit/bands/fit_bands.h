@@ -1,6 +1,7 @@
 #ifndef TRILOBE_FIT_BANDS_FIT_BANDS_H_
 #define TRILOBE_FIT_BANDS_FIT_BANDS_H_
 
+#include <string>
 #include <vector>
 
 #include "trilobe/core/base/stop_check.h"
@@ -23,8 +24,9 @@ struct BandsFit {
   double Relative(int band) const { return black[band] > 0 ? objective[band] / black[band] : 0; }
 };
 
-// Throws Error if the samples have no spectra, or the spec's D or G differ by channel.
-void CheckBands(const BrdfSamples& samples, const ModelSpec& spec);
+// Throws Error, which names the `source`, if the samples have no spectra, or the spec's D or G
+// differ by channel.
+void CheckBands(const std::string& source, const BrdfSamples& samples, const ModelSpec& spec);
 
 // Fits d, s and F of each band, with D and G held as they are in `rgb`, a model of the objective's
 // spec that was fitted to the colours of the same samples. E of a band is then a quadratic function
