@@ -32,8 +32,9 @@ AlbedoRipple RippleOf(const FactorModel& model, int num_threads) {
   }
   for (int k = 0; k <= kLast; ++k) {
     double course = 0;  // an albedo is even in theta_i
-    for (int j = -kAround; j <= kAround; ++j)
+    for (int j = -kAround; j <= kAround; ++j) {
       course += WeightInParabola(j, kAround) * logs[std::abs(k + j)];
+    }
     const double off = std::abs(std::expm1(logs[k] - course));  // NaN where it is black
     if (off > ripple.share) ripple = {.share = off, .theta_i = theta_i[k]};
   }
