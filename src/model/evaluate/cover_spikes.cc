@@ -19,7 +19,7 @@ namespace {
 using Rgb4 = Four<float>;
 
 // The largest weight that is left at what is measured; between, it may be half as large again.
-constexpr double kMostWeight = 2.7;
+constexpr double kMostWeight = 2.5;
 
 // What is measured: up to this theta_i [rad], ...
 constexpr double kLastTheta = DegreesToRadians(85.1);
