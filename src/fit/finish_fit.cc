@@ -168,10 +168,9 @@ void SmoothOut(const Objective& solved, const FinishOptions& options, SphereScor
 // If the sphere hardly suffers.
 void EvenOut(const Objective& solved, const StopCheck& stop, SphereScores* scores,
              FinishedFit* fit) {
-  constexpr double kMayLose = 0.5;  // [dB]; rings are seen sooner
   std::optional<NoHarm> no_harm;
   const auto is_harmless = [&](const FactorModel& even) {
-    if (!no_harm) no_harm.emplace(fit->objective, fit->model, scores, kMayLose);
+    if (!no_harm) no_harm.emplace(fit->objective, fit->model, scores, kMayLoseForRings);
     return (*no_harm)(even);
   };
   std::optional<FactorModel> even = WithoutRings(solved, fit->model, is_harmless, stop);

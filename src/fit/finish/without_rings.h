@@ -10,6 +10,9 @@
 
 namespace trilobe {
 
+// What a picture may lose for a model without rings, which are seen sooner [dB].
+inline constexpr double kMayLoseForRings = 0.5;
+
 // Whether even light shows rings on a sphere (RippleOf).
 bool HasRings(const FactorModel& model, int num_threads);
 

@@ -352,12 +352,11 @@ class ModelSearch {
   // would bring new rings.
   FactorModel EvenOut(const Objective& measured, const Objective& minimised,
                       const FactorModel& model) const {
-    constexpr double kMayLose = 0.5;  // [dB]; rings are seen sooner
     constexpr double kPriceOfLight = 10;
     if (!HasRings(model, objective_.num_threads())) return model;
     const double score = options_.judge(model);
     const auto is_harmless = [&](const FactorModel& even) {
-      return options_.judge(even) >= score - kMayLose;
+      return options_.judge(even) >= score - kMayLoseForRings;
     };
     const std::optional<MatchedModel> matched = MatchReflectance(
         measured, minimised, model, TableLayout::Full(model.spec()), kPriceOfLight, options_.stop);

@@ -33,7 +33,7 @@ struct ModelCandidate {
   double E = 0;               // Objective::Value; approximate for a form that is not stored
   double score = 0;           // of `judge`; -infinity for NaN
   bool fails_beyond = false;  // rejected by `judge_beyond`
-  bool has_rings = false;     // rejected, as even light would show rings that `fitted` lacks
+  bool has_rings = false;     // rejected, as even light would show rings
   double seconds = 0;         // to make it from the form that it is derived from
 };
 
