@@ -46,11 +46,9 @@ function notes() {
   }
   if (!asItCame()) return said;
   const fitted = edited() ? 'as it was fitted: ' : '';
-  const times = x => `the model reaches ${short(x)} times the largest measured value`;
-  if (reach?.beyond >= NOTABLE_REACH && !contents.notes.some(note => note.includes('beyond, it reaches'))) {
-    said.push(`${fitted}beyond the measured angles ${times(reach.beyond)}`);
+  if (reach >= NOTABLE_REACH) {
+    said.push(`${fitted}between the samples the model reaches ${short(reach)} times the largest measured value`);
   }
-  if (reach?.between >= NOTABLE_REACH) said.push(`${fitted}between the samples ${times(reach.between)}`);
   return [...contents.notes.map(note => fitted + note), ...said];
 }
 

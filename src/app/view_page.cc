@@ -34,9 +34,7 @@ void CompareAtSamples(const FactorModel& model, const Measurement& measured,
   Compare(CompareSampledSphere(samples, EvaluateSamples(model, samples, threads),
                                MaterialOf(model).spherical, measured.anisotropic, appearance),
           measured, std::nullopt, contents);
-  const Reach reach = ReachOf(samples, model, threads);
-  contents->reach_beyond = reach.beyond;
-  contents->reach_between = reach.between;
+  contents->reach = ReachOf(samples, model, threads).between;
 }
 
 }  // namespace
@@ -53,10 +51,7 @@ ViewedPage ViewPage(const ModelFile& model, const std::string& path, const Measu
   contents.trace.assign(trace.begin(), trace.end());
   const Environment& environment = EnvironmentOf(appearance);
   if (environment.name != StudioEnvironment().name) contents.probe = &environment;
-  if (compared.reach) {
-    contents.reach_beyond = compared.reach->beyond;
-    contents.reach_between = compared.reach->between;
-  }
+  if (compared.reach) contents.reach = compared.reach->between;
   if (measured != nullptr) {
     contents.source = measured->source;
     contents.notes = measured->notes;

@@ -161,9 +161,9 @@ def test_a_page_holds_scattered_samples(open_page: Open, scattered: Path, pages:
     wait_for(page, "trilobe.page.heat !== null")
     assert page.evaluate("trilobe.page.heat.points.length") == count
     assert not page.get_attribute("#polar", "aria-label").endswith(" 0 measured values")
-    # What the program prints of directions that were not measured.
+    # What the program prints of directions between the samples.
     assert "times the largest measured value" in page.inner_text("#notes") or page.evaluate(
-        "trilobe.contents.reach.beyond < 2 && trilobe.contents.notes.length === 0")
+        "trilobe.contents.reach < 2 && trilobe.contents.notes.length === 0")
     assert page.evaluate("trilobe.renderer.leastCosine") == pytest.approx(math.cos(math.radians(65)), abs=1e-6)
 
 

@@ -112,21 +112,12 @@ std::string ParametersText(const FitReport& report) {
   return text;
 }
 
+// Beyond the samples a material may be any number of times as bright; see AlbedoLimits.
 std::string ReachText(const Reach& reach) {
   constexpr double kNotable = 2;
-  if (std::max(reach.between, reach.beyond) < kNotable) return "";
-  const auto times = [](double x) { return Text(x, 3) + " times the largest measured value"; };
-  std::string text = "reach        ";
-  if (reach.beyond >= kNotable) {
-    text += "beyond " + Text(RadiansToDegrees(reach.max_theta), 3) +
-            " deg, where nothing was measured, the model reaches " + times(reach.beyond);
-  }
-  if (reach.between >= kNotable) {
-    text += (reach.beyond >= kNotable ? "; between the samples "
-                                      : "between the samples the model reaches ") +
-            times(reach.between);
-  }
-  return text + "\n";
+  if (reach.between < kNotable) return "";
+  return "reach        between the samples the model reaches " + Text(reach.between, 3) +
+         " times the largest measured value\n";
 }
 
 ReportedVerdict VerdictOn(const FitReport& report) {
@@ -145,7 +136,6 @@ ReportedVerdict VerdictOn(const FitReport& report) {
        .default_solver = report.summary.solver == Solvers().front().name,
        .irreducible = IrreducibleShare(report.score),
        .left_out = report.left_out,
-       .reach_beyond = report.reach ? report.reach->beyond : 0,
        .glow = report.finished.glow ? report.finished.glow->albedo : 0,
        .glow_theta_i = report.finished.glow ? report.finished.glow->theta_i : 0,
        .ripple = report.ripple.share,

@@ -32,9 +32,6 @@ std::string AdviceText(Advice advice, const FitFacts& facts) {
       return Text(100 * facts.irreducible, 2) +
              " % of E is what the data differ by when light and eye change places (noise, or not "
              "reciprocal)";
-    case Advice::kKeepWithin:
-      return "render it only within the measured directions: beyond, it reaches " +
-             Text(facts.reach_beyond, 3) + " times the largest measured value; try --prior=10";
     case Advice::kGlows:
       return "it reflects " + Text(facts.glow, 3) + " times the light from " +
              Text(RadiansToDegrees(facts.glow_theta_i), 3) +

@@ -288,7 +288,7 @@ std::string FormatPage(const ModelFile& model, const PageContents& contents) {
                {"delta_e_95", number(contents.delta_e_95)},
                {"of_sphere", contents.of_sphere},
                {"measured_share", contents.measured_share},
-               {"reach", {{"beyond", contents.reach_beyond}, {"between", contents.reach_between}}},
+               {"reach", contents.reach},
                {"notes", Printables(contents.notes)},
                {"trace", ToJson(contents.trace)}};
   if (contents.measured) json["measured"] = ToJson(*contents.measured);

@@ -62,9 +62,8 @@ struct PageContents {
   double psnr_db = 0, mean_delta_e = 0, delta_e_95 = 0;
   bool of_sphere = true;      // or of samples
   double measured_share = 1;  // of what a renderer reads (MeasuredShare)
-  // Largest values of the model where nothing was measured, over the largest measured one: beyond
-  // the measured angles, and between samples; 0 if unknown.
-  double reach_beyond = 0, reach_between = 0;
+  // The largest value of the model between samples over the largest sample; 0 if unknown.
+  double reach = 0;
   std::vector<std::string> notes;  // on the measurement, and advice
   std::vector<IterationRecord> trace;
   const Environment* probe = nullptr;  // the light; null: the studio, which the page computes

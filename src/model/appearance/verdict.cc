@@ -191,10 +191,9 @@ std::string NameOf(Fault fault) {
 }
 
 std::vector<Advice> AdviceOn(const Verdict& verdict, const FitFacts& facts) {
-  constexpr double kMuchLeftOut = 0.01, kMuchIrreducible = 0.3, kMuchReach = 10;
+  constexpr double kMuchLeftOut = 0.01, kMuchIrreducible = 0.3;
   std::vector<Advice> advice;
   if (facts.interrupted) advice.push_back(Advice::kGoOn);
-  if (facts.reach_beyond > kMuchReach) advice.push_back(Advice::kKeepWithin);
   if (facts.glow > 0) advice.push_back(Advice::kGlows);
   if (facts.ripple > 0) advice.push_back(Advice::kRings);
   if (verdict.visibility == Visibility::kNone) return advice;
@@ -224,8 +223,6 @@ std::string NameOf(Advice advice) {
       return "choose_form";
     case Advice::kDataDiffer:
       return "data_differ";
-    case Advice::kKeepWithin:
-      return "keep_within";
     case Advice::kGlows:
       return "glows";
     case Advice::kRings:

@@ -74,8 +74,6 @@ struct FitFacts {
   // Of the energy: what an isotropic model of anisotropic data leaves out; nothing where it is
   // none.
   std::optional<double> left_out = {};
-  // The largest value of the model where nothing was measured, over the largest measured one.
-  double reach_beyond = 0;
   // The largest directional albedo, and its theta_i [rad], of a model that makes light.
   double glow = 0, glow_theta_i = 0;
   // By how much the directional albedo leaves the course that it has around, as a share, if even
@@ -91,7 +89,6 @@ enum class Advice {
   kChooseSolver,  // another solver than the default one may be the limit
   kChooseForm,    // the form is the limit
   kDataDiffer,    // the remaining error is largely noise or not reciprocal
-  kKeepWithin,    // it is unusable beyond the measured directions
   kGlows,         // it reflects more light than it receives
   kRings,         // what it reflects jumps with the angle
 };

@@ -113,11 +113,6 @@ TEST(Advice, IsToChooseTheSolverBeforeTheForm) {
               ElementsAre(Advice::kChooseSolver));
 }
 
-TEST(Advice, IsToKeepWithinWhatWasMeasuredHoweverGoodThatIs) {
-  EXPECT_THAT(AdviceOn({}, {.reach_beyond = 7000}), ElementsAre(Advice::kKeepWithin));
-  EXPECT_THAT(AdviceOn({}, {.reach_beyond = 3}), IsEmpty());
-}
-
 TEST(Advice, IsToGoOnBeforeAnythingElse) {
   const Verdict seen{Visibility::kVisible}, same;
   EXPECT_THAT(AdviceOn(seen, {.ended = false, .may_choose_form = true}),
