@@ -3,73 +3,129 @@ import json
 import math
 import pathlib
 
-from lab import corruptions, fits, tables
+from lab import corruptions, fits, materials, tables
 from lab.units import FOLDER, Product, Unit
 
 FACTOR = 2.0  # an estimate of Delta E within it is right
 SEEN = 2.0  # Delta E that nobody calls the same
-SAMPLES = "samples.csv"
+SAMPLES, TABLE = "samples.csv", "given.binary"
+HERE = pathlib.Path(__file__).parent
+MODULES = (HERE / "guesses.py", HERE.parent / "lab" / "merl.py")
+FITTED = "default"  # the rule that is a fit by the defaults
 
 
-def _measured(setting, source):
-    """What each fit is given: [(what is hidden or kept, seed of the noise, the file, flags)]."""
-    given = [(name, 1, source.path, corruptions.flags(name))
-             for name in corruptions.of_kinds(setting.manifest["hidden"])]
-    for pattern, counts in setting.manifest["kept"].items():
+def _table(setting, source, name):
+    """The table without what a corruption hides, or without what the table of "mask" has not, as a Product."""
+    program = str(setting.program())
+    file = f"{FOLDER}/{TABLE}"
+    if name == "mask":
+        command = (HERE / "hide_as", (program, str(setting.place("mask")), source.path, file))
+    else:
+        command = (setting.program(), ("convert", source.path, f"--corrupt={name}", f"--out={file}"))
+    return Product(Unit(f"given/{source.name}/{fits.file_name(name)}", *command, TABLE,
+                        modules=MODULES, labels={"material": source.name, "given": name}), TABLE)
+
+
+def _samples(setting, source, pattern, count):
+    """A few samples of the table, as a Product."""
+    return Product(Unit(f"samples/{source.name}/{pattern}-{count}", HERE / "sample_directions",
+                        (str(setting.program()), source.path, pattern, str(count), f"{FOLDER}/{SAMPLES}"), SAMPLES,
+                        labels={"material": source.name, "given": f"{pattern}:{count}"}), SAMPLES)
+
+
+def _given(setting, source, part):
+    """What a set of the manifest gives of a source to each rule: [(name, seed of the noise, the file, flags of a fit,
+    the table as a Product or None)]."""
+    made = []
+    names = corruptions.of_kinds(part.get("hidden", {}))
+    names += ["mask"] if part.get("mask") and setting.manifest["mask"] else []
+    for name in names:
+        if name == "mask":
+            table = _table(setting, source, name)
+            made.append((name, 1, table, {}, table))
+        else:
+            table = _table(setting, source, name) if part.get("others") and name != corruptions.CLEAN else None
+            made.append((name, 1, source.path, corruptions.flags(name), table))
+    for pattern, counts in part.get("kept", {}).items():
         for count in counts:
-            sampled = Unit(f"samples/{source.name}/{pattern}-{count}",
-                           pathlib.Path(__file__).with_name("sample_directions"),
-                           (str(setting.program()), source.path, pattern, str(count), f"{FOLDER}/{SAMPLES}"), SAMPLES,
-                           labels={"material": source.name, "given": "samples"})
-            given += [(f"{pattern}:{count}", seed, Product(sampled, SAMPLES),
-                       {"corrupt": f"noise:{setting.manifest['noise']}", "data_seed": seed})
-                      for seed in range(1, setting.manifest["data_seeds"] + 1)]
-    return given
+            file = _samples(setting, source, pattern, count)
+            made += [(f"{pattern}:{count}", seed, file,
+                      {"corrupt": f"noise:{setting.manifest['noise']}", "data_seed": seed}, None)
+                     for seed in range(1, setting.manifest["data_seeds"] + 1)]
+    return made
+
+
+def _fitted(setting, source, name, seed, file, flags):
+    """A fit, its score on the whole table, and the light that it reflects."""
+    labels = {"material": source.name, "given": name, "data_seed": seed, "rule": FITTED}
+    place = f"beyond/{source.name}/{fits.file_name(name)}-{seed}"
+    fitted = Unit(place, setting.program(),
+                  ("fit", file, f"--out={FOLDER}", "--noplots", *fits.words({**setting.manifest["flags"], **flags})),
+                  "report.json", labels=labels)
+    model = Product(fitted, "model.json")
+    return [*fitted.needs, fitted,
+            Unit(f"{place}-whole", setting.program(), ("score", model, source.path, "--json", "--threads=1"),
+                 labels={**labels, "of": "whole"}),
+            Unit(f"{place}-light", setting.program(), ("info", model, "--json"), labels={**labels, "of": "light"})]
+
+
+def _guessed(setting, source, name, rule, table):
+    """The score of another rule's guess."""
+    others = [other.path for other in setting.sources if other.name != source.name and other.database != "RGL"]
+    if rule == "components" and len(others) < setting.manifest["least_others"]:
+        return []
+    return [table.unit,
+            Unit(f"beyond/{source.name}/{fits.file_name(name)}-{rule}", HERE / "score_guess",
+                 (str(setting.program()), rule, table, source.path, *(others if rule == "components" else ())),
+                 modules=MODULES,
+                 labels={"material": source.name, "given": name, "data_seed": 1, "rule": rule, "of": "whole"})]
 
 
 def units(setting):
-    """Fits to a part of each table, and the score of each on all of it."""
+    """Fits to a part of each table, what other rules guess of the rest, and the score of each on all of it."""
     made = []
-    for source in setting.every(setting.manifest["every"]):
-        for name, seed, file, flags in _measured(setting, source):
-            for way, own in setting.manifest["ways"].items():
-                labels = {"material": source.name, "given": name, "data_seed": seed, "way": way}
-                words = fits.words({**setting.manifest["flags"], **flags, **own})
-                place = f"beyond/{source.name}/{fits.file_name(name)}-{seed}-{fits.file_name(way)}"
-                fitted = Unit(place, setting.program(),
-                              ("fit", file, f"--out={FOLDER}", "--noplots", *words), "report.json", labels=labels)
-                model = Product(fitted, "model.json")
-                made += [*fitted.needs, fitted,
-                         Unit(f"{place}-whole", setting.program(),
-                              ("score", model, source.path, "--json", "--threads=1"),
-                              labels={**labels, "of": "whole"}),
-                         Unit(f"{place}-light", setting.program(), ("info", model, "--json"),
-                              labels={**labels, "of": "light"})]
+    for part in setting.manifest["sets"]:
+        for source in setting.every(part["every"]):
+            for name, seed, file, flags, table in _given(setting, source, part):
+                made += _fitted(setting, source, name, seed, file, flags)
+                for rule in part.get("others", []) if table else []:
+                    made += _guessed(setting, source, name, rule, table)
+    for source in materials.find(setting.manifest["nodes"]):
+        made += _fitted(setting, source, "nodes:75", 1, source.path, {})
     return list({unit.key: unit for unit in made}.values())
 
 
+def _looks(scored):
+    """PSNR and Delta E of the whole sphere; an anisotropic material's formula is known beyond its nodes."""
+    appearance = scored["appearance"]
+    return (appearance["from_formula"] or {}).get("fitted", appearance)
+
+
 def tabulate(setting, results):
-    """A row for each fit: the whole sphere, and what the fit itself says of it."""
+    """A row for each fit or guess: the whole sphere, and what a fit itself says of it."""
     of = {}
     for result in results:
-        if result.folder and "way" in result.labels:
+        if result.folder and "rule" in result.labels:
             labels = result.labels
-            key = (labels["material"], labels["given"], labels["data_seed"], labels["way"])
+            key = (labels["material"], labels["given"], labels["data_seed"], labels["rule"])
             of.setdefault(key, {})[labels.get("of", "fit")] = result
     rows = []
-    for (material, given, seed, way), parts in of.items():
-        if set(parts) != {"fit", "whole", "light"}:
+    for (material, given, seed, rule), parts in of.items():
+        if "whole" not in parts or (rule == FITTED and set(parts) != {"fit", "whole", "light"}):
             continue
-        verdict = json.loads((parts["fit"].folder / "report.json").read_text())["verdict"]
-        looks = json.loads((parts["whole"].folder / "stdout.txt").read_text())["appearance"]
-        albedo = json.loads((parts["light"].folder / "stdout.txt").read_text())["albedo"]
-        estimate = verdict["whole"] or {}
-        rows.append({"material": material, "given": given, "data_seed": seed, "way": way,
-                     "measured_share": verdict["measured_share"],
-                     "psnr_db": looks["psnr_db"], "delta_e": looks["mean_delta_e"],
-                     "estimated_delta_e": estimate.get("mean_delta_e"), "estimated_psnr_db": estimate.get("psnr_db"),
-                     "praised": int(verdict["visibility"] == "none" and not estimate),
-                     "largest_albedo": _largest(albedo)})
+        looks = _looks(json.loads((parts["whole"].folder / "stdout.txt").read_text()))
+        row = {"material": material, "given": given, "data_seed": seed, "rule": rule,
+               "psnr_db": looks["psnr_db"], "delta_e": looks["mean_delta_e"]}
+        if rule == FITTED:
+            verdict = json.loads((parts["fit"].folder / "report.json").read_text())["verdict"]
+            albedo = json.loads((parts["light"].folder / "stdout.txt").read_text())["albedo"]
+            estimate = verdict["whole"] or {}
+            row.update({"measured_share": verdict["measured_share"],
+                        "estimated_delta_e": estimate.get("mean_delta_e"),
+                        "estimated_psnr_db": estimate.get("psnr_db"),
+                        "praised": int(verdict["visibility"] == "none" and not estimate),
+                        "largest_albedo": _largest(albedo)})
+        rows.append(row)
     return {"whole": rows}
 
 
@@ -83,20 +139,33 @@ def _largest(albedo):
 
 
 def _summary(rows):
-    """A line for what was given to each way of fitting."""
+    """A line for what was given to the fits."""
     lines = []
-    for (given, way), of in tables.groups(rows, "given", "way").items():
+    for given, of in tables.groups([row for row in rows if row["rule"] == FITTED], "given").items():
         known = [row["estimated_delta_e"] / row["delta_e"] for row in of if row["estimated_delta_e"]]
         right = sum(1 / FACTOR <= ratio <= FACTOR for ratio in known)
-        lines.append([given, way, str(len(of)), tables.quartiles([100 * row["measured_share"] for row in of], ".0f"),
+        lines.append([given, str(len(of)), tables.quartiles([100 * row["measured_share"] for row in of], ".0f"),
                       tables.quartiles([row["psnr_db"] for row in of], ".1f"),
                       f"{min(row['psnr_db'] for row in of):.1f}",
                       tables.quartiles([row["delta_e"] for row in of], ".2f"),
                       f"{right} of {len(known)}" if known else "",
                       str(sum(row["praised"] and row["delta_e"] > SEEN for row in of)),
                       f"{max(row['largest_albedo'] for row in of):.2f}"])
-    return tables.markdown(["given", "way", "fits", "measured, %", "PSNR of the whole, dB", "least", "ΔE",
+    return tables.markdown(["given", "fits", "measured, %", "PSNR of the whole, dB", "least", "ΔE",
                             "estimate within a factor of 2", "praised above ΔE 2", "largest albedo"], lines)
+
+
+def _rules(rows):
+    """A line for each rule and what was given to all of them."""
+    lines = []
+    given = {row["given"] for row in rows if row["rule"] != FITTED}
+    for (name, rule), of in tables.groups([row for row in rows if row["given"] in given], "given", "rule").items():
+        lines.append([name, rule, str(len(of)),
+                      tables.quartiles([row["psnr_db"] for row in of], ".1f"),
+                      f"{min(row['psnr_db'] for row in of):.1f}",
+                      tables.quartiles([row["delta_e"] for row in of], ".2f"),
+                      f"{max(row['delta_e'] for row in of):.2f}"])
+    return tables.markdown(["given", "rule", "tables", "PSNR of the whole, dB", "least", "ΔE", "largest"], lines)
 
 
 def _figure(rows):
@@ -104,7 +173,7 @@ def _figure(rows):
     from lab import plots
     ticker = plots.matplotlib.ticker
     figure, axes = plots.plt.subplots(figsize=(5.5, 5))
-    told = [row for row in rows if row["estimated_delta_e"] and row["delta_e"] > 0]
+    told = [row for row in rows if row.get("estimated_delta_e") and row["delta_e"] > 0]
     for (given, of), colour in zip(tables.groups(told, "given").items(), plots.SERIES * 3):
         axes.loglog([row["delta_e"] for row in of], [row["estimated_delta_e"] for row in of], "o", color=colour,
                     label=given, markersize=5)
@@ -122,4 +191,6 @@ def _figure(rows):
 
 def draw(drawn, _):
     rows = drawn["whole"]
-    return {"summary.md": _summary(rows), "estimate": _figure(rows)} if rows else {}
+    if not rows:
+        return {}
+    return {"summary.md": _summary(rows), "rules.md": _rules(rows), "estimate": _figure(rows)}
