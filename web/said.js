@@ -46,6 +46,9 @@ function notes() {
   }
   if (!asItCame()) return said;
   const fitted = edited() ? 'as it was fitted: ' : '';
+  if (page.measured?.kind === 'nodes') {
+    said.push('between its nodes the measurement is linear on this page, which blurs narrow highlights; the verdict takes them as the fit has them');
+  }
   if (reach >= NOTABLE_REACH) {
     said.push(`${fitted}between the samples the model reaches ${short(reach)} times the largest measured value`);
   }

@@ -98,7 +98,7 @@ def units(setting):
 def _looks(scored):
     """PSNR and Delta E of the whole sphere; an anisotropic material's formula is known beyond its nodes."""
     appearance = scored["appearance"]
-    return (appearance["from_formula"] or {}).get("fitted", appearance)
+    return (appearance["from_formula"] or {}).get("whole", appearance)
 
 
 def tabulate(setting, results):

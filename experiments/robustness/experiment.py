@@ -143,6 +143,12 @@ def _own_clean(fitted, key):
     return fitted.get((material, *way, CLEAN))
 
 
+def _looks(score):
+    """PSNR and Delta E of the sphere, or of the samples; of an anisotropic material against its formula."""
+    formula = (score.get("appearance") or {}).get("from_formula")
+    return formula["fitted"] if formula else score["verdict"]
+
+
 def tabulate(setting, results):
     """fits: a row for each; failed: those that there are none of."""
     done = [result for result in results if result.folder]
@@ -155,10 +161,11 @@ def tabulate(setting, results):
         said = json.loads((result.folder / "stdout.txt").read_text())
         key = _key(result.labels)
         fit, clean = fitted[key], _own_clean(fitted, key)
-        psnr = said["verdict"]["psnr_db"]
+        looks = _looks(said)
+        psnr = looks["psnr_db"]
         rows.append({**dict(zip(KEY, key)),
                      "psnr_db": math.inf if psnr is None else psnr,
-                     "mean_delta_e": said["verdict"]["mean_delta_e"],
+                     "mean_delta_e": looks["mean_delta_e"],
                      "mean_log_error": said["mean_log_error"],
                      "albedo_error": _albedo_error(said),
                      "relative_objective": said["relative_objective"],

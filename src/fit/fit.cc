@@ -385,6 +385,9 @@ class Fitting {
     if (measurement_.table && fit->appearance) {
       fit->whole = EstimateWholeSphere(fit->objective, fit->model(), fit->measured_share,
                                        fit->appearance->sphere, Appearance());
+    } else if (pictured.nodes) {
+      fit->whole = EstimateWholeOfNodes(*pictured.nodes, fit->model(), fit->appearance->sphere,
+                                        Appearance());
     } else if (fit->samples_seen) {
       fit->whole = EstimateWholeOfSamples(
           fit->objective.samples(), fit->model(), fit->stored_parameters, fit->measured_share,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <span>
@@ -9,10 +10,12 @@
 #include <vector>
 
 #include "fit/finish/albedo_limit.h"
+#include "model/appearance/node_appearance.h"
 #include "model/lobes/beyond_data.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/render.h"
+#include "trilobe/model/appearance/view.h"
 #include "trilobe/model/table_layout.h"
 
 namespace trilobe {
@@ -38,9 +41,10 @@ std::vector<double> HideEnds(std::span<const double> coverage, const FactorModel
   return hidden;
 }
 
+constexpr int kEvery = 4;  // pixels: tell the same as all would
+
 SphereError CompareWhole(const FactorModel& model, const FactorModel& other,
                          const AppearanceOptions& options) {
-  constexpr int kEvery = 4;  // tells the same as all pixels would
   const auto everything = [](const HalfDiffAngles&, const Cosines&) { return true; };
   const AngularBrdf materials[] = {MaterialOf(model).angular, MaterialOf(other).angular};
   const std::vector<RenderedImage> spheres =
@@ -51,6 +55,12 @@ SphereError CompareWhole(const FactorModel& model, const FactorModel& other,
 
 double SumInDecibels(double a, double b) {
   return -10 * std::log10(std::pow(10, -a / 10) + std::pow(10, -b / 10));
+}
+
+// Of what was measured, and of a guess that is off by so much of `guess`.
+WholeSphere Joined(const SeenError& seen, const SphereError& guess, double share) {
+  return {.mean_delta_e = std::hypot(seen.mean_delta_e, share * guess.mean_delta_e),
+          .psnr_db = SumInDecibels(seen.psnr_db, guess.psnr_db - 20 * std::log10(share))};
 }
 
 constexpr double kNextToAll = 0.98;  // of what a renderer reads
@@ -101,9 +111,22 @@ std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const Fact
   AlbedoLimits limits = AlbedoLimitsOf(data, model);
   limits.beyond_theta -= width;
   LimitAlbedo(limits, TableLayout::Full(model.spec()), options.num_threads, {}, &rehearsed);
-  const SphereError guess = CompareWhole(model, rehearsed, options);
-  return WholeSphere{.mean_delta_e = std::hypot(seen.mean_delta_e, guess.mean_delta_e),
-                     .psnr_db = SumInDecibels(seen.psnr_db, guess.psnr_db)};
+  return Joined(seen, CompareWhole(model, rehearsed, options), 1);
+}
+
+WholeSphere EstimateWholeOfNodes(const NodeBrdf& measured, const FactorModel& model,
+                                 const SeenError& seen, const AppearanceOptions& options) {
+  constexpr double kShare = 1.0 / 4;
+  const SphericalBrdf fitted = MaterialOf(model).spherical;
+  const NodeBrdf at_nodes = AtNodesOf(measured, fitted, options.num_threads);
+  const SphericalBrdf materials[] = {fitted, std::cref(at_nodes)};
+  const std::vector<RenderedImage> spheres =
+      Render(
+          ViewSphere(options.size, kEvery), materials,
+          DrawLights(EnvironmentOf(options), options.lights),
+          [](const SphericalAngles&) { return true; }, /*whole_too=*/false, options.num_threads)
+          .counted;
+  return Joined(seen, CompareSpheres(spheres[0], spheres[1]), kShare);
 }
 
 std::optional<WholeSphere> EstimateWholeOfSamples(const BrdfSamples& samples,

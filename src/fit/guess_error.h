@@ -7,6 +7,7 @@
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/factor_model.h"
 #include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/measurement/node_brdf.h"
 #include "trilobe/model/objective/objective.h"
 
 namespace trilobe {
@@ -22,6 +23,11 @@ namespace trilobe {
 std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const FactorModel& model,
                                                double measured_share, const SeenError& seen,
                                                const AppearanceOptions& options);
+
+// The same for a fit to nodes. Between them, and beyond, it is off by a quarter of what the model
+// differs by from its own values at the measured nodes, interpolated linearly.
+WholeSphere EstimateWholeOfNodes(const NodeBrdf& measured, const FactorModel& model,
+                                 const SeenError& seen, const AppearanceOptions& options);
 
 // The same for an isotropic fit to scattered samples. It is fitted anew to every other incidence
 // (of 10 degrees if there are many), and to the rest. It differs from these halves by about one and

@@ -98,5 +98,23 @@ TEST(GuessError, OfScansIsNearTheTruth) {
   EXPECT_FALSE(fit_to({40}).whole.has_value());
 }
 
+TEST(GuessError, OfNodesIsNearTheTruth) {
+  FitOptions options;
+  options.appearance = kSmall;
+  options.solver = "awls";
+  options.solver_options = [](const ModelSpec&) {
+    SolverOptions solver;
+    solver.max_iterations = 5;
+    return solver;
+  };
+  for (const char* name : {"synth:rolled_brass@6x24", "synth:velvet@6x24"}) {
+    const FitResult fit = Fit(LoadMeasurement(name), options);
+    ASSERT_TRUE(fit.whole.has_value());
+    const SphereError& truth = fit.appearance->from_formula->whole;
+    EXPECT_NEAR(std::log2(fit.whole->mean_delta_e / truth.mean_delta_e), 0, 1.3)
+        << name << ": " << fit.whole->mean_delta_e << " for " << truth.mean_delta_e;
+  }
+}
+
 }  // namespace
 }  // namespace trilobe::TRILOBE_TEST_FILE

@@ -76,7 +76,8 @@ Json ToJson(const AppearanceReport& report) {
       return {{"psnr_db", error.psnr_db}, {"mean_delta_e", error.mean_delta_e}};
     };
     from_formula = {{"fitted", sphere_error(report.from_formula->fitted)},
-                    {"measured", sphere_error(report.from_formula->measured)}};
+                    {"measured", sphere_error(report.from_formula->measured)},
+                    {"whole", sphere_error(report.from_formula->whole)}};
   }
   Json beyond;
   if (report.beyond) {

@@ -25,9 +25,10 @@ struct PairPicture {
   std::string source;
   // Texts left of the squares that the pictures consist of, one above another; or none, of one.
   std::vector<std::string> rows;
-  SphereError error;    // the figures below
-  std::string subject;  // what they are of
-  ImagePairs images;    // of these the map of differences shows what was measured
+  SphereError error;                  // the figures below
+  std::string subject;                // what they are of
+  ImagePairs images;                  // of these the map of differences shows what was measured
+  const char* measured = "measured";  // what the first panel is
 };
 
 constexpr int kGutter = 24;  // between panels
@@ -290,7 +291,7 @@ void DrawImagePair(const PairPicture& picture, const AppearanceOptions& options,
                     layout) +
               "unset label\n";
   };
-  panel(0, "measured", panels[0]);
+  panel(0, picture.measured, panels[0]);
   panel(1, "fitted", panels[1]);
   panel(2, "difference: below 1 unseen", panels[2]);
   script += "unset arrow\n" + ColorBar(layout);
@@ -356,6 +357,8 @@ std::string MeasureOf(const AppearanceOptions& options) {
          " points of the environment, as in the verdict";
 }
 
+constexpr char kAtNodes[] = "measured, between nodes as fitted";
+
 SphereError ErrorOf(const ImagePair& pair) { return CompareSpheres(pair.measured, pair.fitted); }
 
 }  // namespace
@@ -380,6 +383,7 @@ void DrawSpheres(const NodeBrdf& measured, const SphericalBrdf& fitted, const st
       .error = error ? *error : ErrorOf(RenderMeasuredPair(measured, fitted, options)),
       .subject = MeasureOf(options),
       .images = {}};
+  picture.measured = kAtNodes;
   picture.images = RenderPicture(measured, fitted, Shape::kSphere, Enlarge(options, kSizeOfNodes));
   DrawImagePair(picture, options, path);
 }
@@ -396,7 +400,8 @@ void DrawCloth(const NodeBrdf& measured, const SphericalBrdf& fitted, const std:
       .rows = {"light along the thread", "light across the thread"},
       .error = {},
       .subject = "this picture",
-      .images = RenderPicture(measured, fitted, Shape::kCloth, Enlarge(options, kSizeOfCloth))};
+      .images = RenderPicture(measured, fitted, Shape::kCloth, Enlarge(options, kSizeOfCloth)),
+      .measured = kAtNodes};
   picture.error = ErrorOf(picture.images.counted);
   DrawImagePair(picture, options, path);
 }

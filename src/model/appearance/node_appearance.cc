@@ -23,19 +23,6 @@ namespace {
 
 constexpr double kOneStep = 1.0 / 255;  // of an 8-bit picture
 
-// The material, restricted to measured directions.
-NodeBrdf AtNodesOf(const NodeBrdf& measured, const SphericalBrdf& brdf, int num_threads) {
-  NodeTable table = measured.table();
-  const int nodes = table.grid.nodes();
-  ParallelFor(nodes, num_threads, [&](int i) {
-    for (int o = 0; o < nodes; ++o) {
-      const size_t index = static_cast<size_t>(i) * nodes + o;
-      if (table.present[index]) table.rho[index] = brdf(table.grid.Angles(i, o));
-    }
-  });
-  return NodeBrdf(std::move(table));
-}
-
 // Clamped at 0, as a renderer does.
 SphericalBrdf Clamped(const SphericalBrdf& brdf) {
   CheckNotEmpty(brdf, "the material");
@@ -45,6 +32,32 @@ SphericalBrdf Clamped(const SphericalBrdf& brdf) {
     return rho;
   };
 }
+
+// The measurement beside a fit. Linear values miss a highlight that is narrower than the steps
+// between the nodes, where the fit may be right. So the measured material differs from the fit
+// there by the same factor as at the nodes around, both interpolated linearly.
+class BesideFit {
+ public:
+  // Keeps references. `fitted`: at least 0.
+  BesideFit(const NodeBrdf& measured, const SphericalBrdf& fitted, int num_threads)
+      : measured_(measured),
+        fitted_(fitted),
+        fitted_at_nodes_(AtNodesOf(measured, fitted, num_threads)) {}
+
+  Rgb operator()(const SphericalAngles& at) const {
+    Rgb rho = measured_(at);
+    const Rgb fitted = fitted_(at), around = fitted_at_nodes_(at);
+    for (int c = 0; c < kChannels; ++c) {
+      if (around[c] > 0) rho[c] *= fitted[c] / around[c];
+    }
+    return rho;
+  }
+
+ private:
+  const NodeBrdf& measured_;
+  const SphericalBrdf& fitted_;
+  const NodeBrdf fitted_at_nodes_;
+};
 
 BrdfFunction OfMeasured(const SphericalBrdf& brdf, const NodeBrdf& measured) {
   return [&brdf, &measured](const DirectionPair& pair) {
@@ -71,14 +84,12 @@ PointErrors CompareAtPoints(const NodeBrdf& measured, const SphericalBrdf& fitte
   return MeanOf(sums);
 }
 
-std::vector<RenderedImage> RenderMeasured(const NodeBrdf& measured,
-                                          std::span<const SphericalBrdf> brdfs,
-                                          const AppearanceOptions& options) {
+RenderedImages RenderMeasured(const NodeBrdf& measured, std::span<const SphericalBrdf> brdfs,
+                              const AppearanceOptions& options, bool whole_too = false) {
   return Render(
-             ViewSphere(options.size), brdfs, DrawLights(EnvironmentOf(options), options.lights),
-             [&measured](const SphericalAngles& at) { return measured.Measured(at); },
-             /*whole_too=*/false, options.num_threads)
-      .counted;
+      ViewSphere(options.size), brdfs, DrawLights(EnvironmentOf(options), options.lights),
+      [&measured](const SphericalAngles& at) { return measured.Measured(at); }, whole_too,
+      options.num_threads);
 }
 
 // Compares measured and fitted on a small sphere: a cloth's formula is a thousand times slower than
@@ -90,8 +101,10 @@ AppearanceReport::FromFormula CompareWithFormula(const NodeBrdf& measured,
   options.size = std::max(options.size / 3, 8);
   const SphericalBrdf rendered[] = {
       brdfs[0], brdfs[1], [&](const SphericalAngles& at) { return formula(ToDirections(at)); }};
-  const std::vector<RenderedImage> images = RenderMeasured(measured, rendered, options);
-  return {CompareSpheres(images[2], images[1]), CompareSpheres(images[2], images[0])};
+  const auto [counted, whole] = RenderMeasured(measured, rendered, options, /*whole_too=*/true);
+  return {.fitted = CompareSpheres(counted[2], counted[1]),
+          .measured = CompareSpheres(counted[2], counted[0]),
+          .whole = CompareSpheres(whole[2], whole[1])};
 }
 
 }  // namespace
@@ -118,6 +131,18 @@ Measurement ReconstructAtNodes(const FactorModel& model, const std::string& sour
   Measurement measurement = collector.Take();
   measurement.anisotropic = true;
   return measurement;
+}
+
+NodeBrdf AtNodesOf(const NodeBrdf& measured, const SphericalBrdf& brdf, int num_threads) {
+  NodeTable table = measured.table();
+  const int nodes = table.grid.nodes();
+  ParallelFor(nodes, num_threads, [&](int i) {
+    for (int o = 0; o < nodes; ++o) {
+      const size_t index = static_cast<size_t>(i) * nodes + o;
+      if (table.present[index]) table.rho[index] = brdf(table.grid.Angles(i, o));
+    }
+  });
+  return NodeBrdf(std::move(table));
 }
 
 NodeJudge::NodeJudge(const NodeBrdf& measured, const SphericalBrdf& about_right,
@@ -198,14 +223,18 @@ AppearanceReport CompareAppearance(const NodeBrdf& measured, const SphericalBrdf
 
 ImagePair RenderMeasuredPair(const NodeBrdf& measured, const SphericalBrdf& fitted,
                              const AppearanceOptions& options) {
-  const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};
-  std::vector<RenderedImage> spheres = RenderMeasured(measured, brdfs, options);
+  const SphericalBrdf clamped = Clamped(fitted);
+  const BesideFit beside(measured, clamped, options.num_threads);
+  const SphericalBrdf brdfs[] = {std::cref(beside), clamped};
+  std::vector<RenderedImage> spheres = RenderMeasured(measured, brdfs, options).counted;
   return {std::move(spheres[0]), std::move(spheres[1])};
 }
 
 ImagePairs RenderPicture(const NodeBrdf& measured, const SphericalBrdf& fitted, Shape shape,
                          const AppearanceOptions& options) {
-  const SphericalBrdf brdfs[] = {std::cref(measured), Clamped(fitted)};
+  const SphericalBrdf clamped = Clamped(fitted);
+  const BesideFit beside(measured, clamped, options.num_threads);
+  const SphericalBrdf brdfs[] = {std::cref(beside), clamped};
   const Environment& environment = EnvironmentOf(options);
   const View view = shape == Shape::kSphere
                         ? ViewSphere(options.size)

@@ -19,6 +19,9 @@ namespace trilobe {
 Measurement ReconstructAtNodes(const FactorModel& model, const std::string& source,
                                const HemisphereGrid& grid);
 
+// A material known at the measured pairs of nodes alone, and interpolated as the measurement is.
+NodeBrdf AtNodesOf(const NodeBrdf& measured, const SphericalBrdf& brdf, int num_threads);
+
 // Selects the model that looks most like a measurement at nodes, whose values between nodes are
 // unknown. Interpolation is accurate for wide highlights. For narrow ones a good model is closer to
 // the material, and a model that looks like the interpolation is bad. An approximately right model

@@ -50,9 +50,9 @@ struct AppearanceReport {
   bool at_nodes = false;
   std::optional<BeyondData> beyond;  // nothing if all directions are measured
   // For synthetic materials: the errors of the fit and of the interpolated measurement against the
-  // exact formula, on the sphere.
+  // exact formula, on the sphere; and of the fit over all directions.
   struct FromFormula {
-    SphereError fitted, measured;
+    SphereError fitted, measured, whole;
   };
   std::optional<FromFormula> from_formula = {};
 };
@@ -67,7 +67,9 @@ struct AppearanceOptions {
 // The environment that is used.
 const Environment& EnvironmentOf(const AppearanceOptions& options);
 
-// Compares a material with a measurement, interpolated linearly between bin centres or nodes.
+// Compares a material with a measurement, interpolated linearly between bin centres. Between nodes,
+// which are far apart, the measured sphere differs from the fitted one by the factor that is
+// interpolated linearly.
 // `fitted` accepts any directions above the surface. The same bits for any number of threads.
 // Throws Error if no bin is valid, the environment is black, or the material's values overflow.
 AppearanceReport CompareAppearance(const BrdfTable& measured, const AngularBrdf& fitted,
