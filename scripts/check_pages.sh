@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Tests pages and shaders in a browser, Debian's chromium: scripts/check_pages.sh [PYTEST_ARGUMENT...]
-# What drives it comes from PyPI into build/browser; where that or chromium cannot be had, says so and is done. Needs the
+# What drives it, and three.js, comes from PyPI into build/browser; where that or chromium cannot be had, says so and is done. Needs the
 # release preset's program and tests.
 set -euo pipefail
 
@@ -11,9 +11,11 @@ if ! command -v chromium >/dev/null; then
   exit 0
 fi
 venv=build/browser
-if ! "$venv/bin/python" -c 'import numpy, PIL, playwright, pytest' 2>/dev/null; then
+# Of nicegui, only its copy of three.js 0.168 is used.
+if ! "$venv/bin/python" -c 'import numpy, PIL, playwright, pytest' 2>/dev/null || [[ ! -e $venv/three ]]; then
   export PIP_RETRIES=1 PIP_DEFAULT_TIMEOUT=15 PIP_DISABLE_PIP_VERSION_CHECK=1
-  if ! { python3 -m venv "$venv" && "$venv/bin/pip" install --quiet numpy pillow playwright pytest ruff; }; then
+  if ! { python3 -m venv "$venv" && "$venv/bin/pip" install --quiet numpy pillow playwright pytest ruff &&
+    "$venv/bin/pip" install --quiet --no-deps nicegui==2.24.2 && touch "$venv/three"; }; then
     echo "left out: PyPI cannot be reached, so pages are not tested"
     exit 0
   fi

@@ -11,6 +11,7 @@
 #include "fit/scene/scene_fit.h"
 #include "tests/test_directory.h"
 #include "tests/test_util.h"
+#include "trilobe/model/evaluate/bsdf.h"
 #include "trilobe/model/objective/score.h"
 #include "trilobe/solvers/registry/solvers.h"
 #include "trilobe/solvers/solver.h"
@@ -77,6 +78,24 @@ std::vector<std::string> SolverNames() {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Races, testing::ValuesIn(SolverNames()),
                          [](const auto& param) { return param.param; });
+
+TEST(RacesInABsdf, OverItsTables) {
+  FactorModel model(ModelSpec::SharedFactors(1, kGrid));
+  std::ranges::fill(model.parameters(), 0.5);
+  const Bsdf<double> bsdf(model);
+  std::vector<double> drawn(kThreads);
+  {
+    std::vector<std::jthread> threads;
+    for (double& sum : drawn) {
+      threads.emplace_back([&] {
+        const Bsdf<double> copy = bsdf;
+        sum = copy.SampleWo({0, 0, 1}, {0.7, 0.2}).pdf + bsdf.Albedo({0, 0, 1})[0];
+      });
+    }
+  }
+  EXPECT_GT(drawn[0], 0);
+  for (const double sum : drawn) EXPECT_EQ(sum, drawn[0]);
+}
 
 TEST(RacesInScenes, OfMaterialsSideBySide) {
   const TestDirectory directory;

@@ -17,6 +17,7 @@
 #include "io/formats/tensor_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/evaluate/bsdf.h"
+#include "trilobe/model/evaluate/half_vector_table.h"
 
 namespace trilobe {
 namespace {

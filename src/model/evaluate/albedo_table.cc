@@ -11,8 +11,7 @@
 namespace trilobe {
 namespace {
 
-constexpr double kLast = DegreesToRadians(89.5);  // kGrazingTheta
-constexpr int kSteps = 96;                        // of s
+constexpr int kSteps = 96;  // of s
 
 // Nodes of y, as many again between them where tables are coarse.
 std::vector<double> FineNodesOfY(const ModelSpec& spec) {
@@ -37,14 +36,14 @@ AlbedoTable<Real>::AlbedoTable(const ModelSpec& spec)
 
 template <typename Real>
 double AlbedoTable<Real>::RingOf(double theta) const {
-  const double part = std::min(theta / kLast, 1.0);
+  const double part = std::min(theta / kGrazingTheta, 1.0);
   return (anisotropic_ ? 1 - std::sqrt(1 - part) : part) * (rings_ - 1);
 }
 
 template <typename Real>
 double AlbedoTable<Real>::ThetaOf(int ring) const {
   const double x = static_cast<double>(ring) / (rings_ - 1);
-  return kLast * (anisotropic_ ? x * (2 - x) : x);
+  return kGrazingTheta * (anisotropic_ ? x * (2 - x) : x);
 }
 
 template <typename Real>

@@ -10,16 +10,13 @@
 #include "model/evaluate/albedo_table.h"
 #include "model/evaluate/cover_spikes.h"
 #include "model/evaluate/max_phi.h"
+#include "model/evaluate/sampling_table.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/model/evaluate/half_vector_table.h"
 
 namespace trilobe {
 namespace {
-
-[[noreturn]] void Overflow() {
-  throw Error("the model's values overflow; its factors are too large");
-}
 
 // Block size for many samples: the steps of independent samples overlap in the processor, while
 // those of one sample wait for each other.
@@ -38,108 +35,17 @@ bool IsAbove(const Vector& w) {
   return w[2] > 0 && std::isfinite(w[0]) && std::isfinite(w[1]) && std::isfinite(w[2]);
 }
 
-template <typename Colour>
-auto MeanOf(const Colour& colour) {
-  return (colour[0] + colour[1] + colour[2]) / 3;
-}
-
 }  // namespace
 
-// Nodes of theta_i, denser towards grazing, where lobes change most. Of an isotropic model, each
-// entry of G there, if these are a degree apart.
 template <typename Real>
-struct Bsdf<Real>::Nodes : HalfVectorNodes {
-  explicit Nodes(const ModelSpec& spec) {
-    const bool anisotropic = spec.anisotropic();
-    y = NodesOfY(spec);
-    if (spec.stretches.any()) KeepEverySecondY();
-    s = anisotropic || spec.stretches.any() ? 33 : 17;
-    phi_i = anisotropic ? std::max({spec.d_axis.phi_nodes, spec.g_axis.phi_nodes, 12}) : 1;
-    if (anisotropic) {
-      constexpr int kRings = 16;
-      for (int k = 0; k < kRings; ++k) {
-        const double left = 1 - static_cast<double>(k) / (kRings - 1);
-        theta_i.push_back(kGrazingTheta * (1 - left * left));
-      }
-    } else {
-      constexpr int kEven = 30;
-      constexpr double kFirst = 72.5, kLast = 88.5;  // [degrees]
-      for (int k = 0; k < kEven; ++k) theta_i.push_back(DegreesToRadians(kFirst * k / kEven));
-      for (double x = kFirst; x <= kLast; ++x) theta_i.push_back(DegreesToRadians(x));
-      theta_i.push_back(kGrazingTheta);
-    }
-  }
-
- private:
-  // Nodes that a narrow highlight of an albedo needs are too many to draw by.
-  void KeepEverySecondY() {
-    for (size_t k = 0; 2 * k < y.size(); ++k) y[k] = y[2 * k];
-    y.resize((y.size() + 1) / 2);
-  }
-};
+Bsdf<Real>::Bsdf(const FactorModel& model)
+    : model_(model),
+      half_vectors_(std::make_shared<SamplingTable<Real>>(model)),
+      albedos_(std::make_shared<AlbedoTable<Real>>(model.spec())) {}
 
 template <typename Real>
-Bsdf<Real>::Bsdf(const FactorModel& model) : model_(model) {
-  diffuse_albedo_ = MeanOf(model_.diffuse()) * static_cast<Real>(kPi);
-  if (!(diffuse_albedo_ <= std::numeric_limits<float>::max())) Overflow();
-  Nodes nodes(model.spec());
-  std::vector<float> values = TabulatedLobes(nodes);
-  // More nodes of s where covering spikes would cost too much light.
-  while (!anisotropic() && !CoverSpikes(model, diffuse_albedo_, nodes, &values) &&
-         4 * nodes.s - 3 <= HalfVectorTable<Real>::kMaxS) {
-    nodes.s = 4 * nodes.s - 3;
-    values = TabulatedLobes(nodes);
-  }
-  half_vectors_ = HalfVectorTable<Real>(nodes, values);
-  albedos_ = std::make_shared<AlbedoTable<Real>>(model.spec());
-}
-
-// Over y and s, the density of wo by solid angle is multiplied by
-//   d omega_o = 4 (wi . h) d omega_h,  cos theta_h d omega_h = dy d phi / 2,  d phi = 2 phi_max ds:
-// s goes once through [-phi_max, phi_max], or through both halves of it, which are alike where the
-// material is isotropic.
-template <typename Real>
-std::vector<float> Bsdf<Real>::TabulatedLobes(const Nodes& nodes) const {
-  const bool anisotropic = model_.anisotropic();
-  std::vector<float> values;
-  values.reserve(nodes.theta_i.size() * nodes.phi_i * nodes.y.size() * nodes.s);
-  const double least_cosine = std::cos(kGrazingTheta);
-  std::vector<Colour> lobes(std::max(model_.lobes(), 1));
-  for (const double theta_i : nodes.theta_i) {
-    const double cos_i = std::cos(theta_i), sin_i = std::sin(theta_i);
-    for (int p = 0; p < nodes.phi_i; ++p) {
-      const double phi_i = 2 * kPi * p / nodes.phi_i;
-      const Vector wi = {static_cast<Real>(sin_i * std::cos(phi_i)),
-                         static_cast<Real>(sin_i * std::sin(phi_i)), static_cast<Real>(cos_i)};
-      for (size_t row = 0; row < nodes.y.size(); ++row) {
-        const double cos_h = std::sqrt(1 - nodes.y[row]), sin_h = std::sqrt(nodes.y[row]);
-        const double phi_max = MaxPhi(cos_i, sin_i, cos_h, sin_h);
-        for (int k = 0; k < nodes.s; ++k) {
-          const double s = static_cast<double>(k) / (nodes.s - 1);
-          const double phi = (anisotropic ? 2 * s - 1 : s) * phi_max;
-          const double wi_h = cos_i * cos_h + sin_i * sin_h * std::cos(phi);
-          const double phi_h = phi_i + phi;
-          const double h[] = {sin_h * std::cos(phi_h), sin_h * std::sin(phi_h), cos_h};
-          Vector wo;
-          for (int a = 0; a < 3; ++a) wo[a] = static_cast<Real>(2 * wi_h * h[a] - wi[a]);
-          wo[2] = std::max(wo[2], static_cast<Real>(least_cosine));
-          const double scale =
-              phi_max > 0 ? wo[2] * 4 * wi_h * phi_max / std::max(cos_h, least_cosine) : 0;
-          model_.LobeValues(wi, wo, lobes.data());
-          std::array<double, kChannels> value{};
-          for (int m = 0; m < model_.lobes(); ++m) {
-            for (int c = 0; c < kChannels; ++c) value[c] += lobes[m][c] * scale;
-          }
-          for (double& x : value) x = std::max(x, 0.0);
-          values.push_back(static_cast<float>(MeanOf(value)));
-          if (!(values.back() <= std::numeric_limits<float>::max())) {
-            Overflow();
-          }
-        }
-      }
-    }
-  }
-  return values;
+const HalfVectorTable<Real>& Bsdf<Real>::half_vectors() const {
+  return half_vectors_->Of(model_);
 }
 
 template <typename Real>
@@ -152,10 +58,10 @@ typename Bsdf<Real>::Incident Bsdf<Real>::Prepare(const Vector& wi) const {
   // Half vectors beyond half of theta_i + 90 degrees have no wo above the surface.
   const Real phi_i =
       anisotropic() ? std::copysign(AngleOfCosine(incident.cos_phi), incident.sin_phi) : Real{0};
-  incident.at = half_vectors_.At(AngleOfSine2(incident.sin * incident.sin), phi_i,
-                                 std::min((1 + incident.sin) / 2, Real{1}));
+  incident.at = half_vectors().At(AngleOfSine2(incident.sin * incident.sin), phi_i,
+                                  std::min((1 + incident.sin) / 2, Real{1}));
   const Real lobes = incident.at.total;
-  const Real diffuse = diffuse_albedo_ + static_cast<Real>(kCosineShare) * lobes;
+  const Real diffuse = half_vectors_->diffuse_albedo() + static_cast<Real>(kCosineShare) * lobes;
   incident.cosine_part = lobes > 0 ? diffuse / (diffuse + lobes) : Real{1};
   return incident;
 }
@@ -180,7 +86,7 @@ Real Bsdf<Real>::LobesPdf(const Vector& wi, const Incident& incident, const Vect
   const Real across = h[1] * incident.cos_phi - h[0] * incident.sin_phi;
   const Real phi = sin_h > 0 ? AngleOfCosine(along / sin_h) : Real{0};
   const Real s = anisotropic() ? (std::copysign(phi, across) / phi_max + 1) / 2 : phi / phi_max;
-  return half_vectors_.Value(at, y, s) / at.total * h[2] / (4 * wi_h * phi_max);
+  return half_vectors().Value(at, y, s) / at.total * h[2] / (4 * wi_h * phi_max);
 }
 
 template <typename Real>
@@ -221,8 +127,8 @@ void Bsdf<Real>::Propose(const Vector& wi, const Incident& incident, const std::
     lobes_pdf = part < 1 ? LobesPdf(wi, incident, sample.wo) : Real{0};
   } else {
     const Real around = 2 * u1 - 1;
-    const auto drawn = half_vectors_.Draw(incident.at, inside((u0 - part) / (1 - part)),
-                                          anisotropic() ? u1 : std::abs(around));
+    const auto drawn = half_vectors().Draw(incident.at, inside((u0 - part) / (1 - part)),
+                                           anisotropic() ? u1 : std::abs(around));
     const Real sin_h = std::sqrt(drawn.y), cos_h = std::sqrt(std::max(1 - drawn.y, Real{0}));
     const Real phi_max = MaxPhi(wi[2], incident.sin, cos_h, sin_h);
     const Real phi = phi_max * (anisotropic() ? 2 * drawn.s - 1 : std::copysign(drawn.s, around));

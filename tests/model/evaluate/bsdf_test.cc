@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/system/process.h"
 #include "tests/model/evaluate/half_vector_bins.h"
 #include "tests/model/evaluate/materials.h"
 #include "tests/test_util.h"
@@ -256,6 +258,25 @@ TEST(BsdfTest, FloatAgreesWithDouble) {
       EXPECT_NEAR(rounded.Albedo(in_float(wi))[1], bsdf.Albedo(wi)[1], 1e-3) << name;
     }
   }
+}
+
+// A table of sampling takes as long as some hundred thousand values.
+TEST(BsdfTest, ValuesNeedNoTableOfSampling) {
+  const FactorModel model = AnalyticModel(ModelSpec::SharedFactors(3), 0.1, 0.5);
+  const auto seconds = [](const auto& what) {
+    const double begin = ProcessorSeconds();
+    what();
+    return ProcessorSeconds() - begin;
+  };
+  std::optional<Bsdf<double>> bsdf;
+  const double values = seconds([&] {
+    bsdf.emplace(model);
+    EXPECT_GT(bsdf->Value({0, 0, 1}, {0.6, 0, 0.8})[0], 0);
+  });
+  const double first = seconds([&] { EXPECT_GT(bsdf->Pdf({0, 0, 1}, {0.6, 0, 0.8}), 0); });
+  const double second = seconds([&] { EXPECT_GT(bsdf->Pdf({0, 0, 1}, {0.6, 0, 0.8}), 0); });
+  EXPECT_LT(values, first / 4);
+  EXPECT_LT(second, first / 4);
 }
 
 TEST(BsdfTest, RefusesAModelWhoseValuesOverflow) {

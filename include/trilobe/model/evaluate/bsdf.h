@@ -5,26 +5,22 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "trilobe/core/geometry/channels.h"
-#include "trilobe/core/math/angles.h"
 #include "trilobe/model/evaluate/half_vector_table.h"
 #include "trilobe/model/evaluate/prepared_model.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
 
-// The largest theta of wi and wo in tables for renderers (Bsdf, files) [rad]; beyond it they use
-// the values at it. In models with splined cosines, such as the paper's, G / cos theta is constant
-// there.
-inline constexpr double kGrazingTheta = DegreesToRadians(89.5);
-
 template <typename Real>
 class AlbedoTable;
+template <typename Real>
+class SamplingTable;
 
 // A fitted material for a renderer: evaluation, sampling and albedo of models of every form.
-// Immutable and thread-safe; no call allocates. Real is double or float.
+// Immutable and thread-safe. The first call that draws or asks for a density, and the first of
+// Albedo, make their tables in up to some seconds; no other allocates. Real is double or float.
 //
 //   const trilobe::Bsdf<float> bsdf(trilobe::ReadModel("model.json").model);
 //   const auto f = bsdf.Value(wi, wo);           // RGB [1/sr], without the cosine
@@ -39,8 +35,8 @@ class AlbedoTable;
 // eye as wi.
 //
 // Sampling mixes two densities: a cosine for the diffuse term, and for all lobes together a table
-// of half vectors for each of several wi (HalfVectorTable), computed in the constructor. It
-// tabulates f cos theta_o of the lobes, averaged over the channels, over two variables:
+// of half vectors for each of several wi (HalfVectorTable). It tabulates f cos theta_o of the
+// lobes, averaged over the channels, over two variables:
 //   y = sin^2 theta_h: equal steps are equal projected solid angles of h (paper eq. 8 assumes
 //   equal bins of theta_h, which MERL's are not), and
 //   s, the azimuth of h from that of wi as a fraction of phi_max, up to which wo is above the
@@ -86,8 +82,8 @@ class Bsdf {
   // The density with which SampleWo draws wo for wi [1/sr]; not symmetric.
   Real Pdf(const Vector& wi, const Vector& wo) const;
 
-  // The distribution of half vectors.
-  const HalfVectorTable<Real>& half_vectors() const { return half_vectors_; }
+  // The distribution of half vectors, by which SampleWo draws.
+  const HalfVectorTable<Real>& half_vectors() const;
 
   // The same for many pairs or directions, with identical results. Throw Error if the sizes differ.
   void Values(std::span<const Vector> wi, std::span<const Vector> wo,
@@ -105,9 +101,7 @@ class Bsdf {
     typename HalfVectorTable<Real>::Condition at;
     Real cosine_part;
   };
-  struct Nodes;
 
-  std::vector<float> TabulatedLobes(const Nodes& nodes) const;
   Incident Prepare(const Vector& wi) const;
   Real LobesPdf(const Vector& wi, const Incident& incident, const Vector& wo) const;
   Real PdfOf(const Vector& wi, const Incident& incident, const Vector& wo) const;
@@ -116,8 +110,7 @@ class Bsdf {
   static void Weigh(const Colour& value, Sample* sample);
 
   PreparedModel<Real> model_;
-  HalfVectorTable<Real> half_vectors_;
-  Real diffuse_albedo_ = 0;  // mean over the channels
+  std::shared_ptr<SamplingTable<Real>> half_vectors_;
   std::shared_ptr<AlbedoTable<Real>> albedos_;
 };
 

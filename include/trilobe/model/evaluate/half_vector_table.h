@@ -5,9 +5,15 @@
 #include <cstddef>
 #include <vector>
 
+#include "trilobe/core/math/angles.h"
 #include "trilobe/model/model_spec.h"
 
 namespace trilobe {
+
+// The largest theta of wi and wo in tables for renderers (Bsdf, files) [rad]; beyond it they use
+// the values at it. In models with splined cosines, such as the paper's, G / cos theta is constant
+// there.
+inline constexpr double kGrazingTheta = DegreesToRadians(89.5);
 
 // Nodes of y, ascending from 0 to 1; number of nodes of s from 0 to 1, 4 k + 1 in 5 to 129; nodes
 // of theta_i, ascending from 0 [rad]; and number of even steps of phi_i around the circle.
