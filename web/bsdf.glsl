@@ -1,9 +1,12 @@
 // A model rho_C = d_C + sum_m s_C^m D^m F_C G^m(wi) G^m(wo) / (cos theta_i cos theta_o) by its tables, for
-// GLSL ES 3.00 with highp floats. What stands before this text says which form the model has (TB_...),
+// shaders with floats of 32 bits. What stands before this text says which form the model has (TB_...),
 // declares trilobe_tables, trilobe_diffuse and trilobe_specular. Directions are unit vectors away from
 // the surface, z along the normal, x where an anisotropic material's azimuths begin; all is 0 below it.
-// Arc functions and sines are polynomials here, since GLSL promises of its own only some 1e-3.
+// Arc functions and sines are polynomials here, since GLSL promises of its own only some 1e-3. The text keeps to
+// what HLSL is made of by exchanging words (src/io/page/shader_file.cc).
 const float TB_PI = 3.14159265358979;
+const vec3 TB_BLACK = vec3(0.0, 0.0, 0.0);
+const vec4 TB_ONES = vec4(1.0, 1.0, 1.0, 1.0);
 
 vec4 tb_fetch(int i) { return texelFetch(trilobe_tables, ivec2(i & 255, i >> 8), 0); }
 float tb_number(int base, int i) { return tb_fetch(base + (i >> 2))[i & 3]; }
@@ -11,7 +14,7 @@ float tb_number(int base, int i) { return tb_fetch(base + (i >> 2))[i & 3]; }
 // The arc cosines of 1 - y, y in [0, 1]: sqrt(y) times a polynomial (within 3e-9, by Chebyshev points), exact
 // near 0 where a cosine says little.
 vec4 tb_acos_one_minus(vec4 y) {
-  vec4 p = vec4(0.0006993963) * y - 0.0015605804;
+  vec4 p = 0.0006993963 * y - 0.0015605804;
   p = p * y + 0.0024679272;
   p = p * y - 0.0003894174;
   p = p * y + 0.0032021336;
@@ -22,7 +25,7 @@ vec4 tb_acos_one_minus(vec4 y) {
   return sqrt(y) * p;
 }
 float tb_acos(float x) {
-  float a = tb_acos_one_minus(vec4(clamp(1.0 - abs(x), 0.0, 1.0))).x;
+  float a = tb_acos_one_minus(clamp(1.0 - abs(x), 0.0, 1.0) * TB_ONES).x;
   return x < 0.0 ? TB_PI - a : a;
 }
 float tb_atan2(float y, float x) {
@@ -55,33 +58,40 @@ struct TbPlace {
   int lower, upper;
   float t;
 };
+TbPlace tb_place(int lower, int upper, float t) {
+  TbPlace at;
+  at.lower = lower;
+  at.upper = upper;
+  at.t = t;
+  return at;
+}
 // Of bins of unit width, constant beyond the outer centres.
 TbPlace tb_linear(float coordinate, int bins) {
   float x = clamp(coordinate - 0.5, 0.0, float(bins - 1));
   int lower = min(int(x), bins - 2);
-  return TbPlace(lower, lower + 1, x - float(lower));
+  return tb_place(lower, lower + 1, x - float(lower));
 }
 // Of rings at angles [degrees], four in a texel, ascending, filled up by 1e9.
 TbPlace tb_ring(float theta, int base, int rings) {
   float degrees_ = theta * (180.0 / TB_PI), begin = -1.0, end = 1e9;
   int upper = 0;
   for (int i = 0; i < (rings + 3) / 4; ++i) {
-    vec4 r = tb_fetch(base + i), below = step(r, vec4(degrees_));
-    upper += int(dot(below, vec4(1.0)) + 0.5);
-    vec4 b = mix(vec4(-1.0), r, below), e = mix(r, vec4(1e9), below);
+    vec4 r = tb_fetch(base + i), below = step(r, degrees_ * TB_ONES);
+    upper += int(dot(below, TB_ONES) + 0.5);
+    vec4 b = mix(-TB_ONES, r, below), e = mix(r, 1e9 * TB_ONES, below);
     begin = max(begin, max(max(b.x, b.y), max(b.z, b.w)));
     end = min(end, min(min(e.x, e.y), min(e.z, e.w)));
   }
-  if (upper == 0) return TbPlace(0, 0, 0.0);
-  if (upper == rings) return TbPlace(rings - 1, rings - 1, 0.0);
-  return TbPlace(upper - 1, upper, (degrees_ - begin) / (end - begin));
+  if (upper == 0) return tb_place(0, 0, 0.0);
+  if (upper == rings) return tb_place(rings - 1, rings - 1, 0.0);
+  return tb_place(upper - 1, upper, (degrees_ - begin) / (end - begin));
 }
 TbPlace tb_turn(vec3 w, float sin_theta, int phis) {
-  if (phis == 1 || !(sin_theta > 1e-9)) return TbPlace(0, 0, 0.0);
+  if (phis == 1 || !(sin_theta > 1e-9)) return tb_place(0, 0, 0.0);
   float turns = tb_atan2(w.y, w.x) * (0.5 / TB_PI);
   float x = (turns < 0.0 ? turns + 1.0 : turns) * float(phis);
   int lower = min(int(x), phis - 1);
-  return TbPlace(lower, lower + 1 < phis ? lower + 1 : 0, x - float(lower));
+  return tb_place(lower, lower + 1 < phis ? lower + 1 : 0, x - float(lower));
 }
 vec4 tb_between(int base, int groups, int group, TbPlace at) {
   return mix(tb_fetch(base + at.lower * groups + group), tb_fetch(base + at.upper * groups + group),
@@ -139,7 +149,7 @@ TbPlace tb_place_d(float theta) {
 vec3 tb_lobes(vec3 wi, vec3 wo) {
   vec3 h = wi + wo;
   float across2 = dot(h.xy, h.xy), size = sqrt(across2 + h.z * h.z);
-  if (!(size > 0.0 && size < 4.0)) return vec3(0.0);
+  if (!(size > 0.0 && size < 4.0)) return TB_BLACK;
   h /= size;
   float sin2_h = across2 / (size * size), cos_d = size / 2.0;
   // 1 - cos = sin^2 / (1 + cos), also of theta_d, whose sine is |wi - wo| / 2.
@@ -220,7 +230,7 @@ vec3 tb_lobes(vec3 wi, vec3 wo) {
   float scale = 1.0 / TB_G_AT(TB_G_TABLES);
   for (int g = 0; g < TB_G_GROUPS; ++g) TB_G_GROUP(g) *= scale;
 #endif
-  vec3 lobes = vec3(0.0);
+  vec3 lobes = TB_BLACK;
   TB_LOBE(0)
 #if TB_LOBES > 1
   TB_LOBE(1)
@@ -249,7 +259,7 @@ vec3 tb_lobes(vec3 wi, vec3 wo) {
 
 // The BRDF [1/sr], without a cosine.
 vec3 trilobe_eval(vec3 wi, vec3 wo) {
-  if (!(tb_above(wi) && tb_above(wo))) return vec3(0.0);
+  if (!(tb_above(wi) && tb_above(wo))) return TB_BLACK;
 #if TB_LOBES > 0
   return max(trilobe_diffuse + tb_lobes(wi, wo), 0.0);
 #else

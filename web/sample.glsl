@@ -66,7 +66,7 @@ TbIncident tb_incident(vec3 wi) {
   float from = tb_of_row(at, row), to = tb_of_row(at, row + 1);
   at.total = tb_cumulated(at, row) + part * (from + (to - from) * part / (2.0 * width));
   // One of a hundred is drawn by the cosine, too, lest something between the nodes be missed.
-  float diffuse = dot(trilobe_diffuse, vec3(TB_PI / 3.0)) + 0.01 * at.total;
+  float diffuse = TB_PI / 3.0 * (trilobe_diffuse.x + trilobe_diffuse.y + trilobe_diffuse.z) + 0.01 * at.total;
   at.cosine_part = at.total > 0.0 ? diffuse / (diffuse + at.total) : 1.0;
   return at;
 }
@@ -115,8 +115,8 @@ float trilobe_pdf(vec3 wi, vec3 wo) {
 // that density is 0.
 vec3 trilobe_sample(vec3 wi, vec2 u, out float pdf, out vec3 weight) {
   pdf = 0.0;
-  weight = vec3(0.0);
-  if (!tb_above(wi)) return vec3(0.0);
+  weight = TB_BLACK;
+  if (!tb_above(wi)) return TB_BLACK;
   TbIncident at = tb_incident(wi);
   const float below_one = 1.0 - 1.1920929e-7;
   u = clamp(u, 0.0, below_one);
@@ -173,7 +173,7 @@ vec3 trilobe_sample(vec3 wi, vec2 u, out float pdf, out vec3 weight) {
       lobes_pdf = mix(row[k], row[k + 1], f) / at.total * cos_h / (2.0 * twice * phi_max);
     }
   }
-  if (!(wo.z > 0.0)) return vec3(0.0);  // by rounding, at the horizon
+  if (!(wo.z > 0.0)) return TB_BLACK;  // by rounding, at the horizon
   pdf = part * wo.z / TB_PI + (1.0 - part) * lobes_pdf;
   if (pdf > 0.0) weight = trilobe_eval(wi, wo) * (wo.z / pdf);
   return wo;

@@ -194,7 +194,7 @@ Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const n
   if (file.model.spec().anisotropic() && !WritableFormat(path).holds_anisotropic) {
     throw Error(path +
                 ": an anisotropic model is written as .bin (UTIA's directions), .csv, "
-                ".bsdf, .zemax.bsdf, .xml, .glsl, .mtlx or .principled.json");
+                ".bsdf, .zemax.bsdf, .xml, .glsl, .hlsl, .mtlx or .principled.json");
   }
   const Measurement measurement =
       AsMeasurement(file.model, "the model", options.num_threads, kUtiaGrid);

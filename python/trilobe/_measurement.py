@@ -351,7 +351,7 @@ def convert(
     ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples. ".bsdf" is an RGL tensor file for renderers as
     Mitsuba's `measured`, ".zemax.bsdf" a table for OpticStudio, ".xml" Klems matrices for Radiance and WINDOW, ".mtlx"
     and ".principled.json" are the nearest material of MaterialX and of Blender; for a measurement a model is fitted for
-    that, which takes seconds. ".glsl" is a shader, of models alone.
+    that, which takes seconds. ".glsl" and ".hlsl" are shaders, of models alone.
 
     Args:
         what: a model or a measurement, or the file of one, "material:NAME" or "synth:NAME".

@@ -245,7 +245,7 @@ Command ConvertCommand() {
           "it writes the\nsame as a table for OpticStudio, in .xml as Klems matrices for "
           "Radiance and WINDOW, and in .xompt, if it is isotropic, for OpenMATERIAL 3D. Of a "
           "model, to a FILE that ends in "
-          ".glsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the nearest "
+          ".glsl or .hlsl it writes\nfunctions for shaders; of both, to one that ends in .mtlx the nearest "
           "OpenPBR of MaterialX, and in\n.principled.json that of Blender's Principled BSDF, with "
           "how near it is. A FILE with another ending is an error.\nWith "
           "--at=MEASUREMENT it writes a row per sample of that, with theta_i, phi_i, theta_o and "

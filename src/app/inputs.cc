@@ -56,7 +56,7 @@ std::string RequiredMeasurementOut(const std::string& command) {
     throw Error(
         "--out=" + std::string(error.what()) +
         (command == "convert"
-             ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .mtlx or .principled.json for "
+             ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, .mtlx or .principled.json for "
                "renderers and optical design"
              : ""));
   }

@@ -20,7 +20,7 @@
 #include "io/formats/rgl_export.h"
 #include "io/formats/utia_file.h"
 #include "io/formats/zemax_export.h"
-#include "io/page/glsl_file.h"
+#include "io/page/shader_file.h"
 #include "io/pictures/plots.h"
 #include "model/appearance/picture_data.h"
 #include "model/appearance/verdict.h"
@@ -41,7 +41,8 @@ constexpr const char* kTensorEnding = ".bsdf";
 constexpr const char* kZemaxEnding = ".zemax.bsdf";
 constexpr const char* kKlemsEnding = ".xml";
 constexpr const char* kOpenMaterialEnding = ".xompt";
-constexpr const char* kShaderEnding = ".glsl";
+constexpr const char* kGlslEnding = ".glsl";
+constexpr const char* kHlslEnding = ".hlsl";
 constexpr const char* kMaterialXEnding = ".mtlx";
 constexpr const char* kPrincipledEnding = ".principled.json";
 
@@ -50,6 +51,10 @@ bool EndsIn(const std::string& path, const std::string& ending) {
   std::string last = path.substr(path.size() - ending.size());
   std::ranges::transform(last, last.begin(), [](unsigned char c) { return std::tolower(c); });
   return last == ending;
+}
+
+bool IsShader(const std::string& path) {
+  return EndingOf(path) == kGlslEnding || EndingOf(path) == kHlslEnding;
 }
 
 std::optional<double> MaxErrorOf(const ConvertOptions& options) {
@@ -203,7 +208,7 @@ FitResult FitToHelp(const Measurement& measurement, int num_threads) {
 
 bool IsForRenderer(const std::string& path) {
   const std::string ending = EndingOf(path);
-  return ending == kTensorEnding || ending == kShaderEnding || ending == kKlemsEnding ||
+  return ending == kTensorEnding || IsShader(path) || ending == kKlemsEnding ||
          ending == kOpenMaterialEnding || IsStandardMaterial(path);
 }
 
@@ -220,11 +225,13 @@ bool IsStandardMaterial(const std::string& path) {
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options) {
   if (IsStandardMaterial(path)) return WriteStandard(file, source, path, options);
-  if (EndingOf(path) == kShaderEnding) {
-    const GlslFile shader = FormatGlsl(file, source);
+  if (IsShader(path)) {
+    const bool glsl = EndingOf(path) == kGlslEnding;
+    const ShaderFile shader =
+        FormatShader(file, source, glsl ? ShaderLanguage::kGlsl : ShaderLanguage::kHlsl);
     WriteFile(path, [&](std::ostream& out) { out << shader.text; });
-    return {"wrote " + path + ": GLSL ES 3.00 with a texture of " + std::to_string(shader.width) +
-            " x " + std::to_string(shader.height) + ", " +
+    return {"wrote " + path + (glsl ? ": GLSL ES 3.00" : ": HLSL") + " with a texture of " +
+            std::to_string(shader.width) + " x " + std::to_string(shader.height) + ", " +
             Text(static_cast<double>(shader.text.size()) / 1e6, 2) + " MB"};
   }
   const double max_angle = MaxAngleOf(file), max_theta = DegreesToRadians(max_angle);
@@ -244,9 +251,9 @@ std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::stri
 
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,
                                           const ConvertOptions& options) {
-  if (EndingOf(path) == kShaderEnding) {
+  if (IsShader(path)) {
     throw Error(path + ": " + measurement.source +
-                " is a measurement, and .glsl files are made of models; fit it first");
+                " is a measurement, and shaders are made of models; fit it first");
   }
   RglExportOptions rgl = RglOptionsOf(options);
   Stopwatch stopwatch;

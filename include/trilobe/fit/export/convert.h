@@ -22,7 +22,7 @@ struct ConvertOptions {
 
 // Whether the path has the extension of a renderer's file: .bsdf (RGL tensor file), .zemax.bsdf
 // (OpticStudio's table), .xml (Klems matrices of Radiance and WINDOW), .xompt (OpenMATERIAL 3D),
-// .glsl, .mtlx (MaterialX) or .principled.json (Blender's Principled BSDF).
+// .glsl, .hlsl, .mtlx (MaterialX) or .principled.json (Blender's Principled BSDF).
 bool IsForRenderer(const std::string& path);
 // Whether it is .bsdf and not .zemax.bsdf.
 bool IsTensorFile(const std::string& path);
@@ -35,8 +35,8 @@ bool IsStandardMaterial(const std::string& path);
 // what was written and its error. A measurement is fitted first, which takes seconds: .bsdf,
 // .xml and .xompt files hold the measured values, and the model's where nothing was measured; .mtlx
 // and .principled.json are nearest to the model. `source` names the model in messages. Throws
-// Error, also for a measurement to .glsl, for an anisotropic one to .xompt, and if the file cannot
-// be written.
+// Error, also for a measurement to .glsl or .hlsl, for an anisotropic one to .xompt, and if the
+// file cannot be written.
 std::vector<std::string> WriteForRenderer(const ModelFile& file, const std::string& source,
                                           const std::string& path, const ConvertOptions& options);
 std::vector<std::string> WriteForRenderer(const Measurement& measurement, const std::string& path,

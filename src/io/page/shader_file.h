@@ -1,5 +1,5 @@
-#ifndef TRILOBE_IO_PAGE_GLSL_FILE_H_
-#define TRILOBE_IO_PAGE_GLSL_FILE_H_
+#ifndef TRILOBE_IO_PAGE_SHADER_FILE_H_
+#define TRILOBE_IO_PAGE_SHADER_FILE_H_
 
 #include <string>
 #include <vector>
@@ -29,15 +29,19 @@ struct ShaderTables {
 // Throws Error for a model whose parameters are not finite and >= 0, or too large for floats.
 ShaderTables MakeShaderTables(const FactorModel& model, bool sampled);
 
-// A model as GLSL ES 3.00 (WebGL 2, and desktop GLSL 3.30): trilobe_eval, trilobe_pdf and
-// trilobe_sample. A comment at the end holds their texture; the comment at the beginning says how
-// to load it. Throws Error as MakeShaderTables does.
-struct GlslFile {
+// What a shader's file is written in: GLSL ES 3.00 (WebGL 2, and desktop GLSL 3.30), or HLSL of
+// shader model 4 or newer.
+enum class ShaderLanguage { kGlsl, kHlsl };
+
+// A model as functions of a shader: trilobe_eval, trilobe_pdf and trilobe_sample. A comment at the
+// end holds their texture; the comment at the beginning says how to load it. Throws Error as
+// MakeShaderTables does.
+struct ShaderFile {
   std::string text;
   int width = 0, height = 0;  // of the texture
 };
-GlslFile FormatGlsl(const ModelFile& model, const std::string& name);
+ShaderFile FormatShader(const ModelFile& model, const std::string& name, ShaderLanguage language);
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_IO_PAGE_GLSL_FILE_H_
+#endif  // TRILOBE_IO_PAGE_SHADER_FILE_H_

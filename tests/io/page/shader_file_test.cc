@@ -1,4 +1,4 @@
-#include "io/page/glsl_file.h"
+#include "io/page/shader_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,12 +60,23 @@ TEST(ShaderTables, RefuseWhatFloatsCannotHold) {
   EXPECT_THROW(MakeShaderTables(model, /*sampled=*/false), Error);
 }
 
-TEST(GlslFile, HasItsNameOnlyInAComment) {
-  const GlslFile file =
-      FormatGlsl(ModelFile{Ones(ModelSpec::SharedFactors(1)), {}, {}, {}}, "a*/b\nvoid x() {}");
+TEST(ShaderFile, HasItsNameOnlyInAComment) {
+  const ShaderFile file = FormatShader(ModelFile{Ones(ModelSpec::SharedFactors(1)), {}, {}, {}},
+                                       "a*/b\nvoid x() {}", ShaderLanguage::kGlsl);
   EXPECT_THAT(file.text, HasSubstr("vec3 trilobe_eval(vec3 wi, vec3 wo)"));
   EXPECT_THAT(file.text, HasSubstr("vec3 trilobe_sample(vec3 wi, vec2 u, out float pdf"));
   EXPECT_THAT(file.text.substr(0, file.text.find('\n')), HasSubstr("void x"));
+}
+
+TEST(ShaderFile, IsHlslByOtherWords) {
+  const ShaderFile file = FormatShader(ModelFile{Ones(ModelSpec::SharedFactors(2)), {}, {}, {}},
+                                       "model.json", ShaderLanguage::kHlsl);
+  EXPECT_THAT(file.text, HasSubstr("float3 trilobe_eval(float3 wi, float3 wo)"));
+  EXPECT_THAT(file.text, HasSubstr("trilobe_specular[2] = {float3(0.5"));
+  EXPECT_THAT(file.text, HasSubstr("trilobe_tables.Load(int3("));
+  for (const char* const word : {"vec2", "vec3", "vec4", "mix(", "texelFetch", "uniform"}) {
+    EXPECT_THAT(file.text, Not(HasSubstr(word)));
+  }
 }
 
 }  // namespace

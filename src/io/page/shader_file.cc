@@ -1,15 +1,18 @@
-#include "io/page/glsl_file.h"
+#include "io/page/shader_file.h"
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iomanip>
 #include <limits>
 #include <locale>
+#include <regex>
 #include <span>
 #include <sstream>
+#include <utility>
 
 #include "core/base/file_names.h"
 #include "io/page/document.h"
@@ -132,14 +135,23 @@ class Packer {
     const int count = spec_.stretches.any() ? static_cast<int>(stretches.size()) : 0;
     Define("TB_STRETCHES", count);
     if (count == 0) return;
-    text_ << "const vec2 trilobe_stretch[" << count << "] = vec2[" << count << "](";
-    for (int k = 0; k < count; ++k) {
-      text_ << (k > 0 ? ", " : "") << "vec2(" << stretches[k].along << ", " << stretches[k].across
-            << ')';
-    }
+    WriteArray("vec2", "trilobe_stretch", count, [&](int k) {
+      text_ << "vec2(" << stretches[k].along << ", " << stretches[k].across << ')';
+    });
     const int tables = spec_.num_tables(Factor::kD);
-    text_ << ");\nconst int trilobe_stretch_of[" << tables << "] = int[" << tables << "](";
-    for (int t = 0; t < tables; ++t) text_ << (t > 0 ? ", " : "") << spec_.StretchOfTable(t);
+    WriteArray("int", "trilobe_stretch_of", tables,
+               [&](int k) { text_ << spec_.StretchOfTable(k); });
+  }
+
+  // A constant array, as GLSL has it.
+  void WriteArray(const std::string& type, const std::string& name, int size,
+                  const std::function<void(int)>& write_entry) {
+    text_ << "const " << type << ' ' << name << '[' << size << "] = " << type << '[' << size
+          << "](";
+    for (int k = 0; k < size; ++k) {
+      if (k > 0) text_ << ", ";
+      write_entry(k);
+    }
     text_ << ");\n";
   }
 
@@ -154,12 +166,7 @@ class Packer {
     WriteColour(model_.d());
     text_ << ";\n";
     if (spec_.lobes == 0) return;
-    text_ << "const vec3 trilobe_specular[" << spec_.lobes << "] = vec3[" << spec_.lobes << "](";
-    for (int m = 0; m < spec_.lobes; ++m) {
-      if (m > 0) text_ << ", ";
-      WriteColour(model_.s(m));
-    }
-    text_ << ");\n";
+    WriteArray("vec3", "trilobe_specular", spec_.lobes, [&](int m) { WriteColour(model_.s(m)); });
   }
 
   void AddNumbers(const std::string& name, const std::vector<float>& numbers) {
@@ -207,40 +214,65 @@ std::string LittleEndian(const std::vector<float>& numbers) {
   return bytes;
 }
 
+// GLSL that keeps to what both have, as HLSL.
+std::string AsHlsl(const std::string& glsl) {
+  using Change = std::pair<std::regex, const char*>;
+  static const std::array<Change, 6> kChanges = {
+      Change(R"(texelFetch\(trilobe_tables, ivec2\((.*?), (.*?)\), 0\))",
+             "trilobe_tables.Load(int3($1, $2, 0))"),
+      Change(R"(\n(const \w+ \w+\[\d+\] = )\w+\[\d+\]\((.*)\);)", "\n$1{$2};"),
+      Change(R"(\nconst )", "\nstatic const "),
+      Change(R"(\bvec([234])\b)", "float$1"),
+      Change(R"(\bivec([234])\b)", "int$1"),
+      Change(R"(\bmix\b)", "lerp"),
+  };
+  std::string text = glsl;
+  for (const auto& [what, by] : kChanges) text = std::regex_replace(text, what, by);
+  return text;
+}
+
+constexpr const char* kLoadingInJavaScript =
+    "// In JavaScript, `source` being the text of this file:\n"
+    "//   const data = /tables RGBA32F (\\d+) x (\\d+)\\n([^*]*)\\*\\//.exec(source);\n"
+    "//   const bytes = Uint8Array.from(atob(data[3].replace(/\\s/g, '')), c => c.charCodeAt(0));\n"
+    "//   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, +data[1], +data[2], 0, gl.RGBA, gl.FLOAT,\n"
+    "//                 new Float32Array(bytes.buffer));\n";
+
 }  // namespace
 
-GlslFile FormatGlsl(const ModelFile& model, const std::string& name) {
+ShaderFile FormatShader(const ModelFile& model, const std::string& name, ShaderLanguage language) {
+  const bool hlsl = language == ShaderLanguage::kHlsl;
   const ShaderTables tables = MakeShaderTables(model.model, /*sampled=*/true);
   std::string printable = Printable(FileNameOf(name));
   for (char& c : printable) {
     if (c == '*' || c == '/' || c == '\\') c = c == '/' ? '|' : ' ';  // nothing ends a comment
   }
-  std::ostringstream text;
-  text
-      << "// " << printable << ": a model of Trilobe, for GLSL ES 3.00. Include it after\n"
-      << "//   precision highp float; precision highp sampler2D;\n"
+  std::ostringstream code;
+  code
       << "// It gives, for unit vectors away from the surface, z along the normal:\n"
       << "//   vec3 trilobe_eval(vec3 wi, vec3 wo)           the BRDF [1/sr], without a cosine\n"
       << "//   float trilobe_pdf(vec3 wi, vec3 wo)           the density of trilobe_sample [1/sr]\n"
       << "//   vec3 trilobe_sample(vec3 wi, vec2 u, out float pdf, out vec3 weight)\n"
       << "//     a direction wo, and weight = f cos theta_o / pdf\n"
       << "// trilobe_tables is a texture of " << kShaderWidth << " x " << tables.rows()
-      << " texels of four floats (RGBA32F), without filter\n"
-      << "// (NEAREST) and levels. Its numbers are in the comment at the end: little-endian "
-         "float32 in\n"
-      << "// base64, row by row. In JavaScript, `source` being the text of this file:\n"
-      << "//   const data = /tables RGBA32F (\\d+) x (\\d+)\\n([^*]*)\\*\\//.exec(source);\n"
-      << "//   const bytes = Uint8Array.from(atob(data[3].replace(/\\s/g, '')), c => "
-         "c.charCodeAt(0));\n"
-      << "//   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, +data[1], +data[2], 0, gl.RGBA, "
-         "gl.FLOAT,\n"
-      << "//                 new Float32Array(bytes.buffer));\n"
-      << "uniform highp sampler2D trilobe_tables;\n"
+      << " texels of four floats ("
+      << (hlsl ? "DXGI_FORMAT_R32G32B32A32_FLOAT" : "RGBA32F, NEAREST")
+      << "),\n// without levels. Its numbers are in the comment at the end: little-endian float32 "
+         "in "
+         "base64, row by row.\n"
+      << (hlsl ? "Texture2D<float4> trilobe_tables;\n"
+               : std::string(kLoadingInJavaScript) + "uniform highp sampler2D trilobe_tables;\n")
       << tables.preamble << '\n'
       << WebText("bsdf.glsl") << '\n'
-      << WebText("sample.glsl") << "\n/* tables RGBA32F " << kShaderWidth << " x " << tables.rows()
-      << '\n'
-      << Base64(LittleEndian(tables.texels), 120) << "\n*/\n";
+      << WebText("sample.glsl");
+  std::ostringstream text;
+  text << "// " << printable << ": a model of Trilobe, for "
+       << (hlsl ? "HLSL of shader model 4 or newer.\n"
+                : "GLSL ES 3.00. Include it after\n"
+                  "//   precision highp float; precision highp sampler2D;\n")
+       << (hlsl ? AsHlsl(code.str()) : code.str()) << "\n/* tables RGBA32F " << kShaderWidth
+       << " x " << tables.rows() << '\n'
+       << Base64(LittleEndian(tables.texels), 120) << "\n*/\n";
   return {text.str(), kShaderWidth, tables.rows()};
 }
 
