@@ -26,7 +26,7 @@ struct Size {
   int theta_i, phi_i, n;
 };
 constexpr Size kIsotropic[] = {{8, 1, 32},  {16, 1, 32}, {16, 1, 64},
-                               {32, 1, 64}, {32, 1, 96}, {48, 1, 128}};
+                               {32, 1, 64}, {28, 1, 96}, {48, 1, 128}};
 constexpr Size kAnisotropic[] = {{8, 9, 32}, {8, 17, 32}, {12, 25, 32}, {12, 37, 48}};
 constexpr int kUsual = 4;  // so many first ones are of usual size
 
@@ -175,7 +175,7 @@ class Tables {
   // rises as u^3 from 0.
   void MakeVndf() {
     constexpr int kPhis = 8;
-    constexpr double kByArea = 0.5;
+    constexpr double kByArea = 2;
     const int phis = model_.spec().anisotropic() ? kPhis : 1;
     std::vector<double> light(kVndf), area(kVndf);
     for (int k = 0; k < kVndf; ++k) {

@@ -194,9 +194,9 @@ TEST(RglExport, TakesFinerTablesForLessError) {
 TEST(RglExport, IsAsNearAsItComesWhereNothingElseIsAskedFor) {
   const FactorModel model = ReadModel(InRepository("materials/chm_mint.json")).model;
   const RglExport file = ExportRgl(model, {.max_theta = 1.4});
-  EXPECT_GT(file.median_error, 0.005);
+  EXPECT_GT(file.median_error, 0.002);
   EXPECT_LT(file.median_error, 0.02);
-  EXPECT_THROW(ExportRgl(model, {.max_error = 0.005, .max_theta = 1.4}), Error);
+  EXPECT_THROW(ExportRgl(model, {.max_error = 0.002, .max_theta = 1.4}), Error);
 }
 
 TEST(RglExport, RefusesABlackModel) {
