@@ -449,6 +449,8 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
         reason = getattr(error, "strerror", None) or str(error)
+        if os.path.isdir(name):  # of which "." is busy
+            reason = "it is a folder; give the name of a file"
         raise Error(f"cannot write {printable(name)}: {reason}") from None
 
 

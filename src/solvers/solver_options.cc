@@ -102,19 +102,17 @@ std::vector<SolverOption> MakeOptions() {
              {.common = true,
               .help = "stop after this many iterations (for AWLS, sweeps)",
               .range = kNotNegative}),
-      Option(
-          "max_seconds", &Options::max_seconds,
-          {.common = true,
-           .help = "stop the solver after the iteration in which this time is up; 0 for no limit. "
-                   "`trilobe fit`\ngoes on to finish, compare and draw the model, as its line "
-                   "`seconds` tells",
-           .range = kNotNegative,
-           .unit = {{.default_value = 0,
-                     .range = kNotNegative,
-                     .to_member =
-                         [](double seconds, const ModelSpec&) {
-                           return seconds > 0 ? seconds : Options().max_seconds;
-                         }}}}),
+      Option("max_seconds", &Options::max_seconds,
+             {.common = true,
+              .help = "stop the solver after the iteration in which this time is up, before the "
+                      "finishing and the pictures; 0 for no limit",
+              .range = kNotNegative,
+              .unit = {{.default_value = 0,
+                        .range = kNotNegative,
+                        .to_member =
+                            [](double seconds, const ModelSpec&) {
+                              return seconds > 0 ? seconds : Options().max_seconds;
+                            }}}}),
       Option(
           "relative_decrease_tolerance", &Options::relative_decrease_tolerance,
           {.common = true,

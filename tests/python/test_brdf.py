@@ -230,6 +230,7 @@ BAD = [
     (lambda b: b.replace(stretch=(1, 20)), "stretch"),
     (lambda b: b.unobserved("H"), "there is no factor 'H'"),
     (lambda b: b.save("/no/such/folder/x.json"), "cannot write '/no/such/folder/x.json'"),
+    (lambda b: b.save("."), "cannot write '.': it is a folder"),
     (lambda b: b.save(7), "a path must be a str"),
     (lambda b: trilobe.load("/no/such/model.json"), "cannot read '/no/such/model.json': No such file"),
     (lambda b: trilobe.load(b"\0"), "is no path"),
