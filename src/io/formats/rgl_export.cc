@@ -25,6 +25,8 @@ namespace {
 struct Size {
   int theta_i, phi_i, n;
 };
+// Mitsuba takes square tables alone. 36 x 128 x 56 would leave chm_mint an error of 0.6 %, as large
+// as 48 x 128 x 128 nearly: theta wants more nodes than phi.
 constexpr Size kIsotropic[] = {{8, 1, 32},  {16, 1, 32}, {16, 1, 64},
                                {32, 1, 64}, {28, 1, 96}, {48, 1, 128}};
 constexpr Size kAnisotropic[] = {{8, 9, 32}, {8, 17, 32}, {12, 25, 32}, {12, 37, 48}};
