@@ -10,6 +10,7 @@
 #include "model/measurement/bad_readings.h"
 #include "model/measurement/counter_random.h"
 #include "model/measurement/own_shadow.h"
+#include "model/measurement/sample_density.h"
 #include "model/measurement/unmeasured_samples.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
@@ -118,7 +119,9 @@ BrdfSamples SamplesOf(const Measurement& measurement) {
                 ": nowhere are both directions above the surface and all values finite and >= 0, "
                 "within --max_angle and --min_theta_d; trilobe info counts why");
   }
-  return measurement.samples;
+  BrdfSamples samples = measurement.samples;
+  if (!measurement.anisotropic) EvenOutDensity(&samples);
+  return samples;
 }
 
 const BrdfTable& TableOf(const Measurement& measurement) {

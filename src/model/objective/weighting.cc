@@ -209,7 +209,8 @@ double MeanReflectance(const BrdfSamples& samples, int num_threads) {
         solid_angle = samples.SolidAngle(j);
       }
       const Cosines cosines = of_bins ? (*of_bins)(samples.bins[j]) : samples.CosinesOf(j);
-      const double through = solid_angle * cosines.i * cosines.o;
+      const double counts = of_bins ? solid_angle : samples.Multiplicity(j);
+      const double through = counts * cosines.i * cosines.o;
       sums.light += through;
       sums.reflected += through * Mean(samples.rho[j]);
     }

@@ -48,7 +48,8 @@ struct Measurement {
   double max_theta = kPi / 2;  // [rad] upper bound of theta_i and theta_o of valid samples
 };
 
-// The valid samples, for a fit. Throws Error if there are none.
+// The valid samples, for a fit: scattered ones of an isotropic material count less where they are
+// dense (EvenOutDensity). Throws Error if there are none.
 BrdfSamples SamplesOf(const Measurement& measurement);
 
 // The table. Throws Error if there is none.

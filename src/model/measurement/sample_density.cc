@@ -1,0 +1,53 @@
+#include "model/measurement/sample_density.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <vector>
+
+#include "trilobe/core/geometry/directions.h"
+#include "trilobe/core/math/angles.h"
+
+namespace trilobe {
+namespace {
+
+constexpr int kThetas = 12, kAzimuths = 12;
+
+// Of the angles of two directions in either order.
+int CellOf(const HalfDiffAngles& angles) {
+  const SphericalAngles at = ToSphericalAngles(ToDirections(angles));
+  const auto part = [](double share, int parts) {
+    return std::clamp(static_cast<int>(share * parts), 0, parts - 1);
+  };
+  int i = part(at.theta_i / (kPi / 2), kThetas), o = part(at.theta_o / (kPi / 2), kThetas);
+  if (i > o) std::swap(i, o);
+  const double between = std::abs(std::remainder(at.phi_i - at.phi_o, 2 * kPi));
+  return (i * kThetas + o) * kAzimuths + part(between / kPi, kAzimuths);
+}
+
+}  // namespace
+
+void EvenOutDensity(BrdfSamples* samples) {
+  constexpr int kTimes = 4;
+  if (samples->on_grid()) return;
+  std::vector<int> cells(samples->size()), counts(kThetas * kThetas * kAzimuths);
+  for (int j = 0; j < samples->size(); ++j) {
+    cells[j] = CellOf(samples->angles[j]);
+    ++counts[cells[j]];
+  }
+  std::vector<int> filled;
+  std::ranges::copy_if(counts, std::back_inserter(filled), [](int count) { return count > 0; });
+  if (filled.empty()) return;
+  const auto middle = filled.begin() + static_cast<std::ptrdiff_t>(filled.size() / 2);
+  std::ranges::nth_element(filled, middle);
+  const int most = kTimes * *middle;
+  if (std::ranges::all_of(counts, [&](int count) { return count <= most; })) return;
+  samples->multiplicity.resize(samples->rho.size(), 1);
+  for (int j = 0; j < samples->size(); ++j) {
+    const int count = counts[cells[j]];
+    if (count > most) samples->multiplicity[j] *= static_cast<double>(most) / count;
+  }
+}
+
+}  // namespace trilobe

@@ -1,0 +1,17 @@
+#ifndef TRILOBE_MODEL_MEASUREMENT_SAMPLE_DENSITY_H_
+#define TRILOBE_MODEL_MEASUREMENT_SAMPLE_DENSITY_H_
+
+#include "trilobe/model/measurement/brdf_samples.h"
+
+namespace trilobe {
+
+// Instruments measure a highlight densely, and a fit must not follow it at the price of all else.
+// Counts scattered samples of an isotropic material in cells of 7.5 degrees of both theta and 15
+// degrees of azimuth. A cell counts at most as four times the median of those with samples: where
+// it has more, the multiplicity of each is lowered. Without such a cell all stays as it is, to the
+// bit, as do samples on a grid.
+void EvenOutDensity(BrdfSamples* samples);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_MEASUREMENT_SAMPLE_DENSITY_H_
