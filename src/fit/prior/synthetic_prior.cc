@@ -183,8 +183,8 @@ void LowerOvershoot(const SyntheticPrior& prior, const StopCheck& stop, Objectiv
   for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
     std::optional<Objective> further = prior.AddWhereLarge(*with_prior, *model, times);
     if (!further) break;
-    MakeSolver("varpro")->Solve(*further, options, model);
-    *with_prior = *std::move(further);
+    *with_prior = *std::move(further);  // before the solver needs memory
+    MakeSolver("varpro")->Solve(*with_prior, options, model);
   }
 }
 

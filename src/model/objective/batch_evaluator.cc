@@ -1,6 +1,7 @@
 #include "model/objective/batch_evaluator.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <span>
 
@@ -23,7 +24,7 @@ struct ReadJob {
   const FoldedSamples* samples;
   struct Lookup {
     const Cell* cells;
-    const int* cell;
+    const uint16_t* cell;
     std::array<const double*, Stencil::kMaxSize> weight;
     const double* table;
     int lanes;

@@ -72,7 +72,7 @@ SampleSweep::SampleSweep(const FoldedSamples& samples, const ModelSpec& spec, in
     : Sweep(/*rounds=*/1),  // each costs as much as the first
       phases_(phases),
       lookups_(samples, spec, num_threads),
-      shadowing_(&lookups_) {
+      shadowing_(lookups_) {
   const ScopedTimer timer(&phases->preparing);
   sums_.emplace_back(lookups_, ParameterKind::kAmplitudes, 0, 1 + spec.lobes);
   for (int t = 0; t < spec.num_tables(Factor::kD);) {
@@ -97,13 +97,13 @@ void SampleSweep::UpdateFrom(BlockEquations* sums, FactorModel* model,
   }
   if (sums->kind() == ParameterKind::kAmplitudes) return;
   const ScopedTimer timer(&phases_->evaluating);
-  lookups_.Read(*model, FactorOf(sums->kind()), sums->first(), sums->last());
+  lookups_.SetTables(*model);
 }
 
 void SampleSweep::operator()(const OnElement& on_element, FactorModel* model) {
   {
     const ScopedTimer timer(&phases_->evaluating);
-    lookups_.Read(*model);
+    lookups_.SetTables(*model);
   }
   for (BlockEquations& sums : sums_) {
     UpdateFrom(&sums, model, [&] {
@@ -122,7 +122,7 @@ void SampleSweep::UpdateBlocks(double E, int rounds, const OnElement& on_block,
                                FactorModel* model) {
   {
     const ScopedTimer timer(&phases_->evaluating);
-    lookups_.Read(*model);
+    lookups_.SetTables(*model);
   }
   std::array<int, kMaxNonnegativeUnknowns> block{};
   for (int round = 0; round < rounds; ++round) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solvers/sums/block_equations.h"
-#include "solvers/sums/cached_lookups.h"
+#include "solvers/sums/sample_lookups.h"
 #include "solvers/sums/grid/cell_sums.h"
 #include "solvers/sums/grid/shadowing_sums.h"
 #include "solvers/sums/shadowing_updates.h"
@@ -92,7 +92,7 @@ class SampleSweep : public Sweep {
   void UpdateFrom(BlockEquations* sums, FactorModel* model, const std::function<void()>& update);
 
   PhaseSeconds* const phases_;
-  CachedLookups lookups_;
+  SampleLookups lookups_;
   // Of amplitudes, of each range of tables of D that one stretch reads, and of F.
   std::vector<BlockEquations> sums_;
   ShadowingUpdates shadowing_;

@@ -12,7 +12,7 @@
 namespace trilobe {
 namespace {
 
-constexpr int kBatch = CachedLookups::kBatch;
+constexpr int kBatch = SampleLookups::kBatch;
 constexpr int kMostTables = kChannels * kMaxLobes;
 // Tables of one channel have products with each other, those of different channels have none.
 constexpr int kMostPairs = kChannels * kMaxLobes * (kMaxLobes + 1) / 2;
@@ -51,7 +51,7 @@ double SumOfProducts(int size, const double* w, const double* x, const double* y
 struct SpreadJob {
   int size;
   const Cell* cells;
-  const int* cell;                                      // [size]
+  const uint16_t* cell;                                 // [size]
   std::array<const double*, Stencil::kMaxSize> weight;  // [size]
   int tables, table_lanes, pairs, pair_lanes, pairs_in_cell;
   const double *slopes, *products;  // [tables or pairs][kBatch]
@@ -81,7 +81,7 @@ void Spread(const SpreadJob& job) {
 
 }  // namespace
 
-BlockEquations::BlockEquations(const CachedLookups& lookups, ParameterKind kind, int first,
+BlockEquations::BlockEquations(const SampleLookups& lookups, ParameterKind kind, int first,
                                int last)
     : lookups_(lookups), kind_(kind), first_(first), last_(last) {
   const ModelSpec& spec = lookups.spec();
@@ -128,7 +128,7 @@ void BlockEquations::Accumulate(const FactorModel& model) {
     sums.assign(of_cells_ + cells_.size() * pairs_in_cell_ * pair_lanes_, 0.0);
     const int64_t size = lookups_.samples().size();
     const int last = static_cast<int>(size * (k + 1) / count);
-    CachedLookups::Batch batch(lookups_.spec(), kind_);
+    SampleLookups::Batch batch(lookups_.spec(), kind_);
     for (int begin = static_cast<int>(size * k / count); begin < last; begin += kBatch) {
       const int end = std::min(begin + kBatch, last);
       lookups_.Evaluate(begin, end, model, &batch);
@@ -144,7 +144,7 @@ void BlockEquations::Accumulate(const FactorModel& model) {
   }
 }
 
-void BlockEquations::AddAmplitudes(int begin, int end, const CachedLookups::Batch& batch,
+void BlockEquations::AddAmplitudes(int begin, int end, const SampleLookups::Batch& batch,
                                    std::vector<double>* sums) const {
   const int size = end - begin;
   for (int c = 0; c < kChannels; ++c) {
@@ -161,7 +161,7 @@ void BlockEquations::AddAmplitudes(int begin, int end, const CachedLookups::Batc
   }
 }
 
-void BlockEquations::AddBatch(int begin, int end, const CachedLookups::Batch& batch,
+void BlockEquations::AddBatch(int begin, int end, const SampleLookups::Batch& batch,
                               std::vector<double>* sums) const {
   const FoldedSamples& samples = lookups_.samples();
   const int size = end - begin;

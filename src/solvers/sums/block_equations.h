@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "solvers/sums/cached_lookups.h"
 #include "solvers/sums/parameter_kind.h"
+#include "solvers/sums/sample_lookups.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
@@ -20,7 +20,7 @@ namespace trilobe {
 class BlockEquations {
  public:
   // For the tables [first, last) of a kind, which one lookup must read; for amplitudes, all.
-  BlockEquations(const CachedLookups& lookups, ParameterKind kind, int first, int last);
+  BlockEquations(const SampleLookups& lookups, ParameterKind kind, int first, int last);
 
   // Sets the sums for a model whose tables have been read. The same bits for any number of threads.
   void Accumulate(const FactorModel& model);
@@ -51,12 +51,12 @@ class BlockEquations {
   size_t InCell(int cell, int k, int l) const {
     return of_cells_ + (static_cast<size_t>(cell) * pairs_in_cell_ + PairOf(k, l)) * pair_lanes_;
   }
-  void AddBatch(int begin, int end, const CachedLookups::Batch& batch,
+  void AddBatch(int begin, int end, const SampleLookups::Batch& batch,
                 std::vector<double>* sums) const;
-  void AddAmplitudes(int begin, int end, const CachedLookups::Batch& batch,
+  void AddAmplitudes(int begin, int end, const SampleLookups::Batch& batch,
                      std::vector<double>* sums) const;
 
-  const CachedLookups& lookups_;
+  const SampleLookups& lookups_;
   const ParameterKind kind_;
   const int first_, last_;
   std::vector<Cell> cells_;

@@ -164,18 +164,13 @@ void Move(const NodeJob& job, std::span<const ShadowingUpdates::Readers> readers
 
 }  // namespace
 
-ShadowingUpdates::ShadowingUpdates(CachedLookups* lookups)
-    : lookups_(*lookups),
-      readers_(lookups->spec().table_size(Factor::kG)),
-      A_(lookups->samples().size()),
-      b_(lookups->samples().size()) {
-  const ModelSpec& spec = lookups_.spec();
+ShadowingUpdates::ShadowingUpdates(const SampleLookups& lookups)
+    : lookups_(lookups),
+      readers_(lookups.spec().table_size(Factor::kG)),
+      A_(lookups.samples().size()),
+      b_(lookups.samples().size()) {
   const FoldedSamples& samples = lookups_.samples();
   for (std::vector<double>& of_channel : residual_) of_channel.resize(samples.size());
-  for (int t = 0; t < spec.num_tables(Factor::kG); ++t) {
-    const auto [begin, end] = spec.channels(Factor::kG, t);
-    a_.emplace_back(end - begin, std::vector<double>(samples.size()));
-  }
   const auto add = [&](int node, const Readers& range) {
     std::vector<Readers>& all = readers_[node];
     if (!all.empty() && all.back().end == range.begin && all.back().i == range.i &&
@@ -201,9 +196,9 @@ ShadowingUpdates::ShadowingUpdates(CachedLookups* lookups)
 }
 
 void ShadowingUpdates::Read(const FactorModel& model) {
-  constexpr int kBatch = CachedLookups::kBatch;
+  constexpr int kBatch = SampleLookups::kBatch;
   lookups_.ForChunks([&](int chunk_begin, int chunk_end) {
-    CachedLookups::Batch batch(lookups_.spec(), ParameterKind::kG);
+    SampleLookups::Batch batch(lookups_.spec(), ParameterKind::kG);
     for (int begin = chunk_begin; begin < chunk_end; begin += kBatch) {
       const int size = std::min(kBatch, chunk_end - begin);
       lookups_.Evaluate(begin, begin + size, model, &batch);
@@ -211,24 +206,32 @@ void ShadowingUpdates::Read(const FactorModel& model) {
         std::transform(&batch.residual[c * kBatch], &batch.residual[c * kBatch] + size,
                        &residual_[c][begin], std::negate<>());
       }
-      for (int t = 0; t < batch.tables; ++t) {
-        const int first = lookups_.spec().channels(Factor::kG, t).begin;
-        for (size_t c = 0; c < a_[t].size(); ++c) {
-          std::copy_n(batch.Slope(first + static_cast<int>(c), t), size, &a_[t][c][begin]);
-        }
-      }
     }
   });
 }
 
-void ShadowingUpdates::SetSums(int t) {
-  const int first = lookups_.spec().channels(Factor::kG, t).begin;
-  lookups_.ForChunks([&](int begin, int end) {
+void ShadowingUpdates::ForSlopes(
+    int t, const FactorModel& model,
+    const std::function<void(int begin, int end, const SampleLookups::Batch&)>& use) const {
+  constexpr int kBatch = SampleLookups::kBatch;
+  lookups_.ForChunks([&](int chunk_begin, int chunk_end) {
+    SampleLookups::Batch batch(lookups_.spec(), ParameterKind::kG);
+    for (int begin = chunk_begin; begin < chunk_end; begin += kBatch) {
+      const int end = std::min(begin + kBatch, chunk_end);
+      lookups_.SlopesInG(t, begin, end, model, &batch);
+      use(begin, end, batch);
+    }
+  });
+}
+
+void ShadowingUpdates::SetSums(int t, const FactorModel& model) {
+  const auto channels = lookups_.spec().channels(Factor::kG, t);
+  ForSlopes(t, model, [&](int begin, int end, const SampleLookups::Batch& batch) {
     std::fill(A_.begin() + begin, A_.begin() + end, 0.0);
     std::fill(b_.begin() + begin, b_.begin() + end, 0.0);
-    for (size_t c = 0; c < a_[t].size(); ++c) {
-      AddToSums(end - begin, &lookups_.samples().weight[first + c][begin], &a_[t][c][begin],
-                &residual_[first + c][begin], &A_[begin], &b_[begin]);
+    for (int c = channels.begin; c < channels.end; ++c) {
+      AddToSums(end - begin, &lookups_.samples().weight[c][begin], batch.Slope(c, t),
+                &residual_[c][begin], &A_[begin], &b_[begin]);
     }
   });
 }
@@ -236,11 +239,11 @@ void ShadowingUpdates::SetSums(int t) {
 void ShadowingUpdates::UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
                                    FactorModel* model) {
   const FoldedSamples& samples = lookups_.samples();
-  std::vector<double>&G_i = lookups_.G_i(t), &G_o = lookups_.G_o(t);
+  lookups_.ReadG(t, &G_i_, &G_o_);
   NodeJob job{.A = A_.data(),
               .b = b_.data(),
-              .G_i = G_i.data(),
-              .G_o = G_o.data(),
+              .G_i = G_i_.data(),
+              .G_o = G_o_.data(),
               .weight_i = {},
               .weight_o = {}};
   const auto weights = [&](int lookup, std::array<const double*, Stencil::kMaxSize>* pointers) {
@@ -249,8 +252,9 @@ void ShadowingUpdates::UpdateTable(int t, const std::function<void(const FactorM
   };
   weights(samples.order.G_i(), &job.weight_i);
   weights(samples.order.G_o(), &job.weight_o);
-  SetSums(t);
-  const std::vector<double> old_G_i = G_i, old_G_o = G_o;
+  SetSums(t, *model);
+  old_G_i_ = G_i_;
+  old_G_o_ = G_o_;
   const std::span<double> table = model->table(Factor::kG, t);
   for (size_t node = 0; node < table.size(); ++node) {
     std::array<double, 4> c{};
@@ -263,11 +267,11 @@ void ShadowingUpdates::UpdateTable(int t, const std::function<void(const FactorM
     }
     if (on_element) on_element(*model);
   }
-  const int first = lookups_.spec().channels(Factor::kG, t).begin;
-  lookups_.ForChunks([&](int begin, int end) {
-    for (size_t c = 0; c < a_[t].size(); ++c) {
-      SubtractChange(end - begin, &a_[t][c][begin], &G_i[begin], &G_o[begin], &old_G_i[begin],
-                     &old_G_o[begin], &residual_[first + c][begin]);
+  const auto channels = lookups_.spec().channels(Factor::kG, t);
+  ForSlopes(t, *model, [&](int begin, int end, const SampleLookups::Batch& batch) {
+    for (int c = channels.begin; c < channels.end; ++c) {
+      SubtractChange(end - begin, batch.Slope(c, t), &G_i_[begin], &G_o_[begin], &old_G_i_[begin],
+                     &old_G_o_[begin], &residual_[c][begin]);
     }
   });
 }

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "solvers/sums/cached_lookups.h"
+#include "solvers/sums/sample_lookups.h"
 #include "trilobe/model/factor_model.h"
 
 namespace trilobe {
@@ -23,26 +23,30 @@ class ShadowingUpdates {
     int begin, end, i, o;
   };
 
-  explicit ShadowingUpdates(CachedLookups* lookups);
+  // The lookups must outlive this.
+  explicit ShadowingUpdates(const SampleLookups& lookups);
 
-  // Prepares updates of this model, whose tables must have been read into the lookups. The same
-  // bits for any number of threads.
+  // Prepares updates of this model, whose tables the lookups must have. The same bits for any
+  // number of threads.
   void Read(const FactorModel& model);
 
-  // Sets every node of a table to the minimum of E with the others held, and updates the lookups.
-  // May be called for several tables in turn. `on_element`, if set, sees the model after each.
+  // Sets every node of a table to the minimum of E with the others held. May be called once for
+  // each table, in turn. `on_element`, if set, sees the model after each node.
   void UpdateTable(int t, const std::function<void(const FactorModel&)>& on_element,
                    FactorModel* model);
 
  private:
-  void SetSums(int t);
+  // Calls use(begin, end, batch) for all batches, which hold the slopes a of a table's G_i G_o.
+  // They are computed when they are needed: to keep them takes 72 bytes a sample.
+  void ForSlopes(
+      int t, const FactorModel& model,
+      const std::function<void(int begin, int end, const SampleLookups::Batch&)>& use) const;
+  void SetSums(int t, const FactorModel& model);
 
-  CachedLookups& lookups_;
-  std::vector<std::vector<Readers>> readers_;            // [node]
-  std::array<std::vector<double>, kChannels> residual_;  // rho* - rho. [samples]
-  // Factor of a table's G_i G_o in each channel that it serves. [tables][.][samples]
-  std::vector<std::vector<std::vector<double>>> a_;
-  std::vector<double> A_, b_;  // of the current table. [samples]
+  const SampleLookups& lookups_;
+  std::vector<std::vector<Readers>> readers_;                  // [node]
+  std::array<std::vector<double>, kChannels> residual_;        // rho* - rho. [samples]
+  std::vector<double> A_, b_, G_i_, G_o_, old_G_i_, old_G_o_;  // of the current table. [samples]
 };
 
 }  // namespace trilobe

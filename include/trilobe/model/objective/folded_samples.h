@@ -2,6 +2,7 @@
 #define TRILOBE_MODEL_OBJECTIVE_FOLDED_SAMPLES_H_
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -50,7 +51,7 @@ struct LookupOrder {
 struct FoldedSamples {
   // One lookup, for all samples.
   struct Lookup {
-    std::vector<int> cell;  // [size]
+    std::vector<uint16_t> cell;  // [size]
     // Weight of the cell's k-th entry, 0 beyond the last. [largest cell size of the table][size]
     std::vector<std::vector<double>> weight;
   };
