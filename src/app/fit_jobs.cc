@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
+#include <iostream>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -22,9 +23,12 @@
 #include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/json_value.h"
+#include "core/files/utf16.h"
 #include "fit/reports/fit_details.h"
 #include "trilobe/core/base/error.h"
+#include "trilobe/core/base/printable.h"
 #include "trilobe/core/system/parallel.h"
+#include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
 
 DEFINE_string(shard, "",
@@ -37,8 +41,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// Whether a file of a folder is to be fitted: by the ending of a format; a text table by its
-// header, too; and a workbook, so that its error says what to do.
+// Whether a file of a folder is to be fitted: by the ending of a format, or by its content; and
+// what holds a measurement that is not read, so that its error says what to do.
 bool IsMeasurement(const std::string& path) {
   const std::string ending = EndingOf(path);
   const auto is_one_of = [&](std::initializer_list<std::string_view> endings) {
@@ -48,18 +52,38 @@ bool IsMeasurement(const std::string& path) {
       MeasurementFormats().end()) {
     return true;
   }
-  if (is_one_of({".xlsx", ".xls", ".ods"})) return true;
-  return is_one_of({"", ".txt", ".tsv", ".dat", ".asc"}) &&
-         RecogniseFormat(BeginningOf(path)) != nullptr;
+  if (is_one_of({".xlsx", ".xls", ".ods", ".mat", ".h5", ".hdf5", ".npy", ".npz", ".axf", ".gz"})) {
+    return true;
+  }
+  constexpr size_t kLookedAt = 1 << 16;
+  const std::string bytes = BeginningOf(path, kLookedAt), utf8 = Utf8OfUtf16(bytes);
+  return RecogniseFormat(utf8.empty() ? bytes : utf8) != nullptr;
+}
+
+// Says that a file of a folder is not fitted, and why.
+void TellSkipped(const std::string& path) {
+  std::string why = path + ": no measurement";
+  try {
+    Source(path).Read();
+  } catch (const Error& error) {
+    why = error.what();
+    why.resize(std::min(why.find("; a measurement is"), why.size()));  // not each time
+  }
+  std::cerr << "trilobe: skipped " << Printable(why) << "\n";
 }
 
 // The measurements in a folder, by name.
 std::vector<std::string> MeasurementsIn(const std::string& folder) {
-  std::vector<std::string> found;
+  std::vector<std::string> found, skipped;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     if (it->path().filename() == kTableName) continue;  // of an earlier run
-    if (IsMeasurement(it->path().string())) found.push_back(it->path().string());
+    const std::string path = it->path().string();
+    if (IsMeasurement(path)) {
+      found.push_back(path);
+    } else if (it->is_regular_file(error) && it->path().filename().string().front() != '.') {
+      skipped.push_back(path);
+    }
   }
   if (error) throw Error("cannot read the folder '" + folder + "': " + error.message());
   if (found.empty()) {
@@ -70,6 +94,8 @@ std::vector<std::string> MeasurementsIn(const std::string& folder) {
     }
     throw Error("'" + folder + "' has no measurement, no file of these:" + endings);
   }
+  std::ranges::sort(skipped);
+  std::ranges::for_each(skipped, TellSkipped);
   std::ranges::sort(found);
   return found;
 }

@@ -1,7 +1,6 @@
 #include "core/files/content.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -52,16 +51,18 @@ constexpr Signature kSignatures[] = {
     {"\x28\xB5\x2F\xFD"sv, "a Zstandard file; unpack it"},
 };
 
-// Printable characters and white space in UTF-8, as far as the first 64 bytes tell. A binary table
-// is not: it has zeros.
+// Printable characters and white space in UTF-8 or Latin-1, as far as the first 64 bytes tell. A
+// binary table is not: it has zeros.
 bool LooksLikeText(std::string_view bytes) {
   for (std::string_view rest = bytes.substr(0, 64); !rest.empty();) {
     const char c = rest[0];
     const bool space = c == '\n' || c == '\r' || c == '\t';
     const size_t length = Utf8Length(rest);
     if (length == 0 && bytes.size() > 64 && rest.size() < 4) return true;  // cut by the 64
-    if (length == 0 || (length == 1 && !space && (c < ' ' || c == '\x7F'))) return false;
-    rest.remove_prefix(length);
+    const bool is_latin = length == 0 && static_cast<unsigned char>(c) >= 0xA0;
+    const bool is_control = length == 1 && !space && (c < ' ' || c == '\x7F');
+    if ((length == 0 && !is_latin) || is_control) return false;
+    rest.remove_prefix(std::max(length, size_t{1}));
   }
   return true;
 }
@@ -80,13 +81,14 @@ Content RecogniseContent(std::string_view bytes) {
   return {Kind::kText, "text"};
 }
 
-std::string BeginningOf(const std::string& path) {
+std::string BeginningOf(const std::string& path, size_t size) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return {};  // a pipe would be waited for
   std::ifstream file(path, std::ios::binary);
-  std::array<char, 256> begin{};
-  file.read(begin.data(), begin.size());
-  return {begin.data(), static_cast<size_t>(file.gcount())};
+  std::string begin(size, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<size_t>(file.gcount()));
+  return begin;
 }
 
 }  // namespace trilobe

@@ -20,8 +20,8 @@ struct Content {
 };
 Content RecogniseContent(std::string_view bytes);
 
-// The first 256 bytes of a file, or fewer if it is shorter; none if it cannot be read as a file.
-std::string BeginningOf(const std::string& path);
+// The first bytes of a file, or all if it is shorter; none if it cannot be read as a file.
+std::string BeginningOf(const std::string& path, size_t size = 256);
 
 }  // namespace trilobe
 

@@ -8,32 +8,13 @@
 
 #include "core/base/text.h"
 #include "core/files/file.h"
+#include "core/files/utf16.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
 
 constexpr int kMaxDepth = 64;
-
-void AppendUtf8(uint32_t code, std::string* text) {
-  const auto append = [text](uint32_t byte) { text->push_back(static_cast<char>(byte)); };
-  const auto tail = [&](int shift) { append(0x80 | ((code >> shift) & 0x3F)); };
-  if (code < 0x80) {
-    append(code);
-  } else if (code < 0x800) {
-    append(0xC0 | (code >> 6));
-    tail(0);
-  } else if (code < 0x10000) {
-    append(0xE0 | (code >> 12));
-    tail(6);
-    tail(0);
-  } else {
-    append(0xF0 | (code >> 18));
-    tail(12);
-    tail(6);
-    tail(0);
-  }
-}
 
 void CheckSize(size_t bytes, size_t most, const std::string& what) {
   if (bytes > most) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/files/file.h"
+#include "io/formats/matrix_table.h"
 #include "io/formats/table_columns.h"
 #include "io/formats/table_reader.h"
 #include "io/formats/text_table.h"
@@ -68,10 +69,11 @@ std::string WriteCsv(const Measurement& measurement, const std::string& path, in
   return count + " samples";
 }
 
-// A header that names an angle and another column, within the first lines.
+// A header that names an angle and another column, or those of a matrix, within the first lines.
 bool LooksLikeCsv(std::string_view text) {
   constexpr size_t kLongest = 1 << 16;
-  return FindTableHead(text.substr(0, kLongest), "", /*theta_i_is_given=*/false).has_value();
+  text = text.substr(0, kLongest);
+  return FindTableHead(text, "", /*theta_i_is_given=*/false).has_value() || HasAxes(text);
 }
 
 }  // namespace

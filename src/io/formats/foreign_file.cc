@@ -54,6 +54,8 @@ constexpr std::array kForeign = {
             "evaluate it at pairs of directions"},
     Foreign{"optis"sv, "", "", "an OPTIS/Speos text file, which is not read", ""},
     Foreign{"<?xml"sv, "", "", "an XML file, which is not read", ""},
+    Foreign{""sv, "tracepro", "", "a TracePro file, whose format is not public", ""},
+    Foreign{"[{"sv, "", "", "a list in JSON, which is not read", ""},
     Foreign{"mdl 1."sv, "", "", "an MDL module, which describes a material and is no measurement",
             "give the .mbsdf file that it names"},
 };

@@ -38,7 +38,10 @@ class RadianceXml {
     if (const pugi::xml_node child = node.child(name)) return child;
     std::string problem = "the file";
     if (node.name()[0] != '\0') problem = std::string("<").append(node.name()).append(">");
-    Fail(node, problem.append(" has no <").append(name).append(">, which a BSDF needs"));
+    Fail(node,
+         problem.append(" has no <")
+             .append(name)
+             .append(">, which a BSDF of Radiance or WINDOW needs; export it with its values"));
   }
 
   // Without the white space around it.

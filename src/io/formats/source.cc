@@ -9,8 +9,10 @@
 #include "core/files/content.h"
 #include "core/files/file.h"
 #include "core/files/text_lines.h"
+#include "core/files/utf16.h"
 #include "core/system/content_hash.h"
 #include "io/formats/foreign_file.h"
+#include "io/formats/table_columns.h"
 #include "io/formats/text_table.h"
 #include "io/formats/utia_file.h"
 #include "model/measurement/symptoms.h"
@@ -74,6 +76,17 @@ std::string WhatMeasurementsAre() {
   return text + "or synth:NAME";
 }
 
+// A text table that lacks a header, or what gives theta_i: its reader says how to give it.
+bool IsTable(std::string_view text) {
+  constexpr size_t kLookedAt = 1 << 16;
+  if (IsTableOfNumbers(text)) return true;
+  const auto head = FindTableHead(text.substr(0, kLookedAt), "", /*theta_i_is_given=*/true);
+  return head && std::ranges::any_of(head->names, [](const std::string& name) {
+           const ColumnRole role = ColumnNamed(name).role;
+           return role >= ColumnRole::kRed && role <= ColumnRole::kBand;
+         });
+}
+
 // `is_table`: options say that a text is one.
 const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& source,
                                   bool is_table) {
@@ -84,7 +97,7 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
   const std::vector<MeasurementFormat>& formats = MeasurementFormats();
   const Content content = RecogniseContent(bytes);
   const bool is_text = content.kind == Content::Kind::kText;
-  if (is_text && (is_table || IsTableOfNumbers(bytes))) return FindNamed("format", "csv", formats);
+  if (is_text && (is_table || IsTable(bytes))) return FindNamed("format", "csv", formats);
   if (is_text || content.kind == Content::Kind::kUnknown) {
     const std::string ending = EndingOf(source);
     auto found = std::ranges::find_if(formats, [&](const MeasurementFormat& format) {
@@ -293,8 +306,11 @@ std::string Source::Fingerprint() const { return synthetic() ? name_ : ContentHa
 
 Measurement Source::Parsed(const SourceOptions& options) const {
   const bool is_table = !options.columns.empty() || options.theta_i_deg != -1;
-  const MeasurementFormat& format = FormatOf(bytes_, name_, is_table);
-  Measurement measurement = format.read(bytes_, name_, options);
+  std::string utf8 = Utf8OfUtf16(bytes_);
+  if (RecogniseContent(utf8).kind == Content::Kind::kJson) utf8.clear();  // must be UTF-8
+  const std::string_view bytes = utf8.empty() ? std::string_view(bytes_) : utf8;
+  const MeasurementFormat& format = FormatOf(bytes, name_, is_table);
+  Measurement measurement = format.read(bytes, name_, options);
   measurement.xxh128 = ContentHash(bytes_);
   NoteUnread(options, format.name, &measurement);
   return measurement;

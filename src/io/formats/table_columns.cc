@@ -69,10 +69,11 @@ bool IsOneOf(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
 
-constexpr std::string_view kAngleUnits[] = {"degrees", "degree", "degs", "deg",
-                                            "radians", "radian", "rad"};
-constexpr std::string_view kOtherUnits[] = {"1/sr",    "sr^-1", "sr-1", "/sr", "sr^{-1}", "%",
-                                            "percent", "db",    "nm",   "um",  "mrad",    "-"};
+constexpr std::string_view kAngleUnits[] = {"degrees", "degree", "degs", "deg",  "radians",
+                                            "radian",  "rad",    "gon",  "grad", "gradians"};
+constexpr std::string_view kOtherUnits[] = {
+    "1/sr", "sr^-1", "sr-1", "/sr",  "sr^{-1}", "%",      "percent", "db", "nm",
+    "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
 constexpr std::string_view kNoBrdf[] = {"%", "percent", "db"};
 
 // For a note, in UTF-8.
@@ -84,7 +85,7 @@ std::string Quoted(std::string_view name) {
 // --- Angles --------------------------------------------------------------------------------------
 
 constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar"};
-constexpr std::string_view kPhiWords[] = {"phi", "azimuthal", "azimuth", "azim", "az"};
+constexpr std::string_view kPhiWords[] = {"phi", "azimuthal", "azimuth", "azimut", "azim", "az"};
 constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
                                           "incoming", "l",     "light", "src",         "source",
                                           "sun",      "solar", "illum", "illumination"};
@@ -95,11 +96,30 @@ constexpr std::string_view kOutgoing[] = {
     "exit",       "emission", "emergent", "obs",      "observer", "observation",
     "sensor",     "camera",   "det",      "detector", "receiver"};
 // With which no word for an angle need stand.
-constexpr std::string_view kIncidentAlone[] = {"inc", "incident", "incidence", "incoming",
-                                               "aoi", "ti",       "thi",       "sza"};
-constexpr std::string_view kOutgoingAlone[] = {
-    "outgoing", "scatter",  "scattered", "scattering", "view", "viewing", "exit", "emission",
-    "detector", "receiver", "to",        "tho",        "tr",   "thr",     "vza"};
+constexpr std::string_view kIncidentAlone[] = {
+    "inc", "incident", "incidence", "incoming",       "aoi",           "ti",
+    "thi", "sza",      "einfall",   "einfallswinkel", "einfallwinkel", "dincidence"};
+constexpr std::string_view kOutgoingAlone[] = {"outgoing",
+                                               "scatter",
+                                               "scattered",
+                                               "scattering",
+                                               "view",
+                                               "viewing",
+                                               "exit",
+                                               "emission",
+                                               "detector",
+                                               "receiver",
+                                               "to",
+                                               "tho",
+                                               "tr",
+                                               "thr",
+                                               "vza",
+                                               "dobservation",
+                                               "ausfallswinkel",
+                                               "ausfallwinkel",
+                                               "beobachtungswinkel",
+                                               "streuwinkel",
+                                               "detektorwinkel"};
 
 // Of theta or phi of what the rest of the name says.
 std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
@@ -144,8 +164,8 @@ std::optional<Role> AngleRole(std::string key) {
 
 // --- Values --------------------------------------------------------------------------------------
 
-constexpr std::string_view kValues[] = {"brdf", "bsdf", "bdrf", "reflectance", "rho", "value",
-                                        "val",  "fr",   "f"};
+constexpr std::string_view kValues[] = {"brdf", "bsdf",  "bdrf", "frdb", "reflectance",
+                                        "rho",  "value", "val",  "fr",   "f"};
 
 std::optional<Role> ColorRole(std::string_view word) {
   if (word == "r" || word == "red") return Role::kRed;
@@ -276,9 +296,9 @@ class ColumnLayouter {
 
   // [rad]
   double UnitOf(const TableColumn& column) const {
-    if (column.unit.empty() || column.unit.starts_with("deg")) return kPi / 180;
-    if (column.unit.starts_with("rad")) return 1;
-    lines_.Fail("column '" + column.name + "' is neither in degrees nor in radians; convert it");
+    if (const auto radians = RadiansIn(column.unit)) return *radians;
+    lines_.Fail("column '" + column.name +
+                "' is neither in degrees nor in radians or gon; convert it");
   }
 
   void LayValues() {
@@ -344,6 +364,13 @@ TableColumn ColumnNamed(std::string_view name) {
   }
   SetRole(plain, &column);
   return column;
+}
+
+std::optional<double> RadiansIn(std::string_view unit) {
+  if (unit.empty() || unit.starts_with("deg")) return kPi / 180;
+  if (unit.starts_with("gon") || unit.starts_with("grad")) return kPi / 200;
+  if (unit.starts_with("rad")) return 1;
+  return std::nullopt;
 }
 
 std::optional<std::string> UnitIn(std::string_view cell) {

@@ -39,6 +39,9 @@ struct TableColumn {
 };
 TableColumn ColumnNamed(std::string_view name);
 
+// What an angle's unit is in radians; degrees if it has none, nothing for other units.
+std::optional<double> RadiansIn(std::string_view unit);
+
 // "deg", "(rad)", "1/sr": a unit, without its brackets; none for other text.
 std::optional<std::string> UnitIn(std::string_view cell);
 

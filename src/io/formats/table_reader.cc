@@ -11,39 +11,43 @@
 
 #include "core/base/text.h"
 #include "core/files/text_lines.h"
+#include "io/formats/column_advice.h"
+#include "io/formats/matrix_table.h"
 #include "io/formats/spectrum.h"
 #include "io/formats/table_columns.h"
+#include "io/formats/table_lines.h"
 #include "io/formats/text_table.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
 
-TableHead HeadOf(std::string_view text, const std::string& source, const SourceOptions& options) {
+TableHead HeadOf(std::string_view text, const std::string& source, const SourceOptions& options,
+                 bool theta_i_is_given) {
   TableHead head{.lines = TextLines(text, source)};
   if (!options.columns.empty()) {
     std::vector<std::string> names;
     for (const std::string_view name : SplitCells(options.columns)) names.emplace_back(name);
     head = TableHeadBy(names, text, source);
-  } else if (auto found = FindTableHead(text, source, options.theta_i_deg != -1)) {
+  } else if (auto found = FindTableHead(text, source, theta_i_is_given)) {
     head = *std::move(found);
+  } else if (auto other = FindTableHead(text, source, /*theta_i_is_given=*/true)) {
+    head = *std::move(other);  // the layout says what is missing
   } else {
     if (!head.lines.Next()) {
-      throw Error(source + ": no header row; it must be " + kUsualColumns);
+      throw Error(source + ": the file is empty; a table begins with a header row, as " +
+                  kUsualColumns);
+    }
+    while (head.lines.line().starts_with('%') && head.lines.Next()) {
     }
     if (LooksLikeRow(head.lines.line())) {
       head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
-                      " names them, - those to leave out");
+                      " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
+                      "columns of a matrix");
     }
     for (const std::string_view name : SplitCells(head.lines.line())) head.names.emplace_back(name);
   }
   return head;
-}
-
-// "", "NA", "-": not measured.
-bool IsGap(std::string_view cell) {
-  return cell.empty() || cell == "-" || cell == "--" || cell == "NA" || cell == "N/A" ||
-         cell == "n/a" || cell == "null";
 }
 
 // Samples of a plane, with signs: whether the samples near the mirror direction are brighter where
@@ -78,9 +82,16 @@ class TableReader {
   TableReader(std::string_view text, const std::string& source, const SourceOptions& options)
       : source_(source),
         options_(options),
-        head_(HeadOf(text, source, options)),
+        given_theta_i_(options.theta_i_deg != -1 ? DegreesToRadians(options.theta_i_deg)
+                                                 : ThetaIBeforeRows(text)),
+        head_(HeadOf(text, source, options, given_theta_i_.has_value())),
         layout_(Layout()) {
     numbers_.resize(layout_.values.size());
+    for (const std::optional<size_t>& angle : layout_.angles) {
+      if (angle) num_read_ = std::max(num_read_, *angle + 1);
+    }
+    for (const size_t column : layout_.values) num_read_ = std::max(num_read_, column + 1);
+    if (layout_.wavelength) num_read_ = std::max(num_read_, *layout_.wavelength + 1);
   }
 
   Measurement Read() {
@@ -105,10 +116,14 @@ class TableReader {
 
   ColumnLayout Layout() {
     const TextLines header = head_.lines;
+    first_names_ = head_.names;
     GoToRows(&head_);
     std::vector<TableColumn> columns;
     for (const std::string& name : head_.names) columns.push_back(ColumnNamed(name));
-    return LayoutOf(header, columns, options_.theta_i_deg != -1);
+    if (const std::string advice = AdviceOn(columns, given_theta_i_.has_value()); !advice.empty()) {
+      header.Fail(advice);
+    }
+    return LayoutOf(header, columns, given_theta_i_.has_value());
   }
 
   Measurement ReadRows(bool turned) {
@@ -116,8 +131,18 @@ class TableReader {
     std::optional<SpectralColor> color;
     if (!layout_.wavelengths.empty()) color.emplace(ColorOfSpectra());
     brighter_ = {};
-    for (TextLines lines = head_.lines; lines.Next();) {
-      Split(lines);
+    block_theta_i_ = given_theta_i_.value_or(0);
+    block_phi_i_ = 0;
+    lines_after_ = 0;
+    std::optional<TextLines> first_after;
+    for (TextLines lines = head_.lines; lines.NextWithComment();) {
+      if (!TakeNumbers(lines.line()) && !TakeCells(lines)) {
+        if (IsBetween(lines)) continue;
+        if (!first_after) first_after = lines;
+        ++lines_after_;
+        continue;
+      }
+      if (first_after) FailAsRow(*first_after);  // it stands between rows
       const SphericalAngles angles = Angles(lines, turned);
       if (!Values(lines)) {
         collector.LeaveOut(&BinCounts::missing);
@@ -151,6 +176,7 @@ class TableReader {
   bool TakeNumbers(std::string_view line) {
     const char* at = line.data();
     const char* const end = at + line.size();
+    is_numbers_ = false;
     row_.resize(layout_.columns.size());
     for (size_t k = 0; k < row_.size(); ++k) {
       if (k > 0 && (at == end || *at++ != head_.separator)) return false;
@@ -158,19 +184,60 @@ class TableReader {
       if (error != std::errc()) return false;
       at = after;
     }
-    return at == end;
+    is_numbers_ = at == end;
+    return is_numbers_;
   }
 
-  void Split(const TextLines& lines) {
-    is_numbers_ = TakeNumbers(lines.line());
-    if (is_numbers_) return;
-    SplitRow(lines.line(), head_.separator, &cells_);
+  // The same of any row; false for a line of text.
+  bool TakeCells(const TextLines& lines) {
+    const std::string_view line = WithoutComment(lines.line());
+    if (line.empty()) return false;
+    if (TakeNumbers(line)) return true;
+    SplitRow(line, head_.separator, &cells_);
     const std::vector<TableColumn>& columns = layout_.columns;
     if (cells_.size() == columns.size() + 1 && cells_.back().empty()) cells_.pop_back();
-    if (cells_.size() == columns.size()) return;
-    lines.Fail(std::to_string(cells_.size()) + (cells_.size() == 1 ? " column" : " columns") +
+    const bool has_all_read = cells_.size() <= columns.size() && cells_.size() >= num_read_;
+    const std::optional<size_t> theta_o = layout_.angles[kThetaO];
+    const auto is_number = [&](size_t column) {
+      return ToNumber(cells_[column]) || DecimalCommaNumber(cells_[column]) ||
+             OddNumber(cells_[column]);
+    };
+    if (IsText(line) && !(has_all_read && is_number(*theta_o))) return false;
+    if (!has_all_read) FailAsRow(lines);
+    cells_.resize(columns.size());
+    return true;
+  }
+
+  [[noreturn]] void FailAsRow(const TextLines& lines) const {
+    std::vector<std::string_view> cells;
+    SplitRow(WithoutComment(lines.line()), head_.separator, &cells);
+    const std::vector<TableColumn>& columns = layout_.columns;
+    if (cells.size() == columns.size()) {
+      const size_t theta_o = *layout_.angles[kThetaO];
+      ReadNumber(lines, theta_o, columns[theta_o].name, cells[theta_o]);  // throws
+    }
+    lines.Fail(std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") +
                "; expected " + std::to_string(columns.size()) + ", from " + columns.front().name +
                " to " + columns.back().name);
+  }
+
+  // Whether a line may stand between rows: a comment, the header once more, or one that gives
+  // theta_i or phi_i to the rows below.
+  bool IsBetween(const TextLines& lines) {
+    const std::string_view line = lines.line();
+    if (const std::optional<GivenAngle> given = GivenAngleIn(line)) {
+      if (!given->is_theta && !layout_.angles[kPhiI]) block_phi_i_ = given->radians;
+      if (given->is_theta && !layout_.angles[kThetaI] && options_.theta_i_deg == -1) {
+        block_theta_i_ = given->radians;
+        has_blocks_ = true;
+      }
+      return true;
+    }
+    if (WithoutComment(line).empty()) return true;
+    std::vector<std::string_view> cells;
+    SplitRow(line, head_.separator, &cells);
+    if (cells.size() > head_.names.size() && cells.back().empty()) cells.pop_back();
+    return std::ranges::equal(cells, first_names_);
   }
 
   double Number(const TextLines& lines, size_t column) {
@@ -180,6 +247,7 @@ class TableReader {
       decimal_commas_ = true;
       return *number;
     }
+    if (const auto number = OddNumber(cells_[column])) return *number;
     return ReadNumber(lines, column, layout_.columns[column].name, cells_[column]);  // throws
   }
 
@@ -200,10 +268,10 @@ class TableReader {
 
   SphericalAngles Angles(const TextLines& lines, bool turned) {
     constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
-    theta_i_ = AngleOf(lines, kThetaI, kTheta, DegreesToRadians(options_.theta_i_deg));
+    theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
     theta_o_ = AngleOf(lines, kThetaO, kTheta, 0);
     SphericalAngles at;
-    at.phi_i = AngleOf(lines, kPhiI, kPhi, 0);
+    at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
     at.phi_o = AngleOf(lines, kPhiO, kPhi, 0);
     signed_ |= std::min(theta_i_, theta_o_) < -kAngleRounding;
     in_plane_ &= at.phi_i == at.phi_o;
@@ -236,7 +304,8 @@ class TableReader {
   // As this library writes it, and as it was the only way once.
   bool IsUsual() const {
     return head_.separator == ',' && !head_.in_comment && head_.lines_before == 0 &&
-           options_.columns.empty() && !signed_ && !decimal_commas_ && layout_.HasAllAngles() &&
+           lines_after_ == 0 && options_.columns.empty() && !signed_ && !decimal_commas_ &&
+           layout_.HasAllAngles() &&
            std::ranges::all_of(layout_.columns, &TableColumn::is_usual_name);
   }
 
@@ -244,8 +313,11 @@ class TableReader {
 
   const std::string& source_;
   const SourceOptions& options_;
+  std::optional<double> given_theta_i_;   // [rad] by a flag, or above the rows
+  std::vector<std::string> first_names_;  // of the header, without units
   TableHead head_;
   ColumnLayout layout_;
+  size_t num_read_ = 0;  // columns up to the last that is read
   std::vector<std::string_view> cells_;
   std::vector<double> row_;  // in the place of cells, where a row is but numbers
   bool is_numbers_ = false;
@@ -254,17 +326,20 @@ class TableReader {
   std::optional<double> phi_i_, wavelength_;  // of the first row
   bool in_plane_ = true, signed_ = false, one_phi_i_ = true, by_brightness_ = false;
   bool decimal_commas_ = false;
+  double block_theta_i_ = 0, block_phi_i_ = 0;  // [rad] of rows that do not have them
+  bool has_blocks_ = false;
+  int lines_after_ = 0;  // of text, behind the rows
   BrighterSide brighter_;
 };
+
+std::string Lines(int count) { return std::to_string(count) + (count == 1 ? " line" : " lines"); }
 
 std::string TableReader::Note(bool turned) const {
   std::string note;
   const auto say = [&](bool is_so, const std::string& what) {
     if (is_so) note += (note.empty() ? "read as: " : ", ") + what;
   };
-  say(head_.lines_before > 0, std::to_string(head_.lines_before) +
-                                  (head_.lines_before == 1 ? " line" : " lines") +
-                                  " before the header");
+  say(head_.lines_before > 0, Lines(head_.lines_before) + " before the header");
   say(head_.in_comment, "a header in a comment");
   say(!options_.columns.empty(), "columns by --columns");
   say(head_.separator == ';', "semicolons");
@@ -275,7 +350,11 @@ std::string TableReader::Note(bool turned) const {
   for (const std::string& renamed : RenamedColumns(layout_)) say(true, renamed);
   say(layout_.HasAnglesIn(kPi / 180), "degrees");
   say(layout_.HasAnglesIn(1), "radians");
-  say(!layout_.angles[kThetaI], "theta_i = " + Text(options_.theta_i_deg) + " deg");
+  say(layout_.HasAnglesIn(kPi / 200), "gon");
+  if (!layout_.angles[kThetaI]) {
+    say(has_blocks_, "theta_i by lines between the rows");
+    say(!has_blocks_, "theta_i = " + Text(RadiansToDegrees(*given_theta_i_)) + " deg");
+  }
   say(!layout_.angles[kPhiI], "phi_i = 0");
   const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
                                   : "theta_o > 0 on the side of the light";
@@ -286,6 +365,7 @@ std::string TableReader::Note(bool turned) const {
   if (layout_.wavelengths.size() == 1) say(true, Text(layout_.wavelengths[0]) + " nm");
   say(layout_.wavelengths.size() > 1,
       std::to_string(layout_.wavelengths.size()) + " wavelengths to RGB by CIE 1931");
+  say(lines_after_ > 0, Lines(lines_after_) + " after the table");
   say(true, "f in 1/sr");
   if (!layout_.left_out.empty()) note += "; left out: " + LeftOutColumns(layout_);
   return note;
@@ -295,7 +375,22 @@ std::string TableReader::Note(bool turned) const {
 
 Measurement ReadTextTable(std::string_view text, const std::string& source,
                           const SourceOptions& options) {
-  return TableReader(text, source, options).Read();
+  const bool named = NamesAxes(options.columns);
+  if (!named && (!options.columns.empty() || !HasAxes(text))) {
+    return TableReader(text, source, options).Read();
+  }
+  const std::string rows = RowsOfMatrices(text, source, options.columns);
+  if (rows.empty()) throw Error(source + ": no matrix of numbers for --columns");
+  SourceOptions of_rows = options;
+  of_rows.columns.clear();
+  Measurement measurement = TableReader(rows, source, of_rows).Read();
+  for (std::string& note : measurement.notes) {  // the rows are ours
+    constexpr std::string_view kSeparator = "semicolons";
+    if (const size_t at = note.find(kSeparator); at != std::string::npos) {
+      note.replace(at, kSeparator.size(), "a matrix");
+    }
+  }
+  return measurement;
 }
 
 }  // namespace trilobe

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/formats/table_lines.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
@@ -115,16 +116,6 @@ bool IsNumber(std::string_view cell) {
 
 }  // namespace
 
-std::optional<double> DecimalCommaNumber(std::string_view cell) {
-  constexpr size_t kLongest = 64;
-  const size_t comma = cell.find(',');
-  if (comma == std::string_view::npos || cell.size() > kLongest) return std::nullopt;
-  if (cell.find('.') != std::string_view::npos) return std::nullopt;
-  std::string with_point(cell);
-  with_point[comma] = '.';
-  return ToNumber(with_point);
-}
-
 void SplitRow(std::string_view line, char separator, std::vector<std::string_view>* cells) {
   cells->clear();
   if (line.find('"') != std::string_view::npos || separator == kBlanks) {
@@ -153,8 +144,13 @@ bool LooksLikeRow(std::string_view line, size_t fewest) {
 }
 
 bool IsTableOfNumbers(std::string_view text) {
+  constexpr int kMostLinesAbove = 20;
   TextLines lines(text, "");
-  return lines.Next() && LooksLikeRow(lines.line());
+  for (int k = 0; k <= kMostLinesAbove && lines.Next(); ++k) {
+    if (LooksLikeRow(lines.line())) return true;
+    if (!lines.line().starts_with('%') && !IsText(lines.line())) return false;
+  }
+  return false;
 }
 
 std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,
@@ -165,7 +161,9 @@ std::optional<TableHead> FindTableHead(std::string_view text, const std::string&
     const std::optional<std::string_view> comment = CommentOf(lines.line());
     const std::string_view line =
         comment ? *comment : Trimmed(lines.line().substr(0, lines.line().find('#')));
-    if (std::optional<Names> found = NamesIn(line, {comment.has_value(), theta_i_is_given})) {
+    std::optional<Names> found;
+    if (!GivenAngleIn(line)) found = NamesIn(line, {comment.has_value(), theta_i_is_given});
+    if (found) {
       // A column of indices may have no name.
       if (lines.whole_line().starts_with('\t')) found->names.insert(found->names.begin(), "");
       head = {.lines = lines,
@@ -210,6 +208,12 @@ void GoToRows(TableHead* head) {
     if (cells.size() == names.size() + 1 && cells.back().empty()) cells.pop_back();
     return cells.size();
   };
+  // Of a table of R the rows have names, which have none.
+  const auto has_row_names = [&] {
+    return head->separator != ',' && count(head->separator) == names.size() + 1 &&
+           (next.line().starts_with('"') || cells[0] == "1" || cells[0] == "0");
+  };
+  if (has_row_names()) names.insert(names.begin(), "");
   if (count(head->separator) != names.size()) {
     const auto* const other = std::ranges::find_if(
         kSeparators, [&](char separator) { return count(separator) == names.size(); });
@@ -224,6 +228,18 @@ void GoToRows(TableHead* head) {
     if (!cells[k].empty()) names[k] += " [" + *UnitIn(cells[k]) + "]";
   }
   head->lines = next;
+}
+
+std::optional<double> ThetaIBeforeRows(std::string_view text) {
+  constexpr int kMostLines = 200;
+  TextLines lines(text, "");
+  for (int k = 0; k < kMostLines && lines.NextWithComment(); ++k) {
+    if (const auto given = GivenAngleIn(lines.line()); given && given->is_theta) {
+      return given->radians;
+    }
+    if (LooksLikeRow(WithoutComment(lines.line()))) break;
+  }
+  return std::nullopt;
 }
 
 }  // namespace trilobe

@@ -38,14 +38,14 @@ void GoToRows(TableHead* head);
 inline constexpr size_t kFewestNumbers = 3;
 bool LooksLikeRow(std::string_view line, size_t fewest = kFewestNumbers);
 
-// Whether the first line that is no comment could be a row.
+// Whether the first line that is neither a comment nor, up to some, text could be a row.
 bool IsTableOfNumbers(std::string_view text);
 
 // Cells of a row without quotes and white space at their ends.
 void SplitRow(std::string_view line, char separator, std::vector<std::string_view>* cells);
 
-// A number with a decimal comma; none for others.
-std::optional<double> DecimalCommaNumber(std::string_view cell);
+// The theta_i [rad] that the lines before the first row of numbers give (GivenAngleIn).
+std::optional<double> ThetaIBeforeRows(std::string_view text);
 
 }  // namespace trilobe
 

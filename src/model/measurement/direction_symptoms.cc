@@ -233,7 +233,8 @@ AzimuthSymptom AzimuthsOf(const BrdfSamples& samples) {
     inner.push_back(LogarithmicSpread(&rings.inner));
     outer.push_back(LogarithmicSpread(&rings.outer));
   }
-  if (inner.empty()) return {};
+  constexpr size_t kFewestIncidences = 2;  // one may stand near a highlight
+  if (inner.size() < kFewestIncidences) return {};
   return {.near_normal = Median(inner), .near_horizon = Median(outer)};
 }
 

@@ -162,7 +162,8 @@ TEST(CsvFile, WhereAzimuthsMatterReciprocityIsThatOfTheSameDirections) {
 
 TEST(CsvFile, ErrorsSayWhereAndWhatIsExpected) {
   EXPECT_EQ(ParseError("\n# nothing\n"),
-            "x.csv: no header row; it must be theta_i,phi_i,theta_o,phi_o,r,g,b");
+            "x.csv: the file is empty; a table begins with a header row, as "
+            "theta_i,phi_i,theta_o,phi_o,r,g,b");
   EXPECT_EQ(ParseError("theta_i,phi_i,theta_o,r,g,b\n"),
             "x.csv: line 1: the header has no column phi_o; it must be "
             "theta_i,phi_i,theta_o,phi_o,r,g,b, in any order");

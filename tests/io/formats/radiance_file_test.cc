@@ -203,7 +203,8 @@ TEST(RadianceFile, TensorTreesOfRank4) {
 
 TEST(RadianceFile, ErrorsSayWhereAndWhatIsExpected) {
   EXPECT_EQ(ParseError("<?xml version=\"1.0\"?>\n<WindowElement>\n</WindowElement>\n"),
-            "x.xml: line 2: <WindowElement> has no <Optical>, which a BSDF needs");
+            "x.xml: line 2: <WindowElement> has no <Optical>, which a BSDF of Radiance or WINDOW "
+            "needs; export it with its values");
   EXPECT_THAT(ParseError("<WindowElement>\n<a></WindowElement>"), HasSubstr("this is no XML"));
   EXPECT_THAT(ParseError("<a/>"), HasSubstr("the file has no <WindowElement>"));
   EXPECT_THAT(ParseError(Document("Columns", "")), HasSubstr("has no <WavelengthData>"));

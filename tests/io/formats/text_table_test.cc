@@ -265,7 +265,8 @@ TEST(TextTable, ColumnsMayBeNamed) {
   EXPECT_EQ(Read("20;1\n-20;0,5\n", {.columns = "theta_o,f", .theta_i_deg = 30}).counts.valid, 2);
   EXPECT_EQ(ReadError(rows, {}, "x.txt"),
             "x.txt: line 1: no header row names the columns; "
-            "--columns=theta_i,phi_i,theta_o,phi_o,r,g,b names them, - those to leave out");
+            "--columns=theta_i,phi_i,theta_o,phi_o,r,g,b names them, - those to leave out, and "
+            "--columns=theta_o/phi_o the rows and columns of a matrix");
   EXPECT_EQ(ReadError("nothing\n", {.columns = "theta_i,theta_o,f"}),
             "x.csv: no line holds numbers for --columns");
   EXPECT_THAT(Source("synth:felt@2x4").Read({.columns = "theta_i", .theta_i_deg = 3}).notes,
@@ -276,7 +277,7 @@ TEST(TextTable, ColumnsMayBeNamed) {
 
 TEST(TextTable, WhatNamesLeaveOpenIsAsked) {
   const std::string angles = "theta_i,phi_i,theta_o,phi_o";
-  EXPECT_THAT(ReadError(angles + ",radiance\n1,0,1,0,1\n"),
+  EXPECT_THAT(ReadError(angles + ",cheese\n1,0,1,0,1\n"),
               HasSubstr("line 1: the header has no column of values, as r, g, b, or brdf"));
   EXPECT_THAT(ReadError(angles + ",brdf,rho\n1,0,1,0,1,1\n"),
               HasSubstr("'brdf' and 'rho' say the same; --columns="));

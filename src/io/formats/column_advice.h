@@ -1,0 +1,21 @@
+#ifndef TRILOBE_IO_FORMATS_COLUMN_ADVICE_H_
+#define TRILOBE_IO_FORMATS_COLUMN_ADVICE_H_
+
+#include <string>
+#include <vector>
+
+#include "io/formats/table_columns.h"
+
+namespace trilobe {
+
+// What to type, or to do, about a table that lacks columns of values, or of theta_i unless that is
+// given, where another column may hold what these follow from. "": nothing is missing, or nothing
+// is known of its columns.
+std::string AdviceOn(const std::vector<TableColumn>& columns, bool theta_i_is_given);
+
+// "--columns=theta_i,-,theta_o,f": the columns by their usual names, this one as f.
+std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_IO_FORMATS_COLUMN_ADVICE_H_

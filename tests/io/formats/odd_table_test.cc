@@ -1,0 +1,192 @@
+// What is odd in tables that instruments, spreadsheets and programs export.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/files/utf16.h"
+#include "io/formats/table_lines.h"
+#include "tests/test_directory.h"
+#include "trilobe/core/math/angles.h"
+#include "trilobe/io/formats/source.h"
+
+namespace trilobe::TRILOBE_TEST_FILE {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kHead = "theta_i,phi_i,theta_o,phi_o,f\n";
+const std::string kRows = "30,0,10,0,0.25\n30,0,20,180,0.5\n";
+
+Measurement Read(const std::string& text, const SourceOptions& options = {}) {
+  return Source("x.txt", text).Read(options);
+}
+
+std::string ReadError(const std::string& text, const SourceOptions& options = {}) {
+  return ErrorOf([&] { Read(text, options); });
+}
+
+// That `text` says what kHead + kRows does, and what is noted of it.
+void ExpectBoth(const std::string& text, const std::string& note,
+                const SourceOptions& options = {}) {
+  const Measurement is = Read(text, options), expected = Read(kHead + kRows);
+  ASSERT_EQ(is.samples.rho, expected.samples.rho) << text;
+  for (int j = 0; j < is.samples.size(); ++j) {
+    const SphericalAngles &a = is.samples.directions[j], &b = expected.samples.directions[j];
+    EXPECT_NEAR(a.theta_i, b.theta_i, 1e-12);
+    EXPECT_NEAR(a.theta_o, b.theta_o, 1e-12);
+    EXPECT_NEAR(a.phi_o - a.phi_i, b.phi_o - b.phi_i, 1e-12);
+  }
+  EXPECT_THAT(is.notes, ElementsAre(HasSubstr(note))) << text;
+}
+
+TEST(OddTable, TextBehindTheRowsIsLeftOut) {
+  ExpectBoth(kHead + kRows + "End of data\nOperator: J. Smith\n", "2 lines after the table");
+  EXPECT_EQ(ReadError(kHead + "30,0,10,0,0.25\nEnd of data\n30,0,20,180,0.5\n"),
+            "x.txt: line 3: 1 column; expected 5, from theta_i to f");
+  // A row that breaks off is no text.
+  EXPECT_THAT(ReadError(kHead + kRows + "30,0,2"), HasSubstr("line 4: 3 columns; expected 5"));
+}
+
+TEST(OddTable, LinesGiveThetaIToTheRowsBelow) {
+  const std::string rows = "10\t0\t0.25\n20\t180\t0.5\n", head = "theta_o\tphi_o\tBRDF\n";
+  for (const std::string given : {"Incidence angle: 30 deg\n", "# theta_i = 30\n", "AOI\t30\n",
+                                  "theta_i [rad]: 0.52359877559829882\n"}) {
+    SCOPED_TRACE(given);
+    ExpectBoth(given + head + rows, "theta_i = 30 deg");
+  }
+  const Measurement two =
+      Read("Theta_i=20\n" + head + "1\t0\t2\nTheta_i=40\n" + head + "1\t0\t3\n");
+  ASSERT_EQ(two.samples.size(), 2);
+  EXPECT_NEAR(RadiansToDegrees(two.samples.directions[0].theta_i), 20, 1e-12);
+  EXPECT_NEAR(RadiansToDegrees(two.samples.directions[1].theta_i), 40, 1e-12);
+  EXPECT_THAT(two.notes, ElementsAre(HasSubstr("theta_i by lines between the rows")));
+  EXPECT_FALSE(GivenAngleIn("incidence angle: 30 samples"));
+  EXPECT_FALSE(GivenAngleIn("sample 30"));
+  EXPECT_FALSE(GivenAngleIn("theta_i: -30"));
+  EXPECT_FALSE(GivenAngleIn("theta_i [mrad]: 30"));
+}
+
+TEST(OddTable, AHeaderMayComeAgain) {
+  ExpectBoth(
+      "theta_i; phi_i; theta_o; phi_o; f;\n30; 0; 10; 0; 0.25;\n"
+      "theta_i; phi_i; theta_o; phi_o; f;\n30; 0; 20; 180; 0.5;\n",
+      "read as: semicolons");
+}
+
+TEST(OddTable, CellsOfSpreadsheets) {
+  const Measurement gaps = Read(kHead + "30,0,10,0,#N/A\n30,0,20,180,0.5 # bright\n" +
+                                "30,0,30,180,#DIV/0!\n30,0,40,180,#NV\n");
+  EXPECT_EQ(gaps.samples.size(), 1);
+  EXPECT_EQ(gaps.counts.missing, 3);
+  ExpectBoth("theta_i,phi_i,theta_o,phi_o,f\n30°,0°,10°,0°,0.25\n30°,0 deg,20°,180°,0.5\n",
+             "degrees");
+  ExpectBoth("theta_i phi_i theta_o phi_o f\n30 0 10 0 2.5D-01\n30 0 20 180 0.5D+00\n", "blanks");
+  // Cells that are not read may be missing at the end.
+  ExpectBoth(
+      "theta_i\tphi_i\ttheta_o\tphi_o\tf\tComment\n30\t0\t10\t0\t0.25\t\n"
+      "30\t0\t20\t180\t0.5\tbright\n",
+      "left out: 'Comment'");
+  EXPECT_FALSE(OddNumber("30x"));
+  EXPECT_FALSE(OddNumber("D3"));
+}
+
+TEST(OddTable, RowsOfRHaveNames) {
+  ExpectBoth(
+      "\"theta_i\" \"phi_i\" \"theta_o\" \"phi_o\" \"f\"\n\"1\" 30 0 10 0 0.25\n"
+      "\"2\" 30 0 20 180 0.5\n",
+      "blanks");
+}
+
+TEST(OddTable, OtherUnitsAndLanguages) {
+  ExpectBoth(
+      "theta_i [gon],phi_i [gon],theta_o [gon],phi_o [gon],f\n"
+      "33.333333333333333,0,11.111111111111111,0,0.25\n"
+      "33.333333333333333,0,22.222222222222222,200,0.5\n",
+      "read as: gon");
+  EXPECT_THAT(ReadError("theta_i [arcmin],phi_i,theta_o,phi_o,f\n1,0,1,0,1\n"),
+              HasSubstr("column 'theta_i [arcmin]' is neither in degrees nor in radians or gon"));
+  ExpectBoth("Einfallswinkel [°];Ausfallswinkel [°];Azimut [°];BRDF\n30;10;0;0,25\n30;20;180;0,5\n",
+             "decimal commas");
+  // In Latin-1.
+  ExpectBoth(
+      "angle d'incidence (\xB0);angle d'observation (\xB0);azimut (\xB0);FRDB (sr-1)\n"
+      "30;10;0;0,25\n30;20;180;0,5\n",
+      "decimal commas");
+}
+
+TEST(OddTable, TextInUtf16) {
+  std::string little = "\xFF\xFE", big = "\xFE\xFF";
+  for (const char c : kHead + kRows) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  for (const std::string& text : {little, big}) {
+    EXPECT_EQ(Read(text).samples.rho, Read(kHead + kRows).samples.rho);
+  }
+  using namespace std::string_literals;
+  EXPECT_EQ(Utf8OfUtf16("\xFF\xFE\xB8\x03\x3D\xD8\x00\xDE"s), "θ\U0001F600");
+  EXPECT_EQ(Utf8OfUtf16("\xFF\xFE\x3D\xD8"s), "");  // half a pair
+  EXPECT_EQ(Utf8OfUtf16("\xFF\xFE\x00\xDE"s), "");  // the other half
+  EXPECT_EQ(Utf8OfUtf16("\xFF\xFE\x3D"s), "");      // half a unit
+  EXPECT_EQ(Utf8OfUtf16("theta_i"s), "");
+}
+
+TEST(OddTable, AMatrixHasAnglesOnBothAxes) {
+  const std::string rows = "10 0.25 7\n20 8 0.5\n";
+  const std::vector<Rgb> rho = {{0.25, 0.25, 0.25}, {7, 7, 7}, {8, 8, 8}, {0.5, 0.5, 0.5}};
+  const SourceOptions by_flags = {.columns = "theta_o/phi_o", .theta_i_deg = 30};
+  for (const std::string header : {"0 0 180\n", "0 180\n", "% scan 3\n0 0 180\n"}) {
+    const Measurement read = Read(header + rows, by_flags);
+    EXPECT_EQ(read.samples.rho, rho) << header;
+    EXPECT_NEAR(read.samples.directions[1].phi_o, kPi, 1e-12);
+    EXPECT_NEAR(RadiansToDegrees(read.samples.directions[1].theta_o), 10, 1e-12);
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("read as: a matrix, ")));
+  }
+  EXPECT_EQ(Read("theta_i: 30\ntheta_o\\phi_o,0,180\n10,0.25,7\n20,8,0.5\n").samples.rho, rho);
+  const Measurement blocks =
+      Read("theta_i = 20\n0 0 180\n" + rows + "theta_i = 40\n0 0 180\n" + rows,
+           {.columns = "theta_o/phi_o"});
+  EXPECT_EQ(blocks.samples.size(), 8);
+  EXPECT_NEAR(RadiansToDegrees(blocks.samples.directions[4].theta_i), 40, 1e-12);
+  const Measurement wide =
+      Read("theta_o,BRDF at 20 deg,BRDF at 40 deg\n10,1,2\n", {.columns = "theta_o/theta_i"});
+  EXPECT_NEAR(RadiansToDegrees(wide.samples.directions[1].theta_i), 40, 1e-12);
+  EXPECT_EQ(ReadError("0 0 180\n10 1\n", by_flags),
+            "x.txt: line 2: 2 cells in a matrix of 3 columns");
+  EXPECT_THAT(ReadError("nothing\n", by_flags), HasSubstr("no matrix of numbers"));
+  EXPECT_THAT(ReadError("% phi in columns\n" + rows), HasSubstr("--columns=theta_o/phi_o"));
+}
+
+TEST(OddTable, ColumnsThatHoldSomethingElseAreNamed) {
+  const std::string angles = "aoi,theta_s,phi_s,", rows = "\n30,10,0,1\n";
+  EXPECT_EQ(ReadError(angles + "CCBRDF" + rows),
+            "x.txt: line 1: column 'CCBRDF' holds f times cos theta_o; type "
+            "--columns=theta_i,theta_o,phi_o,f --cosine=o:1");
+  EXPECT_THAT(ReadError(angles + "Reflectance factor (%)" + rows),
+              HasSubstr("percents of pi f; type --columns=theta_i,theta_o,phi_o,f "
+                        "--scale=0.003183"));
+  EXPECT_THAT(ReadError(angles + "counts" + rows), HasSubstr("what a detector reads"));
+  EXPECT_THAT(ReadError("aoi,theta_s,phi_s,X,Y,Z\n30,10,0,1,1,1\n"), HasSubstr("X, Y, Z"));
+  EXPECT_THAT(ReadError("wi_x,wi_y,wi_z,theta_o,f\n0,0,1,10,1\n"), HasSubstr("are vectors"));
+  EXPECT_THAT(ReadError("theta_h,theta_d,theta_o,f\n0,0,1,10\n"), HasSubstr("half and difference"));
+  EXPECT_THAT(ReadError("theta_o,BRDF at 20 deg,BRDF at 40 deg\n10,1,2\n"),
+              HasSubstr("--columns=theta_o/theta_i"));
+  // What they ask for is read.
+  const Measurement asked =
+      Read(angles + "CCBRDF" + rows, {.cosine_o = 1, .columns = "theta_i,theta_o,phi_o,f"});
+  EXPECT_NEAR(asked.samples.rho[0][0], 1 / std::cos(DegreesToRadians(10)), 1e-12);
+}
+
+TEST(OddTable, AScanWithoutThetaIAsksForIt) {
+  const std::string scan = "angle\tvalue\n-10\t1\n10\t2\n";
+  EXPECT_THAT(ReadError(scan), HasSubstr("no column theta_i; --theta_i=DEGREES gives it"));
+  EXPECT_EQ(Read(scan, {.theta_i_deg = 30}).samples.size(), 2);
+  EXPECT_THAT(ReadError(""), HasSubstr("empty"));
+}
+
+}  // namespace
+}  // namespace trilobe::TRILOBE_TEST_FILE
