@@ -308,7 +308,7 @@ Measurement Source::Parsed(const SourceOptions& options) const {
   const bool is_table = !options.columns.empty() || options.theta_i_deg != -1;
   std::string utf8 = Utf8OfUtf16(bytes_);
   if (RecogniseContent(utf8).kind == Content::Kind::kJson) utf8.clear();  // must be UTF-8
-  const std::string_view bytes = utf8.empty() ? std::string_view(bytes_) : utf8;
+  const std::string_view bytes = utf8.empty() ? std::string_view{bytes_} : utf8;
   const MeasurementFormat& format = FormatOf(bytes, name_, is_table);
   Measurement measurement = format.read(bytes, name_, options);
   measurement.xxh128 = ContentHash(bytes_);
