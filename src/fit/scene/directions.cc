@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/files/little_endian.h"
+#include "model/measurement/sample_density.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/core/math/stencil.h"
@@ -130,7 +131,8 @@ DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& sou
   return histogram;
 }
 
-BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions) {
+BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions,
+                        bool anisotropic) {
   const Selection selection =
       std::visit([&](const auto& form) { return Select(samples, form); }, directions);
   if (selection.numbers.empty()) {
@@ -139,6 +141,7 @@ BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& direc
   }
   BrdfSamples used = Selected(samples, selection.numbers);
   used.multiplicity = selection.multiplicity;
+  if (!anisotropic) EvenOutDensity(&used);
   return used;
 }
 

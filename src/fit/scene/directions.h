@@ -47,9 +47,11 @@ using SceneDirections =
 DirectionHistogram ParseHistogram(std::string_view bytes, const std::string& source);
 
 // The used samples with their multiplicity. That of a histogram is scaled to a mean of 1, which
-// keeps E comparable with an unweighted fit. Throws Error if none is left, or if a histogram is on
+// keeps E comparable with an unweighted fit. Those of an isotropic material, scattered, count less
+// where they are dense, as in SamplesOf. Throws Error if none is left, or if a histogram is on
 // another grid than the samples.
-BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions);
+BrdfSamples UsedSamples(const BrdfSamples& samples, const SceneDirections& directions,
+                        bool anisotropic = false);
 
 }  // namespace trilobe
 

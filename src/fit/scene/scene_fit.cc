@@ -120,7 +120,9 @@ class MaterialFitter {
 
   std::vector<SceneScore> Score(std::span<const FactorModel> models) const {
     const bool grey = material_.channels == SceneChannels::kLuminance;
-    const BrdfSamples used = UsedSamples(SamplesOf(Measured()), material_.directions);
+    const Measurement measured = Measured();
+    const BrdfSamples used =
+        UsedSamples(SamplesOf(measured), material_.directions, measured.anisotropic);
     const Objective objective(InChannels(used, material_.channels), models.front().spec(),
                               FindWeighting(settings_.weighting), num_threads_);
     std::vector<SceneScore> scores;
@@ -170,8 +172,8 @@ class MaterialFitter {
     options.stop = settings_.stop;
     const bool limited = !reads_all_directions();
     if (limited || material_.channels != SceneChannels::kRgb) {
-      options.select = [this, limited](BrdfSamples samples) {
-        if (limited) samples = UsedSamples(samples, material_.directions);
+      options.select = [this, limited, anisotropic = measured_->anisotropic](BrdfSamples samples) {
+        if (limited) samples = UsedSamples(samples, material_.directions, anisotropic);
         return InChannels(std::move(samples), material_.channels);
       };
     }
@@ -315,7 +317,8 @@ class MaterialFitter {
     if (!full || settings_.stop()) return std::nullopt;
     Stopwatch stopwatch;
     const FactorModel& model = full->file.model;
-    const FitProblem problem = ProblemFor(measured(), Options(), model.spec());
+    const Measurement& source = measured();
+    const FitProblem problem = ProblemFor(source, Options(), model.spec());
     const Objective& objective = problem.data;
     PruneOptions prune_options = PruneOptionsOf(material_);
     prune_options.stop = settings_.stop;

@@ -29,24 +29,26 @@ int CellOf(const HalfDiffAngles& angles) {
 }  // namespace
 
 void EvenOutDensity(BrdfSamples* samples) {
-  constexpr int kTimes = 4;
+  constexpr double kTimes = 4, kRounding = 1e-9;
   if (samples->on_grid()) return;
-  std::vector<int> cells(samples->size()), counts(kThetas * kThetas * kAzimuths);
+  std::vector<int> cells(samples->size());
+  std::vector<double> counts(kThetas * kThetas * kAzimuths);
   for (int j = 0; j < samples->size(); ++j) {
     cells[j] = CellOf(samples->angles[j]);
-    ++counts[cells[j]];
+    counts[cells[j]] += samples->Multiplicity(j);
   }
-  std::vector<int> filled;
-  std::ranges::copy_if(counts, std::back_inserter(filled), [](int count) { return count > 0; });
+  std::vector<double> filled;
+  std::ranges::copy_if(counts, std::back_inserter(filled), [](double count) { return count > 0; });
   if (filled.empty()) return;
   const auto middle = filled.begin() + static_cast<std::ptrdiff_t>(filled.size() / 2);
   std::ranges::nth_element(filled, middle);
-  const int most = kTimes * *middle;
-  if (std::ranges::all_of(counts, [&](int count) { return count <= most; })) return;
+  const double most = kTimes * *middle;
+  const auto is_dense = [&](double count) { return count > (1 + kRounding) * most; };
+  if (std::ranges::none_of(counts, is_dense)) return;
   samples->multiplicity.resize(samples->rho.size(), 1);
   for (int j = 0; j < samples->size(); ++j) {
-    const int count = counts[cells[j]];
-    if (count > most) samples->multiplicity[j] *= static_cast<double>(most) / count;
+    const double count = counts[cells[j]];
+    if (is_dense(count)) samples->multiplicity[j] *= most / count;
   }
 }
 

@@ -6,10 +6,10 @@
 namespace trilobe {
 
 // Instruments measure a highlight densely, and a fit must not follow it at the price of all else.
-// Counts scattered samples of an isotropic material in cells of 7.5 degrees of both theta and 15
-// degrees of azimuth. A cell counts at most as four times the median of those with samples: where
-// it has more, the multiplicity of each is lowered. Without such a cell all stays as it is, to the
-// bit, as do samples on a grid.
+// Adds up the multiplicities of scattered samples of an isotropic material in cells of 7.5 degrees
+// of both theta and 15 degrees of azimuth. A cell counts at most as four times the median of those
+// with samples: where it has more, its multiplicities are lowered; once more changes nothing.
+// Without such a cell all stays as it is, to the bit, as do samples on a grid.
 void EvenOutDensity(BrdfSamples* samples);
 
 }  // namespace trilobe

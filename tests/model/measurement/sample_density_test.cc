@@ -45,6 +45,9 @@ TEST(SampleDensity, ADenseCellCountsAsFourTimesTheMedian) {
   EXPECT_NEAR(std::accumulate(counts.begin(), counts.end(), 0.0), samples.size() - kMore + 3, 1e-9);
   EXPECT_EQ(std::ranges::count(counts, 1.0), samples.size() - kMore - 1);
   EXPECT_EQ(std::ranges::count(counts, 4.0 / (kMore + 1)), kMore + 1);
+  BrdfSamples again = samples;
+  EvenOutDensity(&again);
+  EXPECT_EQ(again.multiplicity, counts);
   // Samples in the other order of light and eye lie in the same cells.
   Measurement exchanged = Cells(kMore);
   for (HalfDiffAngles& at : exchanged.samples.angles) at.phi_d += kPi;
