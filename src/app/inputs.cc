@@ -53,12 +53,11 @@ std::string RequiredMeasurementOut(const std::string& command) {
   try {
     WritableFormat(out);
   } catch (const Error& error) {
-    throw Error(
-        "--out=" + std::string(error.what()) +
-        (command == "convert"
-             ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, .mtlx or .principled.json for "
-               "renderers and optical design"
-             : ""));
+    throw Error("--out=" + std::string(error.what()) +
+                (command == "convert" ? ", or in .bsdf, .zemax.bsdf, .xml, .xompt, .glsl, .hlsl, "
+                                        ".mtlx or .principled.json for "
+                                        "renderers and optical design"
+                                      : ""));
   }
   return out;
 }
