@@ -38,6 +38,7 @@ class Samples:
     def __init__(self, theta_h: Array, theta_d: Array, cosines: tuple[Array, Array], rho: Array, solid_angle: Array):
         self.theta_h, self.theta_d, self.cosines = theta_h, theta_d, cosines
         self.rho, self.solid_angle = rho, solid_angle
+        self.counts = np.ones(len(rho))
 
     def value(self, model: dict) -> Array:
         """rho of an isotropic model with shared factors (paper eq. 3) [n, 3]."""
@@ -60,8 +61,9 @@ class Samples:
         """Those of `appearance`, the same for all channels [n]."""
         c = self.cosines[0] * self.cosines[1]
         mean = self.rho.mean(axis=1)
-        level = np.sum(self.solid_angle * c * mean) / np.sum(self.solid_angle * c)
-        return self.solid_angle**0.75 * c**2 * (c * mean / level + 1 / 20) ** -1.5
+        measure = self.solid_angle * self.counts
+        level = np.sum(measure * c * mean) / np.sum(measure * c)
+        return self.counts * self.solid_angle**0.75 * c**2 * (c * mean / level + 1 / 20) ** -1.5
 
     def objective(self, model: dict) -> float:
         residuals = self.value(model) - self.rho
@@ -90,7 +92,20 @@ def read_csv(path: pathlib.Path) -> Samples:
     half = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
     theta_h = np.arctan2(np.hypot(half[:, 0], half[:, 1]), half[:, 2])
     theta_d = np.arctan2(np.linalg.norm(np.cross(wi, half), axis=1), np.sum(wi * half, axis=1))
-    return Samples(theta_h, theta_d, (np.cos(theta_i), np.cos(theta_o)), rows[:, 4:7], np.ones(len(rows)))
+    samples = Samples(theta_h, theta_d, (np.cos(theta_i), np.cos(theta_o)), rows[:, 4:7], np.ones(len(rows)))
+    samples.counts = counts_of(rows[:, :4])
+    return samples
+
+
+def counts_of(angles: Array) -> Array:
+    """How much each of scattered samples counts, by how dense they are; `angles` in degrees [n, 4]."""
+    theta = np.sort(angles[:, [0, 2]], axis=1)
+    between = np.abs((angles[:, 1] - angles[:, 3] + 180) % 360 - 180)
+    places = np.column_stack([theta / 7.5, between / 15])
+    cells = np.minimum(np.floor(places + 1e-6), 11)
+    _, cell, samples = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    most = 4 * np.sort(samples)[len(samples) // 2]
+    return np.minimum(1, most / samples[cell.ravel()])
 
 
 class Objective(unittest.TestCase):

@@ -14,11 +14,12 @@ namespace {
 
 constexpr int kThetas = 12, kAzimuths = 12;
 
-// Of the angles of two directions in either order.
-int CellOf(const HalfDiffAngles& angles) {
-  const SphericalAngles at = ToSphericalAngles(ToDirections(angles));
+// Of the angles of two directions, in either order. Angles at a bound of cells, as those of grids
+// are, lie above it.
+int CellOf(const SphericalAngles& at) {
   const auto part = [](double share, int parts) {
-    return std::clamp(static_cast<int>(share * parts), 0, parts - 1);
+    constexpr double kRounding = 1e-6;
+    return std::clamp(static_cast<int>(share * parts + kRounding), 0, parts - 1);
   };
   int i = part(at.theta_i / (kPi / 2), kThetas), o = part(at.theta_o / (kPi / 2), kThetas);
   if (i > o) std::swap(i, o);
@@ -34,7 +35,9 @@ void EvenOutDensity(BrdfSamples* samples) {
   std::vector<int> cells(samples->size());
   std::vector<double> counts(kThetas * kThetas * kAzimuths);
   for (int j = 0; j < samples->size(); ++j) {
-    cells[j] = CellOf(samples->angles[j]);
+    cells[j] =
+        CellOf(samples->directions.empty() ? ToSphericalAngles(ToDirections(samples->angles[j]))
+                                           : samples->directions[j]);
     counts[cells[j]] += samples->Multiplicity(j);
   }
   std::vector<double> filled;

@@ -32,7 +32,8 @@ TEST(Content, IsRecognisedByItsFirstBytes) {
   Check("\xEF\xBB\xBFnotes", Kind::kText, "text");
   const std::string dashes = "---------------------------------------------------------------";
   Check(dashes + "\u00e9, cut in the middle by the look at 64 bytes", Kind::kText, "text");
-  Check(dashes + "\xc3", Kind::kUnknown, "");
+  Check(dashes + "\xc3", Kind::kText, "text");  // in Latin-1
+  Check(dashes + "\x80", Kind::kUnknown, "");
   Check(std::string("notes\n\0", 7), Kind::kUnknown, "");
   Check("\x89PNG\r\n\x1a\n", Kind::kForeign, "a PNG picture");
   Check("\x89HDF\r\n\x1a\n", Kind::kForeign, "an HDF5 file");

@@ -50,7 +50,9 @@ TEST(SampleDensity, ADenseCellCountsAsFourTimesTheMedian) {
   EXPECT_EQ(again.multiplicity, counts);
   // Samples in the other order of light and eye lie in the same cells.
   Measurement exchanged = Cells(kMore);
-  for (HalfDiffAngles& at : exchanged.samples.angles) at.phi_d += kPi;
+  for (SphericalAngles& at : exchanged.samples.directions) {
+    at = {at.theta_o, at.phi_o, at.theta_i, at.phi_i};
+  }
   EXPECT_EQ(SamplesOf(exchanged).multiplicity, counts);
 }
 
