@@ -37,8 +37,7 @@ BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights) {
     throw Error("there are " + std::to_string(weights.size()) + " weights for " +
                 std::to_string(count) + " valid samples");
   }
-  if (samples.multiplicity.empty()) samples.multiplicity.assign(count, 1);
-  for (size_t k = 0; k < count; ++k) samples.multiplicity[k] *= weights[k];
+  samples.multiplicity = weights;
   return samples;
 }
 

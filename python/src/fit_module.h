@@ -47,7 +47,8 @@ FormOptions FormOf(const nanobind::dict& options);
 using Weights =
     nanobind::ndarray<const double, nanobind::ndim<1>, nanobind::c_contig, nanobind::device::cpu>;
 std::vector<double> ByRow(const Weights& weights);
-// Throws Error unless there is a weight for each sample.
+// In the place of how much they count by their density (EvenOutDensity). Throws Error unless there
+// is a weight for each sample.
 BrdfSamples Weighted(BrdfSamples samples, const std::vector<double>& weights);
 
 void BindMeasurement(nanobind::module_* module);

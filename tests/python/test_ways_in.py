@@ -86,10 +86,12 @@ def test_weights_of_samples(plastic):
     options = {"anisotropic": False, "min_theta_d": 0}
     once = trilobe.Objective(trilobe.Measurement(wi, wo, rho, **options), weights=counts, weighting="uniform")
     again = trilobe.Measurement(*(np.repeat(a, counts, axis=0) for a in (wi, wo, rho)), **options)
-    often = trilobe.Objective(again, weighting="uniform")
+    often = trilobe.Objective(again, weights=np.ones(len(again.rho)), weighting="uniform")
     x = once.start()
     assert once.value(x) == pytest.approx(often.value(x), rel=1e-9)
     np.testing.assert_allclose(once.gradient(x), often.gradient(x), rtol=1e-6, atol=1e-9)
+    # Without weights, samples that are there often are dense, and count less.
+    assert trilobe.Objective(again, weighting="uniform").value(x) < often.value(x)
 
 
 def test_weights_are_a_function_of_what_was_measured(plastic):
