@@ -12,7 +12,7 @@ setup_packages run
 venv=build/python-venv
 if [[ ! -e $venv/ready ]]; then
   /usr/bin/python3 -m venv --clear "$venv"
-  "$venv/bin/pip" install --quiet --disable-pip-version-check nanobind numpy pytest hypothesis tqdm matplotlib pandas scipy xarray ruff
+  "$venv/bin/pip" install --quiet --disable-pip-version-check nanobind numpy pytest hypothesis tqdm matplotlib pandas scipy xarray ruff nlopt ipyopt
   touch "$venv/ready"
 fi
 
