@@ -10,9 +10,10 @@ source scripts/setup.sh
 setup_packages run
 
 venv=build/python-venv
-if [[ ! -e $venv/ready ]]; then
+if [[ ! -e $venv/ready || ! -x $venv/bin/mypy ]]; then
   /usr/bin/python3 -m venv --clear "$venv"
-  "$venv/bin/pip" install --quiet --disable-pip-version-check nanobind numpy pytest hypothesis tqdm matplotlib pandas scipy xarray ruff nlopt ipyopt
+  "$venv/bin/pip" install --quiet --disable-pip-version-check nanobind numpy pytest hypothesis tqdm matplotlib pandas scipy xarray ruff mypy \
+    nlopt ipyopt
   touch "$venv/ready"
 fi
 
@@ -22,6 +23,7 @@ fi
 trap 'configure release -DTRILOBE_BUILD_PYTHON=OFF' EXIT
 configure release -DTRILOBE_BUILD_PYTHON=ON -DPython_EXECUTABLE="$PWD/$venv/bin/python"
 build release trilobe_python
+"$venv/bin/mypy" --config-file python/mypy.ini --cache-dir build/mypy build/release/python/trilobe
 export PYTHONPATH=$PWD/build/release/python
 if build/renderer/bin/python -c 'import mitsuba, pytest' 2>/dev/null; then
   llvm=(/usr/lib/x86_64-linux-gnu/libLLVM.so.19*)

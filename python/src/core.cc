@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/evaluate/bsdf.h"
@@ -256,7 +257,7 @@ void Albedo(const Material& material, const Input<Real>& wi, const Output<Real>&
 }
 
 // Bsdf::half_vectors(): what it draws by, for renderers that draw by tables of their own.
-nb::dict HalfVectorsOf(const Material& material) {
+NamedValues HalfVectorsOf(const Material& material) {
   const auto& bsdf = [&]() -> const Bsdf<double>& {
     const nb::gil_scoped_release released;
     return material.Of<double>();
@@ -264,7 +265,7 @@ nb::dict HalfVectorsOf(const Material& material) {
   const HalfVectorTable<double>& table = bsdf.half_vectors();
   const size_t rings = table.theta_i().size(), phis = table.num_phi_i(), rows = table.y().size();
   const size_t columns = table.num_s();
-  nb::dict dict;
+  NamedValues dict;
   dict["theta_i"] = OwnedArray(std::vector<double>(table.theta_i()), {rings});
   dict["y"] = OwnedArray(std::vector<double>(table.y()), {rows});
   dict["values"] = OwnedArray(std::vector<float>(table.values()), {rings, phis, rows, columns});
@@ -294,11 +295,11 @@ const char* RuleName(Axis::Rule rule) {
   return "polar";
 }
 
-nb::dict AxisOf(const Material& material, const std::string& factor) {
+NamedValues AxisOf(const Material& material, const std::string& factor) {
   const ModelSpec& spec = material.spec();
   const Axis& axis = spec.axis(FactorOf(factor));
   const TableSharing& sharing = spec.sharing(FactorOf(factor));
-  nb::dict dict;
+  NamedValues dict;
   dict["rule"] = RuleName(axis.rule);
   dict["size"] = axis.size;
   dict["per_lobe"] = sharing.per_lobe;

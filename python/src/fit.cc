@@ -27,6 +27,7 @@
 #include "fit/reports/fit_details.h"
 #include "fit/reports/fit_report.h"
 #include "fit_module.h"
+#include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/io/model_files/model_file.h"
 #include "trilobe/io/model_files/trace_file.h"
@@ -267,9 +268,9 @@ void TellOfLimit(const RunningFit& running, FitResult* fit) {
   }
 }
 
-Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict& solver_options,
-               RunningFit* running, const std::optional<Weights>& weights,
-               const nb::object& callback) {
+Outcome RunFit(const Measured& measured, const NamedValues& options,
+               const NamedValues& solver_options, RunningFit* running,
+               const std::optional<Weights>& weights, const nb::object& callback) {
   FitOptions fit_options = OptionsOf(options, solver_options);
   if (weights) {
     fit_options.select = [by_sample = ByRow(*weights)](BrdfSamples samples) {
@@ -319,7 +320,7 @@ Outcome RunFit(const Measured& measured, const nb::dict& options, const nb::dict
 }
 
 // Columns of the trace, by the names that trace.csv has.
-nb::dict TraceColumns(const Outcome& outcome) {
+NamedValues TraceColumns(const Outcome& outcome) {
   const auto column = [&](const auto& value_of) {
     using T = std::decay_t<decltype(value_of(outcome.trace[0]))>;
     std::vector<T> values;
@@ -327,7 +328,7 @@ nb::dict TraceColumns(const Outcome& outcome) {
     const size_t count = values.size();
     return OwnedArray(std::move(values), {count});
   };
-  nb::dict columns;
+  NamedValues columns;
   columns["iteration"] = column([](const IterationRecord& r) { return int64_t{r.iteration}; });
   columns["seconds"] = column([](const IterationRecord& r) { return r.seconds; });
   columns["objective"] = column([](const IterationRecord& r) { return r.objective; });
@@ -343,10 +344,13 @@ nb::dict TraceColumns(const Outcome& outcome) {
   return columns;
 }
 
-nb::list SolverList() {
-  nb::list list;
+// The fields of trilobe.Solver.
+using SolverTuples = std::vector<std::tuple<std::string, std::string, std::string, NamedValues>>;
+
+SolverTuples ListSolvers() {
+  SolverTuples list;
   for (const SolverEntry& solver : Solvers()) {
-    nb::dict options;
+    NamedValues options;
     for (const SolverOption* const option : OptionsReadBy(solver.options)) {
       if (option->help.empty()) continue;
       const OptionValue value =
@@ -355,17 +359,17 @@ nb::list SolverList() {
           [&](const auto& is) { options[option->flag.c_str()] = nb::make_tuple(is, option->help); },
           value);
     }
-    list.append(nb::make_tuple(solver.name, solver.description, solver.reference, options));
+    list.emplace_back(solver.name, solver.description, solver.reference, options);
   }
   return list;
 }
 
 // (name, description) of each entry of a list.
 template <typename T>
-nb::list Names(const std::vector<T>& entries) {
-  nb::list list;
-  for (const T& entry : entries) list.append(nb::make_tuple(entry.name, entry.description));
-  return list;
+std::vector<std::pair<std::string, std::string>> Names(const std::vector<T>& entries) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const T& entry : entries) names.emplace_back(entry.name, entry.description);
+  return names;
 }
 
 }  // namespace
@@ -394,7 +398,7 @@ void BindFit(nb::module_* module) {
       .def("trace", &TraceColumns);
   module->def("fit", &RunFit, nb::arg("measured"), nb::arg("options"), nb::arg("solver_options"),
               nb::arg("running"), nb::arg("weights").none(), nb::arg("callback").none());
-  module->def("solvers", &SolverList);
+  module->def("solvers", &ListSolvers);
   module->def("initial_models", [] { return Names(InitialModels()); });
   module->def("weightings", [] { return Names(Weightings()); });
 }

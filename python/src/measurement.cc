@@ -18,6 +18,7 @@
 #include "fit_module.h"
 #include "io/formats/completed_measurement.h"
 #include "io/formats/utia_file.h"
+#include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/fit/as_measurement.h"
 #include "trilobe/fit/export/convert.h"
@@ -34,7 +35,7 @@ namespace {
 
 using Doubles = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
-Measured Read(const std::string& source, const nb::dict& options) {
+Measured Read(const std::string& source, const NamedValues& options) {
   const SourceOptions source_options = SourceOptionsOf(options);
   const nb::gil_scoped_release released;
   Stopwatch stopwatch;
@@ -57,7 +58,7 @@ DirectionPair PairOf(const double* wi, const double* wo) {
 // Scattered samples. Whether azimuths matter is for `azimuths` to say: "yes", "no", or "auto".
 Measured FromArrays(const Doubles& wi, const Doubles& wo, const Doubles& rho,
                     const std::string& source, const std::string& azimuths,
-                    const nb::dict& options) {
+                    const NamedValues& options) {
   const size_t count = rho.shape(0);
   for (const Doubles* const array : {&wi, &wo, &rho}) {
     if (array->shape(0) != count || array->shape(1) != 3) {
@@ -186,7 +187,7 @@ ConvertOptions ConvertOptionsOf(const nb::dict& options) {
 using Lines = std::vector<std::string>;
 
 // What `trilobe convert` writes, of a model file's text or of a measurement.
-Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const nb::dict& given) {
+Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const NamedValues& given) {
   const ModelFile file = ParseModel({model_text.c_str(), model_text.size()}, "the model");
   const ConvertOptions options = ConvertOptionsOf(given);
   const nb::gil_scoped_release released;
@@ -201,7 +202,8 @@ Lines ConvertModel(const nb::bytes& model_text, const std::string& path, const n
   return {WriteMeasurement(measurement, path, options.num_threads)};
 }
 
-Lines ConvertMeasurement(const Measured& measured, const std::string& path, const nb::dict& given) {
+Lines ConvertMeasurement(const Measured& measured, const std::string& path,
+                         const NamedValues& given) {
   const ConvertOptions options = ConvertOptionsOf(given);
   const std::shared_ptr<const Measurement> data = measured.data;
   const nb::gil_scoped_release released;
@@ -211,7 +213,7 @@ Lines ConvertMeasurement(const Measured& measured, const std::string& path, cons
 
 // A measurement as a function of all directions, and the ratios that it interpolates.
 struct Completed {
-  Completed(const nb::bytes& model_text, const Measured& measured, const nb::dict& options)
+  Completed(const nb::bytes& model_text, const Measured& measured, const NamedValues& options)
       : data(measured.data) {
     const ModelFile file = ParseModel({model_text.c_str(), model_text.size()}, "the model");
     const int threads = ThreadsOf(options);
@@ -272,7 +274,7 @@ NumpyArray<double> EvalOf(const Completed& self, const Doubles& wi, const Double
 }  // namespace
 
 void BindMeasurement(nb::module_* module) {
-  module->attr("REASONS") = ReasonNames();
+  module->def("reasons", &ReasonNames);
   nb::class_<Measured>(*module, "Measured", "A measurement in memory.")
       .def_prop_ro("source", [](const Measured& self) { return self.data->source; })
       .def_prop_ro("xxh128", [](const Measured& self) { return self.data->xxh128; })
@@ -301,7 +303,7 @@ void BindMeasurement(nb::module_* module) {
   module->def("convert_measurement", &ConvertMeasurement, nb::arg("measured"), nb::arg("path"),
               nb::arg("options"));
   nb::class_<Completed>(*module, "Completed", "A measurement as a function of all directions.")
-      .def(nb::init<const nb::bytes&, const Measured&, const nb::dict&>(), nb::arg("model"),
+      .def(nb::init<const nb::bytes&, const Measured&, const NamedValues&>(), nb::arg("model"),
            nb::arg("measured"), nb::arg("options"))
       .def_prop_ro("shape", &ShapeOf)
       .def_prop_ro("offset", [](const Completed& self) { return self.completed.offset; })

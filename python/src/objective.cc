@@ -24,6 +24,7 @@
 #include "model/lobes/gauge.h"
 #include "model/objective/canonical_form.h"
 #include "model/objective/sample_derivatives.h"
+#include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/fit/form.h"
 #include "trilobe/io/model_files/model_file.h"
@@ -42,7 +43,7 @@ using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::
 // The objective of a fit without a prior.
 class FitObjective {
  public:
-  FitObjective(const Measured& measured, const nb::dict& options,
+  FitObjective(const Measured& measured, const NamedValues& options,
                const std::optional<Weights>& weights)
       : data_(measured.data),
         objective_(Make(measured, options, weights)),
@@ -247,7 +248,7 @@ std::vector<std::tuple<std::string, int, int>> Parts(const FitObjective& self) {
 
 void BindObjective(nb::module_* module) {
   nb::class_<FitObjective>(*module, "Objective", "E of a measurement, a form and a weighting.")
-      .def(nb::init<const Measured&, const nb::dict&, const std::optional<Weights>&>(),
+      .def(nb::init<const Measured&, const NamedValues&, const std::optional<Weights>&>(),
            nb::arg("measured"), nb::arg("options"), nb::arg("weights").none())
       .def_prop_ro(
           "num_parameters",

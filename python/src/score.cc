@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "fit/reports/score_report.h"
 #include "fit_module.h"
 #include "model/appearance/picture_data.h"
+#include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/model/appearance/appearance.h"
 #include "trilobe/model/appearance/material.h"
@@ -35,7 +37,7 @@ FactorModel ModelOf(const nb::bytes& text) {
 }
 
 // The text of what `trilobe score --json` prints.
-nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const nb::dict& options) {
+nb::bytes Score(const nb::bytes& model_text, const Measured& measured, const NamedValues& options) {
   const FactorModel model = ModelOf(model_text);
   const Weighting weighting = FindWeighting(OptionOf<std::string>(options, "weighting", "a name"));
   const int threads = ThreadsOf(options);
@@ -78,7 +80,7 @@ int SizeOf(const nb::dict& options) {
 }
 
 // Linear radiance of a model on a sphere under the built-in light. [size][size][3]
-NumpyArray<double> RenderModel(const nb::bytes& model_text, const nb::dict& options) {
+NumpyArray<double> RenderModel(const nb::bytes& model_text, const NamedValues& options) {
   const FactorModel model = ModelOf(model_text);
   const AppearanceOptions appearance{.size = SizeOf(options), .num_threads = ThreadsOf(options)};
   RenderedImage image;
@@ -90,8 +92,9 @@ NumpyArray<double> RenderModel(const nb::bytes& model_text, const nb::dict& opti
 }
 
 // The same beside a measurement, of measured directions alone, and the exposure of both.
-nb::tuple RenderPair(const nb::bytes& model_text, const Measured& measured,
-                     const nb::dict& options) {
+std::tuple<NumpyArray<double>, NumpyArray<double>, double> RenderPair(const nb::bytes& model_text,
+                                                                      const Measured& measured,
+                                                                      const NamedValues& options) {
   const FactorModel model = ModelOf(model_text);
   const AppearanceOptions appearance{.size = SizeOf(options), .num_threads = ThreadsOf(options)};
   const std::shared_ptr<const Measurement> data = measured.data;
@@ -110,7 +113,7 @@ nb::tuple RenderPair(const nb::bytes& model_text, const Measured& measured,
     }
   }
   const double exposure = CompareSpheres(pair->measured, pair->fitted).exposure;
-  return nb::make_tuple(ImageOf(pair->measured), ImageOf(pair->fitted), exposure);
+  return {ImageOf(pair->measured), ImageOf(pair->fitted), exposure};
 }
 
 }  // namespace

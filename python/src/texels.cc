@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fit_module.h"
+#include "named_values.h"
 #include "owned_array.h"
 #include "trilobe/core/system/parallel.h"
 #include "trilobe/model/objective/weighting.h"
@@ -29,7 +30,7 @@ class SharedTexels {
  public:
   // `lobes`: values of each material, [materials][samples]. `wi` and `wo`: unit vectors.
   SharedTexels(const Texels& lobes, const Directions& wi, const Directions& wo,
-               const nb::dict& options)
+               const NamedValues& options)
       : solver_(CosinesOf(wi, wo), ByMaterial(lobes),
                 FindWeighting(OptionOf<std::string>(options, "weighting", "a name")),
                 OptionOf<bool>(options, "coloured", "True or False")),
@@ -109,7 +110,7 @@ class SharedTexels {
 void BindTexels(nb::module_* module) {
   module->attr("MAX_TEXEL_MATERIALS") = kMaxTexelMaterials;
   nb::class_<SharedTexels>(*module, "SharedTexels", "Texels of known materials.")
-      .def(nb::init<const Texels&, const Directions&, const Directions&, const nb::dict&>(),
+      .def(nb::init<const Texels&, const Directions&, const Directions&, const NamedValues&>(),
            nb::arg("lobes"), nb::arg("wi"), nb::arg("wo"), nb::arg("options"))
       .def("solve", &SharedTexels::Solve, nb::arg("rho"))
       .def("weigh", &SharedTexels::Weigh, nb::arg("rho"));

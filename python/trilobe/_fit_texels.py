@@ -175,6 +175,7 @@ class _Fit:
 
         if not folder.exists():
             materials = self._materials()
+            made: Path | None = None
             try:
                 made = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".materials-"))
                 for k, material in enumerate(materials):
@@ -182,7 +183,8 @@ class _Fit:
                 made.chmod(0o755)
                 made.rename(folder)
             except OSError as error:
-                shutil.rmtree(made, ignore_errors=True)
+                if made is not None:
+                    shutil.rmtree(made, ignore_errors=True)
                 if not folder.exists():
                     raise Error(f"cannot make the folder {printable(folder)}: {error.strerror}") from None
         return [load(folder / f"{k}.json") for k in range(self._about().materials)]

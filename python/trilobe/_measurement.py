@@ -219,7 +219,8 @@ class Measurement:
     @property
     def reasons(self) -> list[str]:
         """What the numbers of `reason` stand for."""
-        return list(fits().REASONS)
+        names: list[str] = fits().reasons()
+        return names
 
     @property
     def valid(self) -> NDArray[np.bool_]:

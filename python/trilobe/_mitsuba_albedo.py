@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import drjit as dr
-import mitsuba as mi
 import numpy as np
 
 from trilobe._brdf import Brdf
+from trilobe._renderer import dr, mi
 
 _STEPS = 89  # of theta_i, a degree each; constant beyond
 

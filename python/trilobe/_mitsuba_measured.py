@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import drjit as dr
-import mitsuba as mi
 import numpy as np
 
 from trilobe._brdf import Brdf
 from trilobe._measurement import Measurement, completed
 from trilobe._mitsuba_tables import Tables, linear, turns
+from trilobe._renderer import dr, mi
 
 
 def half_difference(wi: Any, wo: Any) -> tuple[Any, Any, Any]:
@@ -46,10 +45,11 @@ class MeasuredTable:
         d, s, *factors = (mi.Float(np.asarray(part, np.float32).ravel()) for part in parts)
         self._tables.fill(d, s, dict(zip("DFG", factors)))
         self.shape: tuple[int, ...] = ()
-        if measurement is not None:
-            made = completed(measurement, model)
-            self.shape = tuple(made.shape)
-            self._offset = float(made.offset)
+        if measurement is None:
+            return
+        made = completed(measurement, model)
+        self.shape = tuple(made.shape)
+        self._offset = float(made.offset)
         if self.shape:
             # Four side by side are one load.
             ratios = np.ones((int(np.prod(self.shape)), 4), np.float32)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import drjit as dr
-import mitsuba as mi
 import numpy as np
 
 from trilobe._brdf import Brdf
 from trilobe._mitsuba_tables import turns
+from trilobe._renderer import dr, mi
 
 # Of the half vectors, so much is drawn by the cosine, lest something between the nodes be missed.
 _COSINE_SHARE = 0.01
@@ -126,7 +125,7 @@ class Sampling:
         f = x - mi.Float(column)
         cell = row * (self._columns - 1) + column
         size = (self._rows - 1) * (self._columns - 1)
-        corners = sum(w * dr.gather(mi.Vector4f, self._cells, node * size + cell, active) for node, w, _ in nodes)
+        corners: Any = sum(w * dr.gather(mi.Vector4f, self._cells, node * size + cell, active) for node, w, _ in nodes)
         return (1 - t) * ((1 - f) * corners.x + f * corners.y) + t * ((1 - f) * corners.z + f * corners.w)
 
     def _draw_by_table(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import drjit as dr
-import mitsuba as mi
 import numpy as np
 
+from trilobe._renderer import dr, mi
 from trilobe._spectra import BEGIN, STEP, basis
 
 
@@ -25,7 +24,7 @@ class Upsampling:
         if not dr.is_jit_v(mi.Float):
             grid = self._begin + self._step * np.arange(self._size)
             at = np.array(wavelengths).ravel()
-            value = sum(float(colour[c]) * np.interp(at, grid, self._flat[c]) for c in range(3))
+            value: Any = sum(float(colour[c]) * np.interp(at, grid, self._flat[c]) for c in range(3))
             return mi.Spectrum([float(x) for x in value])
         x = dr.clip((wavelengths - self._begin) / self._step, 0, self._size - 1)
         value = mi.Spectrum(0)

@@ -10,12 +10,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import drjit as dr
-import mitsuba as mi
 import numpy as np
 from numpy.typing import NDArray
 
 from trilobe._mitsuba_measured import half_difference
+from trilobe._renderer import dr, mi
 
 THETA_BINS = 90
 _PATHS_AT_ONCE = 1 << 22
@@ -122,7 +121,7 @@ class Counter:
             material = dr.select(pointer == bsdf, dr.select(behind, back, front), material)
         return material
 
-    @dr.syntax
+    @dr.syntax  # type: ignore[untyped-decorator]
     def _follow(self, ray: Any, sampler: Any, light: Any, counted: Any) -> Any:
         """The light of each path; with `light`, that and a weight, counts what it went through."""
         scene, context = self._scene, mi.BSDFContext()
@@ -163,7 +162,7 @@ class Counter:
                     wi_up.z *= up
                     wo_up.z *= up
                     read = there & (material >= 0) & (wi_up.z > 0) & (wo_up.z > 0)
-                    amount = dr.maximum(mi.luminance(colour), 0) * light[1]
+                    amount = dr.maximum(mi.luminance(colour), 0) * light[1]  # pyright: ignore[reportOptionalSubscript]
                     read &= dr.isfinite(amount)
                     dr.scatter_reduce(
                         dr.ReduceOp.Add, counted[0], amount, self._places.bins(material, wi_up, wo_up), read)

@@ -55,7 +55,7 @@ def difference(reference: NDArray[np.float64], test: NDArray[np.float64], white:
 
 
 def _write_png(path: Path, srgb: NDArray[np.float32]) -> None:
-    import mitsuba as mi
+    from trilobe._renderer import mi
 
     bytes_of = (np.clip(srgb, 0, 1) * 255 + 0.5).astype(np.uint8)
     mi.Bitmap(np.ascontiguousarray(bytes_of)).write(str(path))

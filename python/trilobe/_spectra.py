@@ -10,10 +10,10 @@ from __future__ import annotations
 import functools
 from typing import Any
 
-import drjit as dr
-import mitsuba as mi
 import numpy as np
 from numpy.typing import NDArray
+
+from trilobe._renderer import dr, mi
 
 BEGIN, END, STEP = 360.0, 830.0, 10.0
 """Wavelengths at which they are tabulated [nm]."""

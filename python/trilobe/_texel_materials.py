@@ -83,13 +83,14 @@ def find(problem: Problem, rho: Vector, count: int, options: dict[str, Any]) -> 
         lobes = np.concatenate([lobes, _mean(rho[alike], weights[alike], scale)[None]])
     least = np.inf
     for _ in range(_MOST_ROUNDS):
+        error = np.inf
         for k in range(count):
             solved = problem.solve(lobes, rho)
+            error = float(np.mean(solved.objective / energy))
             others = solved.s.copy()
             others[:, k] = 0
             if solved.s[:, k].any():
                 lobes[k] = _mean(rho - _values(solved.d, others, lobes), weights, solved.s[:, k])
-        error = float(np.mean(solved.objective / energy))
         if not error < (1 - _LITTLE) * least:
             break
         least = error

@@ -29,10 +29,7 @@ class Source:
             rho = _mapped(text_of_path(rho))
         elif not hasattr(rho, "shape") or not hasattr(rho, "__getitem__"):
             rho = as_array(rho, "rho")
-        try:
-            shape = tuple(int(length) for length in rho.shape)
-        except (TypeError, ValueError):
-            shape = ()
+        shape = _shape_of(rho)
         if len(shape) not in (3, 4) or shape[-1] != 3:
             raise Error(f"rho has the shape {shape}, and must have (height, width, samples, 3) or (texels, samples, 3)")
         self._rho, self._row = rho, shape[1:]
@@ -69,6 +66,14 @@ class Source:
 def _spread(size: int, count: int) -> NDArray[np.int64]:
     count = min(count, size)
     return (np.arange(count, dtype=np.int64) * 2 + 1) * size // (2 * count)
+
+
+def _shape_of(array: Any) -> tuple[int, ...]:
+    """() where it is none."""
+    try:
+        return tuple(int(length) for length in array.shape)
+    except (TypeError, ValueError):
+        return ()
 
 
 def _mapped(path: str) -> Any:

@@ -98,6 +98,7 @@ class ImportTrilobe(bpy.types.Operator, ImportHelper):  # type: ignore[misc]
         """Imports what was chosen; the last material goes to the selected objects."""
         folder = pathlib.Path(self.directory)
         paths = [folder / file.name for file in self.files if file.name] or [pathlib.Path(self.filepath)]
+        material = None
         for path in paths:
             try:
                 material = import_material(path)

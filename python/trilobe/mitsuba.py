@@ -35,8 +35,7 @@ from trilobe._core import Error
 from trilobe._measurement import completed, is_model, read
 
 try:
-    import drjit as dr
-    import mitsuba as mi
+    from trilobe._renderer import dr, mi
 except ImportError:
     raise ImportError("trilobe.mitsuba needs Mitsuba 3: pip install mitsuba") from None
 

@@ -127,7 +127,7 @@ class SceneFile:
         return name
 
     def _parsed(self) -> Any:
-        import mitsuba as mi
+        from trilobe._renderer import mi
 
         config = mi.parser.ParserConfig(mi.variant())
         config.merge_equivalent = config.merge_meshes = False
@@ -137,7 +137,7 @@ class SceneFile:
 
     def load(self, replaced: dict[str, dict[str, str]]) -> Any:
         """The scene, with other BSDFs for some materials: their properties, and `type`."""
-        import mitsuba as mi
+        from trilobe._renderer import mi
 
         state = self._parsed()
         for number, (name, _, k) in enumerate(self._named):
@@ -155,7 +155,7 @@ class SceneFile:
 
     def sides(self, scene: Any) -> list[tuple[Any, int, int]]:
         """BSDFs of shapes that are our materials, with their numbers in front and behind."""
-        import mitsuba as mi
+        from trilobe._renderer import mi
 
         number = {material.name: k for k, material in enumerate(self.materials)}
         own = {f"trilobe-need {k}": number[name] for k, (name, _, _) in enumerate(self._named)}
@@ -237,8 +237,7 @@ def _write_scene(
 
 
 def _render(scene: Any, spp: int) -> Picture:
-    import drjit as dr
-    import mitsuba as mi
+    from trilobe._renderer import dr, mi
 
     dr.eval(mi.render(scene, spp=1))  # compiles
     begin = time.perf_counter()
@@ -398,7 +397,8 @@ def _pairs(flag: str, texts: list[str]) -> dict[str, str]:
 def _set_variant(variant: str) -> None:
     try:
         import flip_evaluator  # noqa: F401
-        import mitsuba as mi
+
+        from trilobe._renderer import mi
     except ImportError as error:
         raise Error(f"trilobe-need needs {error.name}: pip install 'trilobe[need]'") from None
     if not hasattr(mi, "parser"):
