@@ -80,7 +80,11 @@ class Objective:
         if isinstance(init, Brdf):
             given: Vector = self._objective.parameters_of(model_of(init).to_json().encode())
             return given
-        x: Vector = self._objective.start(init, seed)
+        if not isinstance(init, str):
+            raise Error("init must be a name of initial_models(), or a trilobe.Brdf")
+        if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
+            raise Error("seed must be an integer from 0")
+        x: Vector = self._objective.start(init, int(seed))
         return x
 
     def value(self, x: ArrayLike) -> float:
@@ -135,6 +139,8 @@ class Objective:
         Raises:
             Error: unless all are finite and >= 0.
         """
+        if not isinstance(solver, str):
+            raise Error("solver must be a str")
         text = self._objective.model_text(self._vector(x), solver)
         return Brdf.from_json(text.decode(), "the model")
 

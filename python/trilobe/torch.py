@@ -51,6 +51,10 @@ class Model(torch.nn.Module):
             raise Error("the model must be a trilobe.Brdf")
         if texels is not None and (not isinstance(texels, int) or texels < 1):
             raise Error("texels must be an integer from 1, or None")
+        if not isinstance(dtype, torch.dtype) or not dtype.is_floating_point:
+            raise Error("dtype must be one of PyTorch's for real numbers, as torch.float32")
+        if not isinstance(shared, str) or not set(shared) <= set(_NAMES):
+            raise Error("shared must name some of d, s, D, F and G, as 'DFG'")
         self._form = brdf
         for name in _NAMES:
             table = torch.tensor(np.asarray(getattr(brdf, name)), dtype=dtype)
@@ -76,6 +80,8 @@ class Model(torch.nn.Module):
             batched = value.ndim > np.ndim(getattr(self._form, name))
             if batched and texel is None:
                 raise Error("there is a model for each texel; give its number")
+            if batched and (not isinstance(texel, (int, np.integer)) or not -len(value) <= texel < len(value)):
+                raise Error(f"texel must be an integer from 0 to {len(value) - 1}")
             parts[name] = np.maximum(value[texel] if batched else value, 0)
         if self._form.lobes == 0:
             parts = {"d": parts["d"]}
