@@ -40,7 +40,10 @@ def run(sources: list[str], out: str, workers: int, program: Any, flags: dict[st
     command = [find_program(program), "fit", *sources, f"--out={out}", f"--threads={workers}"]
     command += ["--shard=1/1"] if len(sources) == 1 else []
     command += [_flag(name, value) for name, value in flags.items()]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    try:
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    except (OSError, ValueError) as error:
+        raise Error(f"cannot run {command[0]!r}: {getattr(error, 'strerror', None) or error}") from None
     try:
         _, told = process.communicate()
     except KeyboardInterrupt:

@@ -24,6 +24,9 @@ from trilobe._core import Error
 from trilobe._table import Table
 
 CHANNELS = ("red", "green", "blue")
+_OTHER_FORMATS = (
+    ".binary", ".bin", ".csv", ".bsdf", ".xml", ".xompt", ".mtlx", ".principled.json", ".glsl", ".hlsl",
+)
 _ALBEDO_ERROR = 0.03  # of Brdf.albedo, up to 85 degrees
 _POLAR = {"D": ("theta_h", "phi_h"), "G": ("theta", "phi")}
 _AXIS = {"D": "theta_h", "F": "theta_d", "G": "theta"}
@@ -108,6 +111,9 @@ class Brdf:
 
         Warns if a model that was made of arrays, or edited, reflects more light than falls on it.
         """
+        for ending in _OTHER_FORMATS:
+            if text_of_path(path).lower().endswith(ending):
+                raise Error(f"a model file is not of the format {ending}; trilobe.convert(model, path) writes that")
         if not self.fit:
             self._warn_of_light()
         write_text(path, self._text)
@@ -372,8 +378,8 @@ def load(path: str | os.PathLike[str]) -> Brdf:
         raise Error(f"cannot read {printable(name)}: {reason}") from None
     try:
         text = content.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise Error(f"{printable(name)} is no model file: it is not UTF-8 ({error.reason})") from None
+    except UnicodeDecodeError:
+        raise Error(f"{printable(name)} is no model file: it is not UTF-8; trilobe.read reads measurements") from None
     return Brdf.from_json(text, str(name))
 
 

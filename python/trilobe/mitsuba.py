@@ -26,11 +26,12 @@ Both take `sampling`, another model file to draw directions by, so that pictures
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
 
-from trilobe._brdf import Brdf, load
+from trilobe._brdf import Brdf, load, model_of
 from trilobe._core import Error
 from trilobe._measurement import completed, is_model, read
 
@@ -53,11 +54,9 @@ __all__ = ["bsdf"]
 _CLASSES: dict[str, Any] = {}
 
 
-def bsdf(brdf: Brdf, **parameters: Any) -> dict[str, Any]:
-    """What `mi.load_dict` makes the material of."""
-    if not isinstance(brdf, Brdf):
-        raise Error("the model must be a trilobe.Brdf")
-    return {"type": "trilobe", "json": brdf.to_json(), **parameters}
+def bsdf(brdf: Brdf | str | os.PathLike[str], **parameters: Any) -> dict[str, Any]:
+    """What `mi.load_dict` makes the material of, of a model, the path of one, or material:NAME."""
+    return {"type": "trilobe", "json": model_of(brdf).to_json(), **parameters}
 
 
 def _path_of(props: Any, name: str) -> str:

@@ -177,6 +177,16 @@ def test_goes_through_a_file(make, tmp_path):
     assert [name.name for name in tmp_path.iterdir()] == ["model.json"]
 
 
+def test_files_of_other_formats_are_left_to_others(tmp_path):
+    path = tmp_path / "model.glsl"
+    with pytest.raises(trilobe.Error, match=r"format \.glsl; trilobe\.convert\(model, path\) writes that"):
+        isotropic().save(path)
+    assert not path.exists()
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(trilobe.Error, match=r"trilobe\.read reads measurements"):
+        trilobe.load(path)
+
+
 def test_a_model_that_makes_light_is_saved_with_a_warning(tmp_path):
     bright = lambertian().replace(d=[0.5, 0.2, 0.1])  # pi times that is reflected
     with pytest.warns(UserWarning, match=r"reflects 1\.57 times the light"):

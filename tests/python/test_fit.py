@@ -214,6 +214,7 @@ BAD = [
     (lambda: trilobe.convert(anisotropic(), "x.binary"), "anisotropic"),
     (lambda: trilobe.fit_many([], "out"), "there is no source"),
     (lambda: trilobe.fit_many(3, "out"), "a list of paths"),
+    (lambda: trilobe.fit_many([SMALL], "out", program="no/where"), "cannot run 'no/where': No such file"),
 ]
 
 

@@ -459,3 +459,9 @@ def test_takes_a_file(tmp_path):
     isotropic().save(tmp_path / "model.json")
     bsdf = mi.load_dict({"type": "trilobe", "filename": str(tmp_path / "model.json")})
     assert "3 lobes" in str(bsdf)
+
+
+def test_takes_the_name_of_a_model():
+    assert plugin.bsdf("material:linen") == plugin.bsdf(trilobe.load("material:linen"))
+    with pytest.raises(trilobe.Error, match="the model must be a"):
+        plugin.bsdf(3)
