@@ -24,19 +24,24 @@ vec3 trilobe_direct(IncidentLight light, mat3 frame, vec3 to_eye) {
 uniform sampler2D trilobe_drawn;
 uniform sampler2D trilobe_weights;
 
-float trilobe_random(vec2 at) { return fract(52.9829189 * fract(dot(at, vec2(0.06711056, 0.00583715)))); }
+// 0 to 1, of a pixel. (PCG, whose grain has no direction.)
+float trilobe_random(uvec2 at) {
+  uint state = (at.y << 16 ^ at.x) * 747796405u + 2891336453u;
+  uint word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+  return float((word >> 22) ^ word) / 4294967296.0;
+}
 
 // By directions that the model draws, each of which stands for a cone of the size that its density says, and its
 // neighbours: three's blurred environments, of which the one for a roughness r is as blurred as a cone of 2 r^2 radians.
 // A pixel takes the row of a theta_o next to its own, by chance, so that no ring is seen between them.
 vec3 trilobe_environment(mat3 frame, vec3 to_eye) {
   vec3 sum = vec3(0.0), wo = trilobe_above(to_eye * frame);
-  float by_chance = trilobe_random(gl_FragCoord.xy);
+  float by_chance = trilobe_random(uvec2(gl_FragCoord.xy));
   ivec2 size = textureSize(trilobe_drawn, 0);
   int row = int(acos(min(wo.z, 1.0)) * (2.0 / PI) * float(TRILOBE_THETAS - 1) + by_chance);
   float turn = length(wo.xy) > 1e-6 ? atan(wo.y, wo.x) : 0.0;
 #if TRILOBE_PHIS > 1
-  int step_ = int(floor(turn / PI2 * float(TRILOBE_PHIS) + trilobe_random(gl_FragCoord.yx + 37.0)));
+  int step_ = int(floor(turn / PI2 * float(TRILOBE_PHIS) + trilobe_random(uvec2(gl_FragCoord.yx) + 32768u)));
   row = row * TRILOBE_PHIS + (step_ + TRILOBE_PHIS) % TRILOBE_PHIS;
   turn = 0.0;
 #endif
