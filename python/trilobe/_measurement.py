@@ -350,9 +350,10 @@ def convert(
     """Writes a model or a measurement in another format, which the ending of the path says.
 
     ".binary" is MERL's layout, ".bin" UTIA's, ".csv" samples. ".bsdf" is an RGL tensor file for renderers as
-    Mitsuba's `measured`, ".zemax.bsdf" a table for OpticStudio, ".xml" Klems matrices for Radiance and WINDOW, ".mtlx"
-    and ".principled.json" are the nearest material of MaterialX and of Blender; for a measurement a model is fitted for
-    that, which takes seconds. ".glsl" and ".hlsl" are shaders, of models alone.
+    Mitsuba's `measured`, ".zemax.bsdf" a table for OpticStudio, ".xml" Klems matrices for Radiance and WINDOW, ".xompt"
+    an isotropic table for OpenMATERIAL 3D, ".mtlx" and ".principled.json" the nearest material of MaterialX and of
+    Blender; for a measurement a model is fitted for that, which takes seconds. ".glsl" and ".hlsl" are shaders, of
+    models alone.
 
     Args:
         what: a model or a measurement, or the file of one, "material:NAME" or "synth:NAME".

@@ -103,6 +103,8 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
     for name, tensor in {"wi": wi, "wo": wo, **parts}.items():
         if not isinstance(tensor, Tensor):
             raise Error(f"{name} must be a tensor of PyTorch")
+        if tensor.is_complex():
+            raise Error(f"{name} has the dtype {tensor.dtype}, and must be of real numbers")
     for name, w in (("wi", wi), ("wo", wo)):
         if w.ndim == 0 or w.shape[-1] != 3:
             raise Error(f"{name} has the shape {tuple(w.shape)}; directions are a tensor of the shape (..., 3)")
@@ -113,7 +115,10 @@ def eval(brdf: Brdf, wi: Tensor, wo: Tensor, **parts: Tensor) -> Tensor:
         shape = np.broadcast_shapes(wi.shape, wo.shape)
     except ValueError:
         raise Error(f"shapes {tuple(wi.shape)} and {tuple(wo.shape)} do not go together") from None
-    wi, wo = wi.expand(shape), wo.expand(shape)
+    dtype = torch.promote_types(wi.dtype, wo.dtype)
+    if not dtype.is_floating_point:
+        dtype = torch.get_default_dtype()
+    wi, wo = (w.to(dtype).expand(shape) for w in (wi, wo))
     tables = {}
     texels = None
     for name in _NAMES:

@@ -109,7 +109,16 @@ def test_says_what_is_wrong():
         trilobe.torch.eval(brdf, w, w, d=torch.ones(5, 3))
 
 
+def test_directions_of_any_real_numbers():
+    brdf = isotropic()
+    for wi, wo in (([0, 0, 1], [0.0, 0.6, 0.8]), ([0.0, 0.6, 0.8], [0, 0, 1]), ([0, 0, 1], [0, 1, 1])):
+        f = trilobe.torch.eval(brdf, torch.tensor(wi), torch.tensor(wo))
+        assert f.dtype == torch.float32
+        np.testing.assert_allclose(f.numpy(), brdf.eval(wi, wo), rtol=1e-5)
+
+
 @pytest.mark.parametrize(("ask", "told"), [
+    (lambda w: trilobe.torch.eval(isotropic(), w + 0j, w), "wi has the dtype torch.complex64"),
     (lambda w: trilobe.torch.Model(3), r"must be a trilobe\.Brdf"),
     (lambda w: trilobe.torch.eval("model.json", w, w), r"must be a trilobe\.Brdf"),
     (lambda w: trilobe.torch.Model(isotropic(), texels=0), "texels must be an integer from 1"),
