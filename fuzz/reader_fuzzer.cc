@@ -23,6 +23,7 @@
 #include "io/formats/utia_file.h"
 #include "io/pictures/image_file.h"
 #include "model/measurement/anisotropy.h"
+#include "model/measurement/note_symptoms.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/source.h"
 #include "trilobe/io/model_files/model_file.h"
@@ -56,7 +57,8 @@ void CheckScattered(const Measurement& measurement) {
   Require(!measurement.table && counts.valid == measurement.samples.size());
   Require(measurement.samples.directions.size() == measurement.samples.rho.size());
   Require(counts.valid + counts.below_surface + counts.non_finite + counts.negative +
-              counts.missing + counts.extrapolated + counts.beyond_nodes ==
+              counts.missing + counts.extrapolated + counts.beyond_nodes +
+              counts.below_min_theta_d ==
           counts.total);
   for (const SphericalAngles& angles : measurement.samples.directions) {
     Require(angles.theta_i <= measurement.max_theta && angles.theta_o <= measurement.max_theta);
@@ -69,7 +71,8 @@ void CheckScattered(const Measurement& measurement) {
   Require(limited.counts.valid + limited.counts.beyond_max_angle == counts.valid);
   Measurement lit = measurement;
   LeaveOutOwnShadow(&lit);
-  Require(lit.counts.valid + lit.counts.below_min_theta_d == counts.valid);
+  Require(lit.counts.valid + lit.counts.below_min_theta_d ==
+          counts.valid + counts.below_min_theta_d);
 }
 
 // No input is long enough to be a MERL file of the usual grid; of a small one, the table is what
@@ -122,14 +125,39 @@ void FuzzUtia(std::string_view bytes) {
   CheckScattered(ParseUtia(repeated, kSource, radiometry, grid));
 }
 
+// How a text table may be read: as it says itself, and by flags.
+const std::vector<SourceOptions>& TableOptions() {
+  static const std::vector<SourceOptions> options = {
+      {},
+      {.columns = "theta_o,-,f", .theta_i_deg = 30},
+      {.columns = "theta_o/phi_o", .theta_i_deg = 30},
+      {.columns = "theta_o/theta_i"},
+      {.cosine = 1, .scale = 0.01, .azimuth_from_mirror = true, .outliers = true}};
+  return options;
+}
+
 // Of scattered samples.
 void FuzzFormat(const MeasurementFormat& format, std::string_view bytes) {
-  // The second are of text tables.
-  for (const SourceOptions& options :
-       {SourceOptions(), SourceOptions{.columns = "theta_o,-,f", .theta_i_deg = 30}}) {
+  for (const SourceOptions& options : TableOptions()) {
     const auto measurement = Accepted([&] { return format.read(bytes, kSource, options); });
     if (measurement) CheckScattered(*measurement);
     if (format.name != "csv") break;
+  }
+}
+
+// A file that nobody has named, as a command reads it: in UTF-16, foreign, of any format of
+// scattered samples; by the options that its size says. What is told of it, too. Outliers of an RGL
+// file's table take seconds.
+void FuzzSource(std::string_view bytes) {
+  const MeasurementFormat* const format = RecogniseFormat(bytes);
+  if (format != nullptr && format->name == "rgl") return;
+  const SourceOptions& options = TableOptions()[bytes.size() % TableOptions().size()];
+  auto measurement = Accepted([&] { return Source("fuzz.txt", std::string(bytes)).Read(options); });
+  if (!measurement || measurement->table) return;
+  CheckScattered(*measurement);
+  NoteSymptoms(1, &*measurement);
+  for (const std::string& note : measurement->notes) {
+    Require(note.find('\n') == std::string::npos);
   }
 }
 
@@ -184,9 +212,9 @@ struct Reader {
   std::string_view name;
   void (*fuzz)(std::string_view bytes);
 };
-constexpr Reader kReaders[] = {{"merl", FuzzMerl},   {"rgl", FuzzRgl},     {"utia", FuzzUtia},
-                               {"model", FuzzModel}, {"trace", FuzzTrace}, {"scene", FuzzScene},
-                               {"probe", FuzzProbe}};
+constexpr Reader kReaders[] = {{"source", FuzzSource}, {"merl", FuzzMerl},   {"rgl", FuzzRgl},
+                               {"utia", FuzzUtia},     {"model", FuzzModel}, {"trace", FuzzTrace},
+                               {"scene", FuzzScene},   {"probe", FuzzProbe}};
 
 std::function<void(std::string_view)> fuzz;
 
