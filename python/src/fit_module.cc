@@ -66,7 +66,8 @@ SourceOptions SourceOptionsOf(const nb::dict& options) {
       .dark_noise = OptionOf<bool>(options, "dark_noise", "True or False"),
       .radiometry = OptionOf<std::string>(options, "radiometry", "a name"),
       .columns = OptionOf<std::string>(options, "columns", "a text"),
-      .theta_i_deg = OptionOf<double>(options, "theta_i", "a number of degrees")};
+      .theta_i_deg = OptionOf<double>(options, "theta_i", "a number of degrees"),
+      .bands = OptionOf<std::string>(options, "bands", "a text")};
   SetCosine(OptionOf<std::string>(options, "cosine", "a number, or o:1"), &source);
   source.scale = OptionOf<double>(options, "scale", "a number");
   source.azimuth_from_mirror = OptionOf<bool>(options, "azimuth_from_mirror", "True or False");

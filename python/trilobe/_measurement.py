@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -267,6 +267,7 @@ def read(
     radiometry: str = "brdf",
     columns: str = "",
     theta_i: float = -1,
+    bands: float | str | Sequence[float] = "",
     threads: int = 0,
 ) -> Measurement:
     """Reads a measurement of any format (docs/file-formats.md), or makes a synthetic one, "synth:NAME".
@@ -291,6 +292,8 @@ def read(
         radiometry: what the numbers of a UTIA file are: "brdf", "cosine", "srgb" or "dj_brdf".
         columns: the names of the columns of a text table, "theta_i,theta_o,f", in the place of its header.
         theta_i: of a text table without a column of it, the angle of incidence [degrees]; -1 for none.
+        bands: of spectra, the wavelengths to read [nm]: one for all channels, three as r, g and b, the longest as
+            r, or more to make a colour of; without, all make a colour.
         threads: 0 for all cores.
 
     Raises:
@@ -313,6 +316,7 @@ def read(
         radiometry=radiometry,
         columns=columns,
         theta_i=theta_i,
+        bands=_text_of_bands(bands),
         threads=threads,
     )
     name = text_of_path(source)
@@ -391,6 +395,15 @@ def completed(measurement: Measurement, model: Brdf, threads: int = 0) -> Any:
     return fits().Completed(model.to_json().encode(), measurement._data, {"threads": threads})
 
 
+def _text_of_bands(bands: Any) -> str:
+    if isinstance(bands, str):
+        return bands
+    try:
+        return ",".join(repr(float(band)) for band in np.ravel(bands))
+    except (TypeError, ValueError):
+        raise Error("bands must be a wavelength [nm], or a list of some") from None
+
+
 def source_options(**given: Any) -> dict[str, Any]:
     """All options of a source, those that are not given by default."""
     return {
@@ -410,6 +423,7 @@ def source_options(**given: Any) -> dict[str, Any]:
         "radiometry": "brdf",
         "columns": "",
         "theta_i": -1.0,
+        "bands": "",
         "threads": 0,
         **given,
     }

@@ -115,7 +115,7 @@ void WriteForRenderer(const std::string& source) {
 Measurement MeasurementOf(const std::string& source, const std::string& out,
                           const SourceOptions& options) {
   if (!IsModelFile(source)) return LoadMeasurement(source, options);
-  RefuseForModel(source, {"noise", "extrapolated", "radiometry", "columns", "theta_i"});
+  RefuseForModel(source, {"noise", "extrapolated", "radiometry", "columns", "theta_i", "bands"});
   const FactorModel model = ModelOfSource(source).model;
   if (model.spec().anisotropic() && !WritableFormat(out).holds_anisotropic) {
     throw Error("--out=" + out + ": " + source +

@@ -182,6 +182,12 @@ ValueRange RangeOf(const std::vector<Rgb>& values) {
   return range;
 }
 
+// As of one wavelength.
+bool OneValueForAllChannels(const BrdfSamples& samples) {
+  return std::ranges::all_of(samples.rho,
+                             [](const Rgb& rho) { return rho[0] == rho[1] && rho[1] == rho[2]; });
+}
+
 // An RGL file's own directions differ from phi_i to phi_i; on a grid they do not.
 Measurement OnGrid(const Measurement& measurement) {
   return measurement.look_up ? AtNodes(measurement, kUtiaGrid, ThreadsFromFlags()) : measurement;
@@ -262,8 +268,12 @@ void DescribeScattered(const Measurement& measurement) {
   PrintLine("theta_i", text(theta_i));
   if (anisotropy) PrintLine("phi_i", text(phi_i));
   PrintLine("theta_o", text(theta_o));
-  PrintLine("smallest value, RGB", Text(range.min) + " /sr");
-  PrintLine("largest value, RGB", Text(range.max) + " /sr");
+  if (OneValueForAllChannels(measurement.samples)) {
+    PrintLine("values", Text(range.min[0]) + " to " + Text(range.max[0]) + " /sr");
+  } else {
+    PrintLine("smallest value, RGB", Text(range.min) + " /sr");
+    PrintLine("largest value, RGB", Text(range.max) + " /sr");
+  }
   Print("reciprocity error", reciprocity);
   if (!reflected.empty()) PrintLine("reflects at least", ReflectedText(reflected));
   if (anisotropy) {

@@ -74,6 +74,11 @@ DEFINE_string(columns, "",
 DEFINE_double(theta_i, -1,
               "of a text table without a column theta_i, the angle of incidence of all its "
               "samples, in degrees from 0 to below 90");
+DEFINE_string(
+    bands, "",
+    "of spectra, the wavelengths to read, in nm: one, as 550, for all channels; three, as "
+    "650,550,450, as r, g and b, the longest as r; or more, to make a colour of; without, "
+    "all make a colour, and --spectral keeps each (docs/file-formats.md)");
 DEFINE_string(weighting, trilobe::Weightings().front().name,
               "weights of the objective: a name, or power:KEY=VALUE,... (docs/objective.md)");
 DEFINE_string(out, "", "where to write: a file or, for fit, study, info and plot, a folder");
@@ -154,7 +159,8 @@ SourceOptions SourceOptionsFromFlags() {
       .dark_noise = FLAGS_dark_noise,
       .radiometry = FLAGS_radiometry,
       .columns = FLAGS_columns,
-      .theta_i_deg = FLAGS_theta_i};
+      .theta_i_deg = FLAGS_theta_i,
+      .bands = FLAGS_bands};
   SetCosine(FLAGS_cosine, &options);
   options.scale = FLAGS_scale;
   options.azimuth_from_mirror = IsFromMirror(FLAGS_azimuth);
@@ -165,7 +171,7 @@ SourceOptions SourceOptionsFromFlags() {
 std::vector<std::string> MeasurementFlags() {
   return {"noise",    "missing",    "corrupt",    "tilt",      "cosine",      "scale",
           "azimuth",  "seed",       "data_seed",  "max_angle", "min_theta_d", "extrapolated",
-          "outliers", "dark_noise", "radiometry", "columns",   "theta_i"};
+          "outliers", "dark_noise", "radiometry", "columns",   "theta_i",     "bands"};
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

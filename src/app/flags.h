@@ -25,6 +25,7 @@ DECLARE_double(min_theta_d);
 DECLARE_string(radiometry);
 DECLARE_string(columns);
 DECLARE_double(theta_i);
+DECLARE_string(bands);
 DECLARE_bool(extrapolated);
 DECLARE_bool(outliers);
 DECLARE_bool(dark_noise);

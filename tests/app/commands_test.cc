@@ -207,6 +207,16 @@ TEST(ProgramTest, ShowsNamesInPrintableForm) {
   }
 }
 
+TEST(InfoTest, OneWavelengthIsNoColour) {
+  const TemporaryFolder folder;
+  Write(folder / "x.csv", "theta_i,theta_o,phi_o,532nm,633nm\n10,20,180,.25,1\n10,30,180,.5,2\n");
+  const std::string one = RunProgram({"info", folder / "x.csv", "--bands=532"}).out;
+  EXPECT_THAT(one, HasSubstr("values                    0.25 to 0.5 /sr\n"));
+  EXPECT_THAT(one, HasSubstr("532 nm of 2 wavelengths"));
+  EXPECT_EQ(one.find("RGB"), std::string::npos) << one;
+  ExpectError(RunProgram({"info", folder / "x.csv"}), "--bands=532 takes one alone");
+}
+
 TEST(SynthTest, ListsMaterials) {
   const ProgramResult result = RunProgram({"synth"});
   EXPECT_EQ(result.status, 0);

@@ -248,11 +248,22 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   ASSERT_EQ(RunProgram({"synth", "copper", "--out=" + data + "/a & b.binary"}).status, 0);
   std::ofstream(data + "/torn.binary") << "no measurement";
   std::ofstream(data + "/notes.txt") << "no measurement, by its name";
+  std::ofstream(data + "/coating.txt") << "TracePro Surface Property\nVersion 7.0\n";
+  std::ofstream(data + "/photo.jpg") << "\xFF\xD8\xFF\xE0 JFIF";
+  std::ofstream(data + "/empty.dat");
+  std::ofstream(data + "/.hidden") << "nothing to say of it";
   const std::vector<std::string> command =
       Quick({"fit", data, "synth:felt@30x30x60", "--threads=2", "--out=" + out});
   const ProgramResult result = RunProgram(command);
-  EXPECT_EQ(result.status, 3);  // one failed
-  EXPECT_EQ(result.err, "trilobe: skipped " + data + "/notes.txt: this is text\n");
+  EXPECT_EQ(result.status, 3);                             // one failed
+  const std::string skipped = "trilobe: skipped " + data;  // why, and no list of formats each time
+  EXPECT_EQ(result.err, skipped +
+                            "/coating.txt: this is a TracePro file, whose format is not "
+                            "public; save it as CSV, with the header "
+                            "theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
+                            skipped + "/empty.dat: the file is empty\n" + skipped +
+                            "/notes.txt: this is text\n" + skipped +
+                            "/photo.jpg: this is a JPEG picture\n");
   EXPECT_THAT(result.out, HasSubstr("] torn: failed: "));
   EXPECT_THAT(result.out, HasSubstr("] felt: fitted, "));
   EXPECT_THAT(result.out, HasSubstr("1 failed\n"));

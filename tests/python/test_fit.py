@@ -138,6 +138,21 @@ def test_reads_a_table(plastic, tmp_path):
         plastic.rho[0] = 1
 
 
+def test_reads_the_wavelengths_that_are_asked_for(tmp_path):
+    path = tmp_path / "x.csv"
+    path.write_text("theta_i,theta_o,phi_o,450,550,650,940\n10,20,180,.125,.25,.5,1\n")
+    for bands in ("450,550,940", [940, 550, 450], np.array([450, 550, 940])):
+        measurement = trilobe.read(path, bands=bands)
+        np.testing.assert_array_equal(measurement.rho, [[1, 0.25, 0.125]])
+        assert "940, 550, 450 nm of 4 wavelengths as r, g, b" in measurement.notes[0]
+    np.testing.assert_array_equal(trilobe.read(path, bands=550).rho, [[0.25, 0.25, 0.25]])
+    with pytest.raises(trilobe.Error, match="no wavelength of 532 nm for --bands"):
+        trilobe.read(path, bands=532)
+    for bands in (None, [[550], [1, 2]], "green", [450, 550]):
+        with pytest.raises(trilobe.Error, match="bands"):
+            trilobe.read(path, bands=bands)
+
+
 def test_converts(fitted, plastic, tmp_path):
     for name in ("a.binary", "a.bsdf", "a.glsl"):
         trilobe.convert(fitted.model, tmp_path / name, error=0.2)

@@ -158,7 +158,7 @@ def test_measures_anything(wi, wo, rho, anisotropic, others):
 @hypothesis.given(st.one_of(numbers, st.sampled_from(["synth:plastic@4x4x8", "synth:felt@3x4", "synth:shot_silk@3x4"])),
                   st.dictionaries(st.sampled_from(["noise", "missing", "seed", "max_angle", "min_theta_d",
                                                    "extrapolated", "radiometry", "columns", "theta_i",
-                                                   "threads"]), anything, max_size=2))
+                                                   "bands", "threads"]), anything, max_size=2))
 def test_reads_any_source(source, options):
     try:
         measurement = trilobe.read(source, **options)

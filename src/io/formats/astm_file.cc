@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/files/text_lines.h"
-#include "io/formats/spectrum.h"
+#include "io/formats/spectrum_bands.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -87,13 +87,14 @@ Header ReadHeader(TextLines* lines, const std::string& source) {
 // it and as libbsdf reads it (`.astm`, docs/file-formats.md): a header line a key, of which
 // NUM_POINTS and VARS are read; VARS is the last and names the columns of the lines that follow,
 // theta_i, phi_i, theta_s, phi_s [rad], and values [1/sr]: R, G, B, or a spectrum (`400nm`, ...,
-// which becomes a colour as SpectralColor says), or one value, which is taken for all channels.
+// which becomes a colour as SpectrumBands says), or one value, which is taken for all channels.
 // Throws Error, with line and column, on anything else.
-Measurement ParseAstm(std::string_view text, const std::string& source) {
+Measurement ParseAstm(std::string_view text, const std::string& source,
+                      const SourceOptions& options) {
   TextLines lines(text, source);
   const auto [columns, points] = ReadHeader(&lines, source);
-  std::optional<SpectralColor> color;
-  if (!columns.wavelengths.empty()) color = SpectralColor::OfBands(columns.wavelengths, source);
+  std::optional<SpectrumBands> bands;
+  if (!columns.wavelengths.empty()) bands.emplace(columns.wavelengths, options.bands, source);
   SampleCollector collector(source, "ASTM E1392 file of scattered samples");
   std::vector<double> numbers, values;
   int read = 0;
@@ -102,8 +103,8 @@ Measurement ParseAstm(std::string_view text, const std::string& source) {
     const SphericalAngles angles = ReadAngles(lines, columns.names, numbers, columns.angles, 1);
     values.clear();
     for (const size_t k : columns.values) values.push_back(numbers[k]);
-    if (color) {
-      AddSpectrum(angles, values, *color, &collector);
+    if (bands) {
+      bands->Add(angles, values, &collector);
     } else {
       const bool grey = values.size() == 1;
       collector.Add(angles, {values[0], values[grey ? 0 : 1], values[grey ? 0 : 2]});
@@ -114,7 +115,11 @@ Measurement ParseAstm(std::string_view text, const std::string& source) {
     throw Error(source + ": " + std::to_string(read) + " lines of data, and NUM_POINTS announces " +
                 points + "; get the file once more");
   }
-  return collector.TakeByAzimuths();
+  Measurement measurement = collector.TakeByAzimuths();
+  if (!bands) return measurement;
+  measurement.bands = bands->all();
+  measurement.notes.push_back("read as: " + bands->Note());
+  return measurement;
 }
 
 // A header of keys, of which VARS is the last.
@@ -135,7 +140,7 @@ MeasurementFormat AstmFormat() {
           .ending = ".astm",
           .is_text = true,
           .recognise = LooksLikeAstm,
-          .read = ReadBy<ParseAstm>};
+          .read = ParseAstm};
 }
 
 }  // namespace trilobe

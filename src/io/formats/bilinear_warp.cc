@@ -31,6 +31,18 @@ NodeInterval LocateNode(double x, int nodes) {
   return {index, position - index};
 }
 
+BilinearStack BilinearStack::Chosen(int all, const std::vector<size_t>& of_each) const {
+  BilinearStack chosen = {rows, columns, {}};
+  const std::ptrdiff_t nodes = static_cast<std::ptrdiff_t>(rows) * columns;
+  for (std::ptrdiff_t first = 0; first < slices(); first += all) {
+    for (const size_t k : of_each) {
+      const auto begin = values.begin() + (first + static_cast<std::ptrdiff_t>(k)) * nodes;
+      chosen.values.insert(chosen.values.end(), begin, begin + nodes);
+    }
+  }
+  return chosen;
+}
+
 double BilinearStack::At(int slice, const SquarePoint& point) const {
   const auto [row, v] = LocateNode(point.y, rows);
   const auto [column, u] = LocateNode(point.x, columns);

@@ -2,6 +2,7 @@
 #define TRILOBE_IO_FORMATS_BILINEAR_WARP_H_
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace trilobe {
@@ -43,6 +44,8 @@ struct BilinearStack {
   int slices() const { return static_cast<int>(values.size()) / (rows * columns); }
   // The value of one slice at a point.
   double At(int slice, const SquarePoint& point) const;
+  // Of each `all` slices one after another these alone, in this order.
+  BilinearStack Chosen(int all, const std::vector<size_t>& of_each) const;
 };
 
 // Maps a blend of piecewise bilinear densities on the unit square to uniform coordinates (Dupuy and

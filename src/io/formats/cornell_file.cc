@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/files/text_lines.h"
-#include "io/formats/spectrum.h"
+#include "io/formats/spectrum_bands.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -45,11 +45,12 @@ std::vector<double> ReadWavelengths(TextLines* lines, const std::string& source)
 // Spectra measured by the gonioreflectometer of Cornell's Program of Computer Graphics, as pbrt-v2
 // has them (`.brdf`, docs/file-formats.md): the number of wavelengths, these [nm], then a line a
 // sample with theta_i, phi_i, theta_o, phi_o [rad] and the BRDF [1/sr] at each wavelength. They
-// become colours as SpectralColor says. Throws Error, with line and column, on anything else.
-Measurement ParseCornell(std::string_view text, const std::string& source) {
+// become colours as SpectrumBands says. Throws Error, with line and column, on anything else.
+Measurement ParseCornell(std::string_view text, const std::string& source,
+                         const SourceOptions& options) {
   TextLines lines(text, source);
   const std::vector<double> wavelengths = ReadWavelengths(&lines, source);
-  const SpectralColor color(wavelengths, source);
+  SpectrumBands bands(wavelengths, options.bands, source);
   std::vector<std::string> names = {"theta_i", "phi_i", "theta_o", "phi_o"};
   const size_t angles = names.size();
   for (const double wavelength : wavelengths) {
@@ -61,10 +62,13 @@ Measurement ParseCornell(std::string_view text, const std::string& source) {
   std::vector<double> numbers;
   while (lines.Next()) {
     ReadNumbers(lines, SplitWords(lines.line()), names, &numbers);
-    AddSpectrum(ReadAngles(lines, names, numbers, {}, 1), std::span(numbers).subspan(angles), color,
-                &collector);
+    bands.Add(ReadAngles(lines, names, numbers, {}, 1), std::span(numbers).subspan(angles),
+              &collector);
   }
-  return collector.Take();
+  Measurement measurement = collector.Take();
+  measurement.bands = bands.all();
+  measurement.notes.push_back("read as: " + bands.Note());
+  return measurement;
 }
 
 // The number of wavelengths alone on its line, then the first of them [nm].
@@ -85,7 +89,7 @@ MeasurementFormat CornellFormat() {
           .ending = ".brdf",
           .is_text = true,
           .recognise = LooksLikeCornell,
-          .read = ReadBy<ParseCornell>};
+          .read = ParseCornell};
 }
 
 }  // namespace trilobe

@@ -9,6 +9,7 @@
 #include "core/files/text_lines.h"
 #include "io/formats/angle_list.h"
 #include "io/formats/spectrum.h"
+#include "io/formats/spectrum_bands.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -193,13 +194,14 @@ std::vector<double> BandsOf(const LightToolsBlocks& blocks, bool tristimulus,
 // the normal [degrees]. Light comes from the azimuth 90 degrees + POI. A block per wavelength makes
 // spectra. Azimuths matter where there are several planes. Throws Error, with the line, on anything
 // else.
-Measurement ParseLightTools(std::string_view text, const std::string& source) {
+Measurement ParseLightTools(std::string_view text, const std::string& source,
+                            const SourceOptions& options) {
   TextLines lines(text, source);
   const LightToolsHeader header = ReadLightToolsHeader(&lines);
   const LightToolsBlocks blocks = ReadLightToolsBlocks(header, &lines);
   const std::vector<double> bands = BandsOf(blocks, header.tristimulus, source);
-  std::optional<SpectralColor> color;
-  if (!header.tristimulus) color = SpectralColor::OfBands(bands, source);
+  std::optional<SpectrumBands> spectra;
+  if (!header.tristimulus) spectra.emplace(bands, options.bands, source);
   SampleCollector collector(source, "LightTools BSDF file of scattered samples");
   std::vector<double> values;
   for (const auto& [incidence, by_band] : blocks.read) {
@@ -216,17 +218,18 @@ Measurement ParseLightTools(std::string_view text, const std::string& source) {
         if (header.tristimulus) {
           AddTristimulus(at, {values[0], values[1], values[2]}, &collector);
         } else {
-          AddSpectrum(at, values, *color, &collector);
+          spectra->Add(at, values, &collector);
         }
       }
     }
   }
   Measurement measurement = collector.Take();
   measurement.anisotropic = blocks.read.begin()->first.first != blocks.read.rbegin()->first.first;
+  if (spectra) measurement.bands = spectra->all();
   std::ostringstream note;
   note << "read as: front reflection";
   if (header.tristimulus) note << ", " << kTristimulusNote;
-  if (color && bands.size() > 1) note << ", " << bands.size() << " wavelengths to RGB by CIE 1931";
+  if (spectra && bands[0] > 0) note << ", " << spectra->Note();
   if (blocks.left_out > 0) {
     note << "; " << blocks.left_out << " blocks of transmission or the back are left out";
   }
@@ -256,7 +259,7 @@ MeasurementFormat LightToolsFormat() {
           .ending = ".bsdf",
           .is_text = true,
           .recognise = LooksLikeLightTools,
-          .read = ReadBy<ParseLightTools>};
+          .read = ParseLightTools};
 }
 
 }  // namespace trilobe

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/files/json_value.h"
-#include "io/formats/spectrum.h"
+#include "io/formats/spectrum_bands.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -102,7 +102,8 @@ bool SameDirections(const OpenMaterialBand& a, const OpenMaterialBand& b) {
 // A table of ASAM OpenMATERIAL 3D, schema `material_brdf` (docs/file-formats.md): rows by
 // wavelength, with angles and the BRDF; one wavelength counts for all channels. Azimuths are
 // counted from that of the incident direction. Throws Error, with the row, on anything else.
-Measurement ParseOpenMaterial(std::string_view text, const std::string& source) {
+Measurement ParseOpenMaterial(std::string_view text, const std::string& source,
+                              const SourceOptions& options) {
   const OpenMaterialTable table(text, source);
   const std::vector<OpenMaterialBand>& bands = table.bands();
   std::vector<double> wavelengths;
@@ -115,22 +116,19 @@ Measurement ParseOpenMaterial(std::string_view text, const std::string& source) 
                   " nm; give a file of each wavelength");
     }
   }
-  const SpectralColor color = SpectralColor::OfBands(wavelengths, source);
+  SpectrumBands spectra(wavelengths, options.bands, source);
   SampleCollector collector(source, "OpenMATERIAL 3D table of scattered samples");
   std::vector<double> spectrum(bands.size());
   for (size_t k = 0; k < bands[0].rows.size(); ++k) {
     std::ranges::transform(bands, spectrum.begin(),
                            [&](const OpenMaterialBand& band) { return band.rows[k].value; });
-    const SphericalAngles& at = bands[0].rows[k].at;
-    if (std::ranges::any_of(spectrum, [](double value) { return std::isnan(value); })) {
-      collector.LeaveOut(&BinCounts::missing);
-    } else {
-      AddSpectrum(at, spectrum, color, &collector);
-    }
+    spectra.Add(bands[0].rows[k].at, spectrum, &collector, /*nan_is_gap=*/true);
   }
   Measurement measurement = collector.Take();
-  measurement.notes.emplace_back(
-      "read as: azimuths from that of the light; --azimuth=from_mirror takes them from the mirror "
+  measurement.bands = spectra.all();
+  measurement.notes.push_back(
+      "read as: " + spectra.Note() +
+      ", azimuths from that of the light; --azimuth=from_mirror takes them from the mirror "
       "direction");
   return measurement;
 }
@@ -149,7 +147,7 @@ MeasurementFormat OpenMaterialFormat() {
           .is_text = true,
           .is_json = true,
           .recognise = LooksLikeOpenMaterial,
-          .read = ReadBy<ParseOpenMaterial>};
+          .read = ParseOpenMaterial};
 }
 
 }  // namespace trilobe

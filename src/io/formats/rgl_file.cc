@@ -12,7 +12,7 @@
 #include "io/formats/angle_list.h"
 #include "io/formats/bilinear_warp.h"
 #include "io/formats/rgl_mask.h"
-#include "io/formats/spectrum.h"
+#include "io/formats/spectrum_bands.h"
 #include "io/formats/tensor_file.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/system/parallel.h"
@@ -31,6 +31,8 @@ struct RglBrdf::Tables {
   BilinearStack rgb;            // [p t 3]: values in those coordinates
   std::vector<double> wavelengths;  // of spectra that are kept
   BilinearStack spectra;            // [p t wavelengths]: the same
+  int bands;                        // wavelengths in the file
+  std::string bands_note;           // what of them was read
   RglMask mask;                     // [p t]: which nodes of rgb were measured
 };
 
@@ -108,11 +110,15 @@ struct Colors {
   BilinearStack rgb;
   std::vector<double> wavelengths = {};  // of `spectra`
   BilinearStack spectra = {};            // [p][t][wavelengths]
+  int bands = 0;                         // in the file
+  std::string note = {};                 // what of them was read
 };
-Colors ReadColors(const TensorFile& file, int p, int t, const std::string& source) {
+
+Colors ReadColors(const TensorFile& file, int p, int t, const std::string& bands,
+                  const std::string& source) {
   if (file.Has("rgb") || !file.Has("spectra")) return {ReadStack(file, "rgb", {p, t, kChannels})};
   const std::vector<double> wavelengths = file.Float32("wavelengths", 1).values;
-  const SpectralColor color(wavelengths, source);
+  SpectrumBands color(wavelengths, bands, source);
   const auto count = static_cast<int>(wavelengths.size());
   BilinearStack spectra = ReadStack(file, "spectra", {p, t, count});
   const size_t nodes = static_cast<size_t>(spectra.rows) * spectra.columns;
@@ -124,13 +130,19 @@ Colors ReadColors(const TensorFile& file, int p, int t, const std::string& sourc
       for (int l = 0; l < count; ++l) {
         spectrum[l] = spectra.values[(slice * count + l) * nodes + node];
       }
-      const Rgb at_node = color(spectrum);
+      const Rgb at_node = color.ColorOf(spectrum);
       for (int c = 0; c < kChannels; ++c) {
         rgb.values[(slice * kChannels + c) * nodes + node] = at_node[c];
       }
     }
   }
-  return {std::move(rgb), wavelengths, std::move(spectra)};
+  if (color.are_channels()) return {.rgb = std::move(rgb), .bands = count, .note = color.Note()};
+  std::vector<double> read;
+  for (const size_t l : color.read()) read.push_back(wavelengths[l]);
+  if (color.read().size() < wavelengths.size()) {
+    spectra = spectra.Chosen(count, color.read());
+  }
+  return {std::move(rgb), std::move(read), std::move(spectra), count, color.Note()};
 }
 
 // phi is taken modulo 2 pi.
@@ -192,7 +204,8 @@ RglBrdf::RglBrdf(RglBrdf&&) noexcept = default;
 RglBrdf& RglBrdf::operator=(RglBrdf&&) noexcept = default;
 RglBrdf::~RglBrdf() = default;
 
-RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
+RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source,
+                       const std::string& bands) {
   const TensorFile file(bytes, source);
   if (file.Has("M") && file.Has("theta_h")) {
     throw Error(
@@ -211,13 +224,17 @@ RglBrdf RglBrdf::Parse(std::string_view bytes, const std::string& source) {
   if (const int slice = BilinearWarp::FirstVanishing(vndf); slice >= 0) {
     file.Fail("vndf", "is 0 everywhere at entry " + std::to_string(slice % t) + " of theta_i");
   }
-  Colors colors = ReadColors(file, p, t, source);
-  if (p > 1) colors = {std::move(colors.rgb)};  // spectra of all azimuths take much memory
+  Colors colors = ReadColors(file, p, t, bands, source);
+  if (p > 1) {  // spectra of all azimuths take much memory
+    colors.wavelengths.clear();
+    colors.spectra = {};
+  }
   RglMask mask(file, theta_i, p * t, colors.rgb.rows, colors.rgb.columns);
-  return RglBrdf(std::make_unique<const Tables>(Tables{
-      phi_i, theta_i, symmetry, ReadNonNegative(file, "ndf", {}),
-      ReadNonNegative(file, "sigma", {}), BilinearWarp(std::move(vndf)), std::move(colors.rgb),
-      std::move(colors.wavelengths), std::move(colors.spectra), std::move(mask)}));
+  return RglBrdf(std::make_unique<const Tables>(
+      Tables{phi_i, theta_i, symmetry, ReadNonNegative(file, "ndf", {}),
+             ReadNonNegative(file, "sigma", {}), BilinearWarp(std::move(vndf)),
+             std::move(colors.rgb), std::move(colors.wavelengths), std::move(colors.spectra),
+             colors.bands, std::move(colors.note), std::move(mask)}));
 }
 
 bool RglBrdf::isotropic() const { return tables_->phi_i.size() == 1; }
@@ -262,6 +279,10 @@ MeasuredValue RglBrdf::LookUp(const DirectionPair& directions) const {
   }
   return looked_up;
 }
+
+int RglBrdf::bands() const { return tables_->bands; }
+
+const std::string& RglBrdf::bands_note() const { return tables_->bands_note; }
 
 const std::vector<double>& RglBrdf::wavelengths() const { return tables_->wavelengths; }
 
@@ -396,10 +417,16 @@ MeasurementFormat RglFormat() {
           .recognise = LooksLikeTensorFile,
           .read = [](std::string_view bytes, const std::string& source,
                      const SourceOptions& options) -> Measurement {
-            auto rgl = std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source));
+            auto rgl =
+                std::make_shared<const RglBrdf>(RglBrdf::Parse(bytes, source, options.bands));
+            const auto note_spectra = [&](Measurement* measurement) {
+              measurement->bands = rgl->bands();
+              if (rgl->bands() > 0) measurement->notes.push_back("read as: " + rgl->bands_note());
+            };
             if (!rgl->isotropic()) {
               Measurement measurement = rgl->Sample(source, options.extrapolated);
               measurement.look_up = MakeLookUp(rgl);
+              note_spectra(&measurement);
               return measurement;
             }
             Measurement measurement = {.source = source,
@@ -409,6 +436,7 @@ MeasurementFormat RglFormat() {
             if (!rgl->wavelengths().empty() && CountsOf(measurement).valid > 0) {
               measurement.samples = SpectraOf(*rgl, *measurement.table);
             }
+            note_spectra(&measurement);
             return measurement;
           }};
 }

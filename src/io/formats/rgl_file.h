@@ -19,7 +19,9 @@ namespace trilobe {
 class RglBrdf {
  public:
   // Throws Error unless the bytes are a complete, consistent tensor file of a material.
-  static RglBrdf Parse(std::string_view bytes, const std::string& source);
+  // `bands`: SourceOptions::bands, of a file of spectra.
+  static RglBrdf Parse(std::string_view bytes, const std::string& source,
+                       const std::string& bands = "");
   RglBrdf(RglBrdf&&) noexcept;
   RglBrdf& operator=(RglBrdf&&) noexcept;
   ~RglBrdf();
@@ -41,6 +43,11 @@ class RglBrdf {
   // these, as Evaluate. Both are empty for others.
   const std::vector<double>& wavelengths() const;
   std::vector<double> Spectrum(const DirectionPair& directions) const;
+
+  // How many wavelengths the file has, 0 of one of RGB, and what of them was read
+  // (SpectrumBands::Note).
+  int bands() const;
+  const std::string& bands_note() const;
 
   // The same as Evaluate, and whether all nodes of `rgb` with nonzero weight were measured.
   MeasuredValue LookUp(const DirectionPair& directions) const;

@@ -12,6 +12,7 @@
 #include "core/files/utf16.h"
 #include "core/system/content_hash.h"
 #include "io/formats/foreign_file.h"
+#include "io/formats/spectrum_bands.h"
 #include "io/formats/table_columns.h"
 #include "io/formats/text_table.h"
 #include "io/formats/utia_file.h"
@@ -113,6 +114,7 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
     throw Error(source + ": this is " + content.name + "; a measurement is " +
                 WhatMeasurementsAre());
   }
+  if (bytes.empty()) throw Error(source + ": the file is empty");
   return formats.front();  // MERL: it says what is wrong with its header
 }
 
@@ -128,6 +130,7 @@ void NoteUnread(const SourceOptions& options, std::string_view kind, Measurement
   note(options.azimuth_from_mirror && measurement->table, "", "--azimuth is of scattered samples");
   note(!options.columns.empty(), "csv", "--columns is of text tables");
   note(options.theta_i_deg != -1, "csv", "--theta_i is of text tables");
+  note(!options.bands.empty() && measurement->bands == 0, "", "--bands is of spectra");
 }
 
 // The tilt that the highlight shows, 0 if it shows none, with a note that says so.
@@ -197,6 +200,7 @@ void CheckSourceOptions(const SourceOptions& options) {
   CheckNumber("--theta_i", theta_i, theta_i == -1 || (theta_i >= 0 && theta_i < 90),
               "in degrees from 0 to below 90, or -1 for none");
   ParseCorruptions(options.corrupt);
+  ParseBands(options.bands);
   const double tilt = options.tilt_deg.value_or(0);
   CheckNumber("--tilt", tilt, tilt >= -30 && tilt <= 30, "in degrees from -30 to 30, or auto");
   for (const double exponent : {options.cosine, options.cosine_o}) {

@@ -10,7 +10,8 @@
 #include "core/files/text_lines.h"
 #include "io/formats/angle_list.h"
 #include "io/formats/same_name.h"
-#include "io/formats/spectrum.h"
+#include "io/formats/spectrum_bands.h"
+#include "model/spectral/spectral_color.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/io/formats/measurement_format.h"
 
@@ -207,12 +208,13 @@ double SpeosValue(double value, const SphericalAngles& at, double scale, bool is
 constexpr double kMostMicrons = 1e6;  // [nm]
 
 // `.brdf`: a table of each incidence and wavelength, with its reflectance [%].
-Measurement ReadSpectral(SpeosText* text, bool is_bsdf, const std::string& source) {
+Measurement ReadSpectral(SpeosText* text, bool is_bsdf, const std::string& source,
+                         const SourceOptions& options) {
   const int incidences = text->Count("the number of incidences");
   const int count = text->Count("the number of wavelengths");
   const auto theta_i = text->Numbers(incidences, "incidences", 0, 90);
   const auto wavelengths = text->Numbers(count, "wavelengths", 1, kMostMicrons);
-  const SpectralColor color = SpectralColor::OfBands(wavelengths, source);
+  SpectrumBands bands(wavelengths, options.bands, source);
   SampleCollector collector(source, "Speos BRDF file of scattered samples");
   for (const double incidence : theta_i) {
     std::vector<SpeosTable> tables;
@@ -233,10 +235,13 @@ Measurement ReadSpectral(SpeosText* text, bool is_bsdf, const std::string& sourc
       for (size_t l = 0; l < tables.size(); ++l) {
         spectrum[l] = SpeosValue(tables[l].values[k], at, scales[l], is_bsdf);
       }
-      AddSpectrum(at, spectrum, color, &collector);
+      bands.Add(at, spectrum, &collector);
     });
   }
-  return collector.Take();
+  Measurement measurement = collector.Take();
+  measurement.bands = bands.all();
+  measurement.notes.push_back("read as: " + bands.Note() + ", ");
+  return measurement;
 }
 
 struct Rotation {
@@ -358,7 +363,8 @@ Measurement ReadAnisotropic(SpeosText* text, bool transmits, bool is_bsdf,
 // A BRDF in the text formats of Ansys Speos (formerly OPTIS; docs/file-formats.md). Values are in
 // proportion to a BRDF or to an intensity, and scaled to the reflectance that the file gives.
 // Throws Error, with the line, on anything else.
-Measurement ParseSpeos(std::string_view bytes, const std::string& source) {
+Measurement ParseSpeos(std::string_view bytes, const std::string& source,
+                       const SourceOptions& options) {
   SpeosText text(bytes, source);
   const std::string_view header = text.RestOfLine("its header");
   const bool anisotropic = BeginsWith(header, kSpeosAnisotropic);
@@ -391,10 +397,11 @@ Measurement ParseSpeos(std::string_view bytes, const std::string& source) {
   if (!reflects) text.Fail("these are transmitted light; only reflection can be read");
   const bool is_bsdf = text.Flag("the type of the values");
   Measurement measurement = anisotropic ? ReadAnisotropic(&text, transmits, is_bsdf, source)
-                                        : ReadSpectral(&text, is_bsdf, source);
-  measurement.notes.push_back(std::string("read as: values in proportion to ") +
-                              (is_bsdf ? "a BRDF" : "an intensity") +
-                              ", scaled to the reflectance that the file gives");
+                                        : ReadSpectral(&text, is_bsdf, source, options);
+  std::vector<std::string>& notes = measurement.notes;
+  if (notes.empty()) notes.emplace_back("read as: ");
+  notes[0] += std::string("values in proportion to ") + (is_bsdf ? "a BRDF" : "an intensity") +
+              ", scaled to the reflectance that the file gives";
   return measurement;
 }
 
@@ -410,7 +417,7 @@ MeasurementFormat SpeosFormat() {
           .ending = ".anisotropicbsdf",
           .is_text = true,
           .recognise = LooksLikeSpeos,
-          .read = ReadBy<ParseSpeos>};
+          .read = ParseSpeos};
 }
 
 }  // namespace trilobe

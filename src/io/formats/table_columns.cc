@@ -238,9 +238,9 @@ class ColumnLayouter {
   ColumnLayouter(const TextLines& lines, const std::vector<TableColumn>& columns)
       : lines_(lines), layout_{.columns = columns}, is_read_(columns.size()) {}
 
-  ColumnLayout Lay(bool theta_i_is_given) {
+  ColumnLayout Lay(bool theta_i_is_given, bool prefers_bands) {
     LayAngles(theta_i_is_given);
-    LayValues();
+    LayValues(prefers_bands);
     for (size_t k = 0; k < is_read_.size(); ++k) {
       if (!is_read_[k]) layout_.left_out.push_back(k);
     }
@@ -301,17 +301,18 @@ class ColumnLayouter {
                 "' is neither in degrees nor in radians or gon; convert it");
   }
 
-  void LayValues() {
+  void LayValues(bool prefers_bands) {
     const auto red = All(Role::kRed), green = All(Role::kGreen), blue = All(Role::kBlue);
     const auto values = All(Role::kValue), bands = All(Role::kBand);
     layout_.wavelength = One(Role::kWavelength);
-    if (!green.empty() && !blue.empty()) {
+    const bool takes_bands = prefers_bands && !bands.empty();
+    if (!takes_bands && !green.empty() && !blue.empty()) {
       const Role first = red.empty() ? Role::kValue : Role::kRed;  // "fr" beside "fg" and "fb"
       for (const Role role : {first, Role::kGreen, Role::kBlue}) {
         if (const auto column = One(role)) layout_.values.push_back(*column);
       }
       if (layout_.values.size() < kChannels) FailWithout("r", " beside those of g and b");
-    } else if (bands.size() > 1) {
+    } else if (takes_bands || bands.size() > 1) {
       LayBands(bands);
     } else if (!values.empty()) {
       layout_.values = {*One(Role::kValue)};
@@ -414,8 +415,8 @@ std::string LeftOutColumns(const ColumnLayout& layout) {
 }
 
 ColumnLayout LayoutOf(const TextLines& lines, const std::vector<TableColumn>& columns,
-                      bool theta_i_is_given) {
-  return ColumnLayouter(lines, columns).Lay(theta_i_is_given);
+                      bool theta_i_is_given, bool prefers_bands) {
+  return ColumnLayouter(lines, columns).Lay(theta_i_is_given, prefers_bands);
 }
 
 }  // namespace trilobe

@@ -13,7 +13,8 @@
 #include "core/files/text_lines.h"
 #include "io/formats/column_advice.h"
 #include "io/formats/matrix_table.h"
-#include "io/formats/spectrum.h"
+#include "io/formats/spectra_of_rows.h"
+#include "io/formats/spectrum_bands.h"
 #include "io/formats/table_columns.h"
 #include "io/formats/table_lines.h"
 #include "io/formats/text_table.h"
@@ -103,6 +104,7 @@ class TableReader {
       turned = brighter_.same();
       measurement = ReadRows(turned);
     }
+    if (bands_) measurement.bands = bands_->all();
     if (!IsUsual()) measurement.notes.push_back(Note(turned));
     if (options_.theta_i_deg != -1 && layout_.angles[kThetaI]) {
       measurement.notes.emplace_back(
@@ -123,13 +125,16 @@ class TableReader {
     if (const std::string advice = AdviceOn(columns, given_theta_i_.has_value()); !advice.empty()) {
       header.Fail(advice);
     }
-    return LayoutOf(header, columns, given_theta_i_.has_value());
+    return LayoutOf(header, columns, given_theta_i_.has_value(),
+                    /*prefers_bands=*/!options_.bands.empty());
   }
 
   Measurement ReadRows(bool turned) {
     SampleCollector collector(source_, "CSV file of scattered samples");
-    std::optional<SpectralColor> color;
-    if (!layout_.wavelengths.empty()) color.emplace(ColorOfSpectra());
+    if (!layout_.wavelengths.empty()) bands_.emplace(layout_.wavelengths, options_.bands, source_);
+    // One value of a wavelength that the row has, too.
+    std::optional<SpectraOfRows> by_rows;
+    if (layout_.wavelength && numbers_.size() == 1 && !bands_) by_rows.emplace();
     brighter_ = {};
     block_theta_i_ = given_theta_i_.value_or(0);
     block_phi_i_ = 0;
@@ -145,30 +150,27 @@ class TableReader {
       if (first_after) FailAsRow(*first_after);  // it stands between rows
       const SphericalAngles angles = Angles(lines, turned);
       if (!Values(lines)) {
-        collector.LeaveOut(&BinCounts::missing);
+        if (!by_rows) collector.LeaveOut(&BinCounts::missing);
         continue;
       }
-      CheckWavelength(lines);
       const size_t n = numbers_.size();
       const Rgb rho = {numbers_[0], numbers_[n > 1 ? 1 : 0], numbers_[n > 1 ? 2 : 0]};
       if (in_plane_) brighter_.Add(theta_i_, theta_o_, rho);
-      if (color) {
-        AddSpectrum(angles, numbers_, *color, &collector);
+      if (by_rows) {
+        AddToRows(lines, angles, &*by_rows);
+      } else if (bands_) {
+        bands_->Add(angles, numbers_, &collector);
       } else {
+        CheckWavelength(lines);
         collector.Add(angles, rho);
       }
     }
+    if (by_rows && !by_rows->wavelengths().empty()) {
+      bands_.emplace(by_rows->wavelengths(), options_.bands, source_);
+      by_rows->AddTo(&*bands_, &collector);
+    }
     // Light from both sides of one plane shows nothing of a grain.
     return one_phi_i_ ? collector.Take() : collector.TakeByAzimuths();
-  }
-
-  SpectralColor ColorOfSpectra() const {
-    try {
-      return SpectralColor::OfBands(layout_.wavelengths, source_);
-    } catch (const Error& error) {
-      throw Error(std::string(error.what()) +
-                  "; --columns= names three of the columns r, g and b, or one f, the others -");
-    }
   }
 
   // Takes a row of numbers with a separator after each but the last, as nearly all rows are,
@@ -291,9 +293,33 @@ class TableReader {
     return true;
   }
 
+  // [nm], of a row.
+  double WavelengthOf(const TextLines& lines) {
+    constexpr double kShortest = 0.2, kLongest = 20;  // [um]
+    const size_t column = *layout_.wavelength;
+    const std::string& unit = layout_.columns[column].unit;
+    const double number = Number(lines, column);
+    const bool micrometres =
+        unit == "um" || (unit.empty() && number >= kShortest && number <= kLongest);
+    return micrometres ? 1000 * number : number;
+  }
+
+  void AddToRows(const TextLines& lines, const SphericalAngles& angles, SpectraOfRows* by_rows) {
+    const double wavelength = WavelengthOf(lines);
+    const size_t column = *layout_.wavelength;
+    if (!(wavelength > 0 && std::isfinite(wavelength))) {
+      lines.FailAt(column, layout_.columns[column].name, "expected a wavelength in nm");
+    }
+    if (!by_rows->Add(angles, wavelength, numbers_[0])) {
+      lines.Fail("this is one wavelength more than the " +
+                 std::to_string(SpectraOfRows::kMostWavelengths) + " of a spectrum");
+    }
+  }
+
+  // Of a row with several values.
   void CheckWavelength(const TextLines& lines) {
     if (!layout_.wavelength) return;
-    const double wavelength = Number(lines, *layout_.wavelength);
+    const double wavelength = WavelengthOf(lines);
     if (!wavelength_) wavelength_ = wavelength;
     if (wavelength == *wavelength_) return;
     lines.FailAt(*layout_.wavelength, layout_.columns[*layout_.wavelength].name,
@@ -324,6 +350,7 @@ class TableReader {
   std::vector<double> numbers_;               // the values of a row
   double theta_i_ = 0, theta_o_ = 0;          // of a row, with their signs
   std::optional<double> phi_i_, wavelength_;  // of the first row
+  std::optional<SpectrumBands> bands_;        // of spectra
   bool in_plane_ = true, signed_ = false, one_phi_i_ = true, by_brightness_ = false;
   bool decimal_commas_ = false;
   double block_theta_i_ = 0, block_phi_i_ = 0;  // [rad] of rows that do not have them
@@ -361,10 +388,10 @@ std::string TableReader::Note(bool turned) const {
   const bool by_side = !layout_.angles[kPhiO] || by_brightness_;
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
   say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
-  say(layout_.values.size() == 1, "one value for all channels");
-  if (layout_.wavelengths.size() == 1) say(true, Text(layout_.wavelengths[0]) + " nm");
-  say(layout_.wavelengths.size() > 1,
-      std::to_string(layout_.wavelengths.size()) + " wavelengths to RGB by CIE 1931");
+  const bool is_one = bands_ ? bands_->read().size() == 1 : layout_.values.size() == 1;
+  say(is_one, "one value for all channels");
+  say(bands_.has_value() && layout_.wavelength, "a row a wavelength");
+  if (bands_) say(true, bands_->Note());
   say(lines_after_ > 0, Lines(lines_after_) + " after the table");
   say(true, "f in 1/sr");
   if (!layout_.left_out.empty()) note += "; left out: " + LeftOutColumns(layout_);

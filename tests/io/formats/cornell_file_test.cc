@@ -36,6 +36,14 @@ TEST(CornellFile, ReadsSpectraInRadians) {
   EXPECT_NEAR(measurement.samples.angles[0].theta_d, 0.375, 1e-9);
 }
 
+TEST(CornellFile, BandsPicksWavelengths) {
+  const std::string text = kHeader + "0.5 0 0.25 3 .1 .2 .3 .4 .5 .6 -1\n";
+  const Measurement three = Source("x.brdf", text).Read({.bands = "450,550,650"});
+  EXPECT_THAT(three.samples.rho, Each(Rgb{.6, .4, .2}));
+  EXPECT_THAT(three.notes, Each("read as: 650, 550, 450 nm of 7 wavelengths as r, g, b"));
+  EXPECT_EQ(Source("x.brdf", text).Read().samples.size(), 0);
+}
+
 TEST(CornellFile, ErrorsSayWhereAndWhatIsExpected) {
   EXPECT_EQ(ParseError("# none\n"), "x.brdf: no line; expected the number of wavelengths");
   EXPECT_THAT(ParseError("2.5\n"), HasSubstr("line 1: expected the number of wavelengths, from 1"));

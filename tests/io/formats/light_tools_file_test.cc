@@ -51,7 +51,7 @@ TEST(LightToolsFile, ReadsBackAKnownMaterial) {
   EXPECT_EQ(measurement.kind, "LightTools BSDF file of scattered samples");
   EXPECT_EQ(measurement.counts.total, 2 * (1 + 6 * 2));
   EXPECT_FALSE(measurement.anisotropic);
-  EXPECT_THAT(measurement.notes, testing::Contains("read as: front reflection"));
+  EXPECT_THAT(measurement.notes, testing::Contains("read as: front reflection, 550 nm"));
   ExpectTruth(measurement, /*grey=*/true);
 }
 
@@ -70,8 +70,10 @@ TEST(LightToolsFile, WavelengthsMakeSpectra) {
   }
   const Measurement measurement = Parse(text + "DataEnd\n");
   EXPECT_EQ(measurement.counts.total, 1 + 6 * 2);
-  EXPECT_THAT(measurement.notes,
-              ElementsAre("read as: front reflection, 7 wavelengths to RGB by CIE 1931"));
+  EXPECT_THAT(
+      measurement.notes,
+      ElementsAre("read as: front reflection, 7 wavelengths to RGB by CIE 1931 (--bands picks "
+                  "some)"));
   ExpectTruth(measurement, /*grey=*/true);  // a constant spectrum is grey
   EXPECT_THAT(ParseError(text + Block(40, 0, "Wavelength 700", Green) + "DataEnd\n"),
               HasSubstr("x.bsdf: the block of AOI 40 and POI 0 has other wavelengths"));
@@ -97,9 +99,10 @@ TEST(LightToolsFile, OnlyFrontReflectionIsRead) {
   const Measurement measurement =
       Parse(Head() + other + Block(20, 0, "Wavelength 550", Green) + through + "DataEnd\n");
   EXPECT_EQ(measurement.counts.total, 1 + 6 * 2);
-  EXPECT_THAT(measurement.notes,
-              ElementsAre("read as: front reflection; 2 blocks of transmission or the back are "
-                          "left out"));
+  EXPECT_THAT(
+      measurement.notes,
+      ElementsAre("read as: front reflection, 550 nm; 2 blocks of transmission or the back are "
+                  "left out"));
   EXPECT_EQ(ParseError(Head() + other + through + "DataEnd\n"),
             "x.bsdf: it has no block of front reflection (Side Front, ScatterType BRDF); 2 are of "
             "transmission or the back");

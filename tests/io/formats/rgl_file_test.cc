@@ -185,6 +185,37 @@ TEST(RglBrdf, ReadsSpectraAsTheirColours) {
   }
 }
 
+TEST(RglBrdf, ReadsTheWavelengthsThatBandsNames) {
+  TinyRgl file;
+  file.FillRandom(5);
+  const std::string bytes = TensorBytes(WithSpectra(file, {400, 450, 500, 550, 600, 640, 940}));
+  const RglBrdf three = RglBrdf::Parse(bytes, "tiny_spec.bsdf", "450,550,940");
+  EXPECT_EQ(three.bands_note(), "940, 550, 450 nm of 7 wavelengths as r, g, b");
+  EXPECT_TRUE(three.wavelengths().empty());
+  const RglBrdf one = RglBrdf::Parse(bytes, "tiny_spec.bsdf", "550");
+  EXPECT_EQ(one.wavelengths(), (std::vector<double>{550}));
+  EXPECT_EQ(one.bands(), 7);
+  TinyRgl rgb = file;  // 940 nm is the first and third of its parts, 450 nm the first and second
+  const size_t nodes = static_cast<size_t>(file.rgb_rows) * file.rgb_columns;
+  for (size_t slice = 0; slice < file.theta_i.size(); ++slice) {
+    for (size_t node = 0; node < nodes; ++node) {
+      const size_t first = slice * 3 * nodes + node;
+      const float common = file.rgb[first];
+      rgb.rgb[first] = common + file.rgb[first + 2 * nodes];
+      rgb.rgb[first + 2 * nodes] = common + file.rgb[first + nodes];
+      rgb.rgb[first + nodes] = common;
+    }
+  }
+  const RglBrdf expected = Parse(rgb);
+  for (const double theta_i : {0.1, 0.5, 1.0, 1.4}) {
+    const DirectionPair pair = Reflect(theta_i, 0.3, 0.05, 1.1);
+    const Rgb is = expected.Evaluate(pair);
+    EXPECT_EQ(three.Evaluate(pair), is);
+    EXPECT_EQ(one.Evaluate(pair), (Rgb{is[1], is[1], is[1]}));
+    EXPECT_EQ(one.Spectrum(pair), (std::vector<double>{is[1]}));
+  }
+}
+
 TEST(RglBrdf, RefusesSpectraWithoutWavelengths) {
   TinyRgl file;
   file.FillRandom(5);

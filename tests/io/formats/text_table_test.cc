@@ -175,19 +175,113 @@ TEST(TextTable, WavelengthsBecomeColours) {
     const Measurement read = Read(std::string("theta_i,phi_i,theta_o,phi_o,") + header +
                                   "\n5,0,10,0,.1,.2,.3,.4,.5,.4,.3\n");
     EXPECT_EQ(read.samples.rho, (std::vector<Rgb>{expected})) << header;
-    EXPECT_THAT(read.notes,
-                ElementsAre("read as: degrees, 7 wavelengths to RGB by CIE 1931, f in 1/sr"));
+    EXPECT_THAT(
+        read.notes,
+        ElementsAre("read as: degrees, 7 wavelengths to RGB by CIE 1931 (--bands picks some), f in "
+                    "1/sr"));
   }
   const Measurement turned = Read(
       "700,650,600,550,500,450,400,phi_o,theta_o,phi_i,theta_i\n.3,.4,.5,.4,.3,.2,.1,0,10,0,5\n");
   EXPECT_EQ(turned.samples.rho, (std::vector<Rgb>{expected}));
-  EXPECT_THAT(ReadError("theta_i,phi_i,theta_o,phi_o,450,550,650\n1,0,1,0,1,1,1\n"),
-              HasSubstr("a colour needs one every 50 nm; --columns= names three of the columns"));
+  EXPECT_THAT(
+      ReadError("theta_i,phi_i,theta_o,phi_o,450,550,650\n1,0,1,0,1,1,1\n"),
+      HasSubstr("a colour needs one every 50 nm; --bands=650,550,450 takes three as r, g and "
+                "b, and --bands=550 takes one alone"));
   EXPECT_THAT(Read("theta_i,phi_i,theta_o,phi_o,532nm\n5,0,10,0,.5\n").notes,
               ElementsAre(HasSubstr("one value for all channels")));
   EXPECT_THAT(
-      ReadError("theta_i,phi_i,theta_o,phi_o,wavelength,f\n1,0,1,0,500,1\n1,0,1,0,510,1\n"),
-      HasSubstr("line 3, column 5 (wavelength): 510 comes after 500; make a column of each"));
+      ReadError("theta_i,theta_o,phi_o,wavelength,r,g,b\n1,1,0,500,1,1,1\n"
+                "1,1,0,510,1,1,1\n"),
+      HasSubstr("line 3, column 4 (wavelength): 510 comes after 500; make a column of each"));
+}
+
+TEST(TextTable, BandsPicksWavelengths) {
+  const std::string text =
+      "theta_i,phi_i,theta_o,phi_o,400,450,500,550,600,650,700\n"
+      "5,0,10,0,.1,.2,.3,.4,.5,.6,.7\n5,0,20,0,-1,.3,.3,.4,.5,.6,.7\n";
+  const auto read = [&](const std::string& bands) { return Read(text, {.bands = bands}); };
+  for (const std::string order : {"450,550,650", "650nm, 550, 450"}) {
+    const Measurement three = read(order);
+    EXPECT_EQ(three.samples.rho, (std::vector<Rgb>{{.6, .4, .2}, {.6, .4, .3}}));
+    EXPECT_EQ(three.samples.spectra, nullptr);
+    EXPECT_THAT(three.notes,
+                ElementsAre(HasSubstr("650, 550, 450 nm of 7 wavelengths as r, g, b")));
+  }
+  const Measurement one = read("550.3");
+  EXPECT_EQ(one.samples.rho, (std::vector<Rgb>{{.4, .4, .4}, {.4, .4, .4}}));
+  EXPECT_EQ(one.samples.spectra->wavelengths, (std::vector<double>{550}));
+  EXPECT_THAT(one.notes,
+              ElementsAre(HasSubstr("one value for all channels, 550 nm of 7 wavelengths")));
+  // As if there were no others: what is invalid at 400 nm does not count.
+  const std::vector<double> five = {450, 500, 550, 600, 650};
+  const Measurement some = read("450,500,550,600,650");
+  EXPECT_EQ(some.samples.rho[0], SpectralColor(five, "x")(std::vector<double>{.2, .3, .4, .5, .6}));
+  EXPECT_EQ(some.samples.spectra->wavelengths, five);
+  EXPECT_EQ(some.samples.size(), 2);
+  EXPECT_EQ(read("").samples.size(), 1);
+  EXPECT_EQ(Read(kPlain, {.bands = "550"}).notes,
+            (std::vector<std::string>{"--bands is of spectra, and changes nothing here"}));
+  // Beside a colour, too.
+  EXPECT_EQ(
+      Read("theta_i,theta_o,phi_o,r,g,b,940nm\n5,10,0,1,2,3,.25\n", {.bands = "940"}).samples.rho,
+      (std::vector<Rgb>{{.25, .25, .25}}));
+
+  const auto error = [&](const std::string& bands) { return ReadError(text, {.bands = bands}); };
+  EXPECT_EQ(error("532"),
+            "x.csv: no wavelength of 532 nm for --bands; there are 400, 450, 500, 550, 600, 650 "
+            "and 700 nm");
+  EXPECT_EQ(error("550,550.2,600"), "x.csv: --bands=550,550.2,600 names 550 nm twice");
+  EXPECT_THAT(error("400,500,600,700"), HasSubstr("no wavelength between 400 and 500 nm"));
+  for (const std::string bad : {"500,600", "500,500,600", "green", "-1", "nan", "500,"}) {
+    EXPECT_THAT(error(bad), HasSubstr("--bands=" + bad + ": give a wavelength in nm")) << bad;
+  }
+  std::string many = "theta_i,theta_o,phi_o", row = "5,10,0";
+  for (int k = 400; k <= 700; k += 10) {
+    many += "," + std::to_string(k) + "nm";
+    row += ",1";
+  }
+  EXPECT_THAT(
+      ReadError(many + "\n" + row + "\n", {.bands = "532"}),
+      HasSubstr("there are 31 from 400 to 700 nm, of which 530 and 540 nm are the nearest"));
+}
+
+TEST(TextTable, ARowAWavelengthMakesSpectra) {
+  const std::string header = "theta_i,theta_o,phi_o,wavelength [nm],f\n";
+  const auto row = [](int theta_o, const std::string& wavelength, const std::string& f) {
+    return "5," + std::to_string(theta_o) + ",180," + wavelength + "," + f + "\n";
+  };
+  std::string by_direction = header, by_wavelength = header;
+  const std::vector<double> wavelengths = {400, 450, 500, 550, 600, 650, 700};
+  for (const int theta_o : {10, 20}) {
+    for (int k = 0; k < 7; ++k) {
+      by_direction += row(theta_o, std::to_string(400 + 50 * k), "0." + std::to_string(k + 1));
+    }
+  }
+  for (int k = 6; k >= 0; --k) {
+    for (const int theta_o : {10, 20}) {
+      by_wavelength += row(theta_o, std::to_string(400 + 50 * k), "0." + std::to_string(k + 1));
+    }
+  }
+  const Rgb expected =
+      SpectralColor(wavelengths, "x")(std::vector<double>{.1, .2, .3, .4, .5, .6, .7});
+  for (const std::string& text : {by_direction, by_wavelength}) {
+    const Measurement read = Read(text);
+    EXPECT_EQ(read.samples.rho, (std::vector<Rgb>{expected, expected}));
+    EXPECT_EQ(read.samples.spectra->wavelengths, wavelengths);
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("a row a wavelength, 7 wavelengths to RGB")));
+  }
+  EXPECT_EQ(Read(by_direction, {.bands = "650,550,450"}).samples.rho[1], (Rgb{.6, .4, .2}));
+  // A direction once more is another sample, and one without a wavelength is missing.
+  const std::string once_more = by_direction + row(10, "550", "0.9") + row(30, "500", "NA");
+  EXPECT_EQ(Read(once_more, {.bands = "550"}).samples.rho,
+            (std::vector<Rgb>{{.4, .4, .4}, {.4, .4, .4}, {.9, .9, .9}}));
+  const Measurement all = Read(once_more);
+  EXPECT_EQ(all.samples.size(), 2);
+  EXPECT_EQ(all.counts.missing, 1);
+  const Measurement in_um =
+      Read("theta_i,theta_o,phi_o,lambda,f\n5,10,0,0.532,.5\n5,20,0,0.532,.25\n");
+  EXPECT_EQ(in_um.samples.spectra->wavelengths, (std::vector<double>{532}));
+  EXPECT_THAT(ReadError(header + row(10, "0", "1")), HasSubstr("expected a wavelength in nm"));
 }
 
 // A lobe about the mirror direction in the plane of incidence.

@@ -44,6 +44,7 @@ struct Measurement {
   // Valid samples, with directions. Of a table made of spectra, some of its bins, with these.
   BrdfSamples samples = {};
   BinCounts counts = {};       // samples in the file: all, valid, left out by reason
+  int bands = 0;               // wavelengths of the spectra that were read; 0: there are none
   int out_of_gamut = 0;        // samples with a channel set to 0, outside sRGB
   double max_theta = kPi / 2;  // [rad] upper bound of theta_i and theta_o of valid samples
 };
