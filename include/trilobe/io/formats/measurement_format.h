@@ -12,8 +12,8 @@ namespace trilobe {
 
 // How a source is read and which of its samples count as measured. `noise` is for `synth:` only,
 // `extrapolated` for RGL files, `radiometry` for UTIA files, `columns` and `theta_i_deg` for text
-// tables, `bands` for spectra, `azimuth_from_mirror` for scattered samples; for other sources they only add a note to
-// the measurement.
+// tables, `bands` for spectra, `azimuth_from_mirror` for scattered samples; for other sources they
+// only add a note to the measurement.
 struct SourceOptions {
   double noise = 0.0;        // relative standard deviation of multiplicative noise, 0 to 1
   double missing = 0.0;      // fraction of bins or samples removed at random, in [0, 1)
