@@ -15,6 +15,7 @@
 #include "fit/held_out.h"
 #include "fit/prune/unmeasured_prior.h"
 #include "model/objective/canonical_form.h"
+#include "trilobe/core/math/angles.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/objective/score.h"
@@ -194,7 +195,8 @@ void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& c
                         .seconds = seconds});
 }
 
-// Unless E would rise by so much that the data themselves ask for the light. Notes what is left.
+// Unless E would rise by so much that the data themselves ask for the light; then at the end of the
+// data, where few samples ask for anything, and beyond. Notes what is left.
 void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
   constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3, kNotable = 1.05;
   const Objective data(fit->objective.data(), fit->model.spec());
@@ -203,9 +205,22 @@ void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
   FactorModel limited = fit->model;
   if (!limit.Apply(layout, stop, &limited)) return;
   const double E = data.Value(fit->model);
-  if (data.Value(limited) <= E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy())) {
-    fit->model = std::move(limited);
+  const double acceptable = E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy());
+  const auto take = [&](FactorModel darker) {
+    if (data.Value(darker) > acceptable) return false;
+    fit->model = std::move(darker);
+    return true;
+  };
+  if (take(std::move(limited))) {
     if (data.spec().anisotropic()) return;  // nothing is left
+  } else {
+    for (const double degrees : {6, 3, 1, 0}) {
+      limited = fit->model;
+      if (limit.ApplyAtEnd(DegreesToRadians(degrees), layout, stop, &limited) &&
+          take(std::move(limited))) {
+        break;
+      }
+    }
   }
   const PeakAlbedo peak = PeakLight(fit->model, data.num_threads());
   if (peak.albedo > kNotable * std::ranges::max(limit.everywhere())) {

@@ -110,7 +110,8 @@ std::optional<WholeSphere> EstimateWholeSphere(const Objective& data, const Fact
   ContinueBeyondData(HideEnds(data.coverage(), model, width), options.num_threads, &rehearsed);
   AlbedoLimits limits = AlbedoLimitsOf(data, model);
   limits.beyond_theta -= width;
-  LimitAlbedo(limits, TableLayout::Full(model.spec()), options.num_threads, {}, &rehearsed);
+  LimitAlbedo(limits, kAllAngles, TableLayout::Full(model.spec()), options.num_threads, {},
+              &rehearsed);
   return Joined(seen, CompareWhole(model, rehearsed, options), 1);
 }
 

@@ -194,9 +194,9 @@ double LastWellCovered(std::span<const double> coverage, const FactorModel& mode
 using FactorAtNode =
     std::function<double(std::span<const int> nodes, size_t i, const std::vector<double>& factors)>;
 
-// Lowers G until the albedo exceeds no limit; whether anything changed.
-bool LowerG(const AlbedoLimits& limits, const FactorAtNode& at_node, const TableLayout& layout,
-            int num_threads, const StopCheck& stop, FactorModel* model) {
+// Lowers G above `from` until the albedo exceeds no limit there; whether anything changed.
+bool LowerG(const AlbedoLimits& limits, double from, const FactorAtNode& at_node,
+            const TableLayout& layout, int num_threads, const StopCheck& stop, FactorModel* model) {
   const ModelSpec& spec = model->spec();
   const std::vector<double>& angles = limits.theta_i;
   const size_t first_beyond =
@@ -227,9 +227,10 @@ bool LowerG(const AlbedoLimits& limits, const FactorAtNode& at_node, const Table
   const bool beyond = LowerWhileExceeding(
       first_beyond, angles.size(), kPassesBeyond, stop, factors_at,
       [&](const std::vector<double>& factors) { lower_from(limits.beyond_theta, factors); });
+  const size_t first = std::ranges::upper_bound(angles, from) - angles.begin();
   const bool all =
-      LowerWhileExceeding(0, angles.size(), kPassesOfG, stop, factors_at,
-                          [&](const std::vector<double>& factors) { lower_from(-1, factors); });
+      LowerWhileExceeding(first, angles.size(), kPassesOfG, stop, factors_at,
+                          [&](const std::vector<double>& factors) { lower_from(from, factors); });
   return beyond || all;
 }
 
@@ -281,13 +282,13 @@ PeakAlbedo PeakAlbedoOf(const FactorModel& model, int num_threads) {
   return peak;
 }
 
-bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_threads,
-                 const StopCheck& stop, FactorModel* model) {
+bool LimitAlbedo(const AlbedoLimits& limits, double from, const TableLayout& layout,
+                 int num_threads, const StopCheck& stop, FactorModel* model) {
   const Axis& g_axis = model->spec().g_axis;
   const auto between = [&](std::span<const int> nodes, size_t i, const auto& factor) {
     return At(g_axis.Theta(nodes[i]), limits.theta_i, factor);
   };
-  const bool lowered = LowerG(limits, between, layout, num_threads, stop, model);
+  const bool lowered = LowerG(limits, from, between, layout, num_threads, stop, model);
   const std::vector<double> nodes_of_g = NodesOf(g_axis);
   const AlbedoLimits at_nodes{.theta_i = nodes_of_g,
                               .everywhere = limits.everywhere,
@@ -296,7 +297,7 @@ bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_
   const auto around = [&](std::span<const int> nodes, size_t i, const auto& factor) {
     return LeastAround(g_axis, nodes, i, nodes_of_g, factor);
   };
-  return LowerG(at_nodes, around, layout, num_threads, stop, model) || lowered;
+  return LowerG(at_nodes, from, around, layout, num_threads, stop, model) || lowered;
 }
 
 }  // namespace trilobe

@@ -27,11 +27,13 @@ AlbedoLimits AlbedoLimitsOf(const Objective& data, const FactorModel& model);
 
 // Lowers G of all lobes where the directional albedo exceeds the limit, until it does so nowhere:
 // by the root of the excess, since both G(theta_i) and G(theta_o) make a highlight. Then holds it
-// to `everywhere` at all nodes of G, too, and halfway between those beyond 60 degrees. Stored nodes
+// to `everywhere` at all nodes of G, too, and halfway between those beyond 60 degrees. Beyond the
+// data, and at angles above `from` [rad]: kAllAngles, or those where G is free. Stored nodes
 // change, and the others follow (ExpandStored). Returns whether anything changed. The same bits for
 // any number of threads.
-bool LimitAlbedo(const AlbedoLimits& limits, const TableLayout& layout, int num_threads,
-                 const StopCheck& stop, FactorModel* model);
+constexpr double kAllAngles = -1;
+bool LimitAlbedo(const AlbedoLimits& limits, double from, const TableLayout& layout,
+                 int num_threads, const StopCheck& stop, FactorModel* model);
 
 // The largest directional albedo of an isotropic model over theta_i and channels.
 struct PeakAlbedo {

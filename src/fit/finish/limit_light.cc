@@ -15,8 +15,15 @@ LightLimit::LightLimit(const Objective& data, const FactorModel& fit)
 }
 
 bool LightLimit::Apply(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const {
-  return isotropic_ ? LimitAlbedo(*isotropic_, layout, num_threads_, stop, model)
+  return isotropic_ ? LimitAlbedo(*isotropic_, kAllAngles, layout, num_threads_, stop, model)
                     : LimitAnisotropicAlbedo(everywhere_, layout, num_threads_, stop, model);
+}
+
+bool LightLimit::ApplyAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
+                            FactorModel* model) const {
+  if (!isotropic_) return false;
+  return LimitAlbedo(*isotropic_, isotropic_->beyond_theta - within, layout, num_threads_, stop,
+                     model);
 }
 
 PeakAlbedo PeakLight(const FactorModel& model, int num_threads) {

@@ -25,6 +25,11 @@ class LightLimit {
   // fit's kind, of any lobes and sharing.
   bool Apply(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const;
 
+  // The same of an isotropic model beyond the data, and at angles up to `within` before their end
+  // [rad], where few samples read G. Does nothing to an anisotropic one.
+  bool ApplyAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
+                  FactorModel* model) const;
+
  private:
   int num_threads_;
   std::optional<AlbedoLimits> isotropic_;

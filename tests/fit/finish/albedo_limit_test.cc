@@ -68,14 +68,14 @@ TEST(AlbedoLimit, WhatReflectsMoreThanItReceivesReflectsOne) {
   }
   const TableLayout layout = TableLayout::Full(model.spec());
   FactorModel threaded = model;
-  EXPECT_TRUE(LimitAlbedo(one, layout, 1, {}, &model));
-  EXPECT_TRUE(LimitAlbedo(one, layout, 3, {}, &threaded));
+  EXPECT_TRUE(LimitAlbedo(one, kAllAngles, layout, 1, {}, &model));
+  EXPECT_TRUE(LimitAlbedo(one, kAllAngles, layout, 3, {}, &threaded));
   EXPECT_TRUE(std::ranges::equal(model.parameters(), threaded.parameters()));
   for (const Rgb& albedo : Albedos(model, one.theta_i)) {
     for (const double x : albedo) EXPECT_LE(x, 1 + 2e-3);
   }
   EXPECT_GT(LargestAlbedo(model), 0.9);  // no more than it takes
-  EXPECT_FALSE(LimitAlbedo(one, layout, 1, {}, &model));
+  EXPECT_FALSE(LimitAlbedo(one, kAllAngles, layout, 1, {}, &model));
   // Only G has changed.
   for (const Factor factor : {Factor::kD, Factor::kF}) {
     EXPECT_TRUE(std::ranges::equal(model.table(factor, 0), before.table(factor, 0)));
@@ -93,7 +93,7 @@ TEST(AlbedoLimit, WhatNoEntryBeyondCanLowerDoesNotKeepTheRest) {
   }
   ASSERT_GT(Albedos(model, limits.theta_i).back()[0], 1.1);
   ASSERT_GT(LargestAlbedo(model), 1.1);
-  EXPECT_TRUE(LimitAlbedo(limits, TableLayout::Full(model.spec()), 1, {}, &model));
+  EXPECT_TRUE(LimitAlbedo(limits, kAllAngles, TableLayout::Full(model.spec()), 1, {}, &model));
   EXPECT_LE(LargestAlbedo(model), 1 + 2e-3);
 }
 
@@ -104,7 +104,7 @@ TEST(AlbedoLimit, WhatReflectsLessStaysAsItIs) {
   const AlbedoLimits limits = AlbedoLimitsOf(DataOf(TableOf(model, kGrid)), model);
   EXPECT_EQ(limits.everywhere, (Rgb{1, 1, 1}));
   for (const Rgb& limit : limits.beyond) EXPECT_EQ(limit, (Rgb{1, 1, 1}));
-  EXPECT_FALSE(LimitAlbedo(limits, TableLayout::Full(model.spec()), 1, {}, &model));
+  EXPECT_FALSE(LimitAlbedo(limits, kAllAngles, TableLayout::Full(model.spec()), 1, {}, &model));
   EXPECT_TRUE(std::ranges::equal(model.parameters(), before.parameters()));
 }
 
@@ -130,7 +130,7 @@ TEST(AlbedoLimit, ASingleNodeDoesNotGlow) {
     model.table(Factor::kG, 0)[static_cast<int>(degrees)] *= 40;
   }
   for (const Rgb& albedo : Albedos(model, ridges)) ASSERT_GT(albedo[0], 1.2);
-  EXPECT_TRUE(LimitAlbedo(limits, TableLayout::Full(model.spec()), 1, {}, &model));
+  EXPECT_TRUE(LimitAlbedo(limits, kAllAngles, TableLayout::Full(model.spec()), 1, {}, &model));
   for (const Rgb& albedo : Albedos(model, ridges)) EXPECT_LE(albedo[0], 1 + 2e-3);
 }
 
@@ -149,11 +149,34 @@ TEST(AlbedoLimit, BeyondTheDataTheAlbedoGoesOnAsWithin) {
   }
   const std::vector<double> beyond = {DegreesToRadians(76), DegreesToRadians(84)};
   ASSERT_GT(Albedos(model, beyond)[0][1], 3 * Albedos(right, beyond)[0][1]);
-  EXPECT_TRUE(
-      LimitAlbedo(AlbedoLimitsOf(data, model), TableLayout::Full(model.spec()), 1, {}, &model));
+  EXPECT_TRUE(LimitAlbedo(AlbedoLimitsOf(data, model), kAllAngles, TableLayout::Full(model.spec()),
+                          1, {}, &model));
   const std::vector<Rgb> expected = Albedos(right, beyond), limited = Albedos(model, beyond);
   for (size_t k = 0; k < beyond.size(); ++k) {
     EXPECT_NEAR(limited[k][1], expected[k][1], 0.6 * expected[k][1]);
+  }
+}
+
+// Where the samples ask for the light within, it is lowered beyond them all the same.
+TEST(AlbedoLimit, AtTheEndOfTheDataEntriesBeforeItStay) {
+  FactorModel model = Grey(3, 3);
+  BrdfTable table = TableOf(model, kGrid);
+  LimitAngles(DegreesToRadians(60), Unmeasured::kBeyondMaxAngle, &table);
+  const Objective data = DataOf(table);
+  const AlbedoLimits limits = AlbedoLimitsOf(data, model);
+  const double from = DegreesToRadians(57);
+  ASSERT_GT(limits.beyond_theta, from);
+  const std::vector<double> grazing = {DegreesToRadians(76), DegreesToRadians(84)};
+  const FactorModel before = model;
+  ASSERT_GT(Albedos(before, grazing)[1][0], 1.1);
+  EXPECT_TRUE(LimitAlbedo(limits, from, TableLayout::Full(model.spec()), 1, {}, &model));
+  const Axis& axis = model.spec().g_axis;
+  for (int k = 0; k < axis.size; ++k) {
+    if (axis.Theta(k) > from) continue;
+    EXPECT_EQ(model.table(Factor::kG, 0)[k], before.table(Factor::kG, 0)[k]) << k;
+  }
+  for (const Rgb& albedo : Albedos(model, grazing)) {
+    for (int c = 0; c < kChannels; ++c) EXPECT_LE(albedo[c], limits.everywhere[c] + 2e-3);
   }
 }
 
