@@ -19,6 +19,8 @@ constexpr std::string_view kFactor = "pi f", kOverPi = "--scale=0.3183";
 constexpr std::string_view kReading =
     "what a detector reads; a BRDF is that over the irradiance of the sample";
 
+constexpr std::string_view kPolarised = "light of one polarisation; give the mean of both, as f";
+
 constexpr Known kKnownValues[] = {
     {"ccbrdf", kTimesCosine, kOverCosine},
     {"ccbsdf", kTimesCosine, kOverCosine},
@@ -39,6 +41,12 @@ constexpr Known kKnownValues[] = {
     {"power", kReading, ""},
     {"radiance", kReading, ""},
     {"luminance", kReading, ""},
+    {"btdf", "transmitted light, which is not read; the BRDF is what is reflected", ""},
+    {"log10", "logarithms; a BRDF is ten to that power", ""},
+    {"log10brdf", "logarithms; a BRDF is ten to that power", ""},
+    {"dhr", "the reflectance of a hemisphere; a BRDF is by pairs of directions", ""},
+    {"brdfs", kPolarised, ""},
+    {"brdfp", kPolarised, ""},
 };
 
 std::string KeyOf(const TableColumn& column) {

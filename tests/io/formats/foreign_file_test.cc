@@ -45,6 +45,10 @@ TEST(ForeignFile, IsNamedWithWhatToDo) {
       {"f.mat", "MATLAB 5.0 MAT-file",
        "a MATLAB file; write its samples by writematrix or writetable"},
       {"f.mat", hdf, "a MATLAB file; write its samples by writetable"},
+      {"f.db", "SQLite format 3\0"s, "a SQLite database" + kAsCsv},
+      {"f.parquet", "PAR1\x15\4", "a Parquet file" + kAsCsv},
+      {"f.ies", "IESNA:LM-63-2002\n[TEST] 1\n",
+       "an IES file of a luminaire, which is no material; give the measurement of a material"},
       {"f.axf", hdf,
        "an AxF file, whose format is not public; export the material as samples from the program "
        "that wrote it"},

@@ -70,6 +70,18 @@ TEST(OddTable, LinesGiveThetaIToTheRowsBelow) {
   EXPECT_FALSE(GivenAngleIn("theta_i [mrad]: 30"));
 }
 
+TEST(OddTable, ValuesThatAreNoBrdfAreNamed) {
+  const auto error = [](const std::string& name) {
+    return ReadError("theta_i,theta_o,phi_o," + name + "\n30,10,0,0.25\n");
+  };
+  EXPECT_EQ(error("BTDF"),
+            "x.txt: line 1: column 'BTDF' holds transmitted light, which is not read; the BRDF is "
+            "what is reflected");
+  EXPECT_THAT(error("log10(BRDF)"), HasSubstr("holds logarithms"));
+  EXPECT_THAT(error("DHR"), HasSubstr("holds the reflectance of a hemisphere"));
+  EXPECT_THAT(error("BRDF_s"), HasSubstr("holds light of one polarisation"));
+}
+
 TEST(OddTable, AHeaderMayComeAgain) {
   ExpectBoth(
       "theta_i; phi_i; theta_o; phi_o; f;\n30; 0; 10; 0; 0.25;\n"
