@@ -174,8 +174,9 @@ def _figure(rows):
     ticker = plots.matplotlib.ticker
     figure, axes = plots.plt.subplots(figsize=(5.5, 5))
     told = [row for row in rows if row.get("estimated_delta_e") and row["delta_e"] > 0]
-    for (given, of), colour in zip(tables.groups(told, "given").items(), plots.SERIES * 3):
-        axes.loglog([row["delta_e"] for row in of], [row["estimated_delta_e"] for row in of], "o", color=colour,
+    styles = [(marker, colour) for marker in "o^s" for colour in plots.SERIES]
+    for (given, of), (marker, colour) in zip(tables.groups(told, "given").items(), styles):
+        axes.loglog([row["delta_e"] for row in of], [row["estimated_delta_e"] for row in of], marker, color=colour,
                     label=given, markersize=5)
     ends = [min([row["delta_e"] for row in told], default=0.1), max([row["delta_e"] for row in told], default=10)]
     for factor in (1 / FACTOR, 1, FACTOR):
