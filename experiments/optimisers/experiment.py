@@ -48,12 +48,11 @@ def units(setting):
 
 
 def _trace(result, setting):
-    """([seconds from the start of the search], [E], evaluations, why it stopped)."""
+    """([seconds from the start of the search], [E], evaluations until the lowest, why it stopped)."""
     if result.labels["solver"] in METHODS:
         rows = tables.read(result.folder / "trace.csv")
-        run = json.loads((result.folder / "run.json").read_text())
-        return ([row["seconds"] for row in rows], [row["objective"] for row in rows], run["evaluations"],
-                run["stopped"])
+        stopped = json.loads((result.folder / "run.json").read_text())["stopped"]
+        return ([row["seconds"] for row in rows], [row["objective"] for row in rows], rows[-1]["evaluations"], stopped)
     fit = Fit(result.folder, fits.clock(setting))
     return ([row["clock"] - fit.before for row in fit.trace], [row["objective"] for row in fit.trace], None,
             fit.report["stop_reason"])
