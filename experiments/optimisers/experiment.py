@@ -11,6 +11,7 @@ from lab.units import FOLDER, Unit
 
 HERE = pathlib.Path(__file__).parent
 OURS = "trilobe"
+ONE_START = "varpro"  # of ours, as theirs: auto compares several
 # What a method takes of E besides its value: the panels of the picture.
 FIRST, SECOND = "gradients", "second derivatives"
 METHODS = {  # library, what it takes
@@ -118,20 +119,21 @@ def _summary(rows, columns):
 
 
 def _paired(rows):
-    """`auto` against each optimiser of another library."""
+    """Our solver of one start against each optimiser of another library."""
     ends = {(row["solver"], row["material"]): row.get("objective") or math.inf for row in rows}
     names = sorted({row["material"] for row in rows})
     lines = []
     for solver, _ in _order(rows):
-        if solver in METHODS:
-            lower, higher, p = stats.sign_test([ends["auto", name] for name in names],
+        if solver in METHODS and ONE_START in {row["solver"] for row in rows}:
+            lower, higher, p = stats.sign_test([ends[ONE_START, name] for name in names],
                                                [ends[solver, name] for name in names], ALIKE)
             lines.append([solver, str(lower), str(higher), str(len(names) - lower - higher), f"{p:.2g}"])
-    return tables.markdown(["solver", "auto lower", "it lower", "alike", "p"], lines)
+    return tables.markdown(["solver", f"{ONE_START} lower", "it lower", "alike", "p"], lines)
 
 
 def _figure(curves, rows):
     from lab import plots
+    coloured = plots.SERIES[:6]  # the others are ours
     of = tables.groups(curves, "solver")
     figure, both = plots.plt.subplots(1, 2, figsize=(11, 5), sharey=True)
     ours = [solver for solver in of if solver not in METHODS]
@@ -141,11 +143,11 @@ def _figure(curves, rows):
             times = sorted({row["seconds"] for row in of[solver]})
             middle = [100 * stats.median([row["excess"] for row in of[solver] if row["seconds"] == t]) for t in times]
             if solver in METHODS:
-                style = {"color": plots.SERIES[theirs.index(solver) % len(plots.SERIES)], "linewidth": 1.8,
-                         "linestyle": "-" if theirs.index(solver) < len(plots.SERIES) else "--"}
+                again, k = divmod(theirs.index(solver), len(coloured))
+                style = {"color": coloured[k], "linewidth": 1.8, "linestyle": ("-", "--", ":")[again]}
             else:
-                style = {"color": plots.BLACK if solver == "auto" else plots.GREY,
-                         "linewidth": 2.6 if solver == "auto" else 0.9}
+                style = {"color": plots.BLACK if solver == ONE_START else plots.GREY,
+                         "linewidth": 2.6 if solver == ONE_START else 0.9}
             axes.plot(times, numpy.maximum(middle, 0.01), label=solver, **style)
         axes.set(xscale="log", yscale="log", xlabel="seconds of one processor",
                  title=f"Optimisers that take {kind}, and ours")
