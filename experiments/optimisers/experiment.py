@@ -83,7 +83,7 @@ def tabulate(setting, results):
         E = at[result.unit.key]
         runs.append({**row, "start": values[0], "objective": E[len(when) - 1],
                      "excess": stats.excess(E[len(when) - 1], least[name]),
-                     **{f"excess_at_{share:g}": stats.excess(E[k], least[name]) for k, share in enumerate(SHARES[:-1])},
+                     **{f"excess_at_{100 * share:.0f}_percent": stats.excess(E[k], least[name]) for k, share in enumerate(SHARES[:-1])},
                      "evaluations": evaluations, "stopped": stopped})
         curves += [{"material": name, "solver": solver, "seconds": float(f"{t:.4g}"),
                     "excess": float(f"{stats.excess(value, least[name]):.4g}")}
@@ -115,7 +115,7 @@ def _summary(rows, columns):
                       _percent(max(excess)), f"{stats.median(evaluations):.0f}" if evaluations else ""])
     return tables.markdown(
         ["solver", "library", *(f"within {100 * target:g} %" for target in TARGETS),
-         *(f"excess after {share:g} of the time, %" for share in SHARES), "largest, %", "evaluations"], lines)
+         *(f"excess after {100 * share:.0f} % of the time, %" for share in SHARES), "largest, %", "evaluations"], lines)
 
 
 def _paired(rows):
@@ -161,7 +161,7 @@ def _figure(curves, rows):
 
 def draw(drawn, _):
     rows = drawn["runs"]
-    columns = [*(f"excess_at_{share:g}" for share in SHARES[:-1]), "excess"]
+    columns = [*(f"excess_at_{100 * share:.0f}_percent" for share in SHARES[:-1]), "excess"]
     products = {"summary.md": _summary(rows, columns), "paired.md": _paired(rows)}
     if "curves" in drawn:
         products["curves"] = _figure(drawn["curves"], rows)
