@@ -96,7 +96,7 @@ def draw(drawn, _):
     axes.axvline(FOUND, color=plots.GREY, linewidth=0.8)
     axes.set(xscale="log", xlim=(1e-16, 1), ylim=(0, 1.02), xlabel="E at the end over E of a black model; it could be 0",
              ylabel="share of fits that end there or lower")
-    axes.legend(loc="upper left")
+    axes.legend(loc="center left", bbox_to_anchor=(0.2, 0.35))
     return {"ends": figure, "summary.md": tables.markdown(
         ["solver", "start", "fits", f"E found to {FOUND:g}", f"to {NEAR:g}", "of those found: the same lobes",
          "E over a black model's, median", "largest", "seconds, median"], lines)}
