@@ -1,6 +1,7 @@
 #include "fit/finish/limit_light.h"
 
 #include "fit/finish/anisotropic_albedo.h"
+#include "trilobe/model/axis.h"
 
 namespace trilobe {
 
@@ -21,7 +22,8 @@ bool LightLimit::Apply(const TableLayout& layout, const StopCheck& stop, FactorM
 
 bool LightLimit::ApplyAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
                             FactorModel* model) const {
-  if (!isotropic_) return false;
+  const Axis& g_axis = model->spec().g_axis;
+  if (!isotropic_ || !(isotropic_->beyond_theta < g_axis.Theta(g_axis.size - 1))) return false;
   return LimitAlbedo(*isotropic_, isotropic_->beyond_theta - within, layout, num_threads_, stop,
                      model);
 }

@@ -26,7 +26,8 @@ class LightLimit {
   bool Apply(const TableLayout& layout, const StopCheck& stop, FactorModel* model) const;
 
   // The same of an isotropic model beyond the data, and at angles up to `within` before their end
-  // [rad], where few samples read G. Does nothing to an anisotropic one.
+  // [rad], where few samples read G. Does nothing to an anisotropic one, or where nothing is
+  // beyond.
   bool ApplyAtEnd(double within, const TableLayout& layout, const StopCheck& stop,
                   FactorModel* model) const;
 
