@@ -195,37 +195,38 @@ void NoteStep(const char* name, FinishedFit* fit, const std::function<void()>& c
                         .seconds = seconds});
 }
 
-// Unless E would rise by so much that the data themselves ask for the light; then at the end of the
-// data, where few samples ask for anything, and beyond. Notes what is left.
+// Unless E would rise by so much that the data themselves ask for the light. Where that leaves a
+// glow, it is limited beyond the data and, as far as it takes, at their end, where few samples ask
+// for anything. Notes what is left.
 void LimitAlbedoOf(FinishedFit* fit, const StopCheck& stop) {
   constexpr double kMaxRise = 0.05, kMaxRiseOfEnergy = 1e-3, kNotable = 1.05;
   const Objective data(fit->objective.data(), fit->model.spec());
   const TableLayout layout = fit->layout.value_or(TableLayout::Full(fit->model.spec()));
-  const LightLimit limit(data, fit->model);
-  FactorModel limited = fit->model;
+  const FactorModel before = fit->model;
+  const LightLimit limit(data, before);
+  FactorModel limited = before;
   if (!limit.Apply(layout, stop, &limited)) return;
-  const double E = data.Value(fit->model);
+  const double E = data.Value(before);
   const double acceptable = E + std::max(kMaxRise * E, kMaxRiseOfEnergy * data.MeasuredEnergy());
   const auto take = [&](FactorModel darker) {
     if (data.Value(darker) > acceptable) return false;
     fit->model = std::move(darker);
     return true;
   };
-  if (take(std::move(limited))) {
-    if (data.spec().anisotropic()) return;  // nothing is left
-  } else {
-    for (const double degrees : {6, 3, 1, 0}) {
-      limited = fit->model;
-      if (limit.ApplyAtEnd(DegreesToRadians(degrees), layout, stop, &limited) &&
-          take(std::move(limited))) {
-        break;
-      }
-    }
+  const auto glows = [&](const PeakAlbedo& peak) {
+    return peak.albedo > kNotable * std::ranges::max(limit.everywhere());
+  };
+  const bool taken = take(std::move(limited));
+  if (taken && data.spec().anisotropic()) return;  // nothing is left
+  PeakAlbedo peak = PeakLight(fit->model, data.num_threads());
+  for (const double degrees : {0, 1, 3, 6}) {
+    if (taken || !glows(peak)) break;
+    limited = before;
+    if (!limit.ApplyAtEnd(DegreesToRadians(degrees), layout, stop, &limited)) continue;
+    if (!take(std::move(limited))) break;
+    peak = PeakLight(fit->model, data.num_threads());
   }
-  const PeakAlbedo peak = PeakLight(fit->model, data.num_threads());
-  if (peak.albedo > kNotable * std::ranges::max(limit.everywhere())) {
-    fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
-  }
+  if (glows(peak)) fit->glow = {.albedo = peak.albedo, .theta_i = peak.theta_i};
 }
 
 // The form that looks best or, without pictures, fits samples best that are held out. Returns the

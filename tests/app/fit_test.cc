@@ -377,7 +377,7 @@ TEST(Fit, ReflectsAsMuchLightAsWasMeasured) {
   spec.stretches = Stretch{.along = -1, .across = 0};
   FactorModel material(spec);
   std::ranges::fill(material.d(), 0.02);
-  std::ranges::fill(material.s(0), 10.0);
+  std::ranges::fill(material.s(0), 4.0);
   for (int k = 0; k < spec.d_axis.size; ++k) {
     material.table(Factor::kD, 0)[k] = std::exp(-std::pow(k / 25.0, 4));
   }
