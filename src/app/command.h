@@ -32,6 +32,7 @@ inline constexpr int kSomeFailed = 3;
 Command CompareCommand();
 Command ConvertCommand();
 Command FitCommand();
+Command FormsCommand();
 Command InfoCommand();
 Command MaterialsCommand();
 Command PlanCommand();

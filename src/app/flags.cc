@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -172,6 +173,18 @@ std::vector<std::string> MeasurementFlags() {
   return {"noise",    "missing",    "corrupt",    "tilt",      "cosine",      "scale",
           "azimuth",  "seed",       "data_seed",  "max_angle", "min_theta_d", "extrapolated",
           "outliers", "dark_noise", "radiometry", "columns",   "theta_i",     "bands"};
+}
+
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) {
+    const size_t begin = part.find_first_not_of(' ');
+    parts.push_back(begin == std::string::npos
+                        ? ""
+                        : part.substr(begin, part.find_last_not_of(' ') + 1 - begin));
+  }
+  return parts;
 }
 
 std::vector<std::string> WithSourceFlags(std::vector<std::string> others) {

@@ -47,6 +47,9 @@ struct SourceOptions;
 // Whether the flag has its default value.
 bool IsDefault(const std::string& flag);
 
+// The parts of the value of a flag, without blanks around them.
+std::vector<std::string> Split(const std::string& text, char separator);
+
 // Which of these flags were given: name to value.
 std::map<std::string, std::string> GivenFlags(const std::vector<std::string>& flags);
 

@@ -29,9 +29,9 @@ namespace trilobe {
 
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = {
-      FitCommand(),     StudyCommand(), SolversCommand(), PlanCommand(),
-      CompareCommand(), ScoreCommand(), PlotCommand(),    InfoCommand(),
-      ConvertCommand(), SynthCommand(), ViewCommand(),    MaterialsCommand()};
+      FitCommand(),     StudyCommand(), SolversCommand(),  FormsCommand(), PlanCommand(),
+      CompareCommand(), ScoreCommand(), PlotCommand(),     InfoCommand(),  ConvertCommand(),
+      SynthCommand(),   ViewCommand(),  MaterialsCommand()};
   return commands;
 }
 

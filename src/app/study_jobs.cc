@@ -33,19 +33,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The parts without blanks around them.
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) {
-    const size_t begin = part.find_first_not_of(' ');
-    parts.push_back(begin == std::string::npos
-                        ? ""
-                        : part.substr(begin, part.find_last_not_of(' ') + 1 - begin));
-  }
-  return parts;
-}
-
 // A flag of --set, and its values.
 struct Sweep {
   std::string flag;

@@ -22,6 +22,7 @@ class HeldOutPart {
   HeldOutPart(const BrdfSamples& measured, uint64_t seed, int num_threads);
 
   int size() const { return held_.size(); }
+  const BrdfSamples& samples() const { return held_; }
 
   // The objective without the held-out samples. Its first samples must be the measured ones; those
   // of a prior follow and stay.

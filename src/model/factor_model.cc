@@ -6,20 +6,12 @@
 #include <limits>
 #include <sstream>
 
+#include "model/splined_cosine.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/math/catmull_rom.h"
 
 namespace trilobe {
 namespace {
-
-// If G is a spline, so is the cosine, through cos theta_k at the nodes (docs/model.md).
-double SplinedCosine(const CatmullRom& spline, const Stencil& stencil) {
-  double sum = 0;
-  for (int k = 0; k < stencil.size; ++k) {
-    sum += stencil.weight[k] * std::cos(spline.NodeAngle(stencil.index[k]));
-  }
-  return sum;
-}
 
 void SetCosineStencils(const ModelSpec& spec, const Cosines& cosines, SampleStencils* stencils) {
   const CatmullRom spline(spec.g_axis.size);

@@ -36,6 +36,7 @@
   X(Speos)                         \
   X(Pab)                           \
   X(OpenMaterial)                  \
+  X(Terms)                         \
   X(Csv)                           \
   X(LightTools)                    \
   X(Zemax)                         \

@@ -5,20 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <span>
-#include <type_traits>
 #include <utility>
 
-#include "core/base/file_names.h"
-#include "core/base/text.h"
 #include "core/files/file.h"
+#include "io/model_files/model_json.h"
 #include "io/model_files/stretch_json.h"
 #include "model/evaluate/model_format.h"
 #include "trilobe/core/base/error.h"
 
 namespace trilobe {
 namespace {
-
-using OrderedJson = nlohmann::ordered_json;
 
 // Tables in the order of their numbers, nested as the file has them: a list a lobe, or a list of
 // lists where channels differ.
@@ -32,16 +28,6 @@ OrderedJson Nest(const std::vector<OrderedJson>& tables, const TableSharing& sha
     nest.push_back(sharing.per_channel ? OrderedJson(group) : group[0]);
   }
   return sharing.per_lobe ? nest : nest[0];
-}
-
-OrderedJson FiniteNumbers(std::span<const double> values, const char* key) {
-  for (const double value : values) {
-    if (!std::isfinite(value) || value < 0) {
-      throw Error("cannot store the model: '" + std::string(key) + "' has the entry " +
-                  std::to_string(value) + "; all must be finite and >= 0");
-    }
-  }
-  return OrderedJson(std::vector<double>(values.begin(), values.end()));
 }
 
 // The first alone where it stands for all.
@@ -115,25 +101,6 @@ OrderedJson BandsOfF(const SpectralModel& model) {
   return Nest(tables, spec.F, spec.lobes, bands);
 }
 
-// Indented by two, but arrays of numbers each on one line.
-void Print(const OrderedJson& json, const std::string& indent, std::string* text) {
-  const bool nested = json.is_object() ||
-                      (json.is_array() && std::ranges::any_of(json, &OrderedJson::is_structured));
-  if (!nested || json.empty()) {
-    *text += json.dump();
-    return;
-  }
-  *text += json.is_object() ? "{" : "[";
-  const char* separator = "\n";
-  for (const auto& [key, value] : json.items()) {
-    *text += separator + indent + "  ";
-    if (json.is_object()) *text += OrderedJson(key).dump() + ": ";
-    Print(value, indent + "  ", text);
-    separator = ",\n";
-  }
-  *text += "\n" + indent + (json.is_object() ? "}" : "]");
-}
-
 }  // namespace
 
 std::string FormatModel(const ModelFile& file) {
@@ -184,19 +151,8 @@ std::string FormatModel(const ModelFile& file) {
       json["unobserved"][FactorName(factor)] = UnobservedToJson(file, factor);
     }
   }
-  json["fit"] = OrderedJson::object();
-  FitInfo fit = file.fit;
-  fit.source = ValidUtf8(FileNameOf(fit.source));
-  fit.init = ValidUtf8(FileNameOf(fit.init));
-  VisitFitInfo(&fit, [&](const char* key, const auto* value) {
-    if constexpr (std::is_same_v<decltype(value), const double*>) {
-      if (!std::isfinite(*value)) return;  // JSON cannot say it: unknown
-    }
-    json["fit"][key] = *value;
-  });
-  std::string text;
-  Print(json, "", &text);
-  return text + "\n";
+  json["fit"] = ToJson(file.fit);
+  return TextOf(json);
 }
 
 void WriteModel(const ModelFile& file, const std::string& path) {

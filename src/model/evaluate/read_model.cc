@@ -9,6 +9,7 @@
 #include "core/files/json_value.h"
 #include "model/evaluate/json_node.h"
 #include "model/evaluate/model_format.h"
+#include "model/evaluate/read_fit_info.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/stretch.h"
 
@@ -311,21 +312,6 @@ std::vector<bool> ReadUnobserved(const Node& root, const ModelSpec& spec, const 
     }
   }
   return unobserved;
-}
-
-void Read(const Node& node, std::string* value) { *value = node.String(); }
-void Read(const Node& node, double* value) { *value = node.Number(); }
-void Read(const Node& node, int* value) { *value = node.Integer(std::numeric_limits<int>::max()); }
-
-// Fields missing in the file stay unknown.
-FitInfo ReadFitInfo(const Node& root) {
-  FitInfo fit;
-  if (!root.has("fit")) return fit;
-  const Node node = root["fit"].CheckObject();
-  VisitFitInfo(&fit, [&](const std::string& key, auto* value) {
-    if (node.has(key)) Read(node[key], value);
-  });
-  return fit;
 }
 
 std::string NotAModel(const std::string& source) { return source + ": not a model file"; }

@@ -1,0 +1,73 @@
+#include "trilobe/fit/forms/compare_forms.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/base/names.h"
+#include "core/system/process.h"
+#include "fit/held_out.h"
+#include "fit/prune/thinned_objective.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/model/terms/term_forms.h"
+#include "trilobe/solvers/general/term_problem.h"
+
+namespace trilobe {
+namespace {
+
+// Of many samples, some; these need no prior.
+Objective SomeOf(const FitProblem& problem, int num_parameters) {
+  constexpr int kMost = 100'000;
+  if (problem.solved().samples().size() <= kMost) return problem.solved();
+  return ThinnedObjective(problem.data, num_parameters, kFewSamples);
+}
+
+double Share(double E, double of) { return of > 0 ? E / of : 0; }
+
+}  // namespace
+
+std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& start,
+                                  const CompareFormsOptions& options) {
+  std::vector<const TermForm*> forms = {&TermForms().front()};
+  for (const std::string& name : options.forms) {
+    const TermForm& form = FindNamed("form", name, TermForms());
+    if (std::ranges::find(forms, &form) == forms.end()) forms.push_back(&form);
+  }
+  std::vector<TermModel> starts;
+  for (const TermForm* form : forms) starts.push_back(form->from(start));  // their errors
+  const Objective all = SomeOf(problem, start.num_parameters());
+  const Objective& data = all.data();
+  const HeldOutPart held_out(data.samples(), options.seed, all.num_threads());
+  const Objective kept = held_out.RemoveFrom(all);
+  const Objective held(held_out.samples(), all.spec(), all.weighting(), all.num_threads());
+  std::vector<FormFit> fits;
+  for (size_t k = 0; k < forms.size() && !options.stop(); ++k) {
+    const Stopwatch stopwatch;
+    const TermSpec spec = starts[k].spec();
+    const auto problem_of = [&](const Objective& part) {
+      return TermProblem(part, spec, options.bands);
+    };
+    const auto share_of = [&](const Objective& part, const TermModel& model) {
+      const TermProblem judged = problem_of(part);
+      return Share(judged.Value(model), judged.MeasuredEnergy());
+    };
+    const TermFitOptions steps{.stop = options.stop};
+    const TermFit part = FitTerms(problem_of(kept), starts[k], steps);
+    const TermFit whole = FitTerms(problem_of(all), part.model, steps);
+    if (options.stop()) break;
+    FormFit fit{.form = forms[k]->name,
+                .model = whole.model,
+                .objective = share_of(data, whole.model),
+                .kept = share_of(kept.data(), part.model),
+                .held_out = share_of(held, part.model),
+                .steps = static_cast<int>(part.trace.size() + whole.trace.size()) - 2,
+                .converged = part.converged && whole.converged,
+                .seconds = stopwatch.Seconds()};
+    if (options.on_form) options.on_form(fit);
+    fits.push_back(std::move(fit));
+  }
+  return fits;
+}
+
+}  // namespace trilobe
