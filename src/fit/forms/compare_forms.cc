@@ -16,10 +16,10 @@
 namespace trilobe {
 namespace {
 
-// Of many samples, some; these need no prior.
-Objective SomeOf(const FitProblem& problem, int num_parameters) {
+// Of many samples, some; these need no prior. One of colours has no spectra.
+Objective SomeOf(const FitProblem& problem, bool bands, int num_parameters) {
   constexpr int kMost = 100'000;
-  if (problem.solved().samples().size() <= kMost) return problem.solved();
+  if (problem.solved().samples().size() <= kMost) return bands ? problem.data : problem.solved();
   return ThinnedObjective(problem.data, num_parameters, kFewSamples);
 }
 
@@ -36,7 +36,7 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
   }
   std::vector<TermModel> starts;
   for (const TermForm* form : forms) starts.push_back(form->from(start));  // their errors
-  const Objective all = SomeOf(problem, start.num_parameters());
+  const Objective all = SomeOf(problem, options.bands, start.num_parameters());
   const Objective& data = all.data();
   const HeldOutPart held_out(data.samples(), options.seed, all.num_threads());
   const Objective kept = held_out.RemoveFrom(all);

@@ -34,9 +34,10 @@ struct CompareFormsOptions {
 };
 
 // Fits each form from `start`, a model of the paper's form (TermModel::Of), by FitTerms, to the
-// samples of the problem, with a prior's if there is one; of a table to some 32 samples a
-// parameter, in all its places. Forms that cannot be made of the start are an Error, as are unknown
-// names and too few samples to hold out some. If stopped, those that are finished.
+// samples of the problem, with a prior's if there is one and channels are R, G and B; of a table to
+// some 32 samples a parameter, in all its places. Forms that cannot be made of the start are an
+// Error, as are unknown names and too few samples to hold out some. If stopped, those that are
+// finished.
 std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& start,
                                   const CompareFormsOptions& options);
 
