@@ -52,7 +52,8 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
       const TermProblem judged = problem_of(part);
       return Share(judged.Value(model), judged.MeasuredEnergy());
     };
-    const TermFitOptions steps{.stop = options.stop};
+    constexpr double kSmall = 3e-5;  // forms differ by more
+    const TermFitOptions steps{.tolerance = kSmall, .stop = options.stop};
     const TermFit part = FitTerms(problem_of(kept), starts[k], steps);
     const TermFit whole = FitTerms(problem_of(all), part.model, steps);
     if (options.stop()) break;
