@@ -256,13 +256,17 @@ Weighting TakeBestForm(const Objective& solved, const FinishOptions& options, Sp
 
 }  // namespace
 
-FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
+FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options) {
-  FinishedFit fit{.objective = objective, .model = std::move(model)};
   // What follows fits parameters anew, and must not lose what the weights of a robust fit have won.
   Objective solved = objective;
+  const std::vector<double> coverage = objective.coverage();
+  const bool has_prior = objective.has_prior();
+  // Before CorrectOvershoot adds more to `solved`.
+  if (has_prior && options.max_parameters == 0) objective = Objective(objective.data());
+  FinishedFit fit{.objective = objective, .model = std::move(model)};
   if (options.robust > 0) {
-    NoteStep("robust", &fit, [&] { solved = FitRobustly(objective, options, &fit.model); });
+    NoteStep("robust", &fit, [&] { solved = FitRobustly(solved, options, &fit.model); });
   }
   if (options.prior != nullptr) {
     NoteStep("between_samples", &fit,
@@ -271,7 +275,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   if (options.tie_data_edge && !options.stop()) {
     NoteStep("data_edge", &fit, [&] { TieEntriesAtDataEdge(solved, &fit.model, options.stop); });
   }
-  Canonicalize(objective, &fit.model);
+  Canonicalize(coverage, &fit.model, LobeOrder::kByLight, objective.num_threads());
   std::optional<SphereScores> of_sphere;
   if (measured != nullptr) of_sphere.emplace(*measured, options.appearance);
   SphereScores* const scores = of_sphere ? &*of_sphere : nullptr;
@@ -297,7 +301,7 @@ FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, Fac
   if (options.smoothness > 0 && is_full && scores != nullptr && !options.stop()) {
     NoteStep("evenness", &fit, [&] { EvenOut(solved, options.stop, scores, &fit); });
   }
-  if (objective.has_prior() && !fit.layout) {
+  if (has_prior && !fit.layout) {
     Canonicalize(Objective(objective.data(), fit.model.spec()), &fit.model);  // by the data alone
   }
   if (options.limit_albedo && !options.stop()) {

@@ -16,6 +16,7 @@
 #include "model/appearance/picture_data.h"
 #include "model/lobes/gauge.h"
 #include "model/measurement/anisotropy.h"
+#include "model/measurement/sample_density.h"
 #include "model/objective/canonical_form.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
@@ -44,6 +45,17 @@ BrdfSamples SamplesToFit(const Measurement& measurement, const FitOptions& optio
   return options.select ? options.select(std::move(samples)) : samples;
 }
 
+// The same without a copy where they are those of the measurement, and for as long as that lives.
+std::shared_ptr<const BrdfSamples> SharedSamplesToFit(const Measurement& measurement,
+                                                      const FitOptions& options) {
+  const BrdfSamples& own = measurement.samples;
+  const bool all_own = !measurement.table && !options.select && own.size() > 0;
+  if (all_own && (measurement.anisotropic || EvenMultiplicity(own) == own.multiplicity)) {
+    return {std::shared_ptr<const BrdfSamples>(), &own};
+  }
+  return std::make_shared<const BrdfSamples>(SamplesToFit(measurement, options));
+}
+
 std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitOptions& options,
                                       const Objective& data) {
   const double weight = PriorWeight(measurement, options);
@@ -56,7 +68,7 @@ std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitO
 }
 
 Objective JoinPrior(const Objective& data, const std::optional<SyntheticPrior>& prior) {
-  return prior ? Objective(data, prior->JoinTo(data)) : data;
+  return prior ? prior->Join(data) : data;
 }
 
 FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
@@ -125,10 +137,17 @@ class Fitting {
         table_(measurement.table && !options.select ? &*measurement.table : nullptr) {}
 
   FitResult Run() {
-    BrdfSamples samples = SamplesToFit(measurement_, options_);
+    FitResult fit = RunOnShared();
+    fit.objective.OwnSamples();  // those of the measurement may be gone before
+    return fit;
+  }
+
+ private:
+  FitResult RunOnShared() {
+    std::shared_ptr<const BrdfSamples> samples = SharedSamplesToFit(measurement_, options_);
     ModelSpec spec = options_.start_model ? options_.start_model->spec()
-                                          : SpecFor(measurement_, options_.form, samples.size());
-    if (options_.choose_form) MakeReadyToChoose(samples.size(), &spec);
+                                          : SpecFor(measurement_, options_.form, samples->size());
+    if (options_.choose_form) MakeReadyToChoose(samples->size(), &spec);
     const std::vector<NodeCandidate> nodes = options_.start_model
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
@@ -151,7 +170,6 @@ class Fitting {
     return fit;
   }
 
- private:
   FactorModel Start(const Objective& objective) const {
     return options_.start_model ? *options_.start_model
                                 : FindInitialModel(options_.init).make(objective, options_.seed);
@@ -217,7 +235,7 @@ class Fitting {
       Choose(prior, &form, fit);
       ReportForm(form, fit);
     }
-    Finish(form.solved, prior ? &*prior : nullptr, std::move(form.model), fit);
+    Finish(std::move(form.solved), prior ? &*prior : nullptr, std::move(form.model), fit);
     options_.on_model(*fit);
     fit->seconds.finish = stopwatch_.Lap();
     if (options_.bands && !options_.stop()) {
@@ -250,8 +268,9 @@ class Fitting {
 
   void ReportForm(const SolvedForm& form, FitResult* fit) const {
     fit->objective = form.data;
-    const int added = form.solved.samples().size() - form.data.samples().size();
-    if (added > 0) fit->prior = {form.solved.samples().multiplicity.back(), added};
+    if (const BrdfSamples* const added = form.solved.added()) {
+      fit->prior = {added->multiplicity.back(), added->size()};
+    }
     fit->summary = form.summary;
     fit->file.fit = InfoOf(measurement_, options_, fit->objective, fit->summary);
   }
@@ -321,7 +340,7 @@ class Fitting {
     return [judge](const FactorModel& other) { return (*judge)(MaterialOf(other).spherical); };
   }
 
-  void Finish(const Objective& solved, const SyntheticPrior* prior, FactorModel model,
+  void Finish(Objective solved, const SyntheticPrior* prior, FactorModel model,
               FitResult* fit) const {
     // One that was stopped early gains more by going on.
     const bool has_ended = HasEnded(fit->summary.stop_reason);
@@ -337,9 +356,10 @@ class Fitting {
                          .limit_albedo = !options_.raw,
                          .appearance = Appearance(),
                          .stop = options_.stop};
-    FinishedFit finished = FinishFit(solved, table_, std::move(model), finish);
+    const bool has_prior = solved.has_prior();
+    FinishedFit finished = FinishFit(std::move(solved), table_, std::move(model), finish);
     fit->file.model = std::move(finished.model);
-    if (solved.has_prior()) {
+    if (has_prior) {
       fit->objective = Objective(fit->objective, fit->file.model.spec());
     } else {
       fit->objective = finished.objective;
@@ -369,6 +389,7 @@ class Fitting {
   }
 
   void Compare(FitResult* fit) const {
+    fit->objective.ReleaseFold();  // parts of the samples may be fitted once more
     const PictureData pictured = options_.select ? PictureData() : PictureDataOf(measurement_);
     if (!pictured.empty()) {
       fit->appearance = CompareAppearance(pictured, MaterialOf(fit->model()), Appearance());
@@ -444,7 +465,7 @@ FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
   FitProblem problem{.data = Objective(SamplesToFit(measurement, options), spec, options.weighting,
                                        options.num_threads)};
   const std::optional<SyntheticPrior> prior = PriorOf(measurement, options, problem.data);
-  if (prior) problem.with_prior.emplace(problem.data, prior->JoinTo(problem.data));
+  if (prior) problem.with_prior = prior->Join(problem.data);
   return problem;
 }
 

@@ -68,8 +68,9 @@ struct FinishedFit {
 };
 
 // Applies the steps to a solver's model. `measured` is the table whose pictures judge models, or
-// null; match_reflectance needs it.
-FinishedFit FinishFit(const Objective& objective, const BrdfTable* measured, FactorModel model,
+// null; match_reflectance needs it. With a prior, and without max_parameters, the result has the
+// objective of the data alone.
+FinishedFit FinishFit(Objective objective, const BrdfTable* measured, FactorModel model,
                       const FinishOptions& options);
 
 }  // namespace trilobe

@@ -44,7 +44,7 @@ class SampledLight {
   explicit SampledLight(const Objective& objective)
       : spec_(objective.spec()), num_threads_(objective.num_threads()) {
     constexpr int kSamples = 1 << 16;
-    const BrdfSamples samples = EvenlySpread(objective.samples(), kSamples);
+    const BrdfSamples samples = objective.EvenlySpread(kSamples);
     size_ = samples.size();
     at_.resize(size_);
     ParallelFor(kParts, num_threads_, [&](int part) {

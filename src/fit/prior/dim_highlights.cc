@@ -8,7 +8,6 @@
 
 #include "core/math/quantile.h"
 #include "fit/prior/albedos_of.h"
-#include "fit/prior/join_samples.h"
 #include "trilobe/core/geometry/directions.h"
 #include "trilobe/core/math/angles.h"
 #include "trilobe/fit/prior/reach.h"
@@ -115,12 +114,11 @@ bool DimHighlights(const StopCheck& stop, Objective* objective, FactorModel* mod
   double weight = kWeight;
   bool changed = false;
   for (int round = 0; round < kRounds && !stop(); ++round, weight *= kMore) {
-    const BrdfSamples dimmed = DimmedHighlights(limit, measured, *model, threads);
+    BrdfSamples dimmed = DimmedHighlights(limit, measured, *model, threads);
     if (dimmed.rho.empty()) break;
     changed = true;
-    Objective further(objective->data(), JoinSamples(objective->samples(), dimmed, weight));
-    MakeSolver("varpro")->Solve(further, options, model);
-    *objective = std::move(further);
+    *objective = Objective(std::move(*objective), std::move(dimmed), weight);
+    MakeSolver("varpro")->Solve(*objective, options, model);
   }
   return changed;
 }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "fit/prior/dim_highlights.h"
-#include "fit/prior/join_samples.h"
 #include "fit/prior/node_residual.h"
+#include "model/measurement/join_samples.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/core/base/stop_check.h"
 #include "trilobe/core/geometry/directions.h"
@@ -117,9 +117,9 @@ std::vector<SphericalAngles> FindDirectionsAbove(double times, const Objective& 
                          with_prior.num_threads());
 }
 
-// The data and what `prior` says between them, enough for a model of so many parameters.
-BrdfSamples WithSamplesOf(const PriorModel& prior, const Objective& data, int num_parameters,
-                          double weight) {
+// What `prior` says between the samples of the data, enough for a model of so many parameters.
+BrdfSamples SamplesBetween(const PriorModel& prior, const Objective& data, int num_parameters,
+                           double weight) {
   const BrdfSamples& measured = data.samples();
   const double share = static_cast<double>(measured.rho.size()) / kDataPerSample;
   const bool few = share < kFew * num_parameters;
@@ -129,12 +129,18 @@ BrdfSamples WithSamplesOf(const PriorModel& prior, const Objective& data, int nu
                 DirectionsBetween(LargestTheta(measured), count,
                                   few ? Spread::kRetroreflectionToo : Spread::kByHighlights),
                 measured, data.num_threads());
-  if (added.directions.empty()) return measured;
   if (few) {
     LimitTo(kMaxOfLargest, measured.rho, &added.rho);
     weight *= share / static_cast<double>(count);
   }
-  return JoinSamples(measured, added, weight);
+  added.multiplicity.assign(added.rho.size(), weight);
+  return added;
+}
+
+BrdfSamples WithSamplesOf(const PriorModel& prior, const Objective& data, int num_parameters,
+                          double weight) {
+  const BrdfSamples added = SamplesBetween(prior, data, num_parameters, weight);
+  return added.size() == 0 ? data.samples() : JoinSamples(data.samples(), added);
 }
 
 // The prior of this number, from 0 (the finest), itself fitted with the next where data are few.
@@ -181,9 +187,7 @@ void LowerOvershoot(const SyntheticPrior& prior, const StopCheck& stop, Objectiv
   options.on_iteration = [&](const IterationRecord&, const FactorModel&) { return !stop(); };
   double times = 1;
   for (int round = 0; round < kRounds && !stop(); ++round, times *= kMore) {
-    std::optional<Objective> further = prior.AddWhereLarge(*with_prior, *model, times);
-    if (!further) break;
-    *with_prior = *std::move(further);  // before the solver needs memory
+    if (!prior.AddWhereLarge(*model, times, with_prior)) break;
     MakeSolver("varpro")->Solve(*with_prior, options, model);
   }
 }
@@ -215,15 +219,23 @@ BrdfSamples SyntheticPrior::JoinTo(const Objective& data) const {
                        data.spec().num_parameters(), weight_);
 }
 
-std::optional<Objective> SyntheticPrior::AddWhereLarge(const Objective& with_prior,
-                                                       const FactorModel& fit, double times) const {
-  const BrdfSamples& measured = with_prior.data().samples();
-  const std::vector<SphericalAngles> large = FindDirectionsAbove(kMaxOfLargest, with_prior, fit);
-  if (large.empty()) return std::nullopt;
+Objective SyntheticPrior::Join(const Objective& data) const {
+  BrdfSamples added = SamplesBetween({model_, residual_ ? &*residual_ : nullptr}, data,
+                                     data.spec().num_parameters(), weight_);
+  const double weight = added.size() == 0 ? 1 : added.multiplicity.front();
+  return {data, std::move(added), weight};
+}
+
+bool SyntheticPrior::AddWhereLarge(const FactorModel& fit, double times,
+                                   Objective* with_prior) const {
+  const BrdfSamples& measured = with_prior->data().samples();
+  const std::vector<SphericalAngles> large = FindDirectionsAbove(kMaxOfLargest, *with_prior, fit);
+  if (large.empty()) return false;
   BrdfSamples added = SamplesOf({model_, residual_ ? &*residual_ : nullptr}, large, measured,
-                                with_prior.num_threads());
+                                with_prior->num_threads());
   LimitTo(kMaxOfLargest, measured.rho, &added.rho);
-  return Objective(with_prior.data(), JoinSamples(with_prior.samples(), added, times * weight_));
+  *with_prior = Objective(std::move(*with_prior), std::move(added), times * weight_);
+  return true;
 }
 
 BrdfSamples WithPrior(const Objective& data, const SyntheticPriorOptions& options) {

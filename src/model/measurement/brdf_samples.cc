@@ -11,6 +11,7 @@
 
 #include "core/base/text.h"
 #include "core/geometry/grid_cosines.h"
+#include "model/measurement/sample_numbers.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 
@@ -228,15 +229,24 @@ double GoldenFraction(int n) {
 
 }  // namespace
 
+std::vector<int> ThinnedNumbers(int size, int stride) {
+  CheckStride(stride);
+  std::vector<int> kept;
+  for (int j = 0; j < size; ++j) {
+    if (static_cast<int>(GoldenFraction(j) * stride) % stride == 0) kept.push_back(j);
+  }
+  if (kept.empty() && size > 0) kept.push_back(0);
+  return kept;
+}
+
 BrdfSamples Thinned(const BrdfSamples& samples, int stride) {
   CheckStride(stride);
   CheckSizes(samples);
   CheckGrid(samples.grid);
+  if (!samples.on_grid()) return Selected(samples, ThinnedNumbers(samples.size(), stride));
   std::vector<int> kept;
   for (int j = 0; j < samples.size(); ++j) {
-    const int phase =
-        samples.on_grid() ? PhaseOnGrid(samples, j) : static_cast<int>(GoldenFraction(j) * stride);
-    if (phase % stride == 0) kept.push_back(j);
+    if (PhaseOnGrid(samples, j) % stride == 0) kept.push_back(j);
   }
   if (kept.empty() && samples.size() > 0) kept.push_back(0);
   return Selected(samples, kept);
@@ -291,14 +301,18 @@ BrdfSamples MeansOfFourBins(const BrdfSamples& samples, int stride) {
   return means;
 }
 
-BrdfSamples EvenlySpread(const BrdfSamples& samples, int count) {
+std::vector<int> EvenlySpreadNumbers(int size, const MerlGrid& grid, int count) {
   CheckNumber("the number of samples", count, count >= 1, "1 or more");
-  int stride = std::max(1, samples.size() / count);
+  int stride = std::max(1, size / count);
   // A stride coprime to the number of phi_d bins visits all of these.
-  while (std::gcd(stride, samples.grid.phi_d) > 1) ++stride;
+  while (std::gcd(stride, grid.phi_d) > 1) ++stride;
   std::vector<int> kept;
-  for (int j = 0; j < samples.size(); j += stride) kept.push_back(j);
-  return Selected(samples, kept);
+  for (int j = 0; j < size; j += stride) kept.push_back(j);
+  return kept;
+}
+
+BrdfSamples EvenlySpread(const BrdfSamples& samples, int count) {
+  return Selected(samples, EvenlySpreadNumbers(samples.size(), samples.grid, count));
 }
 
 BrdfSamples ThinnedByPlace(const BrdfSamples& samples, int stride, int least) {

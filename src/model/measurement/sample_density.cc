@@ -30,30 +30,34 @@ int CellOf(const SphericalAngles& at) {
 
 }  // namespace
 
-void EvenOutDensity(BrdfSamples* samples) {
+std::vector<double> EvenMultiplicity(const BrdfSamples& samples) {
   constexpr double kTimes = 4, kRounding = 1e-9;
-  if (samples->on_grid()) return;
-  std::vector<int> cells(samples->size());
+  if (samples.on_grid()) return samples.multiplicity;
+  std::vector<int> cells(samples.size());
   std::vector<double> counts(kThetas * kThetas * kAzimuths);
-  for (int j = 0; j < samples->size(); ++j) {
+  for (int j = 0; j < samples.size(); ++j) {
     cells[j] =
-        CellOf(samples->directions.empty() ? ToSphericalAngles(ToDirections(samples->angles[j]))
-                                           : samples->directions[j]);
-    counts[cells[j]] += samples->Multiplicity(j);
+        CellOf(samples.directions.empty() ? ToSphericalAngles(ToDirections(samples.angles[j]))
+                                          : samples.directions[j]);
+    counts[cells[j]] += samples.Multiplicity(j);
   }
   std::vector<double> filled;
   std::ranges::copy_if(counts, std::back_inserter(filled), [](double count) { return count > 0; });
-  if (filled.empty()) return;
+  if (filled.empty()) return samples.multiplicity;
   const auto middle = filled.begin() + static_cast<std::ptrdiff_t>(filled.size() / 2);
   std::ranges::nth_element(filled, middle);
   const double most = kTimes * *middle;
   const auto is_dense = [&](double count) { return count > (1 + kRounding) * most; };
-  if (std::ranges::none_of(counts, is_dense)) return;
-  samples->multiplicity.resize(samples->rho.size(), 1);
-  for (int j = 0; j < samples->size(); ++j) {
+  if (std::ranges::none_of(counts, is_dense)) return samples.multiplicity;
+  std::vector<double> multiplicity = samples.multiplicity;
+  multiplicity.resize(samples.rho.size(), 1);
+  for (int j = 0; j < samples.size(); ++j) {
     const double count = counts[cells[j]];
-    if (is_dense(count)) samples->multiplicity[j] *= most / count;
+    if (is_dense(count)) multiplicity[j] *= most / count;
   }
+  return multiplicity;
 }
+
+void EvenOutDensity(BrdfSamples* samples) { samples->multiplicity = EvenMultiplicity(*samples); }
 
 }  // namespace trilobe

@@ -1,6 +1,8 @@
 #ifndef TRILOBE_MODEL_MEASUREMENT_SAMPLE_DENSITY_H_
 #define TRILOBE_MODEL_MEASUREMENT_SAMPLE_DENSITY_H_
 
+#include <vector>
+
 #include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {
@@ -11,6 +13,9 @@ namespace trilobe {
 // with samples: where it has more, its multiplicities are lowered; once more changes nothing.
 // Without such a cell all stays as it is, to the bit, as do samples on a grid.
 void EvenOutDensity(BrdfSamples* samples);
+
+// The multiplicities that it sets.
+std::vector<double> EvenMultiplicity(const BrdfSamples& samples);
 
 }  // namespace trilobe
 

@@ -259,27 +259,53 @@ void BatchEvaluator::Read(int begin, int end, Slopes slopes, Batch* batch) const
   }
 }
 
+namespace {
+
+constexpr int kSummedAtOnce = 64 * BatchEvaluator::kBatch;
+
+// Of samples [begin, end), without the constant.
+double ValueOf(const BatchEvaluator& reader, int begin, int end) {
+  BatchEvaluator::Batch batch(reader);
+  double sum = 0;
+  for (int first = begin; first < end; first += BatchEvaluator::kBatch) {
+    const int last = std::min(first + BatchEvaluator::kBatch, end);
+    reader.Read(first, last, BatchEvaluator::Slopes::kNone, &batch);
+    for (int j = first; j < last; ++j) {
+      for (int c = 0; c < kChannels; ++c) {
+        const double residual = batch.residual[(j - first) * kChannels + c];
+        sum += reader.samples().weight[c][j] * residual * residual;
+      }
+    }
+  }
+  return sum;
+}
+
+// constant + the values of chunks of so many samples, in order.
+template <typename Value>
+double SumOfChunks(int size, double constant, int num_threads, const Value& value) {
+  std::vector<double> sums((size + kSummedAtOnce - 1) / kSummedAtOnce);
+  ParallelFor(static_cast<int>(sums.size()), num_threads, [&](int k) {
+    sums[k] = value(k * kSummedAtOnce, std::min((k + 1) * kSummedAtOnce, size));
+  });
+  return std::accumulate(sums.begin(), sums.end(), constant);
+}
+
+}  // namespace
+
 double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int num_threads) {
   BatchEvaluator reader(samples, model.spec());
   reader.SetModel(model);
-  constexpr int kChunk = 64 * BatchEvaluator::kBatch;
-  const int chunks = (samples.size() + kChunk - 1) / kChunk;
-  std::vector<double> sums(chunks, 0.0);
-  ParallelFor(chunks, num_threads, [&](int k) {
-    BatchEvaluator::Batch batch(reader);
-    const int chunk_end = std::min((k + 1) * kChunk, samples.size());
-    for (int begin = k * kChunk; begin < chunk_end; begin += BatchEvaluator::kBatch) {
-      const int end = std::min(begin + BatchEvaluator::kBatch, chunk_end);
-      reader.Read(begin, end, BatchEvaluator::Slopes::kNone, &batch);
-      for (int j = begin; j < end; ++j) {
-        for (int c = 0; c < kChannels; ++c) {
-          const double residual = batch.residual[(j - begin) * kChannels + c];
-          sums[k] += samples.weight[c][j] * residual * residual;
-        }
-      }
-    }
+  return SumOfChunks(samples.size(), samples.constant, num_threads,
+                     [&](int begin, int end) { return ValueOf(reader, begin, end); });
+}
+
+double FoldedValue(const FoldedPart& part, const FactorModel& model, int num_threads) {
+  return SumOfChunks(part.size(), part.constant, num_threads, [&](int begin, int end) {
+    const FoldedSamples some = Gathered(part, begin, end);
+    BatchEvaluator reader(some, model.spec());
+    reader.SetModel(model);
+    return ValueOf(reader, 0, some.size());
   });
-  return std::accumulate(sums.begin(), sums.end(), samples.constant);
 }
 
 }  // namespace trilobe

@@ -92,6 +92,7 @@ class BatchEvaluator {
 
 // E of a model. The same bits for any number of threads.
 double FoldedValue(const FoldedSamples& samples, const FactorModel& model, int num_threads);
+double FoldedValue(const FoldedPart& part, const FactorModel& model, int num_threads);
 
 }  // namespace trilobe
 

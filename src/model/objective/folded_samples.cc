@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "trilobe/core/system/parallel.h"
@@ -179,46 +180,83 @@ std::vector<Item> Sorted(int count, const SampleMaker& make, int num_threads,
   return items;
 }
 
-// What sample n reads, sorted as this item.
-void SetReads(const Item& item, const SampleStencils& at, size_t n, FoldedSamples* folded) {
-  const LookupOrder& order = folded->order;
+// The samples in their order, with those of a run, which become one, side by side.
+struct Order {
+  std::vector<int> sample;
+  std::vector<int> begin;       // of each run, and the end of the last
+  std::vector<bool> exchanged;  // the first sample of each run
+
+  size_t runs() const { return exchanged.size(); }
+};
+
+// Sets the cells of the samples. The items, which need a third of the memory of the weights, are
+// gone before those are made.
+Order SetCells(int count, const SampleMaker& make, int num_threads, FoldedSamples* folded) {
+  const std::vector<Item> items = Sorted(count, make, num_threads, folded);
+  Order order;
+  for (size_t n = 0; n < items.size(); ++n) {
+    order.sample.push_back(items[n].sample);
+    if (n > 0) {
+      const Item &item = items[n], &first = items[order.begin.back()];
+      if (item.cell == first.cell && item.hash == first.hash &&
+          ReadAlike(make(first.sample), first.exchanged, make(item.sample), item.exchanged)) {
+        continue;
+      }
+    }
+    order.begin.push_back(static_cast<int>(n));
+    order.exchanged.push_back(items[n].exchanged);
+  }
+  folded->lookups.resize(folded->order.count());
+  for (FoldedSamples::Lookup& lookup : folded->lookups) lookup.cell.resize(order.runs());
+  std::vector<FoldedSamples::Pair>& pairs = folded->pairs;
+  for (size_t n = 0; n < order.runs(); ++n) {
+    const Item& item = items[order.begin[n]];
+    for (int r = 0; r < folded->order.count(); ++r) {
+      folded->lookups[r].cell[n] = item.cell[PlaceInItem(folded->order, r)];
+    }
+    const int j = static_cast<int>(n);
+    if (n == 0 || pairs.back().cell_i != item.cell[0] || pairs.back().cell_o != item.cell[1]) {
+      pairs.push_back({item.cell[0], item.cell[1], j, j});
+    }
+    ++pairs.back().end;
+  }
+  order.begin.push_back(count);
+  return order;
+}
+
+// What sample n reads with.
+void SetWeights(const SampleStencils& at, bool exchanged, size_t n, FoldedSamples* folded) {
   folded->inverse_cosines[n] = at.inverse_cosines;
-  for (int r = 0; r < order.count(); ++r) {
+  for (int r = 0; r < folded->order.count(); ++r) {
     FoldedSamples::Lookup& lookup = folded->lookups[r];
-    const Stencil& stencil = StencilOf(at, order, r, item.exchanged);
-    lookup.cell[n] = item.cell[PlaceInItem(order, r)];
+    const Stencil& stencil = StencilOf(at, folded->order, r, exchanged);
     for (int k = 0; k < stencil.size; ++k) lookup.weight[k][n] = stencil.weight[k];
   }
-  const int j = static_cast<int>(n);
-  std::vector<FoldedSamples::Pair>& pairs = folded->pairs;
-  if (n == 0 || pairs.back().cell_i != item.cell[0] || pairs.back().cell_o != item.cell[1]) {
-    pairs.push_back({item.cell[0], item.cell[1], j, j});
-  }
-  ++pairs.back().end;
 }
 
 // Weights and values of the samples of a run, which become one.
 struct Run {
   std::vector<std::pair<Rgb, Rgb>> samples;
 
-  // Sets sample n, and empties the run.
-  void MergeInto(size_t n, FoldedSamples* folded) {
+  // What the first `count` become; adds to the sums over all.
+  FoldedPart::Value Merge(size_t count, double* constant, double* measured_energy) const {
+    FoldedPart::Value merged;
     for (int c = 0; c < kChannels; ++c) {
       double w = 0, rho = 0;
-      for (size_t k = 0; k < samples.size(); ++k) {
+      for (size_t k = 0; k < count; ++k) {
         const double more = samples[k].first[c], own = samples[k].second[c];
-        folded->measured_energy += more * own * own;
+        *measured_energy += more * own * own;
         // The old mean plus a fraction of the difference: exact if both are equal.
         const double share = k == 0 ? 1 : w + more > 0 ? more / (w + more) : 0;
         const double difference = own - rho;
-        folded->constant += w * share * difference * difference;
+        *constant += w * share * difference * difference;
         rho += share * difference;
         w += more;
       }
-      folded->weight[c][n] = w;
-      folded->rho[c][n] = rho;
+      merged.weight[c] = w;
+      merged.rho[c] = rho;
     }
-    samples.clear();
+    return merged;
   }
 };
 
@@ -231,33 +269,21 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples) {
 }
 
 FoldedSamples Fold(int count, const SampleMaker& make, int num_threads) {
+  FoldedPart none;
+  return FoldWithPart(count, make, num_threads, /*first=*/0, &none);
+}
+
+FoldedSamples FoldWithPart(int count, const SampleMaker& make, int num_threads, int first,
+                           FoldedPart* part) {
   FoldedSamples folded;
   if (count > 0) folded.order = OrderOf(make(0).stencils);
-  const LookupOrder& order = folded.order;
-  const std::vector<Item> items = Sorted(count, make, num_threads, &folded);
-  // Start of each run of samples that read alike.
-  std::vector<int> begin;
-  for (size_t n = 0; n < items.size(); ++n) {
-    if (n > 0) {
-      const Item &item = items[n], &first = items[begin.back()];
-      if (item.cell == first.cell && item.hash == first.hash &&
-          ReadAlike(make(first.sample), first.exchanged, make(item.sample), item.exchanged)) {
-        continue;
-      }
-    }
-    begin.push_back(static_cast<int>(n));
-  }
-  const size_t size = begin.size();
-  begin.push_back(static_cast<int>(items.size()));
-
+  const Order order = SetCells(count, make, num_threads, &folded);
+  const size_t size = order.runs();
   folded.inverse_cosines.resize(size);
-  folded.lookups.resize(order.count());
-  for (int r = 0; r < order.count(); ++r) {
-    FoldedSamples::Lookup& lookup = folded.lookups[r];
+  for (int r = 0; r < folded.order.count(); ++r) {
     int width = 0;
     for (const Cell& cell : folded.cells_of(r)) width = std::max(width, cell.size);
-    lookup.cell.resize(size);
-    lookup.weight.assign(width, std::vector<double>(size));
+    folded.lookups[r].weight.assign(width, std::vector<double>(size));
   }
   for (int c = 0; c < kChannels; ++c) {
     folded.weight[c].resize(size);
@@ -265,13 +291,65 @@ FoldedSamples Fold(int count, const SampleMaker& make, int num_threads) {
   }
   Run run;
   size_t n = 0;
-  const auto number = [&](int i) { return items[i].sample; };
+  size_t of_part = 0;  // in the run: those come first, as they have the lower numbers
+  const auto number = [&](int i) { return order.sample[i]; };
+  const auto end_run = [&] {
+    const int j = static_cast<int>(n);
+    const FoldedPart::Value merged =
+        run.Merge(run.samples.size(), &folded.constant, &folded.measured_energy);
+    for (int c = 0; c < kChannels; ++c) {
+      folded.weight[c][n] = merged.weight[c];
+      folded.rho[c][n] = merged.rho[c];
+    }
+    if (of_part > 0) {
+      part->number.push_back(j);
+      const FoldedPart::Value own = run.Merge(of_part, &part->constant, &part->measured_energy);
+      if (of_part < run.samples.size()) part->others.emplace_back(part->number.size() - 1, own);
+    }
+    run.samples.clear();
+    of_part = 0;
+    ++n;
+  };
   ForSamples(count, make, num_threads, number, [&](int i, const WeightedSample& sample) {
-    if (i == begin[n]) SetReads(items[i], sample.stencils, n, &folded);
+    if (i == order.begin[n]) SetWeights(sample.stencils, order.exchanged[n], n, &folded);
     run.samples.emplace_back(sample.weight, sample.rho);
-    if (i + 1 == begin[n + 1]) run.MergeInto(n++, &folded);
+    if (order.sample[i] < first) ++of_part;
+    if (i + 1 == order.begin[n + 1]) end_run();
   });
   return folded;
+}
+
+FoldedSamples Gathered(const FoldedPart& part, int begin, int end) {
+  const FoldedSamples& whole = *part.whole;
+  FoldedSamples some;
+  some.cells = whole.cells;
+  some.order = whole.order;
+  const auto gather = [&](const auto& from) {
+    std::remove_cvref_t<decltype(from)> to(end - begin);
+    for (int j = begin; j < end; ++j) to[j - begin] = from[part.number[j]];
+    return to;
+  };
+  for (const FoldedSamples::Lookup& lookup : whole.lookups) {
+    FoldedSamples::Lookup& own = some.lookups.emplace_back();
+    own.cell = gather(lookup.cell);
+    for (const std::vector<double>& weight : lookup.weight) own.weight.push_back(gather(weight));
+  }
+  some.inverse_cosines = gather(whole.inverse_cosines);
+  for (int c = 0; c < kChannels; ++c) {
+    some.weight[c] = gather(whole.weight[c]);
+    some.rho[c] = gather(whole.rho[c]);
+  }
+  const auto is_before = [](const auto& other, int j) { return static_cast<int>(other.first) < j; };
+  const auto from = std::lower_bound(part.others.begin(), part.others.end(), begin, is_before);
+  const auto to = std::lower_bound(from, part.others.end(), end, is_before);
+  for (auto other = from; other != to; ++other) {
+    const auto& [place, value] = *other;
+    for (int c = 0; c < kChannels; ++c) {
+      some.weight[c][place - begin] = value.weight[c];
+      some.rho[c][place - begin] = value.rho[c];
+    }
+  }
+  return some;
 }
 
 }  // namespace trilobe

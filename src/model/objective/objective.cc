@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/measurement/join_samples.h"
+#include "model/measurement/sample_numbers.h"
 #include "model/objective/batch_evaluator.h"
 #include "model/objective/stencils_of.h"
 #include "trilobe/core/base/error.h"
@@ -75,7 +77,7 @@ void CheckWeights(const std::string& weighting, bool nonnegative, double energy)
   throw Error(message.str());
 }
 
-BrdfSamples Checked(BrdfSamples samples, const ModelSpec& spec, int num_threads) {
+const BrdfSamples& Checked(const BrdfSamples& samples, const ModelSpec& spec, int num_threads) {
   if (num_threads < 1) {
     throw Error("num_threads is " + std::to_string(num_threads) + "; give 1 or more");
   }
@@ -149,65 +151,131 @@ std::vector<double> CoverageOfParameters(const CoverageByChannel& by_channel,
 }  // namespace
 
 struct Objective::Prepared {
-  Prepared(BrdfSamples all, const ModelSpec& form, const Weighting& weights, int num_threads)
-      : samples(Checked(std::move(all), form, num_threads)),
+  Prepared(std::shared_ptr<const BrdfSamples> all, const ModelSpec& form, const Weighting& weights,
+           int num_threads)
+      : own(std::move(all)),
         spec(form),
-        weighting(ForSamples(weights, samples, num_threads)) {
-    bool nonnegative = true;
-    if (ReadsBinByBin(spec, samples)) {
-      folded =
-          std::make_unique<FoldedGrid>(Fold(samples, spec.g_axis.size, weighting, num_threads));
+        weighting(ForSamples(weights, Checked(*own, form, num_threads), num_threads)) {
+    if (ReadsBinByBin(spec, *own)) {
+      folded = std::make_unique<FoldedGrid>(Fold(*own, spec.g_axis.size, weighting, num_threads));
       measured_energy = folded->measured_energy;
+      irreducible_energy = folded->constant;
       coverage = FoldedCoverage(*folded);
-      for (const std::vector<double>& w : folded->weight) {
-        nonnegative = nonnegative && AllNonnegative(w);
-      }
+      CheckWeights(weighting.name, std::ranges::all_of(folded->weight, AllNonnegative),
+                   measured_energy);
     } else {
-      std::atomic<bool> negative = false;
-      const auto make = [&](int j) {
-        WeightedSample sample = Sample(j);
-        if (!AllNonnegative(sample.weight)) negative = true;
-        return sample;
-      };
-      folded_samples = std::make_unique<FoldedSamples>(Fold(samples.size(), make, num_threads));
-      nonnegative = !negative;
-      measured_energy = folded_samples->measured_energy;
-      coverage = ScatteredCoverage(*folded_samples, spec);
+      FoldedPart none;
+      FoldAll(num_threads, &none);
     }
-    CheckWeights(weighting.name, nonnegative, measured_energy);
+  }
+
+  // The samples of `data`, which are scattered, and others behind them.
+  Prepared(std::shared_ptr<const Prepared> data, BrdfSamples added, int num_threads)
+      : measured(std::move(data)),
+        own(std::make_shared<const BrdfSamples>(std::move(added))),
+        spec(measured->spec),
+        weighting(measured->weighting) {
+    CheckSamples(*own);
+    FoldedPart part;
+    FoldAll(num_threads, &part);
+    part.whole = folded_samples;
+    measured->as_part = std::make_shared<const FoldedPart>(std::move(part));
+  }
+
+  void FoldAll(int num_threads, FoldedPart* part) {
+    std::atomic<bool> negative = false;
+    const auto make = [&](int j) {
+      WeightedSample sample = Sample(j);
+      if (!AllNonnegative(sample.weight)) negative = true;
+      return sample;
+    };
+    folded_samples = std::make_shared<const FoldedSamples>(
+        FoldWithPart(size(), make, num_threads, num_measured(), part));
+    measured_energy = folded_samples->measured_energy;
+    irreducible_energy = folded_samples->constant;
+    coverage = ScatteredCoverage(*folded_samples, spec);
+    CheckWeights(weighting.name, !negative, measured_energy);
+  }
+
+  int num_measured() const { return measured == nullptr ? 0 : measured->size(); }
+  int size() const { return num_measured() + own->size(); }
+
+  const BrdfSamples& AllSamples() const {
+    if (measured == nullptr) return *own;
+    std::call_once(joined_once, [&] { joined = JoinSamples(measured->AllSamples(), *own); });
+    return joined;
+  }
+
+  // In ascending order.
+  BrdfSamples Selected(std::vector<int> numbers) const {
+    if (measured == nullptr) return trilobe::Selected(*own, numbers);
+    const auto middle = std::ranges::lower_bound(numbers, num_measured());
+    std::vector<int> of_own(middle, numbers.end());
+    numbers.erase(middle, numbers.end());
+    for (int& j : of_own) j -= num_measured();
+    return JoinSamples(measured->Selected(std::move(numbers)), trilobe::Selected(*own, of_own));
   }
 
   WeightedSample Sample(int j) const {
+    if (j < num_measured()) return measured->Sample(j);
+    j -= num_measured();
     WeightedSample sample;
-    sample.stencils = StencilsOf(spec, samples, j);
-    sample.rho = samples.rho[j];
-    sample.weight = weighting({sample.rho, samples.CosinesOf(j), samples.SolidAngle(j)});
-    for (double& w : sample.weight) w *= samples.Multiplicity(j);
+    sample.stencils = StencilsOf(spec, *own, j);
+    sample.rho = own->rho[j];
+    sample.weight = weighting({sample.rho, own->CosinesOf(j), own->SolidAngle(j)});
+    for (double& w : sample.weight) w *= own->Multiplicity(j);
     return sample;
   }
 
-  std::vector<WeightedSample> AllSamples(int num_threads) const {
-    std::vector<WeightedSample> all(samples.size());
+  std::vector<WeightedSample> AllWeighted(int num_threads) const {
+    std::vector<WeightedSample> all(size());
     constexpr int kChunk = 4096;
-    ParallelFor((samples.size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
-      const int end = std::min((chunk + 1) * kChunk, samples.size());
+    ParallelFor((size() + kChunk - 1) / kChunk, num_threads, [&](int chunk) {
+      const int end = std::min((chunk + 1) * kChunk, size());
       for (int j = chunk * kChunk; j < end; ++j) all[j] = Sample(j);
     });
     return all;
   }
 
   const std::vector<WeightedSample>& WeightedSamples(int num_threads) const {
-    std::call_once(weighted_samples_once, [&] { weighted_samples = AllSamples(num_threads); });
+    std::call_once(weighted_samples_once, [&] { weighted_samples = AllWeighted(num_threads); });
     return weighted_samples;
   }
 
-  const BrdfSamples samples;
-  const ModelSpec spec;  // of which axes and stretches count
+  // Made anew after ReleaseFold.
+  const FoldedSamples& Folded(int num_threads) const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (folded_samples == nullptr) {
+      folded_samples = std::make_shared<const FoldedSamples>(Fold(
+          size(), [&](int j) { return Sample(j); }, num_threads));
+    }
+    return *folded_samples;
+  }
+
+  // As part of the samples of a prior, if there is no fold.
+  std::shared_ptr<const FoldedPart> Part() const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return folded_samples == nullptr ? as_part : nullptr;
+  }
+
+  void ReleaseFold() const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    folded_samples.reset();
+    as_part.reset();
+  }
+
+  const std::shared_ptr<const Prepared> measured;  // whose samples come first, or null
+  mutable std::shared_ptr<const BrdfSamples> own;  // OwnSamples may replace them by a copy
+  const ModelSpec spec;                            // of which axes and stretches count
   const Weighting weighting;
-  double measured_energy = 0;
+  double measured_energy = 0, irreducible_energy = 0;
   CoverageByChannel coverage;
   std::unique_ptr<const FoldedGrid> folded;
-  std::unique_ptr<const FoldedSamples> folded_samples;
+  mutable std::mutex mutex;  // of what ReleaseFold changes
+  mutable std::shared_ptr<const FoldedSamples> folded_samples;
+  mutable std::shared_ptr<const FoldedPart> as_part;
+  mutable std::once_flag joined_once;
+  mutable BrdfSamples joined;
   mutable std::once_flag spline_cells_once;
   mutable std::unique_ptr<const SplineCells> spline_cells;
   mutable std::once_flag weighted_samples_once;
@@ -216,6 +284,11 @@ struct Objective::Prepared {
 
 Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
                      int num_threads)
+    : Objective(std::make_shared<const BrdfSamples>(std::move(samples)), spec, weighting,
+                num_threads) {}
+
+Objective::Objective(std::shared_ptr<const BrdfSamples> samples, const ModelSpec& spec,
+                     const Weighting& weighting, int num_threads)
     : prepared_(std::make_shared<Prepared>(std::move(samples), spec, weighting, num_threads)),
       spec_(spec),
       num_threads_(num_threads),
@@ -223,16 +296,43 @@ Objective::Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting
 
 Objective::Objective(const Objective& other, const ModelSpec& spec)
     : prepared_(other.prepared_), spec_(spec), num_threads_(other.num_threads_) {
-  CheckReadable(spec, samples());
+  CheckReadable(spec, *prepared_->own);
   const bool reads_alike = spec.stretches.distinct() == other.spec_.stretches.distinct() &&
                            std::ranges::all_of(kFactors, [&](Factor factor) {
                              return spec.axis(factor) == other.spec_.axis(factor);
                            });
   if (!reads_alike) {
-    prepared_ = std::make_shared<Prepared>(samples(), spec, weighting(), num_threads_);
+    std::shared_ptr<const BrdfSamples> all = prepared_->measured == nullptr
+                                                 ? prepared_->own
+                                                 : std::make_shared<const BrdfSamples>(samples());
+    prepared_ = std::make_shared<Prepared>(std::move(all), spec, weighting(), num_threads_);
   }
   coverage_ = CoverageOfParameters(prepared_->coverage, spec);
   if (other.has_prior()) data_ = std::make_shared<const Objective>(other.data(), spec);
+}
+
+Objective::Objective(Objective objective, BrdfSamples added, double weight)
+    : spec_(objective.spec()), num_threads_(objective.num_threads()) {
+  if (objective.prepared_->own->on_grid()) {
+    throw Error(objective.prepared_->own->source + ": samples are added to scattered ones alone");
+  }
+  added.multiplicity.assign(added.rho.size(), weight);
+  std::shared_ptr<const Prepared> shared = objective.prepared_;
+  if (added.size() == 0) {
+    data_ = std::make_shared<const Objective>(objective.data());
+    prepared_ = std::move(shared);
+    coverage_ = std::move(objective.coverage_);
+    return;
+  }
+  if (objective.has_prior() && shared->measured != nullptr) {
+    added = JoinSamples(*shared->own, added);
+    shared = shared->measured;
+  }
+  data_ = objective.has_prior() ? objective.data_ : std::make_shared<const Objective>(objective);
+  objective.prepared_ = nullptr;  // before there is another fold
+  shared->ReleaseFold();
+  prepared_ = std::make_shared<Prepared>(std::move(shared), std::move(added), num_threads_);
+  coverage_ = CoverageOfParameters(prepared_->coverage, spec_);
 }
 
 Objective Objective::Alone(int num_threads) const {
@@ -247,24 +347,52 @@ Objective::Objective(const Objective& data, BrdfSamples with_prior)
   data_ = std::make_shared<const Objective>(data);
 }
 
-const BrdfSamples& Objective::samples() const { return prepared_->samples; }
+const BrdfSamples& Objective::samples() const { return prepared_->AllSamples(); }
+
+int Objective::num_samples() const { return prepared_->size(); }
+
+bool Objective::on_grid() const { return prepared_->own->on_grid(); }
+
+const BrdfSamples* Objective::added() const {
+  return prepared_->measured != nullptr ? prepared_->own.get() : nullptr;
+}
+
+BrdfSamples Objective::Thinned(int stride) const {
+  return on_grid() ? trilobe::Thinned(samples(), stride)
+                   : prepared_->Selected(ThinnedNumbers(num_samples(), stride));
+}
+
+BrdfSamples Objective::Selected(std::vector<int> numbers) const {
+  return prepared_->Selected(std::move(numbers));
+}
+
+BrdfSamples Objective::EvenlySpread(int count) const {
+  return prepared_->Selected(EvenlySpreadNumbers(num_samples(), prepared_->own->grid, count));
+}
+
+void Objective::OwnSamples() const {
+  prepared_->own = std::make_shared<const BrdfSamples>(*prepared_->own);
+}
+
+void Objective::ReleaseFold() const { prepared_->ReleaseFold(); }
 
 const Weighting& Objective::weighting() const { return prepared_->weighting; }
 
 double Objective::MeasuredEnergy() const { return prepared_->measured_energy; }
 
-double Objective::IrreducibleEnergy() const {
-  return folded() != nullptr ? folded()->constant : folded_samples()->constant;
-}
+double Objective::IrreducibleEnergy() const { return prepared_->irreducible_energy; }
 
 const FoldedGrid* Objective::folded() const { return prepared_->folded.get(); }
 
-const FoldedSamples* Objective::folded_samples() const { return prepared_->folded_samples.get(); }
+const FoldedSamples* Objective::folded_samples() const {
+  return folded() != nullptr ? nullptr : &prepared_->Folded(num_threads_);
+}
 
 double Objective::Value(const FactorModel& model) const {
   CheckSameSpec(model.spec(), spec_);
-  return folded() != nullptr ? FoldedValue(*folded(), model, num_threads_)
-                             : FoldedValue(*folded_samples(), model, num_threads_);
+  if (folded() != nullptr) return FoldedValue(*folded(), model, num_threads_);
+  if (const auto part = prepared_->Part()) return FoldedValue(*part, model, num_threads_);
+  return FoldedValue(*folded_samples(), model, num_threads_);
 }
 
 const SplineCells& Objective::spline_cells() const {
@@ -275,9 +403,9 @@ const SplineCells& Objective::spline_cells() const {
 }
 
 WeightedSample Objective::Sample(int j) const {
-  if (j < 0 || j >= samples().size()) {
-    throw Error(samples().source + ": there is no sample " + std::to_string(j) + " among " +
-                std::to_string(samples().size()));
+  if (j < 0 || j >= num_samples()) {
+    throw Error(prepared_->own->source + ": there is no sample " + std::to_string(j) + " among " +
+                std::to_string(num_samples()));
   }
   return prepared_->Sample(j);
 }

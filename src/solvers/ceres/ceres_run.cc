@@ -116,7 +116,7 @@ CeresParameters::CeresParameters(const Objective& objective, FactorModel start)
     : objective_(objective),
       start_(std::move(start)),
       value_unit_(ValueUnit(objective)),
-      residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.samples().size())) {}
+      residual_unit_(Unit(objective.MeasuredEnergy(), kChannels * objective.num_samples())) {}
 
 FactorModel CeresParameters::Scaled(FactorModel model, double by) const {
   for (double& d : model.d()) d *= by;

@@ -189,7 +189,7 @@ bool JointStepper::Step() {
 }
 
 double JointStepper::RoundingOfE() const {
-  const double terms = static_cast<double>(kChannels) * objective_.samples().size();
+  const double terms = static_cast<double>(kChannels) * objective_.num_samples();
   return std::sqrt(terms) * std::numeric_limits<double>::epsilon() * E_;
 }
 

@@ -28,9 +28,9 @@ int CountAgreeing(const std::vector<StartResult>& starts) {
 
 int StartElimination::StrideFor(const Objective& objective, const Thinning& thinning) {
   // Folded samples are half as many.
-  const int fold = objective.samples().on_grid() ? 2 : 1;
+  const int fold = objective.on_grid() ? 2 : 1;
   const int wanted = fold * thinning.samples_per_parameter * objective.spec().num_parameters();
-  return std::clamp(objective.samples().size() / std::max(wanted, 1), 1, thinning.max_stride);
+  return std::clamp(objective.num_samples() / std::max(wanted, 1), 1, thinning.max_stride);
 }
 
 class StartElimination::Candidate {
@@ -138,16 +138,15 @@ void StartElimination::Thin() {
         std::make_unique<Objective>(objective_.Alone(TakesTurns() ? objective_.num_threads() : 1));
     return;
   }
-  const BrdfSamples& samples = objective_.samples();
-  const bool by_rows = samples.on_grid();
+  const bool by_rows = objective_.on_grid();
   thinned_ = std::make_unique<Objective>(
-      by_rows ? InEveryOtherRow(Thinned(samples, stride_ / 2)) : Thinned(samples, stride_),
+      by_rows ? InEveryOtherRow(objective_.Thinned(stride_ / 2)) : objective_.Thinned(stride_),
       objective_.spec(), objective_.weighting(), /*num_threads=*/1);
 }
 
 bool StartElimination::TakesTurns() const {
   constexpr int kMany = 200'000;
-  return stride_ == 1 && !objective_.samples().on_grid() && objective_.samples().size() >= kMany;
+  return stride_ == 1 && !objective_.on_grid() && objective_.num_samples() >= kMany;
 }
 
 void StartElimination::ThinLess() {

@@ -30,8 +30,8 @@ constexpr double kStillStiff = 1e-6;  // where half the entries are enough
 bool CanBeHalved(const Objective& objective) {
   constexpr int kLeast = 8;
   const ModelSpec& spec = objective.spec();
+  if (!objective.on_grid() || spec.anisotropic() || spec.stretches.any()) return false;
   const BrdfSamples& samples = objective.samples();
-  if (!samples.on_grid() || spec.anisotropic() || spec.stretches.any()) return false;
   const int sizes[] = {samples.grid.theta_h, samples.grid.theta_d, spec.d_axis.size,
                        spec.f_axis.size, spec.g_axis.size};
   return std::ranges::all_of(sizes, [](int size) { return size % 2 == 0 && size >= kLeast; });

@@ -19,15 +19,18 @@ namespace {
 // Starting points look at about this many samples: enough for magnitudes and profiles.
 constexpr int kSamplesLookedAt = 1 << 16;
 
+std::vector<int> LookedAt(const Objective& objective) {
+  const int size = objective.num_samples(), stride = std::max(1, size / kSamplesLookedAt);
+  std::vector<int> numbers;
+  // An odd stride visits all phi_d of a grid.
+  for (int j = 0; j < size; j += stride | 1) numbers.push_back(j);
+  return numbers;
+}
+
 // A thin, even selection of the samples, with their stencils.
 std::vector<WeightedSample> Selection(const Objective& objective) {
-  const BrdfSamples& samples = objective.samples();
-  const int stride = std::max(1, samples.size() / kSamplesLookedAt);
   std::vector<WeightedSample> selection;
-  // An odd stride visits all phi_d of a grid.
-  for (int j = 0; j < samples.size(); j += stride | 1) {
-    selection.push_back(objective.Sample(j));
-  }
+  for (const int j : LookedAt(objective)) selection.push_back(objective.Sample(j));
   return selection;
 }
 
@@ -45,11 +48,10 @@ Rgb QuantileOf(const std::vector<WeightedSample>& samples, double fraction) {
 
 // MeanReflectance, a channel, of the samples that are looked at.
 Rgb MeanColor(const Objective& objective) {
-  const BrdfSamples& samples = objective.samples();
-  const int stride = std::max(1, samples.size() / kSamplesLookedAt) | 1;
+  const BrdfSamples samples = objective.Selected(LookedAt(objective));
   double light = 0;
   Rgb mean{};
-  for (int j = 0; j < samples.size(); j += stride) {
+  for (int j = 0; j < samples.size(); ++j) {
     const Cosines cosines = samples.CosinesOf(j);
     const double through = samples.SolidAngle(j) * cosines.i * cosines.o;
     light += through;

@@ -7,6 +7,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "tests/model/anisotropic_samples.h"
 #include "tests/test_util.h"
@@ -177,6 +180,71 @@ std::vector<double> BruteForceCoverage(const Objective& objective) {
     }
   }
   return {coverage.parameters().begin(), coverage.parameters().end()};
+}
+
+// Samples of a prior beside those of the data: what is shared, released or read by the fold of both
+// has the bits of what is made of whole copies.
+TEST(Objective, AddedSamplesShareThoseOfTheData) {
+  const ModelSpec spec = ModelSpec::SharedFactors(2);
+  const BrdfSamples samples = PolarSamples(RandomModel(spec, 3, 0.1), 6, 12);
+  const int count = samples.size();
+  // One of them stands where a sample of the data does, and folds into it.
+  BrdfSamples added = Selected(samples, {1, 5}), more = Selected(samples, {7});
+  added.angles[1].theta_h *= 0.9;
+  added.directions[1] = ToSphericalAngles(ToDirections(added.angles[1]));
+  added.rho = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
+  BrdfSamples joined = samples;
+  joined.multiplicity.assign(count, 1);
+  const auto append = [&](const BrdfSamples& from, double weight) {
+    for (int j = 0; j < from.size(); ++j) {
+      joined.angles.push_back(from.angles[j]);
+      joined.directions.push_back(from.directions[j]);
+      joined.rho.push_back(from.rho[j]);
+      joined.multiplicity.push_back(weight);
+    }
+  };
+  const FactorModel model = RandomModel(spec, 4);
+  const Objective alone(samples, spec, FindWeighting("appearance"), 2);
+  Objective both(alone.samples(), spec, alone.weighting(), 2);
+  const Objective data = both;
+  for (const auto& [next, weight] : {std::pair{added, 0.25}, {more, 3.0}}) {
+    append(next, weight);
+    both = Objective(std::move(both), next, weight);
+    const Objective whole(alone, joined);
+    EXPECT_EQ(both.Value(model), whole.Value(model));
+    EXPECT_EQ(both.coverage(), whole.coverage());
+    EXPECT_EQ(both.MeasuredEnergy(), whole.MeasuredEnergy());
+    EXPECT_EQ(both.IrreducibleEnergy(), whole.IrreducibleEnergy());
+    EXPECT_EQ(both.num_samples(), joined.size());
+    EXPECT_EQ(both.added()->size(), joined.size() - count);
+    EXPECT_EQ(both.EvenlySpread(9).rho, EvenlySpread(joined, 9).rho);
+    EXPECT_EQ(both.Thinned(3).multiplicity, Thinned(joined, 3).multiplicity);
+    EXPECT_EQ(both.Sample(count).rho, whole.Sample(count).rho);
+    ASSERT_TRUE(both.has_prior());
+    for (const Objective& measured : {data, both.data()}) {
+      EXPECT_EQ(measured.Value(model), alone.Value(model));
+      EXPECT_EQ(measured.IrreducibleEnergy(), alone.IrreducibleEnergy());
+    }
+  }
+  EXPECT_LT(both.folded_samples()->size(), both.num_samples());
+  EXPECT_EQ(both.samples().rho, joined.rho);
+  EXPECT_EQ(both.samples().multiplicity, joined.multiplicity);
+  data.ReleaseFold();
+  EXPECT_EQ(data.Value(model), alone.Value(model));
+  EXPECT_EQ(data.folded_samples()->rho, alone.folded_samples()->rho);
+  both.ReleaseFold();
+  EXPECT_EQ(both.Value(model), Objective(alone, joined).Value(model));
+}
+
+TEST(Objective, OwnsSamplesThatWereShared) {
+  const ModelSpec spec = ModelSpec::SharedFactors(1);
+  auto samples = std::make_shared<BrdfSamples>(PolarSamples(RandomModel(spec, 3, 0.1), 4, 6));
+  const Objective objective(samples, spec, FindWeighting("compressive"));
+  EXPECT_EQ(&objective.samples(), samples.get());
+  const std::vector<Rgb> rho = samples->rho;
+  objective.OwnSamples();
+  samples->rho.clear();
+  EXPECT_EQ(objective.samples().rho, rho);
 }
 
 TEST(Objective, CoverageCountsTheWeightOfTheReaders) {

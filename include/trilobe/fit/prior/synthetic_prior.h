@@ -38,15 +38,16 @@ class SyntheticPrior {
 
   const FactorModel& model() const { return model_; }
 
-  // Samples of the data and of the prior, for models of the spec of `data` (see WithPrior).
+  // Samples of the data and of the prior, for models of the spec of `data` (see WithPrior); and
+  // the objective of these, for which the fold of `data` is released.
   BrdfSamples JoinTo(const Objective& data) const;
+  Objective Join(const Objective& data) const;
 
   // A fit may exceed the largest measured value many times between the samples, where the data
-  // hardly determine an entry and noise makes it large. Returns `with_prior` with samples of the
-  // prior added at directions where `fit` exceeds twice the largest measured value. Each has
-  // `times` the weight of a sample of the prior. Nothing if none of 50,000 directions exceeds it.
-  std::optional<Objective> AddWhereLarge(const Objective& with_prior, const FactorModel& fit,
-                                         double times) const;
+  // hardly determine an entry and noise makes it large. Adds samples of the prior to *with_prior at
+  // directions where `fit` exceeds twice the largest measured value. Each has `times` the weight of
+  // a sample of the prior. Returns false if none of 50,000 directions exceeds it.
+  bool AddWhereLarge(const FactorModel& fit, double times, Objective* with_prior) const;
 
  private:
   double weight_;

@@ -2,8 +2,11 @@
 #define TRILOBE_MODEL_OBJECTIVE_FOLDED_SAMPLES_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "trilobe/core/geometry/channels.h"
@@ -80,6 +83,31 @@ FoldedSamples Fold(const std::vector<WeightedSample>& samples);
 // The same without all samples in memory: each is made twice or more, by its number, in parallel.
 using SampleMaker = std::function<WeightedSample(int)>;
 FoldedSamples Fold(int count, const SampleMaker& make, int num_threads);
+
+// The first of some samples as they are folded alone, by what all of them are folded to: those of a
+// measurement beside those of a prior. It has 4 bytes a sample where a fold has 160, and E of a
+// model has the same bits.
+struct FoldedPart {
+  struct Value {
+    Rgb weight{}, rho{};  // rho: [1/sr]
+  };
+
+  std::shared_ptr<const FoldedSamples> whole;
+  std::vector<int> number;  // in `whole`, ascending. [size]
+  // Of those that samples of the rest are folded into: their place in `number`, and what they are
+  // without these.
+  std::vector<std::pair<size_t, Value>> others;
+  double constant = 0, measured_energy = 0;  // as FoldedSamples has them
+
+  int size() const { return static_cast<int>(number.size()); }
+};
+
+// As Fold; sets all of *part, of samples 0 to `first`, but for `whole`.
+FoldedSamples FoldWithPart(int count, const SampleMaker& make, int num_threads, int first,
+                           FoldedPart* part);
+
+// Numbers [begin, end) of the part, as samples of their own, without pairs and sums.
+FoldedSamples Gathered(const FoldedPart& part, int begin, int end);
 
 }  // namespace trilobe
 

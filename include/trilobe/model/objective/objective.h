@@ -27,6 +27,10 @@ class Objective {
   Objective(BrdfSamples samples, const ModelSpec& spec, const Weighting& weighting,
             int num_threads = 1);
 
+  // The same for samples that are shared, and not copied.
+  Objective(std::shared_ptr<const BrdfSamples> samples, const ModelSpec& spec,
+            const Weighting& weighting, int num_threads = 1);
+
   // The same samples for another spec. Cheap if axes and stretch are equal, as all preparations are
   // shared. Throws Error as above.
   Objective(const Objective& other, const ModelSpec& spec);
@@ -34,6 +38,12 @@ class Objective {
   // The objective of a fit with a prior: `with_prior` are the samples of `data` and additional ones
   // that constrain the model between them (WithPrior). Weights keep the level of the data.
   Objective(const Objective& data, BrdfSamples with_prior);
+
+  // The samples of another objective, which are scattered, and others with them, which constrain
+  // the model between them and count `weight` each; data() is that of the other one. It takes less
+  // memory than the constructor above: the samples of the other are shared, and neither is folded
+  // any more (ReleaseFold), nor may it be in use. Throws Error as above.
+  Objective(Objective objective, BrdfSamples added, double weight);
 
   // The same samples, those of a prior as if they were measured, for another number of threads.
   // Shares all preparations.
@@ -43,7 +53,12 @@ class Objective {
   const Objective& data() const { return data_ == nullptr ? *this : *data_; }
   bool has_prior() const { return data_ != nullptr; }
 
+  // All samples; of an objective that others were added to, a copy of them is made and kept.
   const BrdfSamples& samples() const;
+  int num_samples() const;
+  bool on_grid() const;
+  // Those that were added, or null.
+  const BrdfSamples* added() const;
   const ModelSpec& spec() const { return spec_; }
   const Weighting& weighting() const;
   int num_threads() const { return num_threads_; }
@@ -67,6 +82,18 @@ class Objective {
 
   // One sample with its stencils. Throws Error if there is no such sample.
   WeightedSample Sample(int j) const;
+
+  // As the functions of these names with all samples, without a copy of these; numbers ascend.
+  BrdfSamples Selected(std::vector<int> numbers) const;
+  BrdfSamples Thinned(int stride) const;
+  BrdfSamples EvenlySpread(int count) const;
+
+  // Copies samples that are shared, for those who end their life. Not while they are in use.
+  void OwnSamples() const;
+
+  // Frees the folded samples of this objective and of all that share them, if they are scattered.
+  // They are made again where they are asked for. Not while they are in use.
+  void ReleaseFold() const;
 
   // All samples with stencils. Computed at the first call (280 bytes per sample).
   const std::vector<WeightedSample>& weighted_samples() const;

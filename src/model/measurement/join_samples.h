@@ -1,16 +1,15 @@
-#ifndef TRILOBE_FIT_PRIOR_JOIN_SAMPLES_H_
-#define TRILOBE_FIT_PRIOR_JOIN_SAMPLES_H_
+#ifndef TRILOBE_MODEL_MEASUREMENT_JOIN_SAMPLES_H_
+#define TRILOBE_MODEL_MEASUREMENT_JOIN_SAMPLES_H_
 
 #include "trilobe/model/measurement/brdf_samples.h"
 
 namespace trilobe {
 
-// Both, the latter of this weight each.
-inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, double weight) {
+// Both, with a multiplicity each.
+inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added) {
   const size_t size = samples.rho.size() + added.rho.size();
   samples.multiplicity.reserve(size);
   samples.multiplicity.resize(samples.rho.size(), 1);
-  samples.multiplicity.resize(size, weight);
   const auto append = [&](const auto& from, auto* target) {
     if (!from.empty()) target->reserve(size);
     target->insert(target->end(), from.begin(), from.end());
@@ -18,6 +17,8 @@ inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, do
   append(added.angles, &samples.angles);
   append(added.directions, &samples.directions);
   append(added.rho, &samples.rho);
+  append(added.multiplicity, &samples.multiplicity);
+  samples.multiplicity.resize(size, 1);
   samples.spectra = nullptr;  // those added have none
   samples.spectrum_rows.clear();
   return samples;
@@ -25,4 +26,4 @@ inline BrdfSamples JoinSamples(BrdfSamples samples, const BrdfSamples& added, do
 
 }  // namespace trilobe
 
-#endif  // TRILOBE_FIT_PRIOR_JOIN_SAMPLES_H_
+#endif  // TRILOBE_MODEL_MEASUREMENT_JOIN_SAMPLES_H_

@@ -1,0 +1,16 @@
+#ifndef TRILOBE_MODEL_MEASUREMENT_SAMPLE_NUMBERS_H_
+#define TRILOBE_MODEL_MEASUREMENT_SAMPLE_NUMBERS_H_
+
+#include <vector>
+
+#include "trilobe/core/geometry/merl_grid.h"
+
+namespace trilobe {
+
+// Which of so many samples Thinned takes, if they are scattered, and EvenlySpread; ascending.
+std::vector<int> ThinnedNumbers(int size, int stride);
+std::vector<int> EvenlySpreadNumbers(int size, const MerlGrid& grid, int count);
+
+}  // namespace trilobe
+
+#endif  // TRILOBE_MODEL_MEASUREMENT_SAMPLE_NUMBERS_H_
