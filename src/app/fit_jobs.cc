@@ -159,6 +159,8 @@ void TakeReport(const Json& report, FitOutcome* outcome) {
   outcome->num_parameters = report.contains("stored_parameters") ? report.at("stored_parameters")
                                                                  : report.at("stored_numbers");
   outcome->anisotropic = report.at("model") == "anisotropic";
+  const Json& advice = report.at("verdict").at("advice");
+  outcome->glows = std::ranges::find(advice, Json("glows")) != advice.end();
   const Json& files = report.at("files");
   if (std::ranges::find(files, Json("view.html")) != files.end()) outcome->page = "view.html";
   outcome->seconds = 0;

@@ -66,6 +66,11 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   }
   if (!outcome.error.empty()) std::cout << ": " << outcome.error;
   std::cout << std::endl;
+  if (outcome.glows) {
+    std::cerr << "trilobe: the model of " << Printable(outcome.name)
+              << " reflects more light than falls on it, as its samples leave it no other way; "
+                 "`trilobe info` of its model.json says at which angles\n";
+  }
   if (!outcome.undrawn.empty()) {
     std::cerr << "trilobe: pictures of " << Printable(outcome.name)
               << " are missing: " << Printable(outcome.undrawn) << "\n";

@@ -21,6 +21,7 @@ struct FitOutcome {
   double psnr_db = 0, mean_delta_e = 0, mean_color_error = 0, objective = 0, seconds = 0;
   int num_parameters = 0;  // stored
   bool anisotropic = false;
+  bool glows = false;  // reflects more light than falls on it, somewhere
   bool has_picture = false;
   // Files in its folder that the index page shows and links to.
   std::string picture = "pair.png", page = "report.json";

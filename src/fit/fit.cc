@@ -12,11 +12,11 @@
 #include "fit/finish/limit_light.h"
 #include "fit/guess_error.h"
 #include "fit/held_out.h"
+#include "fit/samples_to_fit.h"
 #include "model/appearance/node_appearance.h"
 #include "model/appearance/picture_data.h"
 #include "model/lobes/gauge.h"
 #include "model/measurement/anisotropy.h"
-#include "model/measurement/sample_density.h"
 #include "model/objective/canonical_form.h"
 #include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
@@ -38,22 +38,6 @@ double PriorWeight(const Measurement& measurement, const FitOptions& options) {
     return 0;
   }
   return options.prior.value_or(options.form.kind == FormOptions::Kind::kAnisotropic ? 0 : 1);
-}
-
-BrdfSamples SamplesToFit(const Measurement& measurement, const FitOptions& options) {
-  BrdfSamples samples = SamplesOf(measurement);
-  return options.select ? options.select(std::move(samples)) : samples;
-}
-
-// The same without a copy where they are those of the measurement, and for as long as that lives.
-std::shared_ptr<const BrdfSamples> SharedSamplesToFit(const Measurement& measurement,
-                                                      const FitOptions& options) {
-  const BrdfSamples& own = measurement.samples;
-  const bool all_own = !measurement.table && !options.select && own.size() > 0;
-  if (all_own && (measurement.anisotropic || EvenMultiplicity(own) == own.multiplicity)) {
-    return {std::shared_ptr<const BrdfSamples>(), &own};
-  }
-  return std::make_shared<const BrdfSamples>(SamplesToFit(measurement, options));
 }
 
 std::optional<SyntheticPrior> PriorOf(const Measurement& measurement, const FitOptions& options,
@@ -144,7 +128,7 @@ class Fitting {
 
  private:
   FitResult RunOnShared() {
-    std::shared_ptr<const BrdfSamples> samples = SharedSamplesToFit(measurement_, options_);
+    std::shared_ptr<const BrdfSamples> samples = SharedSamplesToFit(measurement_, options_.select);
     ModelSpec spec = options_.start_model ? options_.start_model->spec()
                                           : SpecFor(measurement_, options_.form, samples->size());
     if (options_.choose_form) MakeReadyToChoose(samples->size(), &spec);
@@ -152,6 +136,11 @@ class Fitting {
                                                  ? std::vector<NodeCandidate>()
                                                  : NodesToTry(measurement_, options_.form, spec);
     PriorWeight(measurement_, options_);  // its error
+    if (options_.bands && measurement_.bands > 0 && measurement_.samples.spectra == nullptr) {
+      throw Error(measurement_.source +
+                  ": --spectral fits wavelengths, and three --bands were read as r, g and b; leave "
+                  "out --bands, or give four or more");
+    }
     if (options_.bands) CheckBands(measurement_.source, measurement_.samples, spec);
     FitResult fit{
         .objective = Objective(std::move(samples), spec, options_.weighting, options_.num_threads)};
@@ -462,8 +451,8 @@ FitResult Fit(const Measurement& measurement, const FitOptions& options) {
 
 FitProblem ProblemFor(const Measurement& measurement, const FitOptions& options,
                       const ModelSpec& spec) {
-  FitProblem problem{.data = Objective(SamplesToFit(measurement, options), spec, options.weighting,
-                                       options.num_threads)};
+  FitProblem problem{.data = Objective(SamplesToFit(measurement, options.select), spec,
+                                       options.weighting, options.num_threads)};
   const std::optional<SyntheticPrior> prior = PriorOf(measurement, options, problem.data);
   if (prior) problem.with_prior = prior->Join(problem.data);
   return problem;

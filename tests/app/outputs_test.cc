@@ -257,13 +257,15 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   const ProgramResult result = RunProgram(command);
   EXPECT_EQ(result.status, 3);                             // one failed
   const std::string skipped = "trilobe: skipped " + data;  // why, and no list of formats each time
-  EXPECT_EQ(result.err, skipped +
-                            "/coating.txt: this is a TracePro file, whose format is not "
-                            "public; save it as CSV, with the header "
-                            "theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
-                            skipped + "/empty.dat: the file is empty\n" + skipped +
-                            "/notes.txt: this is text\n" + skipped +
-                            "/photo.jpg: this is a JPEG picture\n");
+  EXPECT_EQ(result.err,
+            skipped +
+                "/coating.txt: this is a TracePro file, whose format is not "
+                "public; save it as CSV, with the header "
+                "theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
+                skipped + "/empty.dat: the file is empty\n" + skipped +
+                "/notes.txt: this is text, with no line of names of columns, or of numbers; save "
+                "its samples as CSV, with the header theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
+                skipped + "/photo.jpg: this is a JPEG picture\n");
   EXPECT_THAT(result.out, HasSubstr("] torn: failed: "));
   EXPECT_THAT(result.out, HasSubstr("] felt: fitted, "));
   EXPECT_THAT(result.out, HasSubstr("1 failed\n"));
@@ -426,7 +428,10 @@ TEST(FitMany, AFolderOfOddExports) {
   EXPECT_EQ(fit.status, 3);
   EXPECT_THAT(fit.out, HasSubstr("/2] few: fitted"));
   EXPECT_THAT(fit.out + fit.err, HasSubstr("table.xlsx: this is a workbook; save it as CSV"));
-  EXPECT_THAT(fit.err, HasSubstr("notes.txt: this is text\n"));
+  EXPECT_THAT(
+      fit.err,
+      HasSubstr("notes.txt: this is text, with no line of names of columns, or of numbers; "
+                "save its samples as CSV, with the header theta_i,phi_i,theta_o,phi_o,r,g,b\n"));
 }
 
 TEST(FitMany, BadUseIsAnError) {

@@ -14,7 +14,8 @@ namespace trilobe {
 std::string AdviceOn(const std::vector<TableColumn>& columns, bool theta_i_is_given);
 
 // "--columns=theta_i,-,theta_o,f": the columns by their usual names, this one as f.
-std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f);
+std::string ColumnsFlag(const std::vector<TableColumn>& columns, size_t as_f,
+                        std::string_view value = "f");
 
 }  // namespace trilobe
 

@@ -16,6 +16,10 @@ using namespace std::string_view_literals;
 // What a file is looked at for a word that tells what it is.
 constexpr size_t kLookedAt = 1 << 16;
 
+constexpr std::string_view kPickle = "a pickle of Python",
+                           kFromPython = "in Python trilobe.Measurement takes its samples",
+                           kScript = "a script, and not what it makes";
+
 struct Foreign {
   // The first bytes, without white space before them, in lower case or as they are.
   std::string_view begin;
@@ -59,7 +63,33 @@ constexpr std::array kForeign = {
     Foreign{"optis"sv, "", "", "an OPTIS/Speos text file, which is not read", ""},
     Foreign{"<?xml"sv, "", "", "an XML file, which is not read", ""},
     Foreign{""sv, "tracepro", "", "a TracePro file, whose format is not public", ""},
-    Foreign{"[{"sv, "", "", "a list in JSON, which is not read", ""},
+    Foreign{
+        "[{"sv, "", "", "a list in JSON, which is not read",
+        R"(make it an object of columns, as {"theta_i": [...], "brdf": [...]}, or save it as CSV)"},
+    Foreign{"{"sv, "", ".jsonl", "a file of lines of JSON, which is not read", ""},
+    Foreign{"{"sv, "", ".ndjson", "a file of lines of JSON, which is not read", ""},
+    Foreign{"\x80\2"sv, "", "", kPickle, kFromPython},
+    Foreign{"\x80\3"sv, "", "", kPickle, kFromPython},
+    Foreign{"\x80\4"sv, "", "", kPickle, kFromPython},
+    Foreign{"\x80\5"sv, "", "", kPickle, kFromPython},
+    Foreign{""sv, "", ".pkl", kPickle, kFromPython},
+    Foreign{""sv, "", ".pickle", kPickle, kFromPython},
+    Foreign{"%yaml"sv, "", "", "a YAML file, which is not read", ""},
+    Foreign{""sv, "", ".yaml", "a YAML file, which is not read", ""},
+    Foreign{""sv, "", ".yml", "a YAML file, which is not read", ""},
+    Foreign{""sv, "", ".toml", "a TOML file, which is not read", ""},
+    Foreign{""sv, "", ".ldt", "an EULUMDAT file of a luminaire, which is no material",
+            "give the measurement of a material"},
+    Foreign{""sv, "", ".m", kScript, "run it, and save its samples as CSV"},
+    Foreign{""sv, "", ".py", kScript, "run it, and save its samples as CSV"},
+    Foreign{""sv, "", ".sql", "a script of SQL, which is not read", ""},
+    Foreign{""sv, "", ".tex", "a LaTeX file, which is not read", ""},
+    Foreign{R"({\rtf)"sv, "", "", "a document in RTF, which is not read", ""},
+    Foreign{"<svg"sv, "", "", "an SVG picture", "give the numbers that it shows, as CSV"},
+    Foreign{"# vtk datafile"sv, "", "", "a VTK file, which is not read", ""},
+    Foreign{"simple  ="sv, "", "", "a FITS file, which is not read", ""},
+    Foreign{"cgats"sv, "", "", "a table of a spectrophotometer (CGATS), which has no directions",
+            "give a measurement at many pairs of directions"},
     Foreign{"mdl 1."sv, "", "", "an MDL module, which describes a material and is no measurement",
             "give the .mbsdf file that it names"},
 };

@@ -36,6 +36,7 @@
   X(Speos)                         \
   X(Pab)                           \
   X(OpenMaterial)                  \
+  X(JsonTable)                     \
   X(Terms)                         \
   X(Csv)                           \
   X(LightTools)                    \
@@ -83,10 +84,23 @@ bool IsTable(std::string_view text) {
   constexpr size_t kLookedAt = 1 << 16;
   if (IsTableOfNumbers(text)) return true;
   const auto head = FindTableHead(text.substr(0, kLookedAt), "", /*theta_i_is_given=*/true);
-  return head && std::ranges::any_of(head->names, [](const std::string& name) {
-           const ColumnRole role = ColumnNamed(name).role;
-           return role >= ColumnRole::kRed && role <= ColumnRole::kBand;
-         });
+  if (!head) return LooksLikeTwoColumns(text.substr(0, kLookedAt));
+  return std::ranges::any_of(head->names, [](const std::string& name) {
+    const ColumnRole role = ColumnNamed(name).role;
+    return role >= ColumnRole::kRed && role <= ColumnRole::kBand;
+  });
+}
+
+// What to do with a file that may hold a measurement in a way that is not read.
+std::string WhatIsMissing(Content::Kind kind, std::string_view bytes) {
+  const std::string columns =
+      std::string("; save its samples as CSV, with the header ") + kUsualColumns;
+  if (kind == Content::Kind::kText)
+    return ", with no line of names of columns, or of numbers" + columns;
+  const bool is_model = bytes.find("\"format\"") != std::string_view::npos;
+  if (kind == Content::Kind::kJson && !is_model)
+    return ", with no columns theta_i, theta_o and brdf" + columns;
+  return "";
 }
 
 // `is_table`: options say that a text is one.
@@ -112,8 +126,8 @@ const MeasurementFormat& FormatOf(std::string_view bytes, const std::string& sou
     if (found != formats.end()) return *found;
   }
   if (content.kind != Content::Kind::kUnknown) {
-    throw Error(source + ": this is " + content.name + "; a measurement is " +
-                WhatMeasurementsAre());
+    throw Error(source + ": this is " + content.name + WhatIsMissing(content.kind, bytes) +
+                "; a measurement is " + WhatMeasurementsAre());
   }
   if (bytes.empty()) throw Error(source + ": the file is empty");
   return formats.front();  // MERL: it says what is wrong with its header
@@ -317,7 +331,8 @@ Measurement Source::Parsed(const SourceOptions& options) const {
   const MeasurementFormat& format = FormatOf(bytes, name_, is_table);
   Measurement measurement = format.read(bytes, name_, options);
   measurement.xxh128 = ContentHash(bytes_);
-  NoteUnread(options, format.name, &measurement);
+  const bool is_rows = format.name == "json";  // of a text table
+  NoteUnread(options, is_rows ? "csv" : format.name, &measurement);
   return measurement;
 }
 

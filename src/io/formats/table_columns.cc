@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "io/formats/column_words.h"
 #include "trilobe/core/base/printable.h"
 #include "trilobe/core/geometry/channels.h"
 
@@ -16,54 +17,7 @@ using Role = ColumnRole;
 
 constexpr const char* kUsualNames[] = {"theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b"};
 
-// --- Names ---------------------------------------------------------------------------------------
-
-constexpr std::pair<std::string_view, std::string_view> kLetters[] = {
-    {"θ", "theta"}, {"ϑ", "theta"},  {"Θ", "theta"}, {"φ", "phi"}, {"ϕ", "phi"},  {"Φ", "phi"},
-    {"ρ", "rho"},   {"λ", "lambda"}, {"µ", "u"},     {"μ", "u"},   {"°", "deg"},  {"º", "deg"},
-    {"ᵢ", "i"},     {"ₒ", "o"},      {"ᵣ", "r"},     {"ₛ", "s"},   {"⁻¹", "^-1"}, {"\xB0", "deg"}};
-
-// In lower case, with Greek letters as words.
-std::string Plain(std::string_view name) {
-  std::string plain;
-  while (!name.empty()) {
-    const auto* const letter = std::ranges::find_if(
-        kLetters, [&](const auto& entry) { return name.starts_with(entry.first); });
-    if (letter != std::end(kLetters)) {
-      plain += letter->second;
-      name.remove_prefix(letter->first.size());
-    } else {
-      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
-      name.remove_prefix(1);
-    }
-  }
-  return plain;
-}
-
-// Takes what stands in brackets off the end of a plain name: "deg" of "theta_i [deg]".
-std::string TakeBracket(std::string* plain) {
-  const std::string_view text = *plain;
-  const size_t open = text.find_last_of("[("), close = text.find_last_of("])");
-  if (open == 0 || open == std::string::npos || close == std::string::npos) return {};
-  if (close < open) return {};
-  std::string bracket(Trimmed(text.substr(open + 1, close - open - 1)));
-  plain->resize(open);
-  return bracket;
-}
-
-std::string LettersAndDigits(std::string_view plain) {
-  std::string key;
-  for (const char c : plain) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) key += c;
-  }
-  return key;
-}
-
-bool TakeSuffix(std::string_view suffix, std::string* key) {
-  if (key->size() <= suffix.size() || !key->ends_with(suffix)) return false;
-  key->resize(key->size() - suffix.size());
-  return true;
-}
+// --- Units ---------------------------------------------------------------------------------------
 
 bool IsOneOf(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
@@ -74,7 +28,7 @@ constexpr std::string_view kAngleUnits[] = {"degrees", "degree", "degs", "deg", 
 constexpr std::string_view kOtherUnits[] = {
     "1/sr", "sr^-1", "sr-1", "/sr",  "sr^{-1}", "%",      "percent", "db", "nm",
     "um",   "mrad",  "urad", "turn", "turns",   "arcmin", "arcsec",  "\"", "-"};
-constexpr std::string_view kNoBrdf[] = {"%", "percent", "db"};
+constexpr std::string_view kNoBrdf[] = {"%", "percent"};
 
 // For a note, in UTF-8.
 std::string Quoted(std::string_view name) {
@@ -85,7 +39,8 @@ std::string Quoted(std::string_view name) {
 // --- Angles --------------------------------------------------------------------------------------
 
 constexpr std::string_view kThetaWords[] = {"theta", "zenith", "polar"};
-constexpr std::string_view kPhiWords[] = {"phi", "azimuthal", "azimuth", "azimut", "azim", "az"};
+constexpr std::string_view kPhiWords[] = {"phi",    "azimuthal", "azimuth", "azimut",
+                                          "acimut", "azim",      "az"};
 constexpr std::string_view kIncident[] = {"i",        "in",    "inc",   "incident",    "incidence",
                                           "incoming", "l",     "light", "src",         "source",
                                           "sun",      "solar", "illum", "illumination"};
@@ -97,8 +52,9 @@ constexpr std::string_view kOutgoing[] = {
     "sensor",     "camera",   "det",      "detector", "receiver"};
 // With which no word for an angle need stand.
 constexpr std::string_view kIncidentAlone[] = {
-    "inc", "incident", "incidence", "incoming",       "aoi",           "ti",
-    "thi", "sza",      "einfall",   "einfallswinkel", "einfallwinkel", "dincidence"};
+    "inc",          "incident",   "incidence", "incoming",       "aoi",           "ti",
+    "thi",          "sza",        "einfall",   "einfallswinkel", "einfallwinkel", "dincidence",
+    "deincidencia", "diincidenza"};
 constexpr std::string_view kOutgoingAlone[] = {"outgoing",
                                                "scatter",
                                                "scattered",
@@ -115,11 +71,18 @@ constexpr std::string_view kOutgoingAlone[] = {"outgoing",
                                                "thr",
                                                "vza",
                                                "dobservation",
+                                               "deobservacion",
+                                               "diosservazione",
                                                "ausfallswinkel",
                                                "ausfallwinkel",
                                                "beobachtungswinkel",
                                                "streuwinkel",
                                                "detektorwinkel"};
+
+// "angle from specular", "theta_s - theta_spec", "off-specular angle".
+constexpr std::string_view kFromMirror[] = {"fromspec",   "tospec",    "offspec",
+                                            "deltaspec",  "minusspec", "aspecular",
+                                            "frommirror", "tomirror",  "sthetaspec"};
 
 // Of theta or phi of what the rest of the name says.
 std::optional<Role> RoleBySide(std::string_view side, Role incident, Role outgoing, Role unsaid) {
@@ -146,7 +109,12 @@ std::optional<Role> RoleByWords(std::string_view key, std::span<const std::strin
 
 std::optional<Role> AngleRole(std::string key) {
   if (key == "angle") return Role::kTheta;
-  for (const std::string_view word : {"angle", "of"}) {
+  if (std::ranges::any_of(kFromMirror, [&](std::string_view word) {
+        return key.find(word) != std::string::npos;
+      })) {
+    return Role::kFromMirror;
+  }
+  for (const std::string_view word : {"angle", "angulo", "angolo", "of"}) {
     if (const size_t at = key.find(word); at != std::string::npos) key.erase(at, word.size());
   }
   if (IsOneOf(key, kIncidentAlone)) return Role::kThetaI;
@@ -187,6 +155,36 @@ std::optional<Role> ValueRole(std::string text) {
   return ColorRole(key);
 }
 
+struct Scaled {
+  std::string_view name;  // before the name of values, or behind
+  bool behind;
+  ValueScale scale;
+};
+constexpr Scaled kScaled[] = {{"log10", false, ValueScale::kLog10},
+                              {"lg", false, ValueScale::kLog10},
+                              {"ln", false, ValueScale::kLn},
+                              {"db", true, ValueScale::kDecibels}};
+
+// "log10brdf", "brdfdb", or "db" alone: takes the scale off the key.
+ValueScale TakeScale(std::string* key) {
+  if (ValueRole(*key)) return ValueScale::kLinear;  // "FRDB", in French
+  for (const Scaled& scaled : kScaled) {
+    std::string rest = *key;
+    if (rest == scaled.name) {
+      rest = "f";
+    } else if (scaled.behind) {
+      if (!TakeSuffix(scaled.name, &rest)) continue;
+    } else {
+      if (!rest.starts_with(scaled.name)) continue;
+      rest.erase(0, scaled.name.size());
+    }
+    if (!ValueRole(rest)) continue;
+    *key = std::move(rest);
+    return scaled.scale;
+  }
+  return ValueScale::kLinear;
+}
+
 // [nm] "550", "550nm", "0.55 um", "brdf_550", "lambda=550nm"; none for what is no wavelength.
 std::optional<double> WavelengthIn(std::string_view plain, std::string_view unit) {
   const size_t first = std::min(plain.find_first_of("0123456789"), plain.size());
@@ -217,6 +215,7 @@ void SetRole(const std::string& plain, TableColumn* column) {
     return;
   }
   std::string key = LettersAndDigits(plain);
+  column->scale = TakeScale(&key);
   if (key == "wavelength" || key == "lambda" || key == "wl") {
     column->role = Role::kWavelength;
   } else if (const auto value = ValueRole(key)) {
@@ -282,6 +281,10 @@ class ColumnLayouter {
                                  kUsualColumns + " names columns");
     }
     if (!theta_o) theta_o = One(Role::kTheta);
+    if (!theta_o && !phi_i && !phi_o && All(Role::kPhi).empty()) {
+      theta_o = One(Role::kFromMirror);
+      layout_.from_mirror = theta_o.has_value();
+    }
     if (!theta_o) {
       FailWithout("theta_o", std::string("; --columns=") + kUsualColumns + " names columns");
     }
@@ -364,6 +367,7 @@ TableColumn ColumnNamed(std::string_view name) {
     if (column.role != Role::kOther) return column;
   }
   SetRole(plain, &column);
+  if (column.unit == "db") column.scale = ValueScale::kDecibels;
   return column;
 }
 

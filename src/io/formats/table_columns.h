@@ -25,16 +25,21 @@ enum class ColumnRole {
   kBand,        // the value at a wavelength
   kWavelength,  // of the row
   kTheta,       // of a direction that the name does not say
+  kFromMirror,  // theta_o - theta_i in the plane of incidence, > 0 away from the normal
   kPhi,
   kOther
 };
+
+// What a number of a column of values means: f itself, 10 lg f, lg f or ln f.
+enum class ValueScale { kLinear, kDecibels, kLog10, kLn };
 
 // A column by its name: "theta_i", "Theta_i [deg]", "incidence angle (rad)", "red", "550nm".
 struct TableColumn {
   std::string name;  // as in the file
   ColumnRole role = ColumnRole::kOther;
-  std::string unit = {};       // as the name says it, in lower case
-  double wavelength = 0;       // [nm] of kBand
+  std::string unit = {};  // as the name says it, in lower case
+  double wavelength = 0;  // [nm] of kBand
+  ValueScale scale = ValueScale::kLinear;
   bool is_usual_name = false;  // "theta_i", "r", as the library writes it
 };
 TableColumn ColumnNamed(std::string_view name);
@@ -53,6 +58,7 @@ struct ColumnLayout {
   std::vector<TableColumn> columns;
   std::array<std::optional<size_t>, kAngles> angles = {};  // theta_i, phi_i, theta_o, phi_o
   std::array<double, kAngles> units = {};                  // [rad] of the angles
+  bool from_mirror = false;                                // theta_o is counted from there
   std::vector<size_t> values = {};        // one for all channels; R, G, B; or a spectrum
   std::vector<double> wavelengths = {};   // [nm] of a spectrum, ascending
   std::optional<size_t> wavelength = {};  // column of the wavelength of a row

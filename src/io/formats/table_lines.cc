@@ -6,6 +6,7 @@
 
 #include "core/files/text_lines.h"
 #include "io/formats/table_columns.h"
+#include "trilobe/core/base/printable.h"
 
 namespace trilobe {
 namespace {
@@ -102,6 +103,22 @@ std::optional<double> OddNumber(std::string_view cell) {
   std::string usual(cell);
   usual[exponent] = 'e';
   return ToNumber(usual);
+}
+
+std::string WhyNoNumber(std::string_view cell) {
+  constexpr size_t kLongest = 40;
+  constexpr std::string_view kMarks = ".,'";
+  const std::string text = "'" + Printable(cell.substr(0, kLongest)) + "' is no number; ";
+  const bool is_digits = cell.find_first_not_of("0123456789.,'+-") == std::string_view::npos;
+  const auto marks =
+      std::ranges::count_if(cell, [&](char c) { return kMarks.find(c) != std::string_view::npos; });
+  if (is_digits && marks > 1) return text + "write numbers without separators of thousands";
+  return text + "give the number alone, as 1.5e-3, and an empty cell where nothing was measured";
+}
+
+bool IsRule(std::string_view line) {
+  return line.find("--") != std::string_view::npos &&
+         line.find_first_not_of("-=+|: \t") == std::string_view::npos;
 }
 
 bool IsText(std::string_view line) {

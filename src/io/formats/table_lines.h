@@ -2,6 +2,7 @@
 #define TRILOBE_IO_FORMATS_TABLE_LINES_H_
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace trilobe {
@@ -26,6 +27,12 @@ std::optional<double> DecimalCommaNumber(std::string_view cell);
 // A number as some programs write it: with a degree sign or "deg" behind it, or D before its
 // exponent. None for what is no number.
 std::optional<double> OddNumber(std::string_view cell);
+
+// What is wrong with a cell that holds no number, and what to do.
+std::string WhyNoNumber(std::string_view cell);
+
+// Whether a line is but a rule of a table of characters: "|---|:--:|", "+----+----+".
+bool IsRule(std::string_view line);
 
 // Whether a line is text, and not a row that lacks something: its first word has no digit.
 bool IsText(std::string_view line);

@@ -41,12 +41,12 @@ TableHead HeadOf(std::string_view text, const std::string& source, const SourceO
     }
     while (head.lines.line().starts_with('%') && head.lines.Next()) {
     }
-    if (LooksLikeRow(head.lines.line())) {
+    if (LooksLikeRow(head.lines.line(), 2)) {
       head.lines.Fail(std::string("no header row names the columns; --columns=") + kUsualColumns +
                       " names them, - those to leave out, and --columns=theta_o/phi_o the rows and "
                       "columns of a matrix");
     }
-    for (const std::string_view name : SplitCells(head.lines.line())) head.names.emplace_back(name);
+    head.names = NamesOfFirstLine(head.lines.line());
   }
   return head;
 }
@@ -99,7 +99,7 @@ class TableReader {
     // Whether phi_o is that of the signs, turned by 180 degrees.
     bool turned = !layout_.angles[kPhiO];
     Measurement measurement = ReadRows(turned);
-    by_brightness_ = in_plane_ && signed_ && brighter_.both();
+    by_brightness_ = in_plane_ && signed_ && brighter_.both() && !layout_.from_mirror;
     if (by_brightness_ && brighter_.same() != turned) {
       turned = brighter_.same();
       measurement = ReadRows(turned);
@@ -193,7 +193,7 @@ class TableReader {
   // The same of any row; false for a line of text.
   bool TakeCells(const TextLines& lines) {
     const std::string_view line = WithoutComment(lines.line());
-    if (line.empty()) return false;
+    if (line.empty() || IsRule(line)) return false;
     if (TakeNumbers(line)) return true;
     SplitRow(line, head_.separator, &cells_);
     const std::vector<TableColumn>& columns = layout_.columns;
@@ -235,7 +235,7 @@ class TableReader {
       }
       return true;
     }
-    if (WithoutComment(line).empty()) return true;
+    if (WithoutComment(line).empty() || IsRule(line)) return true;
     std::vector<std::string_view> cells;
     SplitRow(line, head_.separator, &cells);
     if (cells.size() > head_.names.size() && cells.back().empty()) cells.pop_back();
@@ -250,7 +250,7 @@ class TableReader {
       return *number;
     }
     if (const auto number = OddNumber(cells_[column])) return *number;
-    return ReadNumber(lines, column, layout_.columns[column].name, cells_[column]);  // throws
+    lines.FailAt(column, layout_.columns[column].name, WhyNoNumber(cells_[column]));
   }
 
   // [rad]; `missing` without a column.
@@ -272,6 +272,7 @@ class TableReader {
     constexpr AngleRange kTheta = {-180, 180}, kPhi = {-360, 360};
     theta_i_ = AngleOf(lines, kThetaI, kTheta, block_theta_i_);
     theta_o_ = AngleOf(lines, kThetaO, kTheta, 0);
+    if (layout_.from_mirror) theta_o_ += theta_i_;
     SphericalAngles at;
     at.phi_i = AngleOf(lines, kPhiI, kPhi, block_phi_i_);
     at.phi_o = AngleOf(lines, kPhiO, kPhi, 0);
@@ -289,8 +290,24 @@ class TableReader {
   bool Values(const TextLines& lines) {
     const auto is_gap = [&](size_t column) { return !is_numbers_ && IsGap(cells_[column]); };
     if (is_gap(layout_.values[0]) && std::ranges::all_of(layout_.values, is_gap)) return false;
-    for (size_t k = 0; k < numbers_.size(); ++k) numbers_[k] = Number(lines, layout_.values[k]);
+    for (size_t k = 0; k < numbers_.size(); ++k) {
+      const size_t column = layout_.values[k];
+      numbers_[k] = Linear(layout_.columns[column].scale, Number(lines, column));
+    }
     return true;
+  }
+
+  static double Linear(ValueScale scale, double number) {
+    switch (scale) {
+      case ValueScale::kLinear:
+        return number;
+      case ValueScale::kDecibels:
+        return std::pow(10, number / 10);
+      case ValueScale::kLog10:
+        return std::pow(10, number);
+      default:
+        return std::exp(number);
+    }
   }
 
   // [nm], of a row.
@@ -385,11 +402,17 @@ std::string TableReader::Note(bool turned) const {
   say(!layout_.angles[kPhiI], "phi_i = 0");
   const std::string side = turned ? "theta_o > 0 on the side of the mirror direction"
                                   : "theta_o > 0 on the side of the light";
-  const bool by_side = !layout_.angles[kPhiO] || by_brightness_;
+  const bool by_side = (!layout_.angles[kPhiO] && !layout_.from_mirror) || by_brightness_;
+  say(layout_.from_mirror,
+      "theta_o as theta_i and that angle, > 0 from the mirror direction away from the normal");
   say(by_side, side + (by_brightness_ ? ", as its samples say" : ""));
   say(signed_ && !by_side, "theta < 0 as phi + 180 deg");
   const bool is_one = bands_ ? bands_->read().size() == 1 : layout_.values.size() == 1;
   say(is_one, "one value for all channels");
+  const ValueScale scale = layout_.columns[layout_.values[0]].scale;
+  say(scale == ValueScale::kDecibels, "decibels as 10^(dB/10)");
+  say(scale == ValueScale::kLog10, "logarithms as 10^x");
+  say(scale == ValueScale::kLn, "logarithms as e^x");
   say(bands_.has_value() && layout_.wavelength, "a row a wavelength");
   if (bands_) say(true, bands_->Note());
   say(lines_after_ > 0, Lines(lines_after_) + " after the table");

@@ -80,7 +80,9 @@ class TreeReader {
       const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n,{}"));
       const std::optional<double> value = ToNumber(word);
       if (!value) {
-        fail_("'" + std::string(word.substr(0, 40)) + "' in the tensor tree is no number");
+        fail_(std::string("'")
+                  .append(word.substr(0, 40))
+                  .append("' in the tensor tree is no number"));
       }
       values.push_back(*value);
       rest_.remove_prefix(word.size());

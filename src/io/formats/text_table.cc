@@ -72,6 +72,7 @@ int NamesKnown(const std::vector<std::string>& names, char separator, const Plac
     const ColumnRole role = ColumnNamed(name).role;
     known += role != ColumnRole::kOther ? 1 : 0;
     has_angle |= role == ColumnRole::kThetaI || role == ColumnRole::kThetaO ||
+                 role == ColumnRole::kFromMirror ||
                  (role == ColumnRole::kTheta && place.theta_i_is_given);
     has_value |= role >= ColumnRole::kRed && role <= ColumnRole::kBand;
   }
@@ -151,6 +152,22 @@ bool IsTableOfNumbers(std::string_view text) {
     if (!lines.line().starts_with('%') && !IsText(lines.line())) return false;
   }
   return false;
+}
+
+bool LooksLikeTwoColumns(std::string_view text) {
+  constexpr int kMostLines = 100, kFewest = 3;
+  TextLines lines(text, "");
+  int in_a_row = 0;
+  for (int k = 0; k < kMostLines && lines.Next() && in_a_row < kFewest; ++k) {
+    in_a_row = LooksLikeRow(lines.line(), 2) ? in_a_row + 1 : 0;
+  }
+  return in_a_row == kFewest;
+}
+
+std::vector<std::string> NamesOfFirstLine(std::string_view line) {
+  const auto* const separator = std::ranges::find_if(
+      kSeparators, [&](char c) { return c != kBlanks && line.find(c) != std::string_view::npos; });
+  return SplitNames(line, separator == std::end(kSeparators) ? kBlanks : *separator);
 }
 
 std::optional<TableHead> FindTableHead(std::string_view text, const std::string& source,

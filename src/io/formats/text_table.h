@@ -34,6 +34,12 @@ TableHead TableHeadBy(const std::vector<std::string>& names, std::string_view te
 // beyond a line of units and adds these to the names.
 void GoToRows(TableHead* head);
 
+// What would be the names of columns in a line that names none of a table.
+std::vector<std::string> NamesOfFirstLine(std::string_view line);
+
+// Whether lines of two numbers or more follow one another: a table, if not one of samples.
+bool LooksLikeTwoColumns(std::string_view text);
+
 // Whether a line could be a row: at least so many of its cells, and half of them, are numbers.
 inline constexpr size_t kFewestNumbers = 3;
 bool LooksLikeRow(std::string_view line, size_t fewest = kFewestNumbers);

@@ -170,8 +170,10 @@ TEST(CsvFile, ErrorsSayWhereAndWhatIsExpected) {
   EXPECT_THAT(ParseError("theta_i,phi_i,theta_o,phi_o,r,g,b,b\n"), HasSubstr("has 8 columns"));
   EXPECT_EQ(ParseError(kHeader + "# a comment\n1,2,3\n"),
             "x.csv: line 3: 3 columns; expected 7, from theta_i to b");
-  EXPECT_EQ(ParseError(kHeader + "1,2,3,4,5,6,7\n1,2,3,abc,5,6,7\n"),
-            "x.csv: line 3, column 4 (phi_o): 'abc' is no number");
+  EXPECT_EQ(
+      ParseError(kHeader + "1,2,3,4,5,6,7\n1,2,3,abc,5,6,7\n"),
+      "x.csv: line 3, column 4 (phi_o): 'abc' is no number; give the number alone, as 1.5e-3, "
+      "and an empty cell where nothing was measured");
   EXPECT_THAT(ParseError(kHeader + "1,2,3,4,5,,7\n"), HasSubstr("column 6 (g): '' is no number"));
   EXPECT_THAT(ParseError(kHeader + "1,2,3,4,5 6,6,7\n"), HasSubstr("'5 6' is no number"));
   EXPECT_EQ(ParseError(kHeader + "-190,2,3,4,5,6,7\n"),

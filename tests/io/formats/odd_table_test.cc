@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -77,9 +78,83 @@ TEST(OddTable, ValuesThatAreNoBrdfAreNamed) {
   EXPECT_EQ(error("BTDF"),
             "x.txt: line 1: column 'BTDF' holds transmitted light, which is not read; the BRDF is "
             "what is reflected");
-  EXPECT_THAT(error("log10(BRDF)"), HasSubstr("holds logarithms"));
+  EXPECT_THAT(error("log BRDF"), HasSubstr("--columns=theta_i,theta_o,phi_o,log10, or ln"));
   EXPECT_THAT(error("DHR"), HasSubstr("holds the reflectance of a hemisphere"));
   EXPECT_THAT(error("BRDF_s"), HasSubstr("holds light of one polarisation"));
+}
+
+TEST(OddTable, DecibelsAndLogarithmsAreRead) {
+  const auto rows = [](const std::string& name, double first, double second) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "theta_i,phi_i,theta_o,phi_o," << name << "\n30,0,10,0," << first << "\n30,0,20,180,"
+         << second << "\n";
+    return text.str();
+  };
+  const double ln[] = {std::log(0.25), std::log(0.5)}, ln10 = std::log(10.0);
+  const auto expect = [&](const std::string& name, double factor, const std::string& note) {
+    const Measurement is = Read(rows(name, factor * ln[0], factor * ln[1]));
+    ASSERT_EQ(is.samples.size(), 2) << name;
+    EXPECT_NEAR(is.samples.rho[0][1], 0.25, 1e-15) << name;
+    EXPECT_NEAR(is.samples.rho[1][2], 0.5, 1e-15) << name;
+    EXPECT_THAT(is.notes, ElementsAre(HasSubstr(note))) << name;
+  };
+  for (const char* name : {"BRDF [dB]", "BRDF_dB", "dB"}) {
+    expect(name, 10 / ln10, "decibels as 10^(dB/10)");
+  }
+  for (const char* name : {"log10(BRDF)", "lg f", "log10"}) {
+    expect(name, 1 / ln10, "logarithms as 10^x");
+  }
+  expect("ln(BRDF)", 1, "logarithms as e^x");
+}
+
+// Theta_o counted from the mirror direction, in the plane of incidence.
+TEST(OddTable, AnglesFromTheMirrorDirection) {
+  const std::string rows = "30,-40,0.25\n30,-10,0.5\n";  // theta_o = -10 and 20
+  for (const char* name :
+       {"angle from specular [deg]", "theta_s - theta_spec", "off-specular", "delta_specular"}) {
+    ExpectBoth(std::string("AOI,") + name + ",BRDF\n" + rows, "theta_o as theta_i and that angle");
+  }
+  ExpectBoth("Angle from specular\tBRDF\n-40\t0.25\n-10\t0.5\n", "theta_i = 30 deg",
+             {.theta_i_deg = 30});
+  EXPECT_THAT(ReadError("AOI,angle from specular,phi_o,f\n30,1,2,3\n"),
+              HasSubstr("in the plane of incidence alone; make them theta_o and phi_o"));
+}
+
+TEST(OddTable, RulesOfTablesInMarkdown) {
+  ExpectBoth(
+      "# Sheen\n\n| theta_i | phi_i | theta_o | phi_o | f |\n|---|:--:|---:|---|---|\n"
+      "| 30 | 0 | 10 | 0 | 0.25 |\n| 30 | 0 | 20 | 180 | 0.5 |\n",
+      "bars");
+}
+
+TEST(OddTable, WhatIsNoNumberIsToldHowToWrite) {
+  const auto error = [](const std::string& cell) {
+    return ReadError("theta_i;theta_o;phi_o;f\n30;10;0;" + cell + "\n");
+  };
+  for (const char* cell : {"1.234,5", "1,234.5", "1'234.5"}) {
+    EXPECT_THAT(error(cell), HasSubstr("' is no number; write numbers without separators"));
+  }
+  for (const char* cell : {"<0.1", "OVER", "0.1 ± 0.01"}) {
+    EXPECT_THAT(error(cell), HasSubstr("an empty cell where nothing was measured"));
+  }
+}
+
+TEST(OddTable, ColumnsThatAreNoAnglesAreNamed) {
+  const auto error = [](const std::string& header) { return ReadError(header + "\n1,2,3,4\n"); };
+  EXPECT_THAT(error("theta_i,beta_x,beta_y,f"), HasSubstr("'beta_x' is a sine of an angle (beta)"));
+  EXPECT_THAT(error("theta_i,|B-B0|,x,f"), HasSubstr("|beta - beta0|"));
+  EXPECT_THAT(error("cos_theta_i,phi_i,cos_theta_o,f"), HasSubstr("'cos_theta_i' is a cosine"));
+  EXPECT_THAT(error("sun elevation,view elevation,raa,f"), HasSubstr("theta is 90 minus it"));
+  EXPECT_THAT(error("sample,Gloss 20,Gloss 60,Gloss 85"), HasSubstr("'Gloss 20' is of gloss"));
+  EXPECT_THAT(ReadError("Wavelength\tx.asd\n350\t0.1\n351\t0.1\n352\t0.2\n"),
+              HasSubstr("this is a spectrum without angles"));
+  EXPECT_THAT(error("sza,vza,band1,band2"),
+              HasSubstr("if they are of MODIS, and reflectance factors, pi f, type "
+                        "--columns=theta_i,theta_o,645nm,859nm --scale=0.3183"));
+  EXPECT_THAT(error("sza,vza,B02,B03,B04"),
+              HasSubstr("--columns=theta_i,theta_o,490nm,560nm,665nm --bands=665,560,490"));
+  EXPECT_THAT(error("sza,vza,ch1,ch2"), HasSubstr("--columns=theta_i,theta_o,645nm,-"));
 }
 
 TEST(OddTable, AHeaderMayComeAgain) {

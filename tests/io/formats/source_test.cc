@@ -145,8 +145,11 @@ TEST(LoadMeasurement, TheEndingTellsWhereTheContentCannot) {
   EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make("x.dat", binary)); }),
               HasSubstr("a MERL file has"));
   for (const char* name : {"x.txt", "x.binary"}) {
-    EXPECT_THAT(ErrorOf([&] { LoadMeasurement(directory.Make(name, text)); }),
-                HasSubstr("this is text; a measurement is a MERL .binary file, "))
+    EXPECT_THAT(
+        ErrorOf([&] { LoadMeasurement(directory.Make(name, text)); }),
+        AllOf(HasSubstr("this is text, with no line of names of columns, or of numbers; save its "
+                        "samples as CSV, with the header theta_i,"),
+              HasSubstr("; a measurement is a MERL .binary file, ")))
         << name;
   }
 }
@@ -194,6 +197,8 @@ TEST(MeasurementFormats, EachRecognisesItsOwnAlone) {
       {"speos", "OPTIS - brdf surface file v9.0\n"},
       {"pab", "#sample_name \"x\"\n#intheta 30\n"},
       {"openmaterial", "{\"brdf\": {\"lookupTable\": []}}"},
+      {"json", "{\"theta_i\": [10],\n\"theta_o\": [20],\n\"f\": [0.5]}"},
+      {"terms", "{\"format\": \"trilobe-terms\"}"},
       {"csv", kCsv}};
   ASSERT_EQ(MeasurementFormats().size(), begins.size());
   for (const MeasurementFormat& format : MeasurementFormats()) {

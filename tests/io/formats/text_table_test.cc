@@ -376,7 +376,8 @@ TEST(TextTable, WhatNamesLeaveOpenIsAsked) {
   EXPECT_THAT(ReadError(angles + ",brdf,rho\n1,0,1,0,1,1\n"),
               HasSubstr("'brdf' and 'rho' say the same; --columns="));
   EXPECT_THAT(ReadError(angles + ",brdf [%]\n1,0,1,0,1\n"),
-              HasSubstr("column 'brdf [%]' is in %, and a BRDF is in 1/sr; convert it"));
+              HasSubstr("column 'brdf [%]' is in percent, and a BRDF in 1/sr; type "
+                        "--columns=theta_i,phi_i,theta_o,phi_o,f --scale=0.01"));
   EXPECT_THAT(ReadError("theta_i [mrad],phi_i,theta_o,phi_o,f\n1,0,1,0,1\n"),
               HasSubstr("column 'theta_i [mrad]' is neither in degrees nor in radians"));
   EXPECT_THAT(ReadError(angles + ",f\n1,0,1,0,0,5\n"), HasSubstr("line 2: 6 columns; expected 5"));
