@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -48,14 +49,19 @@ TEST(Forms, AreFittedComparedAndRead) {
 }
 
 TEST(Forms, WhatCannotBeIsSaid) {
-  const TemporaryFolder folder;
   const auto error_of = [](const std::vector<std::string>& arguments) {
     const ProgramResult result = RunProgram(arguments);
     EXPECT_NE(result.status, 0);
     return result.err;
   };
-  EXPECT_THAT(error_of({"forms", "material:nylon", "synth:felt", "--forms=harmonic"}),
+  EXPECT_THAT(error_of({"forms", "material:aurora_white", "synth:felt", "--forms=harmonic"}),
               HasSubstr("unknown form 'harmonic'; known: paper, diffuse_table"));
+  const TemporaryFolder samples;
+  std::ofstream(samples / "one.csv") << "theta_i,phi_i,theta_o,phi_o,f\n0,0,10,0,0.1\n";
+  EXPECT_THAT(error_of({"forms", "material:aurora_white", samples / "one.csv", "--forms=retro"}),
+              HasSubstr("too few directions to hold out some of them, as --model=auto"));
+  EXPECT_THAT(error_of({"forms", "material:aurora_white", samples / "one.csv"}),
+              HasSubstr("form own_f: each lobe has an F of its own already; leave it out"));
   EXPECT_THAT(error_of({"forms", "synth:felt", "synth:felt"}),
               HasSubstr("this is a measurement; a model is a model.json"));
 }

@@ -8,6 +8,7 @@
 #include "core/system/process.h"
 #include "fit/held_out.h"
 #include "fit/prune/thinned_objective.h"
+#include "trilobe/core/base/error.h"
 #include "trilobe/model/measurement/brdf_samples.h"
 #include "trilobe/model/objective/objective.h"
 #include "trilobe/model/terms/term_forms.h"
@@ -35,7 +36,13 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
     if (std::ranges::find(forms, &form) == forms.end()) forms.push_back(&form);
   }
   std::vector<TermModel> starts;
-  for (const TermForm* form : forms) starts.push_back(form->from(start));  // their errors
+  for (const TermForm* form : forms) {
+    try {
+      starts.push_back(form->from(start));
+    } catch (const Error& error) {
+      throw Error("form " + form->name + ": " + error.what() + "; leave it out of --forms");
+    }
+  }
   const Objective all = SomeOf(problem, options.bands, start.num_parameters());
   const Objective& data = all.data();
   const HeldOutPart held_out(data.samples(), options.seed, all.num_threads());
