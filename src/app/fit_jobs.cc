@@ -41,15 +41,16 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// Whether a file of a folder is to be fitted: by the ending of a format, or by its content; and
-// what holds a measurement that is not read, so that its error says what to do.
+// Whether a file of a folder is to be fitted: by the ending of a format but JSON, or by its
+// content; and what holds a measurement that is not read, so that its error says what to do.
 bool IsMeasurement(const std::string& path) {
   const std::string ending = EndingOf(path);
   const auto is_one_of = [&](std::initializer_list<std::string_view> endings) {
     return std::ranges::find(endings, ending) != endings.end();
   };
-  if (std::ranges::find(MeasurementFormats(), ending, &MeasurementFormat::ending) !=
-      MeasurementFormats().end()) {
+  if (std::ranges::any_of(MeasurementFormats(), [&](const MeasurementFormat& format) {
+        return format.ending == ending && !(format.is_json && ending == ".json");
+      })) {
     return true;
   }
   if (is_one_of({".xlsx", ".xls", ".ods", ".mat", ".h5", ".hdf5", ".npy", ".npz", ".axf", ".gz"})) {

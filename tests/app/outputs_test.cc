@@ -251,6 +251,7 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
   std::ofstream(data + "/coating.txt") << "TracePro Surface Property\nVersion 7.0\n";
   std::ofstream(data + "/photo.jpg") << "\xFF\xD8\xFF\xE0 JFIF";
   std::ofstream(data + "/empty.dat");
+  std::ofstream(data + "/meta.json") << R"({"operator": "me"})";
   std::ofstream(data + "/.hidden") << "nothing to say of it";
   const std::vector<std::string> command =
       Quick({"fit", data, "synth:felt@30x30x60", "--threads=2", "--out=" + out});
@@ -263,6 +264,10 @@ TEST(FitMany, FitsEachIntoItsFolderAndGathersThem) {
                 "public; save it as CSV, with the header "
                 "theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
                 skipped + "/empty.dat: the file is empty\n" + skipped +
+                "/meta.json: this is a JSON file, with no columns theta_i, theta_o and "
+                "brdf; save its samples as CSV, with the header "
+                "theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
+                skipped +
                 "/notes.txt: this is text, with no line of names of columns, or of numbers; save "
                 "its samples as CSV, with the header theta_i,phi_i,theta_o,phi_o,r,g,b\n" +
                 skipped + "/photo.jpg: this is a JPEG picture\n");

@@ -95,11 +95,13 @@ bool IsTable(std::string_view text) {
 std::string WhatIsMissing(Content::Kind kind, std::string_view bytes) {
   const std::string columns =
       std::string("; save its samples as CSV, with the header ") + kUsualColumns;
-  if (kind == Content::Kind::kText)
+  if (kind == Content::Kind::kText) {
     return ", with no line of names of columns, or of numbers" + columns;
+  }
   const bool is_model = bytes.find("\"format\"") != std::string_view::npos;
-  if (kind == Content::Kind::kJson && !is_model)
+  if (kind == Content::Kind::kJson && !is_model) {
     return ", with no columns theta_i, theta_o and brdf" + columns;
+  }
   return "";
 }
 
