@@ -273,8 +273,10 @@ std::string TellElevation(const BrdfSamples& samples) {
 
 std::string TellNegative(const BinCounts& counts) {
   if (2 * static_cast<int64_t>(counts.negative) <= counts.total) return "";
-  return Sentence(counts.negative, " of ", counts.total,
-                  " values are negative, as decibels are, and left out; a BRDF is 10^(dB/10)");
+  return Sentence(
+      counts.negative, " of ", counts.total,
+      " values are negative, as decibels are, and left out; a column that --columns or its header "
+      "calls db is read as 10^(dB/10)");
 }
 
 }  // namespace
