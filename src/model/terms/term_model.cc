@@ -85,7 +85,10 @@ void CheckTerms(const TermSpec& spec) {
     if (set.axis.polar()) throw Error("tables '" + set.name + "' must not be over azimuths");
   }
   for (const Term& term : spec.terms) {
-    if (term.reads.size() > kMaxTerms) throw Error("term '" + term.name + "' reads too much");
+    if (term.reads.size() > kMaxReads) {
+      throw Error("term '" + term.name + "' reads " + std::to_string(term.reads.size()) +
+                  " tables; it may read " + std::to_string(kMaxReads));
+    }
     int pairs = 0;
     for (const TermRead& read : term.reads) {
       if (read.set < 0 || read.set >= static_cast<int>(spec.sets.size()) || read.table < 0 ||

@@ -167,6 +167,8 @@ TEST(TermSpec, WhatIsWrongIsNamed) {
   EXPECT_THAT(error_of([](TermSpec* spec) { spec->terms.clear(); }), HasSubstr("0 terms"));
   EXPECT_THAT(error_of([](TermSpec* spec) { spec->terms[1].reads[0].table = 2; }),
               HasSubstr("'lobe 1' reads table 2 of set 0"));
+  EXPECT_THAT(error_of([](TermSpec* spec) { spec->terms[1].reads.resize(5); }),
+              HasSubstr("'lobe 1' reads 5 tables; it may read 4"));
   EXPECT_THAT(error_of([](TermSpec* spec) { spec->terms[1].reads[1].stretch.along = 1; }),
               HasSubstr("stretches what is not over theta_h"));
   EXPECT_THAT(error_of([](TermSpec* spec) { spec->sets[1].axis = Axis::Utia(); }),

@@ -81,9 +81,10 @@ struct TermSpec {
 
 inline constexpr int kMaxTermChannels = 64;
 inline constexpr int kMaxTerms = 16;
+inline constexpr int kMaxReads = 4;  // of a term
 
 // Throws Error unless there are 1 to kMaxTermChannels channels, up to kMaxTerms terms and sets, and
-// reads are of tables that there are, axes valid, and stretches within their bounds.
+// kMaxReads reads a term, of tables that there are, axes valid, and stretches within their bounds.
 void CheckTerms(const TermSpec& spec);
 
 // The parameters of such a model, all >= 0: strengths by term, then tables by set. A value type.
