@@ -1,6 +1,5 @@
 #include <gflags/gflags.h>
 
-#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -132,9 +131,8 @@ int RunForms(std::span<const std::string> arguments) {
     TermFile terms{.model = form.model, .wavelengths = wavelengths, .fit = file.fit};
     if (!pictured.empty()) {
       const auto rgb = RgbOf(terms);
-      const Material material = Isotropic([&rgb](const HalfDiffAngles& angles, const Cosines&) {
-        return rgb(ToDirections(angles));
-      });
+      const Material material =
+          Isotropic([&rgb](const HalfDiffAngles& angles, const Cosines&) { return rgb(angles); });
       seen.sphere = CompareAppearance(pictured, material, appearance).sphere;
     }
     if (folder) {

@@ -20,7 +20,7 @@ namespace {
 // Of many samples, some; these need no prior. One of colours has no spectra.
 Objective SomeOf(const FitProblem& problem, bool bands, int num_parameters) {
   constexpr int kMost = 100'000;
-  if (problem.solved().samples().size() <= kMost) return bands ? problem.data : problem.solved();
+  if (problem.solved().num_samples() <= kMost) return bands ? problem.data : problem.solved();
   return ThinnedObjective(problem.data, num_parameters, kFewSamples);
 }
 
@@ -44,8 +44,7 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
     }
   }
   const Objective all = SomeOf(problem, options.bands, start.num_parameters());
-  const Objective& data = all.data();
-  const HeldOutPart held_out(data.samples(), options.seed, all.num_threads());
+  const HeldOutPart held_out(all.data().samples(), options.seed, all.num_threads());
   const Objective kept = held_out.RemoveFrom(all);
   const Objective held(held_out.samples(), all.spec(), all.weighting(), all.num_threads());
   std::vector<FormFit> fits;
@@ -55,20 +54,20 @@ std::vector<FormFit> CompareForms(const FitProblem& problem, const TermModel& st
     const auto problem_of = [&](const Objective& part) {
       return TermProblem(part, spec, options.bands);
     };
-    const auto share_of = [&](const Objective& part, const TermModel& model) {
-      const TermProblem judged = problem_of(part);
+    const auto share_in = [](const TermProblem& judged, const TermModel& model) {
       return Share(judged.Value(model), judged.MeasuredEnergy());
     };
     constexpr double kSmall = 3e-5;  // forms differ by more
     const TermFitOptions steps{.tolerance = kSmall, .stop = options.stop};
     const TermFit part = FitTerms(problem_of(kept), starts[k], steps);
-    const TermFit whole = FitTerms(problem_of(all), part.model, steps);
+    const TermProblem of_all = problem_of(all);
+    const TermFit whole = FitTerms(of_all, part.model, steps);
     if (options.stop()) break;
     FormFit fit{.form = forms[k]->name,
                 .model = whole.model,
-                .objective = share_of(data, whole.model),
-                .kept = share_of(kept.data(), part.model),
-                .held_out = share_of(held, part.model),
+                .objective = all.has_prior() ? share_in(problem_of(all.data()), whole.model)
+                                             : share_in(of_all, whole.model),
+                .held_out = share_in(problem_of(held), part.model),
                 .steps = static_cast<int>(part.trace.size() + whole.trace.size()) - 2,
                 .converged = part.converged && whole.converged,
                 .seconds = stopwatch.Seconds()};

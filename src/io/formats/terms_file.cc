@@ -16,10 +16,14 @@ Measurement ParseTermsAsTable(std::string_view text, const std::string& source,
   Measurement measurement{.source = source, .kind = "table of a model of terms"};
   BrdfTable table = MakeInvalidTable(source, grid);
   const std::vector<bool> above = BinsAboveSurface(grid);
-  measurement.formula = RgbOf(file);
+  const auto rgb = RgbOf(file);
+  measurement.formula = [rgb](const DirectionPair& pair) -> Rgb {
+    if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) return {0, 0, 0};
+    return rgb(ToHalfDiff(pair));
+  };
   ParallelForShort(grid.size(), options.num_threads, [&](int bin) {
     if (!above[bin]) return;
-    const Rgb rho = measurement.formula(ToDirections(grid.Center(bin)));
+    const Rgb rho = rgb(grid.Center(bin));
     for (int c = 0; c < kChannels; ++c) table.SetValue(c, bin, rho[c]);
   });
   measurement.table = std::move(table);

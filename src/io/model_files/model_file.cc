@@ -1,7 +1,6 @@
 #include "trilobe/io/model_files/model_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <span>

@@ -5,6 +5,7 @@
 
 #include "core/files/file.h"
 #include "io/model_files/model_json.h"
+#include "io/model_files/stretch_json.h"
 #include "model/evaluate/terms_format.h"
 
 namespace trilobe {
@@ -24,9 +25,7 @@ std::string FormatTerms(const TermFile& file) {
     for (const TermRead& read : term.reads) {
       OrderedJson entry = {
           {"table", spec.sets[read.set].name}, {"number", read.table}, {"at", SiteName(read.site)}};
-      if (read.stretch.any()) {
-        entry["stretch"] = {{"along", read.stretch.along}, {"across", read.stretch.across}};
-      }
+      if (read.stretch.any()) entry["stretch"] = StretchToJson<OrderedJson>(read.stretch);
       reads.push_back(std::move(entry));
     }
     json["terms"].push_back({{"name", term.name},

@@ -123,7 +123,7 @@ TermFile ReadTerms(const std::string& path) {
   return ParseTerms(ReadJsonText(path, NotTerms(path)), path);
 }
 
-std::function<Rgb(const DirectionPair&)> RgbOf(const TermFile& file) {
+std::function<Rgb(const HalfDiffAngles&)> RgbOf(const TermFile& file) {
   const auto model = std::make_shared<const TermModel>(file.model);
   const auto reader = std::make_shared<const TermReader>(model->spec());
   std::shared_ptr<const SpectralColor> color;
@@ -131,10 +131,9 @@ std::function<Rgb(const DirectionPair&)> RgbOf(const TermFile& file) {
     color = std::make_shared<const SpectralColor>(
         SpectralColor::OfBands(file.wavelengths, "a model of terms"));
   }
-  return [model, reader, color](const DirectionPair& pair) -> Rgb {
-    if (!(pair.wi[2] > 0 && pair.wo[2] > 0)) return {0, 0, 0};
+  return [model, reader, color](const HalfDiffAngles& angles) -> Rgb {
     std::vector<double> rho(model->spec().channels);
-    UnclampedValues(*model, *reader, reader->StencilsAt(ToHalfDiff(pair)), rho);
+    UnclampedValues(*model, *reader, reader->StencilsAt(angles), rho);
     if (color == nullptr) return AtLeastZero({rho[0], rho[1], rho[2]});
     for (double& value : rho) value = std::max(value, 0.0);
     return AtLeastZero((*color)(rho));

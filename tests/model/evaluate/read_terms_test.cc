@@ -44,7 +44,7 @@ TEST(ReadTerms, WavelengthsMakeAColour) {
   const TermFile back = ParseTerms(FormatTerms(file), "it");
   EXPECT_EQ(back.wavelengths, spectral.wavelengths());
   const DirectionPair pair = {DirectionAt(0.5, 0), DirectionAt(0.6, 3)};
-  const Rgb rgb = RgbOf(back)(pair), expected = Evaluate(spectral.ToRgb(), pair);
+  const Rgb rgb = RgbOf(back)(ToHalfDiff(pair)), expected = Evaluate(spectral.ToRgb(), pair);
   for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(rgb[c], expected[c], 1e-12);
 }
 

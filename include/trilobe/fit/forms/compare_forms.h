@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,8 @@ struct FormFit {
   std::string form;
   TermModel model;  // fitted to all samples that are used
   double objective = 0;
-  // Fitted to four fifths of the blocks of 2 degrees by 2 (HeldOutPart): E there, and on the rest.
-  double kept = 0, held_out = 0;
+  // E on a fifth of the blocks of 2 degrees by 2 (HeldOutPart), when fitted to the rest.
+  double held_out = 0;
   int steps = 0;
   bool converged = false;
   double seconds = 0;

@@ -24,8 +24,9 @@ struct TermFile {
 TermFile ParseTerms(std::string_view text, const std::string& source);
 TermFile ReadTerms(const std::string& path);
 
-// Its BRDF [1/sr] in RGB: of wavelengths, the colour, of which channels below 0 are 0.
-std::function<Rgb(const DirectionPair&)> RgbOf(const TermFile& file);
+// Its BRDF [1/sr] in RGB, of directions above the surface: of wavelengths, the colour, of which
+// channels below 0 are 0.
+std::function<Rgb(const HalfDiffAngles&)> RgbOf(const TermFile& file);
 
 }  // namespace trilobe
 
