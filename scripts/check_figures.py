@@ -59,7 +59,7 @@ FITS = ["src/model", "src/solvers", "src/fit",
           ("guess_error*", "scene", "reports", "study", "export", "open_pbr"))]
 # What comes after the solver, which raw fits do without, and these programs.
 FINISH = [f":(exclude)src/fit/{name}" for name in ("finish", "finish_fit.cc", "held_out*", "prune")]
-UNFINISHED = ("awls_equality", "softening", "stiff")
+UNFINISHED = ("awls_equality", "random_starts", "stiff")
 # What these experiments depend on as well.
 ALSO = {"sampling": ["src/model/evaluate"], "appearance": ["src/model/evaluate"], "cloths": ["src/model/evaluate"],
         "diagnosis": ["src/model/measurement", "src/model/corruption"],
