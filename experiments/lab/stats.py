@@ -59,6 +59,25 @@ def sign_test(first, second, tolerance):
     return lower, higher, min(1.0, 2 * tail)
 
 
+def variance_shares(cube):
+    """Shares of the variance of cube [materials, solvers, starts], every combination once (analysis of variance; the
+    starts of one material are others than those of the next): {"material", "solver", "solver by material", "start",
+    "start by solver"}. They add up to 1. "start" is what all solvers make of a start, "start by solver" what is left.
+    """
+    cube = numpy.asarray(cube, dtype=float)
+    all_of_it = cube.mean()
+    material = cube.mean(axis=(1, 2), keepdims=True)
+    solver = cube.mean(axis=(0, 2), keepdims=True)
+    both = cube.mean(axis=2, keepdims=True)
+    start = cube.mean(axis=1, keepdims=True)
+    parts = {"material": material - all_of_it, "solver": solver - all_of_it,
+             "solver by material": both - material - solver + all_of_it,
+             "start": start - material, "start by solver": cube - both - start + material}
+    squares = {name: float(numpy.sum(numpy.broadcast_to(part, cube.shape) ** 2)) for name, part in parts.items()}
+    total = sum(squares.values())
+    return {name: square / total if total > 0 else math.nan for name, square in squares.items()}
+
+
 def best_so_far(values):
     """The running minimum."""
     return numpy.minimum.accumulate(numpy.asarray(values, dtype=float))

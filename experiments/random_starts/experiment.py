@@ -1,37 +1,174 @@
 """The same random starts for all solvers: see README.md beside this file."""
 import itertools
 import json
+import math
+import statistics
 
-from lab import fits
+import numpy
+from lab import fits, stats, tables
 from lab.units import Unit
+
+FOUND, NEARLY = 0.01, 0.05  # E above the lowest of any start and solver
+CLOSE = 0.001
+ALIKE = 0.001  # medians of E nearer than this are alike
 
 
 def units(setting):
-    """Each way, on each material, in batches of starts, so that a run can stop between them. Ways of "few" make starts
+    """Each solver, on each material, in batches of starts, so that a run can stop between them. Solvers of "few" make starts
     of their own and take only some of those that are given."""
-    manifest, program = setting.manifest, setting.program("random_starts")
+    manifest, program = setting.manifest, setting.program("thinned_fits")
     made = []
-    for batch, source, (way, own) in itertools.product(
-            range(manifest["batches"]), setting.every(manifest["every"]), manifest["ways"].items()):
-        few = way in manifest["few"]
+    for batch, source, solver in itertools.product(
+            range(manifest["batches"]), setting.every(manifest["every"]), manifest["solvers"]):
+        few = solver in manifest["few"]
         if few and batch:
             continue
-        flags = {"solver": way, "starts": manifest["few_starts" if few else "starts"],
-                 "first_seed": 1 + batch * manifest["starts"], **own, **setting.reading(source)}
-        made.append(Unit(f"random_starts/{source.name}/{way}", program, (source.path, *fits.words(flags)),
-                         labels={"material": source.name, "solver": way}))
+        flags = {"solvers": solver, "starts": manifest["few_starts" if few else "starts"],
+                 "first_seed": 1 + batch * manifest["starts"], **setting.reading(source)}
+        made.append(Unit(f"random_starts/{source.name}/{solver}", program, (source.path, *fits.words(flags)),
+                         labels={"material": source.name}))
     return made
 
 
 def tabulate(setting, results):
-    """A row for each start."""
+    """A row for each start; for each solver on a material how often it comes near the lowest E; and how what one sees
+    goes with E."""
     starts = []
     for result in results:
         if result.folder:
             lines = (result.folder / "stdout.txt").read_text().splitlines()
             starts += [{**result.labels, **json.loads(line)} for line in lines]
-    return {"starts": starts}
+    rows, seen = [], []
+    for material, of in tables.groups(starts, "material").items():
+        lowest = min(of, key=lambda row: row["E"])
+        for row in of:
+            row["excess"] = stats.excess(row["E"], lowest["E"])
+        rows += [_row(material, solver, single) for solver, single in tables.groups(of, "solver").items()]
+        near = [row for row in of if row["excess"] <= NEARLY]
+        seen.append({"material": material, "starts": len(of), "lowest_by": lowest["solver"],
+                     "psnr_db": lowest["psnr_db"],
+                     "rank_correlation": stats.rank_correlation([row["E"] for row in of],
+                                                                [row["delta_e"] for row in of]),
+                     "within_5": len(near),
+                     **{f"{name}_of_{key}_within_5": choose(row[key] for row in near)
+                        for key in ("psnr_db", "delta_e") for name, choose in (("least", min), ("most", max))}})
+    return {"starts": starts, "solvers": rows, "seen": seen}
+
+
+def _row(material, solver, of):
+    excess = [row["excess"] for row in of]
+    share = {limit: sum(value <= limit for value in excess) / len(of) for limit in (CLOSE, FOUND, NEARLY)}
+    seconds = statistics.fmean(row["seconds"] for row in of)
+    return {"material": material, "solver": solver, "starts": len(of), "within_0.1": share[CLOSE],
+            "within_1": share[FOUND], "within_5": share[NEARLY], "median_E": statistics.median(row["E"] for row in of),
+            "median_excess": stats.median(excess), "worst_excess": max(excess), "seconds": seconds,
+            "seconds_to_1_by_restarts": seconds / share[FOUND] if share[FOUND] else math.inf,
+            "seconds_to_5_by_restarts": seconds / share[NEARLY] if share[NEARLY] else math.inf,
+            "raises": sum(row["raises"] for row in of)}
+
+
+def _percent_with_interval(rows, key):
+    """The mean over the materials, and its interval by bootstrap over them."""
+    values = [100 * row[key] for row in rows]
+    low, high = stats.bootstrap(values, statistics.fmean)
+    return f"{statistics.fmean(values):.0f} [{low:.0f}, {high:.0f}]"
+
+
+def _summary(rows):
+    lines = []
+    for solver, of in tables.groups(rows, "solver").items():
+        lines.append([solver, str(sum(row["starts"] for row in of)),
+                      *(_percent_with_interval(of, key) for key in ("within_0.1", "within_1", "within_5")),
+                      str(sum(row["within_1"] == 0 for row in of)),
+                      tables.quartiles([100 * row["median_excess"] for row in of], ".1f"),
+                      tables.quartiles([100 * row["worst_excess"] for row in of], ".1f"),
+                      f"{100 * max(row['worst_excess'] for row in of):.0f}",
+                      tables.quartiles([row["seconds"] for row in of], ".1f"),
+                      tables.quartiles([row["seconds_to_1_by_restarts"] for row in of], ".0f"),
+                      tables.quartiles([row["seconds_to_5_by_restarts"] for row in of], ".1f"),
+                      str(sum(row["raises"] for row in of))])
+    return tables.markdown(
+        ["solver", "fits", "within 0.1 %, % of starts", "within 1 %", "within 5 %", "materials without one within 1 %",
+         "E above it, median start, %", "worst start, %", "of all, %", "processor seconds a start",
+         "until within 1 %, by restarts", "within 5 %", "E rose"], lines)
+
+
+def _paired(rows):
+    """Each two solvers: on how many materials the median start of one ends lower than that of the other."""
+    of = {solver: {row["material"]: row["median_E"] for row in single}
+          for solver, single in tables.groups(rows, "solver").items()}
+    lines = []
+    for one, other in itertools.combinations(of, 2):
+        both = sorted(of[one].keys() & of[other].keys())
+        lower, higher, p = stats.sign_test([of[one][name] for name in both], [of[other][name] for name in both], ALIKE)
+        lines.append([one, other, str(lower), str(higher), str(len(both) - lower - higher), f"{p:.2g}"])
+    return tables.markdown(["solver", "other", "solver lower", "other lower", "alike", "p"], lines)
+
+
+def _cube(starts):
+    """(log E [materials, solvers, starts], solvers) of the solvers that have had all starts on all materials."""
+    ends = {(row["material"], row["solver"], row["seed"]): math.log(max(row["E"], 1e-300)) for row in starts}
+    materials, solvers, seeds = (list(tables.groups(starts, key)) for key in ("material", "solver", "seed"))
+    crossed = [solver for solver in solvers
+               if all((name, solver, seed) in ends for name in materials for seed in seeds)]
+    return numpy.array([[[ends[name, solver, seed] for seed in seeds] for solver in crossed]
+                        for name in materials]), crossed
+
+
+def _shares(starts):
+    """What the variance of log E is made of, the material left aside, whose part depends on the choice of them; by all
+    solvers that have had all starts, and without one of them each."""
+    cube, solvers = _cube(starts)
+    if len(solvers) < 2:
+        return ""
+    lines = []
+    for left_out in (None, *(solvers if len(solvers) > 2 else ())):
+        kept = [number for number, solver in enumerate(solvers) if solver != left_out]
+
+        def shares(materials, kept=kept):
+            parts = stats.variance_shares(cube[materials][:, kept])
+            left = 1 - parts.pop("material")
+            return {name: 100 * part / left for name, part in parts.items()} if left > 0 else parts
+        everything = list(range(len(cube)))
+        cells = []
+        for name, share in shares(everything).items():
+            low, high = stats.bootstrap(everything, lambda of, name=name: shares(of)[name], draws=500)
+            cells.append(f"{share:.0f} [{low:.0f}, {high:.0f}]")
+        lines.append([f"without {left_out}" if left_out else "all", *cells])
+    return tables.markdown(["solvers", "solver, %", "solver by material", "start", "start by solver"], lines)
+
+
+def _figure(starts, rows):
+    """Left how near starts end, a line a solver with its band; right how soon restarts have found the lowest E."""
+    from lab import plots
+    at = numpy.geomspace(1e-5, 10, 200)
+    figure, (left, right) = plots.plt.subplots(1, 2, figsize=(11, 4.6))
+    solvers = list(tables.groups(rows, "solver"))
+    for solver, of in tables.groups(starts, "solver").items():
+        each = [stats.data_profile([row["excess"] for row in single], at)
+                for single in tables.groups(of, "material").values()]
+        draws = numpy.random.default_rng(1).integers(len(each), size=(500, len(each)))
+        low, high = numpy.quantile(numpy.array(each)[draws].mean(axis=1), (0.025, 0.975), axis=0)
+        style = plots.solver_style(solver, solvers)
+        left.plot(100 * at, 100 * numpy.mean(each, axis=0), label=solver, **style)
+        left.fill_between(100 * at, 100 * low, 100 * high, color=style["color"], alpha=0.08, linewidth=0)
+    left.set(xscale="log", ylim=(0, 100), xlabel="E above the lowest of any start and solver [%]",
+             ylabel="starts that end so near [%], mean of the materials")
+    plots.plain_numbers(left.xaxis)
+    for solver, of in tables.groups(rows, "solver").items():
+        times = [row["seconds_to_1_by_restarts"] for row in of]
+        when = numpy.geomspace(0.3, 1000, 200)
+        right.plot(when, 100 * stats.data_profile(times, when), **plots.solver_style(solver, solvers))
+    right.set(xscale="log", ylim=(0, 100), xlabel="processor seconds that restarts take, expected",
+              ylabel=f"materials brought within {100 * FOUND:g} % of the lowest E [%]")
+    plots.plain_numbers(right.xaxis)
+    plots.legend_above(figure, left)
+    return figure
 
 
 def draw(drawn, _):
-    return {}
+    starts, rows = drawn["starts"], drawn["solvers"]
+    if not rows:
+        return {}
+    return {"summary.md": _summary(rows), "paired.md": _paired(rows), "shares.md": _shares(starts),
+            "ends": _figure(starts, rows)}

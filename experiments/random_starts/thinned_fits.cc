@@ -1,0 +1,145 @@
+// Fits to a part of a measurement, by several solvers and weightings from the same starts, and how
+// each looks. See README.md beside this file.
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "experiments/program.h"
+#include "solvers/multistart/start_elimination.h"
+#include "solvers/smooth/softening.h"
+#include "trilobe/core/base/error.h"
+#include "trilobe/io/formats/source.h"
+#include "trilobe/model/appearance/appearance.h"
+#include "trilobe/model/appearance/material.h"
+#include "trilobe/model/measurement/brdf_samples.h"
+#include "trilobe/model/objective/objective.h"
+#include "trilobe/solvers/registry/solvers.h"
+#include "trilobe/solvers/solver.h"
+#include "trilobe/solvers/start/initial_model.h"
+
+DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened and lm_dogleg");
+DEFINE_string(weightings, "appearance", "a list of weightings of the objective");
+DEFINE_string(init, "roughness", "the starts, as `trilobe fit` has them");
+DEFINE_int32(starts, 1, "how many");
+DEFINE_int32(first_seed, 1, "seed of the first; those of the others follow");
+DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
+DEFINE_string(corrupt, "", "as `trilobe fit` has it");
+DEFINE_uint64(data_seed, 1, "of what is random in --corrupt");
+DEFINE_double(max_angle, 90, "leave out bins whose theta_i or theta_o is beyond this, in degrees");
+DEFINE_int32(lights, 200, "lights on the sphere that is compared");
+
+namespace trilobe {
+namespace {
+
+std::vector<std::string> Words(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  return words;
+}
+
+BrdfTable Table(const std::string& source, const std::string& corrupt) {
+  return LoadTable(source, {.corrupt = corrupt,
+                            .seed = FLAGS_data_seed,
+                            .max_angle_deg = FLAGS_max_angle,
+                            .extrapolated = FLAGS_extrapolated});
+}
+
+// As many samples as `auto` looks at before it has a start, though not of every other row.
+Objective ThinnedObjective(const BrdfTable& table, const Weighting& weighting) {
+  const BrdfSamples samples = ValidSamples(table);
+  const ModelSpec spec = ModelSpec::SharedFactors(3, samples.grid);
+  const Objective all(samples, spec, weighting);
+  const int stride = StartElimination::StrideFor(all, StartElimination::kThinned);
+  return {Thinned(all.samples(), stride), spec, weighting, /*num_threads=*/1};
+}
+
+double ProcessorSeconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A solver with what stands before it.
+struct Way {
+  std::string solver;
+  bool softened = false;  // first by stiff tables that soften
+  TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
+};
+
+Way WayOf(const std::string& name) {
+  if (name == "softened") return {.solver = "varpro", .softened = true};
+  if (name == "lm_dogleg") return {.solver = "lm", .trust_region = TrustRegion::kDogleg};
+  return {.solver = name};
+}
+
+struct Run {
+  FactorModel model;
+  SolverSummary summary;
+  double seconds = 0;  // of a processor
+};
+
+Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objective& objective) {
+  SolverOptions options;
+  options.diagnose = false;
+  options.trust_region = way.trust_region;
+  const double since = ProcessorSeconds();
+  FactorModel model = init.make(objective, seed);
+  if (way.softened) {
+    PhaseSeconds phases;
+    model = Soften(
+        objective, model, StiffnessSchedule(), [] { return false; }, &phases);
+  }
+  SolverSummary summary = MakeSolver(way.solver)->Solve(objective, options, &model);
+  return {.model = model, .summary = summary, .seconds = ProcessorSeconds() - since};
+}
+
+// A line of JSON a fit: E of what was fitted, over a black model's, too, the latter by default
+// weights of the clean samples, and the sphere beside the clean one.
+int Main(const std::string& source) {
+  const std::vector<std::string> solvers = Words(FLAGS_solvers);
+  for (const std::string& name : solvers) MakeSolver(WayOf(name).solver);  // an Error soon
+  const InitialModel& init = FindInitialModel(FLAGS_init);
+  const BrdfTable clean_table = Table(source, "");
+  const std::optional<BrdfTable> corrupted =
+      FLAGS_corrupt.empty() ? std::nullopt : std::optional(Table(source, FLAGS_corrupt));
+  const Objective clean = ThinnedObjective(clean_table, FindWeighting("appearance"));
+  const SphereJudge judge(clean_table, {.lights = FLAGS_lights});
+  for (const std::string& weighting : Words(FLAGS_weightings)) {
+    const Objective few =
+        ThinnedObjective(corrupted ? *corrupted : clean_table, FindWeighting(weighting));
+    for (int seed = FLAGS_first_seed; seed < FLAGS_first_seed + FLAGS_starts; ++seed) {
+      for (const std::string& solver : solvers) {
+        const Run run = FitFrom(init, seed, WayOf(solver), few);
+        const double E = run.summary.final_objective;
+        const SphereError sphere = judge(MaterialOf(run.model).angular);
+        std::printf(
+            "{\"weighting\": \"%s\", \"seed\": %d, \"solver\": \"%s\", \"E\": %.17g, "
+            "\"relative_E\": %.17g, \"clean_relative_E\": %.17g, \"psnr_db\": %.6g, "
+            "\"delta_e\": %.6g, \"iterations\": %d, \"raises\": %zu, \"stop_reason\": \"%s\", "
+            "\"seconds\": %.4g}\n",
+            weighting.c_str(), seed, solver.c_str(), E, E / few.MeasuredEnergy(),
+            clean.Value(run.model) / clean.MeasuredEnergy(), sphere.psnr_db, sphere.mean_delta_e,
+            run.summary.iterations, run.summary.FindRaises().iterations.size(),
+            StopReasonName(run.summary.stop_reason), run.seconds);
+        std::fflush(stdout);
+      }
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace trilobe
+
+int main(int argc, char** argv) {
+  return trilobe::ProgramMain(argc, argv, "thinned_fits [--solvers=NAME,...] SOURCE", 1,
+                              [](auto words) { return trilobe::Main(words[0]); });
+}
