@@ -1,4 +1,5 @@
 """Statistics of runs. A value that is missing or was never reached is infinite: it is counted."""
+import itertools
 import math
 import statistics
 
@@ -59,23 +60,20 @@ def sign_test(first, second, tolerance):
     return lower, higher, min(1.0, 2 * tail)
 
 
-def variance_shares(cube):
-    """Shares of the variance of cube [materials, solvers, starts], every combination once (analysis of variance; the
-    starts of one material are others than those of the next): {"material", "solver", "solver by material", "start",
-    "start by solver"}. They add up to 1. "start" is what all solvers make of a start, "start by solver" what is left.
-    """
+def variance_shares(cube, factors):
+    """Shares of the variance of cube [a level of each factor an axis], every combination once, by analysis of variance:
+    {("solver",): of one factor alone, ("material", "solver"): of what the two do together and none alone, ...}, every
+    choice of factors. They add up to 1; all nan if the cube is constant."""
     cube = numpy.asarray(cube, dtype=float)
-    all_of_it = cube.mean()
-    material = cube.mean(axis=(1, 2), keepdims=True)
-    solver = cube.mean(axis=(0, 2), keepdims=True)
-    both = cube.mean(axis=2, keepdims=True)
-    start = cube.mean(axis=1, keepdims=True)
-    parts = {"material": material - all_of_it, "solver": solver - all_of_it,
-             "solver by material": both - material - solver + all_of_it,
-             "start": start - material, "start by solver": cube - both - start + material}
-    squares = {name: float(numpy.sum(numpy.broadcast_to(part, cube.shape) ** 2)) for name, part in parts.items()}
+    axes = range(cube.ndim)
+    chosen = [of for count in axes for of in itertools.combinations(axes, count + 1)]
+    means = {of: cube.mean(axis=tuple(axis for axis in axes if axis not in of), keepdims=True) for of in [(), *chosen]}
+    squares = {}
+    for of in chosen:  # inclusion and exclusion
+        part = sum((-1) ** (len(of) - len(smaller)) * means[smaller] for smaller in means if set(smaller) <= set(of))
+        squares[tuple(factors[axis] for axis in of)] = float(numpy.sum(numpy.broadcast_to(part, cube.shape) ** 2))
     total = sum(squares.values())
-    return {name: square / total if total > 0 else math.nan for name, square in squares.items()}
+    return {of: square / total if total > 0 else math.nan for of, square in squares.items()}
 
 
 def best_so_far(values):

@@ -11,6 +11,10 @@ from lab.units import Unit
 FOUND, NEARLY = 0.01, 0.05  # E above the lowest of any start and solver
 CLOSE = 0.001
 ALIKE = 0.001  # medians of E nearer than this are alike
+# Of the analysis of variance. A start means something on one material only.
+PARTS = {"solver": [("solver",)], "solver by material": [("material", "solver")],
+         "start": [("start",), ("material", "start")],
+         "start by solver": [("solver", "start"), ("material", "solver", "start")]}
 
 
 def units(setting):
@@ -126,16 +130,17 @@ def _shares(starts):
         kept = [number for number, solver in enumerate(solvers) if solver != left_out]
 
         def shares(materials, kept=kept):
-            parts = stats.variance_shares(cube[materials][:, kept])
-            left = 1 - parts.pop("material")
-            return {name: 100 * part / left for name, part in parts.items()} if left > 0 else parts
+            parts = stats.variance_shares(cube[materials][:, kept], ("material", "solver", "start"))
+            left = 1 - parts.pop(("material",))
+            return {name: 100 * sum(parts[of] for of in these) / left if left > 0 else math.nan
+                    for name, these in PARTS.items()}
         everything = list(range(len(cube)))
         cells = []
         for name, share in shares(everything).items():
             low, high = stats.bootstrap(everything, lambda of, name=name: shares(of)[name], draws=500)
             cells.append(f"{share:.0f} [{low:.0f}, {high:.0f}]")
         lines.append([f"without {left_out}" if left_out else "all", *cells])
-    return tables.markdown(["solvers", "solver, %", "solver by material", "start", "start by solver"], lines)
+    return tables.markdown(["solvers", *(f"{name}, %" for name in PARTS)], lines)
 
 
 def _figure(starts, rows):

@@ -8,8 +8,9 @@ from lab import fits, stats, tables
 from lab.units import FOLDER, Product, Unit
 from renderer import pictures
 
-SAMPLERS = {"cosine": "#999999", "GGX": "#D55E00", "paper": "#0072B2", "trilobe": "#009E73"}
+SAMPLERS = {"cosine": "#999999", "GGX": "#D55E00", "eq8": "#56B4E9", "paper": "#0072B2", "trilobe": "#009E73"}
 AT = 64  # samples a pixel, of the table
+FIGURE_2 = (64, 128)  # the same, of the pictures
 
 
 def units(setting):
@@ -37,8 +38,9 @@ def _pictured(setting, results):
     manifest = setting.manifest
     shown = [("reference", "reference"),
              (f"cosine-{manifest['cosine_samples']}", f"cosine, {manifest['cosine_samples']}"),
-             (f"cosine-{AT}", f"cosine, {AT}"), (f"paper-{AT}", f"paper, {AT}"),
-             (f"trilobe-{AT}", f"trilobe, {AT}")]
+             *((f"{name}-{samples}", f"{title}, {samples}")
+               for name, title in (("eq8", "paper, eq. 8"), ("paper", "paper, true widths"), ("trilobe", "trilobe"))
+               for samples in FIGURE_2)]
     page = []
     for result in results:
         labels = result.labels
@@ -48,6 +50,8 @@ def _pictured(setting, results):
             continue
         line = []
         for name, title in shown:
+            if not (result.folder / f"{name}.png").exists():  # eq. 8 of an anisotropic material
+                continue
             with Image.open(result.folder / f"{name}.png") as image:
                 line.append((numpy.asarray(image) / 255.0, title))
         page.append((labels["material"], line))
@@ -81,14 +85,15 @@ def _materials(rows):
         for material in dict.fromkeys(row["material"] for row in of):
             line = [environment, material]
             for lights in (False, True):
-                line += [f"{_at(of, sampler, AT, lights)[material]:.1e}" for sampler in SAMPLERS]
+                errors = [_at(of, sampler, AT, lights).get(material) for sampler in SAMPLERS]
+                line += ["–" if error is None else f"{error:.1e}" for error in errors]
             lines.append(line)
     return tables.markdown(["environment", "material", *SAMPLERS,
                             *(f"{sampler}, and lights" for sampler in SAMPLERS)], lines)
 
 
 def _summary(rows):
-    """Medians over the materials of ratios to trilobe's own sampling."""
+    """Medians over the materials of ratios to trilobe's own sampling; eq. 8 is of isotropic ones."""
     lines = []
     for environment, of in tables.groups(rows, "environment").items():
         for lights in (False, True):
@@ -96,8 +101,8 @@ def _summary(rows):
             for sampler in SAMPLERS:
                 other, seconds = (_at(of, sampler, AT, lights, key)
                                   for key in ("relative_mse", "seconds"))
-                equal = [other[m] / own[m] for m in own]
-                timed = [other[m] * seconds[m] / (own[m] * own_s[m]) for m in own]
+                equal = [other[m] / own[m] for m in other]
+                timed = [other[m] * seconds[m] / (own[m] * own_s[m]) for m in other]
                 lines.append([environment, "BSDF and lights" if lights else "BSDF", sampler,
                               f"{stats.median(equal):.2g}", f"{min(equal):.2g}",
                               f"{max(equal):.2g}", f"{stats.median(timed):.2g}"])

@@ -21,11 +21,22 @@ double Inside(double u) {
   return u > 0 ? std::min(u, 1 - std::numeric_limits<double>::epsilon()) : 0;
 }
 
+std::vector<double> NodesAtEachDegree(const ModelSpec& spec) {
+  if (spec.d_axis.polar()) throw Error("bins of one degree are those of an isotropic model");
+  constexpr int kDegrees = 90;
+  std::vector<double> y;
+  for (int k = 0; k <= kDegrees; ++k) {
+    const double sin_theta = std::sin(DegreesToRadians(k));
+    y.push_back(sin_theta * sin_theta);
+  }
+  return y;
+}
+
 }  // namespace
 
-NdfSampler::NdfSampler(const FactorModel& model)
+NdfSampler::NdfSampler(const FactorModel& model, Bins bins)
     : model_(model),
-      y_(NodesOfY(model.spec())),
+      y_(bins == Bins::kOfModel ? NodesOfY(model.spec()) : NodesAtEachDegree(model.spec())),
       num_phi_(model.spec().d_axis.polar() ? model.spec().d_axis.phi_nodes : 1) {
   const double diffuse = kPi * Mean(model_.diffuse());
   double all = diffuse;

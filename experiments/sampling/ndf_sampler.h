@@ -13,8 +13,7 @@ namespace trilobe {
 // The sampling of the paper (Peng, Zheng, Lv, section 2.5, eq. 8), as what Bsdf's is compared with:
 // a lobe is chosen, by the light that it reflects in all, or the diffuse term, which is drawn by a
 // cosine; then a half vector by the lobe's distribution of normals, c D(theta_h) cos theta_h, from
-// a tabulated inverse. Unlike eq. 8, which takes bins of theta_h for equally wide, and so draws
-// MERL's highlights too seldom, it has their true widths:
+// a tabulated inverse over
 //   cos theta_h d omega_h = dy d phi_h / 2,  y = sin^2 theta_h,
 // between whose nodes D is taken as linear. It knows neither G nor F nor the horizon, below which
 // part of the directions lies; and of a stretched lobe D itself is drawn.
@@ -22,8 +21,15 @@ class NdfSampler {
  public:
   using Sample = Bsdf<double>::Sample;
 
-  // Throws Error for parameters that are not finite and 0 or more.
-  explicit NdfSampler(const FactorModel& model);
+  // The bins of theta_h over which D is tabulated.
+  enum class Bins {
+    kOfModel,    // as wide as those of D: of MERL 0.01 to 2 degrees
+    kOneDegree,  // as eq. 8 is printed, whose sum takes 90 bins for equally wide
+  };
+
+  // Throws Error for parameters that are not finite and 0 or more, and of an anisotropic model for
+  // kOneDegree, as eq. 8 is of isotropic ones.
+  explicit NdfSampler(const FactorModel& model, Bins bins = Bins::kOfModel);
 
   // As Bsdf has them; where wo is below the surface, pdf and weight are 0, and a renderer gets
   // nothing for its ray. So the density over the directions above it integrates to less than 1.

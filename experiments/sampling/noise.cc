@@ -268,7 +268,8 @@ int Measure(const std::string& path) {
   if (FLAGS_size < 4 || FLAGS_reference < 16) throw Error("--size from 4, --reference from 16");
   const FactorModel model = ReadModel(path).model;
   const Bsdf<double> bsdf(model);
-  const NdfSampler ndf(model);
+  std::vector<NdfSampler> ndfs = {NdfSampler(model)};
+  if (!model.spec().anisotropic()) ndfs.emplace_back(model, NdfSampler::Bins::kOneDegree);
   const Environment light = EnvironmentNamed(FLAGS_environment);
   const EnvironmentSampler environment(light);
   const std::vector<Pixel> pixels = PixelsOfSphere(FLAGS_size);
@@ -276,15 +277,19 @@ int Measure(const std::string& path) {
       .name = "trilobe",
       .draw = [&](const Direction& wi, const auto& u) { return bsdf.SampleWo(wi, u); },
       .pdf = [&](const Direction& wi, const Direction& wo) { return bsdf.Pdf(wi, wo); }};
-  const Sampler paper = {
-      .name = "paper",
-      .draw = [&](const Direction& wi, const auto& u) { return ndf.SampleWo(wi, u); },
-      .pdf = [&](const Direction& wi, const Direction& wo) { return ndf.Pdf(wi, wo); }};
+  const auto by_half_vectors = [](const std::string& name, const NdfSampler& ndf) {
+    return Sampler{
+        .name = name,
+        .draw = [&ndf](const Direction& wi, const auto& u) { return ndf.SampleWo(wi, u); },
+        .pdf = [&ndf](const Direction& wi, const Direction& wo) { return ndf.Pdf(wi, wo); }};
+  };
   const Picture reference =
       Render(pixels, ours, environment, bsdf, /*lights=*/true, FLAGS_reference, 1);
   Json ggx;
-  const std::vector<Sampler> samplers = {
-      Cosine(bsdf), FittedGgx(pixels, environment, bsdf, reference, &ggx), paper, ours};
+  std::vector<Sampler> samplers = {Cosine(bsdf),
+                                   FittedGgx(pixels, environment, bsdf, reference, &ggx),
+                                   by_half_vectors("paper", ndfs.front()), ours};
+  if (ndfs.size() > 1) samplers.push_back(by_half_vectors("eq8", ndfs.back()));
   double mean = 0;
   for (const Rgb& rgb : reference.radiance) mean += rgb[1];
   const double exposure = 0.18 * static_cast<double>(pixels.size()) / std::max(mean, 1e-300);

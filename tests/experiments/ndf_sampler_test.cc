@@ -15,10 +15,26 @@
 namespace trilobe::TRILOBE_TEST_FILE {
 namespace {
 
+struct TestCase {
+  std::string name;
+  FactorModel model;
+  NdfSampler::Bins bins = NdfSampler::Bins::kOfModel;
+};
+
+std::vector<TestCase> TestCases() {
+  std::vector<TestCase> cases;
+  for (const auto& [name, model] : TestMaterials()) {
+    cases.push_back({name, model});
+    if (model.spec().anisotropic()) continue;
+    cases.push_back({name + ", bins of one degree", model, NdfSampler::Bins::kOneDegree});
+  }
+  return cases;
+}
+
 TEST(NdfSamplerTest, DrawsWithItsDensityAndIsUnbiased) {
   constexpr int kDraws = kSanitized ? 2000 : 10000;
-  for (const auto& [name, model] : TestMaterials()) {
-    const NdfSampler sampler(model);
+  for (const auto& [name, model, bins] : TestCases()) {
+    const NdfSampler sampler(model, bins);
     const Bsdf<double> bsdf(model);
     for (const double degrees : {0.0, 45.0, 80.0}) {
       const Direction wi = DirectionAt(DegreesToRadians(degrees), 0.4);
@@ -49,7 +65,7 @@ TEST(NdfSamplerTest, DrawsWithItsDensityAndIsUnbiased) {
       for (double& x : expected) x *= above / total;
       EXPECT_LT(ChiSquared(counts, expected), 5) << where;
       // Highlights of which D is read elsewhere have weights without bound.
-      if (model.spec().stretches.any() || name == "random numbers") continue;
+      if (model.spec().stretches.any() || name.starts_with("random numbers")) continue;
       const double mean = sum / kDraws, albedo = bsdf.Albedo(wi)[1];
       const double error = std::sqrt(std::max(squares / kDraws - mean * mean, 0.0) / kDraws);
       EXPECT_NEAR(mean, albedo, 5 * error + 0.05 * albedo) << where;
@@ -57,18 +73,39 @@ TEST(NdfSamplerTest, DrawsWithItsDensityAndIsUnbiased) {
   }
 }
 
-// The paper takes MERL's bins for equally wide. With true widths a D that is 1 everywhere is drawn
-// by the cosine of theta_h: its sin^2 is uniform.
+// A D that is 1 everywhere is drawn by the cosine of theta_h, whatever the bins: its sin^2 is
+// uniform.
 TEST(NdfSamplerTest, BinsHaveTheirTrueWidths) {
   FactorModel model(ModelSpec::SharedFactors(1));
   for (double& x : model.parameters()) x = 1;
   for (double& d : model.d()) d = 0;
-  const NdfSampler sampler(model);
   const Direction up = {0, 0, 1};
-  for (const double u : {0.05, 0.1, 0.25, 0.4}) {
-    const Direction wo = sampler.SampleWo(up, {u, 0.3}).wo;
-    EXPECT_NEAR((1 - wo[2]) / 2, u, 1e-9);  // cos 2 theta_h = 1 - 2 sin^2 theta_h
+  for (const auto bins : {NdfSampler::Bins::kOfModel, NdfSampler::Bins::kOneDegree}) {
+    const NdfSampler sampler(model, bins);
+    for (const double u : {0.05, 0.1, 0.25, 0.4}) {
+      const Direction wo = sampler.SampleWo(up, {u, 0.3}).wo;
+      EXPECT_NEAR((1 - wo[2]) / 2, u, 1e-9);  // cos 2 theta_h = 1 - 2 sin^2 theta_h
+    }
   }
+}
+
+// Of a highlight of a fifth of a degree, bins of one degree draw most directions beside it.
+TEST(NdfSamplerTest, BinsOfOneDegreeMissNarrowHighlights) {
+  const FactorModel model = AnalyticModel(ModelSpec::SharedFactors(1), 0.003, 0);
+  const auto within = [&model](NdfSampler::Bins bins) {
+    const NdfSampler sampler(model, bins);
+    Random random(5);
+    int count = 0;
+    for (int k = 0; k < 1000; ++k) {
+      const Direction wo = sampler.SampleWo({0, 0, 1}, {random.Uniform(), random.Uniform()}).wo;
+      count += wo[2] > std::cos(2 * DegreesToRadians(0.4));
+    }
+    return count;
+  };
+  EXPECT_GT(within(NdfSampler::Bins::kOfModel), 600);
+  EXPECT_LT(within(NdfSampler::Bins::kOneDegree), 350);
+  EXPECT_THROW((NdfSampler{FactorModel(ModelSpec::Anisotropic(1)), NdfSampler::Bins::kOneDegree}),
+               Error);
 }
 
 TEST(NdfSamplerTest, LosesBelowTheHorizonWhatBsdfDoesNot) {

@@ -26,6 +26,17 @@ class StatsTest(unittest.TestCase):
         self.assertEqual(stats.sign_test([1, 1], [1.0005, 1], 0.001), (0, 0, 1.0))
         self.assertEqual(stats.sign_test([1, INF], [INF, INF], 0.001), (1, 0, 1.0))
 
+    def test_variance_shares(self):
+        shares = stats.variance_shares([[4, 2], [-2, -4]], ("a", "b"))
+        self.assertAlmostEqual(shares["a",], 0.9)
+        self.assertAlmostEqual(shares["b",], 0.1)
+        self.assertAlmostEqual(shares["a", "b"], 0)
+        shares = stats.variance_shares([[[1, -1], [-1, 1]]] * 3, ("a", "b", "c"))
+        self.assertAlmostEqual(shares["b", "c"], 1)
+        self.assertAlmostEqual(sum(shares.values()), 1)
+        self.assertEqual(len(shares), 7)
+        self.assertTrue(math.isnan(stats.variance_shares([[1, 1], [1, 1]], ("a", "b"))["a",]))
+
     def test_excess(self):
         self.assertAlmostEqual(stats.excess(1.5, 1), 0.5)
         self.assertEqual(stats.excess(0, 0), 0)
