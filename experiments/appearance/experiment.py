@@ -14,7 +14,7 @@ from renderer import units as rendering
 
 ONE = ("threads", "start")  # of these the tables know one
 SHARED, INDEPENDENT = "shared", "independent"  # the runs that everything is held against
-BIVARIATE = "bivariate"
+BIVARIATE, COARSE = "bivariate", "bivariate of 8,100"
 FACTORS = {"awls": 0, "awls, filtered": 1}  # the fits of which D, F and G are drawn
 PUBLISHED = ("NPF", "SGD", "ABC", "Cook-Torrance", "Ward")  # the first as a model, not a formula
 PEER = "network"
@@ -92,9 +92,10 @@ def _fitted(setting, source, planned):
           if unit.labels["material"] == source.name}
     of.update({name: Product(unit, "model.json")
                for name, unit in _of_factors(setting, source).items()})
-    of[BIVARIATE] = Product(_script(
-        f"appearance/{source.name}/bivariate", "bivariate", str(setting.program()), source.path,
-        FOLDER, *reading, product="table.npy", modules=(HERE / "bins.py",)), "table.npy")
+    for name, theta_d in ((BIVARIATE, 90), (COARSE, 30)):
+        of[name] = Product(_script(
+            f"appearance/{source.name}/bivariate-{theta_d}", "bivariate", str(setting.program()), source.path,
+            FOLDER, str(theta_d), *reading, product="table.npy", modules=(HERE / "bins.py",)), "table.npy")
     return {**of, **_published(setting, source)}
 
 
