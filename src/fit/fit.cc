@@ -1,12 +1,12 @@
 #include "trilobe/fit/fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <utility>
 
 #include "core/system/process.h"
+#include "fit/check_options.h"
 #include "fit/choose_form.h"
 #include "fit/finish/albedo_ripple.h"
 #include "fit/finish/limit_light.h"
@@ -18,7 +18,6 @@
 #include "model/lobes/gauge.h"
 #include "model/measurement/anisotropy.h"
 #include "model/objective/canonical_form.h"
-#include "trilobe/core/base/check.h"
 #include "trilobe/core/base/error.h"
 #include "trilobe/model/appearance/material.h"
 #include "trilobe/model/appearance/sampled_sphere.h"
@@ -79,37 +78,6 @@ FitInfo InfoOf(const Measurement& measurement, const FitOptions& options,
 bool HasEnded(StopReason reason) {
   return reason == StopReason::kConverged || reason == StopReason::kOptimal ||
          reason == StopReason::kExactFit || reason == StopReason::kNoDecrease;
-}
-
-// With numbers in their ranges, and functions that can be called.
-FitOptions CheckOptions(FitOptions options) {
-  CheckNumber("robust", options.robust, options.robust >= 0 && std::isfinite(options.robust),
-              "finite and 0 or more");
-  CheckNumber("smoothness", options.smoothness, options.smoothness >= 0 && options.smoothness <= 1,
-              "from 0 to 1");
-  if (options.raw) {
-    if (options.robust > 0) throw Error("raw stores what the solver found; leave out robust");
-    if (options.choose_form) throw Error("raw stores what the solver found; leave out choose_form");
-    options.smoothness = 0;
-    options.match_reflectance = false;
-  }
-  if (options.bands && options.choose_form) {
-    throw Error(
-        "--spectral takes a form that is given: --model=auto may choose a D for each channel");
-  }
-  const int most = options.max_parameters.value_or(1);
-  CheckNumber("max_parameters", most, most >= 1, "at least 1");
-  CheckNumThreads(options.num_threads);
-  const auto complete = [&options, by_default = FitOptions()](const auto member) {
-    if (!(options.*member)) options.*member = by_default.*member;
-  };
-  complete(&FitOptions::solver_options);
-  complete(&FitOptions::on_begin);
-  complete(&FitOptions::on_progress);
-  complete(&FitOptions::on_start);
-  complete(&FitOptions::on_iteration);
-  complete(&FitOptions::on_model);
-  return options;
 }
 
 // One fit, step by step.
