@@ -18,12 +18,12 @@ PARTS = {"solver": [("solver",)], "solver by material": [("material", "solver")]
 
 
 def units(setting):
-    """Each solver of a run on each of its materials, from the first starts.."""
+    """Each solver of a set on each of its materials, from the first starts.."""
     program = setting.program("thinned_fits")
     return [Unit(f"random_starts/{source.name}/{solver}", program,
-                 (source.path, *fits.words({"solvers": solver, "starts": run["starts"], "first_seed": 1,
+                 (source.path, *fits.words({"solvers": solver, "starts": of["starts"], "first_seed": 1,
                                             **setting.reading(source)})), labels={"material": source.name})
-            for run in setting.manifest["runs"] for source in setting.every(run["every"]) for solver in run["solvers"]]
+            for of in setting.manifest["sets"] for source in setting.every(of["every"]) for solver in of["solvers"]]
 
 
 def tabulate(setting, results):
