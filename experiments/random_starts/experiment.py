@@ -18,7 +18,7 @@ PARTS = {"solver": [("solver",)], "solver by material": [("material", "solver")]
 
 
 def units(setting):
-    """Each solver of a set on each of its materials, from the first starts.."""
+    """Each solver of a set on each of its materials, from the first starts."""
     program = setting.program("thinned_fits")
     return [Unit(f"random_starts/{source.name}/{solver}", program,
                  (source.path, *fits.words({"solvers": solver, "starts": of["starts"], "first_seed": 1,
