@@ -131,8 +131,8 @@ def order(decreases):
 
 
 def rank_correlation(a, b):
-    """Spearman's: the correlation of ranks, which equal values share; nan of fewer than two."""
+    """Spearman's: the correlation of ranks, which equal values share; nan of values that are all alike."""
     def ranks(values):
         _, places, counts = numpy.unique(values, return_inverse=True, return_counts=True)
         return (numpy.cumsum(counts) - (counts - 1) / 2)[places]
-    return float(numpy.corrcoef(ranks(a), ranks(b))[0, 1]) if len(a) > 1 else math.nan
+    return float(numpy.corrcoef(ranks(a), ranks(b))[0, 1]) if min(len(set(a)), len(set(b))) > 1 else math.nan

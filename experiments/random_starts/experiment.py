@@ -11,6 +11,8 @@ from lab.units import Unit
 FOUND, NEARLY = 0.01, 0.05  # E above the lowest of any start and solver
 CLOSE = 0.001
 ALIKE = 0.001  # medians of E nearer than this are alike
+# How far E is above the lowest of its material.
+CLASSES = {(-1, 0.01): "up to 1 %", (0.01, 0.05): "1 to 5 %", (0.05, 0.2): "5 to 20 %", (0.2, math.inf): "more"}
 # Of the analysis of variance. A start means something on one material only.
 PARTS = {"solver": [("solver",)], "solver by material": [("material", "solver")],
          "start": [("start",), ("material", "start")],
@@ -40,15 +42,21 @@ def tabulate(setting, results):
         for row in of:
             row["excess"] = stats.excess(row["E"], lowest["E"])
         rows += [_row(material, solver, single) for solver, single in tables.groups(of, "solver").items()]
-        near = [row for row in of if row["excess"] <= NEARLY]
-        seen.append({"material": material, "starts": len(of), "lowest_by": lowest["solver"],
-                     "psnr_db": lowest["psnr_db"],
+        for (least, most), name in CLASSES.items():
+            near = [row for row in of if least < row["excess"] <= most]
+            if near:
+                gains = [row["psnr_db"] - lowest["psnr_db"] for row in near]
+                seen.append({"material": material, "E_above": name, "fits": len(near),
+                             "lowest_by": lowest["solver"], "psnr_db_of_lowest": lowest["psnr_db"],
+                             "delta_e_of_lowest": lowest["delta_e"],
+                             "psnr_db_more": stats.median(gains), "least_psnr_db_more": min(gains),
+                             "most_psnr_db_more": max(gains),
+                             "delta_e_more": stats.median([row["delta_e"] - lowest["delta_e"] for row in near])})
+    correlations = [{"material": material, "fits": len(of),
                      "rank_correlation": stats.rank_correlation([row["E"] for row in of],
-                                                                [row["delta_e"] for row in of]),
-                     "within_5": len(near),
-                     **{f"{name}_of_{key}_within_5": choose(row[key] for row in near)
-                        for key in ("psnr_db", "delta_e") for name, choose in (("least", min), ("most", max))}})
-    return {"starts": starts, "solvers": rows, "seen": seen}
+                                                                [row["delta_e"] for row in of])}
+                    for material, of in tables.groups(starts, "material").items()]
+    return {"starts": starts, "solvers": rows, "seen": seen, "correlations": correlations}
 
 
 def _row(material, solver, of):
@@ -99,6 +107,21 @@ def _paired(rows):
         lower, higher, p = stats.sign_test([of[one][name] for name in both], [of[other][name] for name in both], ALIKE)
         lines.append([one, other, str(lower), str(higher), str(len(both) - lower - higher), f"{p:.2g}"])
     return tables.markdown(["solver", "other", "solver lower", "other lower", "alike", "p"], lines)
+
+
+def _seen(seen):
+    """What one sees of a higher E: a line a class, the median and quartiles of its materials."""
+    lines = []
+    for name in CLASSES.values():
+        of = [row for row in seen if row["E_above"] == name]
+        if of:
+            lines.append([name, str(len(of)), str(sum(row["fits"] for row in of)),
+                          tables.quartiles([row["psnr_db_more"] for row in of], "+.2f"),
+                          f"{min(row['least_psnr_db_more'] for row in of):+.1f} to "
+                          f"{max(row['most_psnr_db_more'] for row in of):+.1f}",
+                          tables.quartiles([row["delta_e_more"] for row in of], "+.3f")])
+    return tables.markdown(["E above the lowest", "materials", "fits", "PSNR, dB more than of the lowest E", "of all fits",
+                            "mean ΔE more"], lines)
 
 
 def _cube(starts):
@@ -168,4 +191,4 @@ def draw(drawn, _):
     if not rows:
         return {}
     return {"summary.md": _summary(rows), "paired.md": _paired(rows), "shares.md": _shares(starts),
-            "ends": _figure(starts, rows)}
+            "seen.md": _seen(drawn["seen"]), "ends": _figure(starts, rows)}
