@@ -68,7 +68,7 @@ void PrintOutcome(const FitOutcome& outcome, size_t done, size_t count) {
   std::cout << std::endl;
   if (outcome.glows) {
     std::cerr << "trilobe: the model of " << Printable(outcome.name)
-              << " reflects more light than falls on it, as its samples leave it no other way; "
+              << " reflects more light than falls on it, and would fit its samples worse without; "
                  "`trilobe info` of its model.json says at which angles\n";
   }
   if (!outcome.undrawn.empty()) {
