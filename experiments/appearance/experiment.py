@@ -278,12 +278,14 @@ def _best_and_worst(rows, results, scene):
 
 
 def tabulate(setting, results):
-    """renders: a row for each picture; noise, agreement, factors: README.md; aims."""
+    """renders, published: a row for each picture of a fit, and of a published model; noise, agreement, factors:
+    README.md; aims."""
     source_of = {source.name: source for source in setting.sources}
     folder_of = {(r.labels["material"], r.labels["scene"], r.labels["seed"]): r.folder
                  for r in results if r.labels.get("kind") == "render" and r.folder}
     rows = _render_rows(setting, results, source_of)
-    products = {"renders": rows, "noise": noise.rows(folder_of, "measured"),
+    products = {"renders": [row for row in rows if row["fit"] not in PUBLISHED],
+                "published": [row for row in rows if row["fit"] in PUBLISHED], "noise": noise.rows(folder_of, "measured"),
                 "factors": _factor_rows(results), "agreement": _agreement_rows(results),
                 "aims": [{"database": database, "median": of}
                          for database, of in setting.manifest["aims"].items()]}
@@ -472,7 +474,7 @@ def _factors_figure(rows):
 
 
 def draw(drawn, _):
-    rows = drawn["renders"]
+    rows = drawn["renders"] + drawn.get("published", [])
     products = {"psnr": _psnr_figure(rows), "summary.md": _summary_table(rows, drawn["aims"]),
                 "against.md": _against_table(rows), "rank.md": _rank_table(rows),
                 "disagree.md": _disagree_table(rows), "materials.md": _materials_table(rows)}
