@@ -94,14 +94,24 @@ class TablesTest(FolderTest):
         bivariate = load("appearance", "bivariate").bivariate
         table = numpy.random.default_rng(4).random((90, 90, 1, 3)) * numpy.ones((1, 1, 180, 1))
         table[numpy.minimum(*merl.cosines()) <= 0] = -1
-        found = bivariate(table)
+        found = bivariate(table, 90)
         valid = table[:, :, 90, 0] >= 0
         numpy.testing.assert_allclose(found[:, :, 0][valid], table[:, :, 90][valid])
         self.assertEqual(found[:, :, 0][~valid].max(), -1)
         table[5, 5, ::2] = 1
         table[5, 5, 1::2] = 3
-        self.assertTrue((1.2 < bivariate(table)[5, 5]).all())
-        self.assertTrue((bivariate(table)[5, 5] < 2).all())  # the dark ones weigh more
+        self.assertTrue((1.2 < bivariate(table, 90)[5, 5]).all())
+        self.assertTrue((bivariate(table, 90)[5, 5] < 2).all())  # the dark ones weigh more
+
+    def test_bivariate_of_fewer_bins_is_a_mean_over_them(self):
+        bivariate = load("appearance", "bivariate").bivariate
+        table = numpy.random.default_rng(4).random((90, 90, 1, 3)) * numpy.ones((1, 1, 180, 1))
+        each, three = bivariate(table, 90), bivariate(table, 30)
+        self.assertEqual(three.shape, each.shape)
+        of_bin = each.reshape(90, 30, 3, 3)
+        numpy.testing.assert_array_equal(three[:, ::3], three[:, 2::3])
+        self.assertTrue((three[:, ::3, 0] >= of_bin.min(axis=2) - 1e-12).all())
+        self.assertTrue((three[:, ::3, 0] <= of_bin.max(axis=2) + 1e-12).all())
 
     def test_a_published_fit_is_its_formula(self):
         (self.folder / "x.fit").write_text(
