@@ -66,7 +66,8 @@ def tabulate(setting, results):
         said = json.loads((result.folder / "noise.json").read_text())
         rows += [{"material": result.labels["material"],
                   "environment": result.labels["environment"], **row} for row in said["rows"]]
-    products = {"noise": rows}
+    products = {"noise": [row for row in rows if not row["with_lights"]],
+                "noise_with_lights": [row for row in rows if row["with_lights"]]}
     if page := _pictured(setting, results):
         products["spheres.jpg"] = page
     return products
@@ -134,5 +135,5 @@ def _curves(rows):
 
 
 def draw(drawn, _):
-    rows = drawn["noise"]
+    rows = drawn["noise"] + drawn.get("noise_with_lights", [])
     return {"noise": _curves(rows), "summary.md": _summary(rows), "materials.md": _materials(rows)}
