@@ -83,7 +83,7 @@ def _shares(rows):
         return ""
     cube = numpy.array([ends[key] for key in itertools.product(*levels)]).reshape([len(of) for of in levels])
     shares = stats.variance_shares(cube, FACTORS)
-    return tables.markdown(["of the variance of the sphere's PSNR", "%"],
+    return tables.markdown(["part", "percent"],
                            [[" by ".join(of), f"{100 * share:.1f}"] for of, share in
                             sorted(shares.items(), key=lambda item: -item[1]) if share >= 0.0005])
 
