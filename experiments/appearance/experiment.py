@@ -474,7 +474,7 @@ def _factors_figure(rows):
 
 
 def draw(drawn, _):
-    rows = drawn["renders"] + drawn.get("published", [])
+    rows = drawn["renders"] + drawn["published"]
     products = {"psnr": _psnr_figure(rows), "summary.md": _summary_table(rows, drawn["aims"]),
                 "against.md": _against_table(rows), "rank.md": _rank_table(rows),
                 "disagree.md": _disagree_table(rows), "materials.md": _materials_table(rows)}

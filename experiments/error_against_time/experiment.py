@@ -296,16 +296,9 @@ def _share(rows, target):
 
 def _paired_table(rows, solvers):
     """Each two solvers on the same materials: how often each ends lower by more than 0.1 %, and the sign test's p."""
-    ends = {solver: {row["material"]: math.inf if row.get("objective") is None else row["objective"] for row in of}
-            for solver, of in tables.groups(rows, "solver").items()}
-    lines = []
-    for k, first in enumerate(solvers):
-        for second in solvers[k + 1:]:
-            names = sorted(ends[first])
-            lower, higher, p = stats.sign_test([ends[first][name] for name in names],
-                                               [ends[second][name] for name in names], TARGETS[-1])
-            lines.append([first, second, str(lower), str(higher), str(len(names) - lower - higher), f"{p:.2g}"])
-    return tables.markdown(["solver", "other", "solver lower", "other lower", "alike", "p"], lines)
+    of = tables.groups(rows, "solver")
+    return tables.paired({solver: {row["material"]: math.inf if row.get("objective") is None else row["objective"]
+                                   for row in of[solver]} for solver in solvers}, TARGETS[-1])
 
 
 def _summary(rows, solvers):

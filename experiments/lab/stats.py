@@ -60,6 +60,17 @@ def sign_test(first, second, tolerance):
     return lower, higher, min(1.0, 2 * tail)
 
 
+def crossed(rows, factors, narrowed, key):
+    """(array of row[key], a level of each factor an axis, in the order of the rows; the levels of the factor `narrowed`
+    that have a row with every combination of the others', and are those of its axis)."""
+    values = {tuple(row[factor] for factor in factors): row[key] for row in rows}
+    levels = {factor: list(dict.fromkeys(row[factor] for row in rows)) for factor in factors}
+    levels[narrowed] = [level for level in levels[narrowed]
+                        if all(of in values for of in itertools.product(*({**levels, narrowed: [level]}.values())))]
+    cube = numpy.array([values[of] for of in itertools.product(*levels.values())], dtype=float)
+    return cube.reshape([len(of) for of in levels.values()]), levels[narrowed]
+
+
 def variance_shares(cube, factors):
     """Shares of the variance of cube [a level of each factor an axis], every combination once, by analysis of variance:
     {("solver",): of one factor alone, ("material", "solver"): of what the two do together and none alone, ...}, every

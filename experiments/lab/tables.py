@@ -1,5 +1,6 @@
 """Tables as lists of rows, a row a dict: to and from CSV, and as Markdown."""
 import csv
+import itertools
 import math
 
 
@@ -69,6 +70,19 @@ def with_missing(rows, missing, *keys):
     """{key: (rows, how many are missing)}, keys as those of `groups`; no rows where all are."""
     found, lost = groups(rows, *keys), groups(missing, *keys)
     return {key: (found.get(key, []), len(lost.get(key, []))) for key in [*found, *lost]}
+
+
+def paired(ends, tolerance):
+    """A line each two solvers: on how many materials each ends lower than the other by more than the tolerance, and
+    the sign test's p. ends: {solver: {material: E}}; a pair counts the materials that both have."""
+    from lab import stats  # here: as above
+    lines = []
+    for one, other in itertools.combinations(ends, 2):
+        both = sorted(ends[one].keys() & ends[other].keys())
+        lower, higher, p = stats.sign_test([ends[one][name] for name in both], [ends[other][name] for name in both],
+                                           tolerance)
+        lines.append([one, other, str(lower), str(higher), str(len(both) - lower - higher), f"{p:.2g}"])
+    return markdown(["solver", "other", "solver lower", "other lower", "alike", "p"], lines)
 
 
 def count(rows, missing):

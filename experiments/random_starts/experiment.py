@@ -12,18 +12,19 @@ FOUND, NEARLY = 0.01, 0.05  # E above the lowest of any start and solver
 CLOSE = 0.001
 ALIKE = 0.001  # medians of E nearer than this are alike
 # How far E is above the lowest of its material.
-CLASSES = {(-1, 0.01): "up to 1 %", (0.01, 0.05): "1 to 5 %", (0.05, 0.2): "5 to 20 %", (0.2, math.inf): "more"}
+CLASSES = {(-1, FOUND): "up to 1 %", (FOUND, NEARLY): "1 to 5 %", (NEARLY, 0.2): "5 to 20 %", (0.2, math.inf): "more"}
 # Of the analysis of variance. A start means something on one material only.
+FACTORS = ("material", "solver", "seed")
 PARTS = {"solver": [("solver",)], "solver by material": [("material", "solver")],
-         "start": [("start",), ("material", "start")],
-         "start by solver": [("solver", "start"), ("material", "solver", "start")]}
+         "start": [("seed",), ("material", "seed")],
+         "start by solver": [("solver", "seed"), ("material", "solver", "seed")]}
 
 
 def units(setting):
     """Each solver of a set on each of its materials, from the first starts."""
     program = setting.program("thinned_fits")
     return [Unit(f"random_starts/{source.name}/{solver}", program,
-                 (source.path, *fits.words({"solvers": solver, "starts": of["starts"], "first_seed": 1,
+                 (source.path, *fits.words({"solvers": solver, "starts": of["starts"],
                                             **setting.reading(source)})), labels={"material": source.name})
             for of in setting.manifest["sets"] for source in setting.every(of["every"]) for solver in of["solvers"]]
 
@@ -36,12 +37,14 @@ def tabulate(setting, results):
         if result.folder:
             lines = (result.folder / "stdout.txt").read_text().splitlines()
             starts += [{**result.labels, **json.loads(line)} for line in lines]
-    rows, seen = [], []
+    rows, seen, correlations = [], [], []
     for material, of in tables.groups(starts, "material").items():
         lowest = min(of, key=lambda row: row["E"])
         for row in of:
             row["excess"] = stats.excess(row["E"], lowest["E"])
         rows += [_row(material, solver, single) for solver, single in tables.groups(of, "solver").items()]
+        correlations.append({"material": material, "fits": len(of), "rank_correlation": stats.rank_correlation(
+            [row["E"] for row in of], [row["delta_e"] for row in of])})
         for (least, most), name in CLASSES.items():
             near = [row for row in of if least < row["excess"] <= most]
             if near:
@@ -52,10 +55,6 @@ def tabulate(setting, results):
                              "psnr_db_more": stats.median(gains), "least_psnr_db_more": min(gains),
                              "most_psnr_db_more": max(gains),
                              "delta_e_more": stats.median([row["delta_e"] - lowest["delta_e"] for row in near])})
-    correlations = [{"material": material, "fits": len(of),
-                     "rank_correlation": stats.rank_correlation([row["E"] for row in of],
-                                                                [row["delta_e"] for row in of])}
-                    for material, of in tables.groups(starts, "material").items()]
     return {"starts": starts, "solvers": rows, "seen": seen, "correlations": correlations}
 
 
@@ -99,14 +98,8 @@ def _summary(rows):
 
 def _paired(rows):
     """Each two solvers: on how many materials the median start of one ends lower than that of the other."""
-    of = {solver: {row["material"]: row["median_E"] for row in single}
-          for solver, single in tables.groups(rows, "solver").items()}
-    lines = []
-    for one, other in itertools.combinations(of, 2):
-        both = sorted(of[one].keys() & of[other].keys())
-        lower, higher, p = stats.sign_test([of[one][name] for name in both], [of[other][name] for name in both], ALIKE)
-        lines.append([one, other, str(lower), str(higher), str(len(both) - lower - higher), f"{p:.2g}"])
-    return tables.markdown(["solver", "other", "solver lower", "other lower", "alike", "p"], lines)
+    return tables.paired({solver: {row["material"]: row["median_E"] for row in of}
+                          for solver, of in tables.groups(rows, "solver").items()}, ALIKE)
 
 
 def _seen(seen):
@@ -124,20 +117,11 @@ def _seen(seen):
                             "mean ΔE more"], lines)
 
 
-def _cube(starts):
-    """(log E [materials, solvers, starts], solvers) of the solvers that have had all starts on all materials."""
-    ends = {(row["material"], row["solver"], row["seed"]): math.log(max(row["E"], 1e-300)) for row in starts}
-    materials, solvers, seeds = (list(tables.groups(starts, key)) for key in ("material", "solver", "seed"))
-    crossed = [solver for solver in solvers
-               if all((name, solver, seed) in ends for name in materials for seed in seeds)]
-    return numpy.array([[[ends[name, solver, seed] for seed in seeds] for solver in crossed]
-                        for name in materials]), crossed
-
-
 def _shares(starts):
     """What the variance of log E is made of, the material left aside, whose part depends on the choice of them; by all
     solvers that have had all starts, and without one of them each."""
-    cube, solvers = _cube(starts)
+    logs = [{**row, "log_E": math.log(max(row["E"], 1e-300))} for row in starts]
+    cube, solvers = stats.crossed(logs, FACTORS, "solver", "log_E")
     if len(solvers) < 2:
         return ""
     lines = []
@@ -145,7 +129,7 @@ def _shares(starts):
         kept = [number for number, solver in enumerate(solvers) if solver != left_out]
 
         def shares(materials, kept=kept):
-            parts = stats.variance_shares(cube[materials][:, kept], ("material", "solver", "start"))
+            parts = stats.variance_shares(cube[materials][:, kept], FACTORS)
             left = 1 - parts.pop(("material",))
             return {name: 100 * sum(parts[of] for of in these) / left if left > 0 else math.nan
                     for name, these in PARTS.items()}

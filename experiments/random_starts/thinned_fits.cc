@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <optional>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/files/text_lines.h"
+#include "core/system/process.h"
 #include "experiments/program.h"
 #include "solvers/multistart/start_elimination.h"
 #include "solvers/smooth/softening.h"
@@ -27,8 +28,7 @@
 DEFINE_string(solvers, "auto", "a list of `trilobe solvers`, softened and lm_dogleg");
 DEFINE_string(weightings, "appearance", "a list of weightings of the objective");
 DEFINE_string(init, "roughness", "the starts, as `trilobe fit` has them");
-DEFINE_int32(starts, 1, "how many");
-DEFINE_int32(first_seed, 1, "seed of the first; those of the others follow");
+DEFINE_int32(starts, 1, "how many, of seeds 1, 2, ...");
 DEFINE_bool(extrapolated, false, "of an RGL file, also take what was extrapolated");
 DEFINE_string(corrupt, "", "as `trilobe fit` has it");
 DEFINE_uint64(data_seed, 1, "of what is random in --corrupt");
@@ -37,13 +37,6 @@ DEFINE_int32(lights, 200, "lights on the sphere that is compared");
 
 namespace trilobe {
 namespace {
-
-std::vector<std::string> Words(const std::string& list) {
-  std::vector<std::string> words;
-  std::istringstream in(list);
-  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
-  return words;
-}
 
 BrdfTable Table(const std::string& source, const std::string& corrupt) {
   return LoadTable(source, {.corrupt = corrupt,
@@ -61,12 +54,6 @@ Objective ThinnedObjective(const BrdfTable& table, const Weighting& weighting) {
   return {Thinned(all.samples(), stride), spec, weighting, /*num_threads=*/1};
 }
 
-double ProcessorSeconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // A solver with what stands before it.
 struct Way {
   std::string solver;
@@ -74,10 +61,10 @@ struct Way {
   TrustRegion trust_region = TrustRegion::kLevenbergMarquardt;
 };
 
-Way WayOf(const std::string& name) {
+Way WayOf(std::string_view name) {
   if (name == "softened") return {.solver = "varpro", .softened = true};
   if (name == "lm_dogleg") return {.solver = "lm", .trust_region = TrustRegion::kDogleg};
-  return {.solver = name};
+  return {.solver = std::string(name)};
 }
 
 struct Run {
@@ -104,19 +91,19 @@ Run FitFrom(const InitialModel& init, uint64_t seed, const Way& way, const Objec
 // A line of JSON a fit: E of what was fitted, over a black model's, too, the latter by default
 // weights of the clean samples, and the sphere beside the clean one.
 int Main(const std::string& source) {
-  const std::vector<std::string> solvers = Words(FLAGS_solvers);
-  for (const std::string& name : solvers) MakeSolver(WayOf(name).solver);  // an Error soon
+  const std::vector<std::string_view> solvers = SplitCells(FLAGS_solvers);
+  for (const std::string_view name : solvers) MakeSolver(WayOf(name).solver);  // an Error soon
   const InitialModel& init = FindInitialModel(FLAGS_init);
   const BrdfTable clean_table = Table(source, "");
   const std::optional<BrdfTable> corrupted =
       FLAGS_corrupt.empty() ? std::nullopt : std::optional(Table(source, FLAGS_corrupt));
   const Objective clean = ThinnedObjective(clean_table, FindWeighting("appearance"));
   const SphereJudge judge(clean_table, {.lights = FLAGS_lights});
-  for (const std::string& weighting : Words(FLAGS_weightings)) {
-    const Objective few =
-        ThinnedObjective(corrupted ? *corrupted : clean_table, FindWeighting(weighting));
-    for (int seed = FLAGS_first_seed; seed < FLAGS_first_seed + FLAGS_starts; ++seed) {
-      for (const std::string& solver : solvers) {
+  for (const std::string_view name : SplitCells(FLAGS_weightings)) {
+    const Weighting weighting = FindWeighting(name);
+    const Objective few = ThinnedObjective(corrupted ? *corrupted : clean_table, weighting);
+    for (int seed = 1; seed <= FLAGS_starts; ++seed) {
+      for (const std::string_view solver : solvers) {
         const Run run = FitFrom(init, seed, WayOf(solver), few);
         const double E = run.summary.final_objective;
         const SphereError sphere = judge(MaterialOf(run.model).angular);
@@ -125,7 +112,7 @@ int Main(const std::string& source) {
             "\"relative_E\": %.17g, \"clean_relative_E\": %.17g, \"psnr_db\": %.6g, "
             "\"delta_e\": %.6g, \"iterations\": %d, \"raises\": %zu, \"stop_reason\": \"%s\", "
             "\"seconds\": %.4g}\n",
-            weighting.c_str(), seed, solver.c_str(), E, E / few.MeasuredEnergy(),
+            weighting.name.c_str(), seed, std::string(solver).c_str(), E, E / few.MeasuredEnergy(),
             clean.Value(run.model) / clean.MeasuredEnergy(), sphere.psnr_db, sphere.mean_delta_e,
             run.summary.iterations, run.summary.FindRaises().iterations.size(),
             StopReasonName(run.summary.stop_reason), run.seconds);

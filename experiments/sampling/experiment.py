@@ -135,5 +135,5 @@ def _curves(rows):
 
 
 def draw(drawn, _):
-    rows = drawn["noise"] + drawn.get("noise_with_lights", [])
+    rows = drawn["noise"] + drawn["noise_with_lights"]
     return {"noise": _curves(rows), "summary.md": _summary(rows), "materials.md": _materials(rows)}

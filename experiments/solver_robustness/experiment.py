@@ -75,13 +75,9 @@ def _paired(rows, by, where):
 
 def _shares(rows):
     """What the variance of the PSNR is made of, over the solvers that have gone through all."""
-    ends = {tuple(row[name] for name in FACTORS): row["psnr_db"] for row in rows}
-    levels = [list(tables.groups(rows, name)) for name in FACTORS]
-    levels[2] = [solver for solver in levels[2] if all(
-        (*key[:2], solver, key[3]) in ends for key in itertools.product(levels[0], levels[1], [solver], levels[3]))]
-    if not levels[2]:
+    cube, solvers = stats.crossed(rows, FACTORS, "solver", "psnr_db")
+    if not solvers:
         return ""
-    cube = numpy.array([ends[key] for key in itertools.product(*levels)]).reshape([len(of) for of in levels])
     shares = stats.variance_shares(cube, FACTORS)
     return tables.markdown(["part", "percent"],
                            [[" by ".join(of), f"{100 * share:.1f}"] for of, share in

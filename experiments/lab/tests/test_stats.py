@@ -26,6 +26,14 @@ class StatsTest(unittest.TestCase):
         self.assertEqual(stats.sign_test([1, 1], [1.0005, 1], 0.001), (0, 0, 1.0))
         self.assertEqual(stats.sign_test([1, INF], [INF, INF], 0.001), (1, 0, 1.0))
 
+    def test_crossed_leaves_out_what_lacks_a_combination(self):
+        rows = [{"a": a, "b": b, "x": 10 * a + b} for a in (1, 2) for b in (5, 3, 4) if (a, b) != (2, 3)]
+        cube, left = stats.crossed(rows, ("a", "b"), "b", "x")
+        self.assertEqual(left, [5, 4])
+        self.assertEqual(cube.tolist(), [[15, 14], [25, 24]])
+        cube, left = stats.crossed(rows[1:], ("a", "b"), "a", "x")
+        self.assertEqual((left, cube.shape), ([], (0, 3)))
+
     def test_variance_shares(self):
         shares = stats.variance_shares([[4, 2], [-2, -4]], ("a", "b"))
         self.assertAlmostEqual(shares["a",], 0.9)
